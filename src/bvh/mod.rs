@@ -1,0 +1,1 @@
+//! Triangles, trees over them, and the rays that walk those trees.

@@ -1,0 +1,26 @@
+//! Glassbox: a scene editor whose ray tracer you can see into.
+//!
+//! Bevy entities are the scene. Systems sync them into a CPU ray tracer whose trees obvhs builds;
+//! the tracer draws a picture, and can show what it did to get there.
+//!
+//! The rooms, from the ground up; each uses only those before it:
+//!
+//! | room | holds |
+//! |---|---|
+//! | [`scene`] | the components: plain reflected data, no systems |
+//! | [`bvh`] | triangles, builders, traversal, statistics; knows no scene |
+//! | [`trace`] | the world that rays read, camera, lights, textures, sampler, radiance |
+//! | [`film`] | pixels: samples become a picture, the picture becomes a screen's |
+//! | [`sync`] | entities to the tracer's world: what changed, and only that |
+//! | [`io`] | scene files, OBJ, glTF, pictures, shapes, built-in scenes |
+//! | [`cli`] | the command line: parses, calls, prints |
+//!
+//! [`bvh`] and [`trace`] need no ECS: see `examples/plain_rust.rs`.
+
+pub mod bvh;
+pub mod cli;
+pub mod film;
+pub mod io;
+pub mod scene;
+pub mod sync;
+pub mod trace;

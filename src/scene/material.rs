@@ -1,0 +1,67 @@
+use bevy::asset::Handle;
+use bevy::color::LinearRgba;
+use bevy::ecs::entity::{Entity, MapEntities};
+use bevy::ecs::{component::Component, reflect::ReflectComponent, reflect::ReflectMapEntities};
+use bevy::image::Image;
+use bevy::reflect::{Reflect, std_traits::ReflectDefault};
+
+/// A Phong material, named as in OBJ/MTL.
+///
+/// On an entity with a mesh it is that object's own material. On an entity without one it is a
+/// shared material, which objects name with [`UsesMaterial`].
+#[derive(Component, Reflect, Clone, Debug, PartialEq)]
+#[reflect(Component, Default, Clone, PartialEq, Debug)]
+pub struct Phong {
+    /// kd, in [0, 1]. A diffuse map takes its place.
+    pub diffuse: LinearRgba,
+    /// ks, in [0, 1]: the highlight, and what a mirror reflects.
+    pub specular: LinearRgba,
+    /// s ≥ 1: how narrow the highlight is; a glossy reflection's disc has radius 1/s.
+    pub shininess: f32,
+    /// d in [0, 1]: 1 is opaque.
+    pub opacity: f32,
+    /// ke ≥ 0, radiance that the surface sends out by itself. It is seen; it does not light others.
+    pub emission: LinearRgba,
+    /// A picture that takes the place of `diffuse`.
+    pub diffuse_map: Option<TextureSource>,
+    /// A picture whose brightness multiplies `opacity`.
+    pub opacity_map: Option<TextureSource>,
+}
+
+impl Default for Phong {
+    fn default() -> Self {
+        Self {
+            diffuse: LinearRgba::rgb(0.8, 0.8, 0.8),
+            specular: LinearRgba::BLACK,
+            shininess: 10.0,
+            opacity: 1.0,
+            emission: LinearRgba::BLACK,
+            diffuse_map: None,
+            opacity_map: None,
+        }
+    }
+}
+
+/// A picture file, or one that a generated scene brings along.
+#[derive(Reflect, Clone, Debug, Default, PartialEq, Eq, Hash)]
+#[reflect(Default, Clone, PartialEq, Debug, Hash)]
+pub struct TextureSource {
+    /// Relative to the scene file's folder, with `/` between its parts. `model.glb#texture0` is a
+    /// picture inside a glTF file; `builtin:checker` is one that Glassbox generates.
+    pub path: String,
+}
+
+/// The pictures of a [`Phong`], loaded. Not saved: made again from the sources.
+#[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
+#[reflect(Component, Default, Clone, PartialEq, Debug)]
+pub struct PhongMaps {
+    /// Takes the place of `Phong::diffuse`.
+    pub diffuse: Option<Handle<Image>>,
+    /// Multiplies `Phong::opacity`.
+    pub opacity: Option<Handle<Image>>,
+}
+
+/// Names the entity whose [`Phong`] this object uses instead of its own.
+#[derive(Component, Reflect, MapEntities, Clone, Copy, Debug, PartialEq, Eq)]
+#[reflect(Component, MapEntities, Clone, PartialEq, Debug)]
+pub struct UsesMaterial(#[entities] pub Entity);

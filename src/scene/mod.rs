@@ -1,0 +1,62 @@
+//! What a scene is made of: plain, reflected data, and no systems.
+//!
+//! An entity is one thing of the scene. Which components it carries says what it is:
+//!
+//! | it is | it carries | where it stands |
+//! |---|---|---|
+//! | an object | `Mesh3d` (usually through [`MeshSource`]) and [`Phong`] or [`UsesMaterial`] | `Transform` |
+//! | a shared material | [`Phong`] and no mesh | nowhere |
+//! | a light | [`PointLamp`], [`DirectionalLamp`], [`SegmentLamp`] or [`ParallelogramLamp`] | `Transform` |
+//! | a camera | [`SceneCamera`], optionally [`Lens`] | `Transform`, looking down its local -Z |
+//!
+//! What belongs to the scene as a whole are the resources [`Environment`] and [`RenderSettings`].
+//!
+//! Components that end in `Source` are what files keep; the room `io` resolves them into the
+//! handles (`Mesh3d`, [`PhongMaps`]) that the room `sync` reads. A Bevy app that has its own
+//! handles spawns those directly.
+//!
+//! Units: metres, radians, seconds; colours are linear RGB, scene-referred; alpha is not read.
+
+mod camera;
+mod identity;
+mod lamps;
+mod material;
+mod mesh_source;
+mod settings;
+
+pub use camera::{Lens, Motion, Projection, SceneCamera};
+pub use identity::SceneId;
+pub use lamps::{Cone, DirectionalLamp, ParallelogramLamp, PointLamp, SegmentLamp};
+pub use material::{Phong, PhongMaps, TextureSource, UsesMaterial};
+pub use mesh_source::{MeshSource, Shape};
+pub use settings::{
+    Builder, Environment, Features, Levels, Lighting, Output, PixelSampling, Preset,
+    RenderSettings, TextureFilter, TreeSettings, ViewTransform,
+};
+
+use bevy::app::{App, Plugin};
+
+/// Registers every type of this room and inserts the scene's two resources.
+pub struct ScenePlugin;
+
+impl Plugin for ScenePlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<SceneId>()
+            .register_type::<MeshSource>()
+            .register_type::<Shape>()
+            .register_type::<Phong>()
+            .register_type::<PhongMaps>()
+            .register_type::<UsesMaterial>()
+            .register_type::<PointLamp>()
+            .register_type::<DirectionalLamp>()
+            .register_type::<SegmentLamp>()
+            .register_type::<ParallelogramLamp>()
+            .register_type::<SceneCamera>()
+            .register_type::<Lens>()
+            .register_type::<Motion>()
+            .register_type::<Environment>()
+            .register_type::<RenderSettings>()
+            .init_resource::<Environment>()
+            .init_resource::<RenderSettings>();
+    }
+}

@@ -1,0 +1,254 @@
+//! What belongs to the scene as a whole: its background, and how it is rendered.
+//!
+//! `--set key=value` reaches every field by its reflected path, for example
+//! `features.shadows=false` or `tree.builder=Sah`.
+
+use super::TextureSource;
+use bevy::color::LinearRgba;
+use bevy::ecs::{reflect::ReflectResource, resource::Resource};
+use bevy::math::UVec2;
+use bevy::reflect::{Reflect, std_traits::ReflectDefault};
+
+/// What a ray carries that meets nothing.
+#[derive(Resource, Reflect, Clone, Debug, PartialEq)]
+#[reflect(Resource, Default, Clone, PartialEq, Debug)]
+pub struct Environment {
+    /// Used where there is no map, or where `RenderSettings::features.environment` is off.
+    pub background: LinearRgba,
+    /// An equirectangular picture, +Y up, its middle column at -Z.
+    pub map: Option<TextureSource>,
+    /// Turns the map about the y axis, in radians.
+    pub rotation: f32,
+    /// Multiplies the map, ≥ 0.
+    pub intensity: f32,
+}
+
+impl Default for Environment {
+    fn default() -> Self {
+        Self {
+            background: LinearRgba::BLACK,
+            map: None,
+            rotation: 0.0,
+            intensity: 1.0,
+        }
+    }
+}
+
+/// How the scene is rendered.
+#[derive(Resource, Reflect, Clone, Debug, PartialEq)]
+#[reflect(Resource, Default, Clone, PartialEq, Debug)]
+pub struct RenderSettings {
+    /// Pixels, 1 to 65,536 each and at most 2^28 together.
+    pub size: UVec2,
+    /// Samples of each pixel, 1 to 2^20.
+    pub spp: u32,
+    /// Chooses the random numbers; the same seed gives the same picture.
+    pub seed: u32,
+    /// Where in the pixel samples lie.
+    pub pixel: PixelSampling,
+    /// What a light's colour means.
+    pub lighting: Lighting,
+    /// Mirror bounces, 0–50.
+    pub max_depth: u32,
+    /// The switches.
+    pub features: Features,
+    /// How texels are read.
+    pub texture_filter: TextureFilter,
+    /// How the trees are built.
+    pub tree: TreeSettings,
+    /// What is done after tracing.
+    pub output: Output,
+}
+
+impl Default for RenderSettings {
+    fn default() -> Self {
+        Self {
+            size: UVec2::new(800, 800),
+            spp: 16,
+            seed: 0,
+            pixel: PixelSampling::default(),
+            lighting: Lighting::default(),
+            max_depth: 6,
+            features: Features::default(),
+            texture_filter: TextureFilter::default(),
+            tree: TreeSettings::default(),
+            output: Output::default(),
+        }
+    }
+}
+
+/// Where in the pixel samples lie.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[reflect(Default, Clone, PartialEq, Debug)]
+pub enum PixelSampling {
+    /// Spread over the pixel's area: smooth edges.
+    #[default]
+    Area,
+    /// All of them at its centre.
+    Center,
+    /// All of them at its lower left corner, as programs do that count `ndc = 2x/W - 1`.
+    Corner,
+}
+
+/// What a light's colour means.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[reflect(Default, Clone, PartialEq, Debug)]
+pub enum Lighting {
+    /// Radiometric: inverse square, cosine at emitters, lights add up.
+    #[default]
+    Physical,
+    /// A light's colour arrives unattenuated, lights are averaged, normals are taken as the mesh
+    /// gives them, textures are not decoded, emission is ignored.
+    Classic,
+}
+
+/// The switches of the picture. What is off costs nothing.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq)]
+#[reflect(Default, Clone, PartialEq, Debug)]
+pub struct Features {
+    /// Phong shading; off: the value is kd.
+    pub shading: bool,
+    /// ks > 0 reflects.
+    pub mirrors: bool,
+    /// Shadow rays; off: every light arrives.
+    pub shadows: bool,
+    /// Area lights as areas; off: each is one point at its middle.
+    pub soft_shadows: bool,
+    /// Smooth normals; off: each triangle's own.
+    pub normal_interpolation: bool,
+    /// Diffuse and opacity maps.
+    pub textures: bool,
+    /// The environment map; off: the background colour.
+    pub environment: bool,
+    /// Samples of an area light grow with its size: `samples` is per square metre (or metre).
+    pub scale_light_samples: bool,
+}
+
+impl Default for Features {
+    fn default() -> Self {
+        Self {
+            shading: true,
+            mirrors: true,
+            shadows: true,
+            soft_shadows: true,
+            normal_interpolation: true,
+            textures: true,
+            environment: true,
+            scale_light_samples: false,
+        }
+    }
+}
+
+/// How texels are read.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[reflect(Default, Clone, PartialEq, Debug)]
+pub enum TextureFilter {
+    /// The texel that the point falls into.
+    Nearest,
+    /// Between the four nearest.
+    #[default]
+    Bilinear,
+}
+
+/// How the trees are built. The picture does not depend on it.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Default, Clone, PartialEq, Debug)]
+pub struct TreeSettings {
+    /// The splitting rule.
+    pub builder: Builder,
+    /// Two levels (a tree per mesh and one over the objects), or one tree over all triangles.
+    pub levels: Levels,
+    /// Levels of `Median` and `Sah` trees, 1–64; a node at the last level is a leaf whatever its size.
+    pub max_depth: u32,
+    /// Triangles of a leaf, 1–255; `Median` and `Sah` may exceed it only at `max_depth`.
+    pub max_leaf_size: u32,
+    /// Bins per axis of `Sah`, 2–64.
+    pub bins: u32,
+    /// How much time `Ploc` takes for a better tree.
+    pub preset: Preset,
+}
+
+impl Default for TreeSettings {
+    fn default() -> Self {
+        Self {
+            builder: Builder::default(),
+            levels: Levels::default(),
+            max_depth: 64,
+            max_leaf_size: 8,
+            bins: 16,
+            preset: Preset::default(),
+        }
+    }
+}
+
+impl TreeSettings {
+    /// The tree of the original report: median split, at most ten levels, one tree for all.
+    pub const ORIGINAL: Self = Self {
+        builder: Builder::Median,
+        levels: Levels::One,
+        max_depth: 10,
+        max_leaf_size: 8,
+        bins: 16,
+        preset: Preset::Medium,
+    };
+}
+
+/// The splitting rule of a tree.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[reflect(Default, Clone, PartialEq, Debug, Hash)]
+pub enum Builder {
+    /// No tree: every ray tests every triangle.
+    None,
+    /// Half of the triangles on either side, along the longest axis.
+    Median,
+    /// Binned surface area heuristic.
+    Sah,
+    /// obvhs: parallel locally-ordered clustering with reinsertion.
+    #[default]
+    Ploc,
+}
+
+/// How many levels of trees there are.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[reflect(Default, Clone, PartialEq, Debug, Hash)]
+pub enum Levels {
+    /// One tree over every triangle of every object.
+    One,
+    /// A tree per mesh, shared by the objects that use it, and one over the objects.
+    #[default]
+    Two,
+}
+
+/// obvhs' own presets, from quick to build to quick to trace.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[reflect(Default, Clone, PartialEq, Debug, Hash)]
+#[expect(missing_docs, reason = "the names say it all")]
+pub enum Preset {
+    Fastest,
+    Fast,
+    #[default]
+    Medium,
+    Slow,
+    VerySlow,
+}
+
+/// What is done with the linear picture after tracing. None of it traces a ray.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[reflect(Default, Clone, PartialEq, Debug)]
+pub struct Output {
+    /// In stops: the picture is multiplied by 2^exposure.
+    pub exposure: f32,
+    /// From scene-referred values to a screen's.
+    pub view_transform: ViewTransform,
+}
+
+/// From scene-referred values to a screen's.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[reflect(Default, Clone, PartialEq, Debug)]
+pub enum ViewTransform {
+    /// Clamped to [0, 1], nothing else.
+    Raw,
+    /// Clamped, then the sRGB curve.
+    #[default]
+    Srgb,
+}

@@ -1,0 +1,1 @@
+//! The tracer: what rays read, and what they carry.

@@ -1,0 +1,45 @@
+use super::{Environment, Lights, Material, Texture};
+use crate::bvh::{Aggregate, MeshTree};
+use glam::{Vec2, Vec3};
+use std::sync::Arc;
+
+/// What rays read: flat arrays, indices instead of pointers, immutable while traced.
+///
+/// An edit makes a new `World` that shares everything that did not change. Arrays are sorted by
+/// `SceneId`, so that the picture does not depend on the order in which entities were spawned.
+#[derive(Clone, Default)]
+pub struct World {
+    /// The instances and their trees. `aggregate.instances()[i]` belongs to `objects[i]`.
+    pub aggregate: Arc<Aggregate>,
+    /// What the tree does not know of each instance.
+    pub objects: Arc<Vec<Object>>,
+    /// Named by [`Object::material`].
+    pub materials: Arc<Vec<Material>>,
+    /// Named by [`Material`] and [`Environment`].
+    pub textures: Arc<Vec<Arc<Texture>>>,
+    /// One array per kind.
+    pub lights: Arc<Lights>,
+    /// What a ray carries that meets nothing.
+    pub environment: Environment,
+}
+
+/// One instance as shading sees it.
+#[derive(Clone)]
+pub struct Object {
+    /// The entity's `SceneId`.
+    pub id: u64,
+    /// Index into [`World::materials`].
+    pub material: u32,
+    /// Normals and texture coordinates, shared by all instances of the mesh.
+    pub mesh: Arc<Mesh>,
+}
+
+/// A mesh: its tree, and what shading interpolates over its triangles.
+pub struct Mesh {
+    /// Positions, indices and the tree over them.
+    pub tree: Arc<MeshTree>,
+    /// One per vertex, not necessarily of unit length; empty where the mesh has none.
+    pub normals: Vec<Vec3>,
+    /// One per vertex, (0, 0) at the picture's top left as in glTF and Bevy; empty where the mesh has none.
+    pub uvs: Vec<Vec2>,
+}
