@@ -1,0 +1,1 @@
+//! Tests of the whole stack. A module a subject; tests of one file stand in that file.
