@@ -24,7 +24,7 @@ pub struct TreeStats {
     pub depths: Vec<u32>,
     /// What a random ray that meets the root's box pays in this tree: see [`sah_cost`].
     pub sah_cost: f64,
-    /// Effective parent overlap, where it was asked for: see [`epo`](super::epo()).
+    /// Effective parent overlap, where it was asked for: see `epo`.
     pub epo: Option<f64>,
     /// Memory of nodes and primitive indices.
     pub bytes: usize,
