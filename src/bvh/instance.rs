@@ -1,0 +1,257 @@
+//! A mesh placed in the world, and the rays that follow it into its own space.
+//!
+//! # The ray's way into object space, and what it costs
+//! With `world = L · object + T` a ray becomes `o' = L⁻¹ (o - T)`, `d' = L⁻¹ d`. The direction is not renormalised, so
+//! `t` means the same in both spaces. The inverse is computed in f64 and rounded once; the rest is f32. Subtracting T
+//! first makes the error relative to the distance from the instance, not to the size of the coordinates. The identity
+//! takes the ray as it is, bit for bit.
+//!
+//! # Why a box in the world never hides a hit in the object
+//! u = 2⁻²⁴, norms are the maximum norm, κ = ‖|L||L⁻¹|‖, K = ‖L‖‖L⁻¹‖ >= κ. Per component o' is off by at most
+//! 6u |L⁻¹||o - T| and d' by 5u |L⁻¹||d|. A hit at `t` means that the point `x' = o' + t d'` lies within
+//! 17u (B + |o'|) of the padded box of its triangle, B the largest coordinate in it ([`super::slab`]: pads and
+//! roundings). The world's ray is at `o + t d` then, and that differs from `L x' + T` by at most
+//! 6uκ (|o - T| + t|d|), where t|d| <= 1.3 |o - T| + 1.2 R, R the largest coordinate of L times the box, because
+//! 6uκ <= 1/8 (larger ones are refused). Together, with |o'| <= 1.001 ‖L⁻¹‖ |o - T|:
+//!
+//! `|o + t d - (point of the box, carried into the world)| <= (14κ + 20K) u |o - T| + 7uκ R + 20u ‖L‖ B`
+//!
+//! The world's own slab test adds 4u (|o| + |world box|). With |o - T| <= |o| + |T| this splits into a part that only
+//! the instance knows, added to its world box, and a factor times |o|, by which the world ray's origin is padded (the
+//! largest factor of all instances: [`Instance::ray_pad`]). So the boxes above a hit are always passed, and entered no
+//! later than at the hit's `t`: one level, two levels and brute force find the same hits to the last bit.
+
+use std::sync::Arc;
+
+use glam::{Affine3A, DMat3, DVec3, Mat3A, Vec3, Vec3A};
+use obvhs::aabb::Aabb;
+use thiserror::Error;
+
+use super::{
+    mesh_tree::{MeshTree, ObjectRay},
+    slab::{PAD, SMALLEST_DIRECTION},
+    triangles::REACH,
+};
+
+/// Half an ulp of 1, the u of the derivation above.
+const U: f64 = f32::EPSILON as f64 / 2.0;
+/// Largest κ with 6uκ <= 1/8.
+const MOST_SKEW: f64 = 1.0 / (8.0 * 6.0 * U);
+/// Largest norm of the transform and of its inverse, so that rays of ordinary length stay in range.
+const MOST_SCALE: f64 = (1u64 << 30) as f64;
+
+/// Why a transform cannot be traced through.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum SingularTransform {
+    /// A number in it is NaN, infinite, or its translation is beyond [`REACH`].
+    #[error("the transform holds a number that is not finite or is larger than 1e12")]
+    NotFinite,
+    /// It flattens space: the determinant is zero.
+    #[error(
+        "the transform is singular (determinant 0): a scale of 0 on some axis? use a small one instead"
+    )]
+    Flat,
+    /// It, or its inverse, magnifies by more than 2^30.
+    #[error("the transform scales by {scale:e}: outside 1e-9 to 1e9")]
+    Scale {
+        /// The magnification, below 1 when it is the inverse that magnifies.
+        scale: f64,
+    },
+    /// So skewed that an inverse in f32 means nothing.
+    #[error(
+        "the transform is so skewed (condition {condition:e}) that f32 cannot invert it: at most {MOST_SKEW:e}"
+    )]
+    Skewed {
+        /// ‖|L||L⁻¹|‖ in the maximum norm; 1 for any scaling, at most 3 for scaling and rotation.
+        condition: f64,
+    },
+}
+
+/// A mesh placed in the world by an affine transform; mirrored and sheared ones included.
+#[derive(Clone)]
+pub struct Instance {
+    /// The mesh. Instances share it.
+    pub mesh: Arc<MeshTree>,
+    world_from_object: Affine3A,
+    object_from_world: Mat3A,
+    normal_from_object: Mat3A,
+    translation: Vec3A,
+    identity: bool,
+    mirrored: bool,
+    condition: f64,
+    norm: f64,
+    inverse_norm: f64,
+}
+
+impl Instance {
+    /// Places a mesh. The transform is refused when it has no usable inverse.
+    pub fn new(
+        mesh: Arc<MeshTree>,
+        world_from_object: &Affine3A,
+    ) -> Result<Self, SingularTransform> {
+        let translation = world_from_object.translation;
+        if !world_from_object.is_finite() || translation.abs().max_element() > REACH {
+            return Err(SingularTransform::NotFinite);
+        }
+        let linear = DMat3::from_cols(
+            world_from_object.matrix3.x_axis.as_dvec3(),
+            world_from_object.matrix3.y_axis.as_dvec3(),
+            world_from_object.matrix3.z_axis.as_dvec3(),
+        );
+        let determinant = linear.determinant();
+        if determinant == 0.0 {
+            return Err(SingularTransform::Flat);
+        }
+        let inverse = linear.inverse();
+        if !inverse.is_finite() {
+            return Err(SingularTransform::Flat);
+        }
+        let (norm, inverse_norm) = (norm(linear.abs()), norm(inverse.abs()));
+        let condition = self::norm(linear.abs() * inverse.abs());
+        if condition > MOST_SKEW {
+            return Err(SingularTransform::Skewed { condition });
+        }
+        if norm > MOST_SCALE {
+            return Err(SingularTransform::Scale { scale: norm });
+        }
+        if inverse_norm > MOST_SCALE {
+            return Err(SingularTransform::Scale {
+                scale: 1.0 / inverse_norm,
+            });
+        }
+        Ok(Self {
+            mesh,
+            world_from_object: *world_from_object,
+            object_from_world: inverse.as_mat3().into(),
+            normal_from_object: inverse.transpose().as_mat3().into(),
+            translation,
+            identity: *world_from_object == Affine3A::IDENTITY,
+            mirrored: determinant < 0.0,
+            condition,
+            norm,
+            inverse_norm,
+        })
+    }
+
+    /// The transform, from object to world space.
+    pub fn world_from_object(&self) -> &Affine3A {
+        &self.world_from_object
+    }
+
+    /// Whether the transform turns left hands into right ones, and so the triangles' winding.
+    pub fn mirrored(&self) -> bool {
+        self.mirrored
+    }
+
+    /// A point of the mesh, in the world.
+    #[inline]
+    pub fn to_world_point(&self, point: Vec3) -> Vec3 {
+        if self.identity {
+            point
+        } else {
+            self.world_from_object.transform_point3(point)
+        }
+    }
+
+    /// A vector of the mesh (an edge), in the world.
+    #[inline]
+    pub fn to_world_vector(&self, vector: Vec3) -> Vec3 {
+        if self.identity {
+            vector
+        } else {
+            self.world_from_object.transform_vector3(vector)
+        }
+    }
+
+    /// A normal of the mesh, in the world, by the inverse transpose. Not normalised, except that the identity leaves it
+    /// as it is. It stays on the side of the surface that it was on.
+    #[inline]
+    pub fn to_world_normal(&self, normal: Vec3) -> Vec3 {
+        if self.identity {
+            normal
+        } else {
+            self.normal_from_object * normal
+        }
+    }
+
+    /// The box around the instance in the world, or `None` when its mesh has no triangle that is traced. It is wide
+    /// enough for the rounding of every ray that enters (see the module).
+    pub fn world_bounds(&self) -> Option<Aabb> {
+        self.mesh.bounds().map(|bounds| self.to_world_box(&bounds))
+    }
+
+    /// The world box of a padded box in object space, conservative for hits inside it.
+    pub(crate) fn to_world_box(&self, bounds: &Aabb) -> Aabb {
+        if self.identity {
+            return *bounds;
+        }
+        let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+        let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
+        let columns = |matrix: &Mat3A| {
+            DMat3::from_cols(
+                matrix.x_axis.as_dvec3(),
+                matrix.y_axis.as_dvec3(),
+                matrix.z_axis.as_dvec3(),
+            )
+        };
+        let linear = columns(&self.world_from_object.matrix3);
+        let translation = self.translation.as_dvec3();
+        let (moved, half) = (linear * centre, linear.abs() * half);
+        let centre = moved + translation;
+        let reach = (moved.abs() + half).max_element();
+        let largest = min.abs().max(max.abs()).max_element();
+        let world = (centre.abs() + half).max_element();
+        let pad = (14.0 * self.condition + 20.0 * self.norm * self.inverse_norm)
+            * U
+            * translation.abs().max_element()
+            + 7.0 * U * self.condition * reach
+            + 20.0 * U * self.norm * largest
+            + 6.0 * U * world;
+        let half = half + DVec3::splat(pad);
+        Aabb::new(round_down(centre - half), round_up(centre + half))
+    }
+
+    /// The factor by which |o|∞ pads the origin of a world ray, for the boxes above this instance.
+    pub(crate) fn ray_pad(&self) -> f32 {
+        if self.identity {
+            PAD
+        } else {
+            let factor = 14.0 * self.condition + 20.0 * self.norm * self.inverse_norm + 6.0;
+            ((factor * U) as f32).max(PAD)
+        }
+    }
+
+    /// The ray as the mesh sees it, or `None` when its direction is out of range there.
+    #[inline(always)]
+    pub(crate) fn to_object_ray(&self, world: &ObjectRay) -> Option<ObjectRay> {
+        if self.identity {
+            return Some(*world);
+        }
+        let origin = self.object_from_world * (Vec3A::from(world.origin) - self.translation);
+        let direction = self.object_from_world * Vec3A::from(world.direction);
+        let size = direction.abs().max_element();
+        ((SMALLEST_DIRECTION..=1.0 / SMALLEST_DIRECTION).contains(&size)
+            && origin.abs().max_element() < f32::MAX)
+            .then(|| ObjectRay::new(origin.into(), direction.into()))
+    }
+}
+
+/// The maximum norm of a matrix with no negative entry: its largest row sum.
+fn norm(matrix: DMat3) -> f64 {
+    (matrix * DVec3::ONE).max_element()
+}
+
+fn round_down(v: DVec3) -> Vec3A {
+    Vec3A::from_array(v.to_array().map(|x| {
+        let near = x as f32;
+        if f64::from(near) > x {
+            near.next_down()
+        } else {
+            near
+        }
+    }))
+}
+
+fn round_up(v: DVec3) -> Vec3A {
+    -round_down(-v)
+}

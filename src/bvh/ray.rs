@@ -1,0 +1,55 @@
+//! A ray, and what it hits.
+
+use glam::Vec3;
+
+/// A half-open piece of a line: the points `origin + t · direction` with `0 < t < t_max`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ray {
+    /// Where it starts, in world space. A coordinate that is not finite, or beyond [`super::REACH`], makes the ray a miss.
+    pub origin: Vec3,
+    /// Where it goes. Any length but zero: `t` is measured in this length. Zero or not finite makes the ray a miss.
+    pub direction: Vec3,
+    /// Hits lie in `0 < t < t_max`; may be infinite. NaN makes the ray a miss.
+    pub t_max: f32,
+}
+
+impl Ray {
+    /// A ray without an end.
+    pub fn new(origin: Vec3, direction: Vec3) -> Self {
+        Self {
+            origin,
+            direction,
+            t_max: f32::INFINITY,
+        }
+    }
+
+    /// The point at `t`.
+    pub fn at(&self, t: f32) -> Vec3 {
+        self.origin + self.direction * t
+    }
+}
+
+/// Where a ray met a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Distance in lengths of the ray's direction, `0 < t < t_max`.
+    pub t: f32,
+    /// Index into [`super::Aggregate::instances`].
+    pub instance: u32,
+    /// Index into the mesh's [`super::Triangles::indices`].
+    pub triangle: u32,
+    /// Barycentric weight of the triangle's corner 1, in [0, 1].
+    pub u: f32,
+    /// Barycentric weight of the triangle's corner 2, in [0, 1]; corner 0 has `1 - u - v`.
+    pub v: f32,
+}
+
+impl Hit {
+    /// Ties in `t` go to the smaller (instance, triangle): the same hit wins in any order of testing.
+    #[inline(always)]
+    pub(crate) fn beats(&self, other: &Hit) -> bool {
+        self.t < other.t
+            || (self.t == other.t
+                && (self.instance, self.triangle) < (other.instance, other.triangle))
+    }
+}

@@ -1,0 +1,62 @@
+//! Watching a traversal: gizmos and counters hook in here, so that what they show is what happened.
+
+/// Which tree a node belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum TreeRef {
+    /// The aggregate's own tree: over instances, or over every triangle ([`super::Levels::One`]).
+    Top,
+    /// The tree of this instance's mesh.
+    Mesh(u32),
+}
+
+/// What became of a node whose box was tested.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum NodeEvent {
+    /// The box was hit, and its children or primitives were looked at.
+    Entered,
+    /// The box was hit, but farther away than the best hit known when its turn came.
+    Pruned,
+    /// The ray misses the box.
+    Missed,
+}
+
+/// Told of every box and triangle a ray is tested against, in order.
+///
+/// Every method has an empty body, and `()` implements the trait: a traversal with `()` compiles to the same code as
+/// one without a visitor.
+pub trait Visitor {
+    /// A node's box was tested. Every tested node gets exactly one event, at the moment its fate is known.
+    /// `t_entry` is where the ray enters the box (0 where it starts inside); meaningless when `Missed`.
+    #[inline(always)]
+    fn node(&mut self, _tree: TreeRef, _node: u32, _event: NodeEvent, _t_entry: f32) {}
+
+    /// A triangle was tested; `hit` tells whether it became the best hit so far.
+    #[inline(always)]
+    fn triangle(&mut self, _instance: u32, _triangle: u32, _hit: bool) {}
+}
+
+impl Visitor for () {}
+
+/// Counts what a ray cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Boxes tested.
+    pub boxes: u64,
+    /// Nodes entered.
+    pub nodes: u64,
+    /// Triangles tested.
+    pub triangles: u64,
+}
+
+impl Visitor for Counters {
+    #[inline(always)]
+    fn node(&mut self, _tree: TreeRef, _node: u32, event: NodeEvent, _t_entry: f32) {
+        self.boxes += 1;
+        self.nodes += u64::from(event == NodeEvent::Entered);
+    }
+
+    #[inline(always)]
+    fn triangle(&mut self, _instance: u32, _triangle: u32, _hit: bool) {
+        self.triangles += 1;
+    }
+}
