@@ -52,6 +52,10 @@ pub struct RenderSettings {
     pub max_depth: u32,
     /// The switches.
     pub features: Features,
+    /// Rays of a glossy reflection at the first hit, 1–1000.
+    pub gloss_samples: u32,
+    /// Rays through a translucent surface at the first hit, 1–1000.
+    pub translucency_samples: u32,
     /// How texels are read.
     pub texture_filter: TextureFilter,
     /// How the trees are built.
@@ -70,6 +74,8 @@ impl Default for RenderSettings {
             lighting: Lighting::default(),
             max_depth: 6,
             features: Features::default(),
+            gloss_samples: 1,
+            translucency_samples: 1,
             texture_filter: TextureFilter::default(),
             tree: TreeSettings::default(),
             output: Output::default(),
@@ -122,6 +128,16 @@ pub struct Features {
     pub environment: bool,
     /// Samples of an area light grow with its size: `samples` is per square metre (or metre).
     pub scale_light_samples: bool,
+    /// Mirrors blur by their shininess; off: they are sharp.
+    pub glossy: bool,
+    /// Opacity below 1 lets light through; off: everything is opaque.
+    pub transparency: bool,
+    /// Transmitted rays blur by the shininess; off: they go straight on.
+    pub translucency: bool,
+    /// The camera's lens; off: a pinhole.
+    pub lens: bool,
+    /// Entities and the camera move while the shutter is open; off: they stand as at t = 0.
+    pub motion: bool,
 }
 
 impl Default for Features {
@@ -135,6 +151,11 @@ impl Default for Features {
             textures: true,
             environment: true,
             scale_light_samples: false,
+            glossy: false,
+            transparency: true,
+            translucency: false,
+            lens: true,
+            motion: true,
         }
     }
 }

@@ -1,1 +1,35 @@
 //! The tracer: what rays read, and what they carry.
+//!
+//! [`World`] is everything a ray may ask for, as flat arrays. [`Camera`] turns a place in the
+//! picture into a ray. [`radiance`](radiance()) takes a batch of [`SampleId`]s and gives each its
+//! value, going bounce by bounce: all rays of a bounce are handed to the trees together, then all
+//! hits are shaded, then all their shadow rays are handed over together.
+//!
+//! A sample's randomness depends on its pixel, its index and the seed alone ([`Sampler`]), so a
+//! sample can be evaluated again by itself, in any order, on any thread, with the same result.
+//!
+//! Formulas: the module docs of [`lights`], [`shading`] and [`camera`].
+
+pub mod camera;
+mod disc;
+mod environment;
+pub mod lights;
+mod material;
+mod radiance;
+mod sampler;
+pub mod shading;
+mod surface;
+mod texture;
+mod world;
+
+pub use camera::{Camera, Optics};
+pub use environment::Environment;
+pub use lights::{
+    DirectionalLight, LightPoint, Lights, ParallelogramLight, PointLight, SegmentLight, SpotCone,
+};
+pub use material::Material;
+pub use radiance::{RayCounts, SampleId, Workspace, radiance};
+pub use sampler::{Purpose, Sampler};
+pub use surface::Surface;
+pub use texture::{Texels, Texture, TextureError};
+pub use world::{Mesh, Object, World};

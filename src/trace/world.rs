@@ -15,7 +15,7 @@ pub struct World {
     pub objects: Arc<Vec<Object>>,
     /// Named by [`Object::material`].
     pub materials: Arc<Vec<Material>>,
-    /// Named by [`Material`] and [`Environment`].
+    /// Named by [`Material`].
     pub textures: Arc<Vec<Arc<Texture>>>,
     /// One array per kind.
     pub lights: Arc<Lights>,

@@ -1,0 +1,256 @@
+//! From a place in the picture to a ray.
+//!
+//! Perspective: the ray through a pixel meets the image plane at `ndc · tan(fov/2)`, the x axis
+//! scaled by width/height. Lens (Cook, Porter, Carpenter 1984): the ray starts at a point of the
+//! aperture and goes through the point where the pinhole's ray meets the focus plane, so a point
+//! at distance d makes a circle of diameter `2a·|d-f|/d` on the focus plane.
+
+use super::disc::concentric;
+use super::sampler::{Purpose, Sampler};
+use crate::bvh::Ray;
+use crate::scene::{PixelSampling, Projection};
+use glam::{Quat, UVec2, Vec2, Vec3};
+
+/// A camera with everything that rays need, in world space.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    /// The pinhole, or the middle of the lens, at t = 0.
+    pub position: Vec3,
+    /// Unit vector to the right of the picture.
+    pub right: Vec3,
+    /// Unit vector to the top of the picture.
+    pub up: Vec3,
+    /// Unit vector into the picture.
+    pub forward: Vec3,
+    /// How directions become places in the picture.
+    pub projection: Projection,
+    /// Lens, shutter and motion.
+    pub optics: Optics,
+}
+
+/// What makes a camera more than a pinhole.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Optics {
+    /// 0 is a pinhole.
+    pub aperture_radius: f32,
+    /// To the focus plane, along `forward`; may be infinite.
+    pub focus_distance: f32,
+    /// [open, close] in [0, 1].
+    pub shutter: [f32; 2],
+    /// The camera stands at `position + velocity · t`.
+    pub velocity: Vec3,
+}
+
+impl Default for Optics {
+    fn default() -> Self {
+        Self {
+            aperture_radius: 0.0,
+            focus_distance: 1.0,
+            shutter: [0.0, 1.0],
+            velocity: Vec3::ZERO,
+        }
+    }
+}
+
+impl Camera {
+    /// A camera at `position`, its local -Z ahead and +Y up, turned by `rotation`.
+    pub fn new(position: Vec3, rotation: Quat, projection: Projection, optics: Optics) -> Self {
+        Self {
+            position,
+            right: rotation * Vec3::X,
+            up: rotation * Vec3::Y,
+            forward: rotation * Vec3::NEG_Z,
+            projection,
+            optics,
+        }
+    }
+
+    /// A pinhole at `position` that looks at `target`; `up` need not be perpendicular.
+    pub fn looking_at(position: Vec3, target: Vec3, up: Vec3, fov_y: f32) -> Self {
+        let forward = (target - position).normalize_or(Vec3::NEG_Z);
+        let right = forward
+            .cross(up)
+            .try_normalize()
+            .unwrap_or_else(|| forward.any_orthonormal_vector());
+        Self {
+            position,
+            right,
+            up: right.cross(forward),
+            forward,
+            projection: Projection::Perspective { fov_y },
+            optics: Optics::default(),
+        }
+    }
+
+    /// True where samples need a point on the lens.
+    pub fn has_lens(&self) -> bool {
+        self.optics.aperture_radius > 0.0
+    }
+
+    /// The ray of sample `index` of `pixel`, (0, 0) at the top left, in a picture of `size` pixels,
+    /// at shutter time `time`. Its direction has unit length.
+    pub fn sample_ray(
+        &self,
+        pixel: UVec2,
+        size: UVec2,
+        index: u64,
+        sampler: Sampler,
+        sampling: PixelSampling,
+        time: f32,
+    ) -> Ray {
+        let needs_numbers = sampling == PixelSampling::Area || self.has_lens();
+        let [x, y, u, v] = if needs_numbers {
+            sampler.block(index, Purpose::Camera, 0)
+        } else {
+            [0.0; 4]
+        };
+        let place = match sampling {
+            PixelSampling::Area => Vec2::new(x, y),
+            PixelSampling::Center => Vec2::splat(0.5),
+            PixelSampling::Corner => Vec2::new(0.0, 1.0),
+        };
+        self.ray(pixel.as_vec2() + place, size, [u, v], time)
+    }
+
+    /// The ray through `place` in pixels, (0, 0) at the picture's top left corner, from the lens
+    /// point that the numbers `lens` in [0, 1)² choose.
+    pub fn ray(&self, place: Vec2, size: UVec2, lens: [f32; 2], time: f32) -> Ray {
+        let size = size.as_vec2();
+        let ndc = Vec2::new(
+            2.0 * place.x / size.x - 1.0,
+            1.0 - 2.0 * place.y / size.y,
+        );
+        let ndc = Vec2::new(ndc.x * (size.x / size.y), ndc.y);
+        let (mut origin, mut direction) = match self.projection {
+            Projection::Perspective { fov_y } => {
+                let at = ndc * (0.5 * fov_y).tan();
+                let direction = self.forward + at.x * self.right + at.y * self.up;
+                (self.position, direction.normalize())
+            }
+            Projection::Orthographic { height } => {
+                let at = ndc * (0.5 * height);
+                (self.position + at.x * self.right + at.y * self.up, self.forward)
+            }
+        };
+        let optics = &self.optics;
+        if self.has_lens() {
+            let p = optics.aperture_radius * concentric(lens);
+            let offset = p.x * self.right + p.y * self.up;
+            origin += offset;
+            if optics.focus_distance.is_finite() {
+                let to_focus = optics.focus_distance / direction.dot(self.forward);
+                direction = (to_focus * direction - offset).normalize();
+            }
+        }
+        if optics.velocity != Vec3::ZERO {
+            origin += optics.velocity * time;
+        }
+        Ray {
+            origin,
+            direction,
+            t_max: f32::INFINITY,
+        }
+    }
+
+    /// Shutter time for the number `u` in [0, 1).
+    pub fn time(&self, u: f32) -> f32 {
+        let [open, close] = self.optics.shutter;
+        open + (close - open) * u
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIZE: UVec2 = UVec2::new(640, 480);
+
+    fn camera(optics: Optics) -> Camera {
+        Camera {
+            optics,
+            ..Camera::looking_at(
+                Vec3::new(1.0, 2.0, 3.0),
+                Vec3::new(0.0, 1.0, -4.0),
+                Vec3::Y,
+                0.9,
+            )
+        }
+    }
+
+    #[test]
+    fn the_middle_looks_ahead_and_the_top_edge_half_the_field_of_view_up() {
+        let camera = camera(Optics::default());
+        let middle = camera.ray(Vec2::new(320.0, 240.0), SIZE, [0.0; 2], 0.0);
+        assert!((middle.direction - camera.forward).length() < 1e-6);
+        let top = camera.ray(Vec2::new(320.0, 0.0), SIZE, [0.0; 2], 0.0);
+        let angle = top.direction.dot(camera.forward).acos();
+        assert!((angle - 0.45).abs() < 1e-5, "{angle}");
+        assert!(top.direction.dot(camera.up) > 0.0);
+        let right = camera.ray(Vec2::new(640.0, 240.0), SIZE, [0.0; 2], 0.0);
+        let slope = right.direction.dot(camera.right) / right.direction.dot(camera.forward);
+        assert!((slope - 0.45_f32.tan() * 640.0 / 480.0).abs() < 1e-5);
+    }
+
+    #[test]
+    fn the_corner_of_a_pixel_is_its_lower_left_one() {
+        let camera = camera(Optics::default());
+        let sampler = Sampler::new(0, 0, 0);
+        let pixel = UVec2::new(10, 20);
+        let corner = camera.sample_ray(pixel, SIZE, 0, sampler, PixelSampling::Corner, 0.0);
+        let expected = camera.ray(Vec2::new(10.0, 21.0), SIZE, [0.0; 2], 0.0);
+        assert_eq!(corner.direction, expected.direction);
+    }
+
+    #[test]
+    fn an_aperture_of_zero_is_the_pinhole_bit_for_bit() {
+        let pinhole = camera(Optics::default());
+        let lens = camera(Optics {
+            aperture_radius: 0.0,
+            focus_distance: 5.0,
+            ..Optics::default()
+        });
+        for place in [Vec2::new(3.0, 4.0), Vec2::new(600.5, 17.25)] {
+            let a = pinhole.ray(place, SIZE, [0.3, 0.9], 0.0);
+            let b = lens.ray(place, SIZE, [0.1, 0.2], 0.0);
+            assert_eq!((a.origin, a.direction), (b.origin, b.direction));
+        }
+    }
+
+    #[test]
+    fn all_rays_of_a_lens_meet_on_the_focus_plane_and_are_parallel_when_it_is_infinitely_far() {
+        let sharp = camera(Optics {
+            aperture_radius: 0.2,
+            focus_distance: 7.0,
+            ..Optics::default()
+        });
+        let place = Vec2::new(500.0, 100.0);
+        let on_plane = |lens| {
+            let ray = sharp.ray(place, SIZE, lens, 0.0);
+            let t = (7.0 - (ray.origin - sharp.position).dot(sharp.forward))
+                / ray.direction.dot(sharp.forward);
+            ray.origin + t * ray.direction
+        };
+        let far = camera(Optics {
+            aperture_radius: 0.2,
+            focus_distance: f32::INFINITY,
+            ..Optics::default()
+        });
+        for lens in [[0.0, 0.0], [0.9, 0.1], [0.4, 0.99], [0.5, 0.5]] {
+            let distance = (on_plane(lens) - on_plane([0.5, 0.5])).length();
+            assert!(distance < 1e-5, "{lens:?} misses by {distance}");
+            let parallel = far.ray(place, SIZE, lens, 0.0).direction;
+            assert_eq!(parallel, far.ray(place, SIZE, [0.5, 0.5], 0.0).direction);
+        }
+    }
+
+    #[test]
+    fn an_orthographic_camera_keeps_sizes() {
+        let camera = Camera {
+            projection: Projection::Orthographic { height: 2.0 },
+            ..camera(Optics::default())
+        };
+        let top = camera.ray(Vec2::new(320.0, 0.0), SIZE, [0.0; 2], 0.0);
+        assert_eq!(top.direction, camera.forward);
+        assert!(((top.origin - camera.position) - camera.up).length() < 1e-6);
+    }
+}

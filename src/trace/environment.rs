@@ -1,0 +1,103 @@
+use super::Texture;
+use glam::{Vec2, Vec3};
+use std::f32::consts::{PI, TAU};
+use std::sync::Arc;
+
+/// What a ray carries that meets nothing: a colour, or an equirectangular map.
+#[derive(Clone, Debug, Default)]
+pub struct Environment {
+    /// Used where there is no map.
+    pub background: Vec3,
+    /// Its middle column lies at -Z, its top row at +Y.
+    pub map: Option<Arc<Texture>>,
+    /// Turns the map about the y axis, in radians, counter-clockwise seen from above.
+    pub rotation: f32,
+    /// Multiplies the map.
+    pub intensity: f32,
+}
+
+impl Environment {
+    /// Radiance from `direction`, of any length.
+    pub fn radiance(&self, direction: Vec3) -> Vec3 {
+        let Some(map) = &self.map else {
+            return self.background;
+        };
+        self.intensity * map.sample_sphere(equirectangular(direction, self.rotation))
+    }
+}
+
+/// Place of a direction in an equirectangular picture: u in [0, 1] around the y axis, v in [0, 1]
+/// from +Y to -Y.
+pub fn equirectangular(direction: Vec3, rotation: f32) -> Vec2 {
+    let around = direction.x.atan2(-direction.z) + rotation;
+    // The angle from +Y by atan2: acos loses half of its digits near the poles.
+    let across = direction.x.hypot(direction.z).atan2(direction.y);
+    Vec2::new((around / TAU + 0.5).rem_euclid(1.0), across / PI)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trace::Texels;
+
+    #[test]
+    fn the_middle_of_the_map_is_at_minus_z_and_the_top_at_plus_y() {
+        assert!((equirectangular(Vec3::NEG_Z, 0.0) - Vec2::new(0.5, 0.5)).length() < 1e-6);
+        assert!((equirectangular(Vec3::X, 0.0) - Vec2::new(0.75, 0.5)).length() < 1e-6);
+        assert_eq!(equirectangular(Vec3::Y, 0.0).y, 0.0);
+        assert_eq!(equirectangular(Vec3::NEG_Y, 0.0).y, 1.0);
+    }
+
+    /// A map without a jump of its own at the seam, and with one at every texel elsewhere.
+    fn environment() -> Environment {
+        let (width, height) = (16, 8);
+        let texels = (0..width * height)
+            .map(|i| {
+                let (x, y) = ((i % width) as f32 + 0.5, (i / width) as f32 + 0.5);
+                let around = (x / width as f32 * TAU).sin();
+                [around + 2.0, y, around * y]
+            })
+            .collect();
+        Environment {
+            map: Some(Arc::new(Texture::new(width, height, Texels::Linear32(texels)).unwrap())),
+            intensity: 1.0,
+            ..Environment::default()
+        }
+    }
+
+    #[test]
+    fn nothing_jumps_across_the_seam_or_over_the_poles() {
+        let environment = environment();
+        let step = 1e-4_f32;
+        let mut largest = 0.0_f32;
+        // Across the seam at +Z, at every height; and over both poles, along every meridian.
+        for i in 1..200 {
+            let angle = i as f32 / 200.0 * PI;
+            let (y, r) = (angle.cos(), angle.sin());
+            let left = environment.radiance(Vec3::new(-step * r, y, r));
+            let right = environment.radiance(Vec3::new(step * r, y, r));
+            largest = largest.max((left - right).abs().max_element());
+            let around = i as f32 / 200.0 * TAU;
+            for pole in [1.0, -1.0] {
+                let side = Vec3::new(around.cos(), 0.0, around.sin()) * step;
+                let here = environment.radiance(side + pole * Vec3::Y);
+                let there = environment.radiance(-side + pole * Vec3::Y);
+                largest = largest.max((here - there).abs().max_element());
+            }
+        }
+        // The map changes by at most 8 over a texel of π/8; bilinear slopes times 2e-4 radians.
+        assert!(largest < 0.01, "largest jump {largest}");
+    }
+
+    #[test]
+    fn turning_the_map_by_a_quarter_moves_what_was_ahead_to_the_left() {
+        let still = environment();
+        let turned = Environment {
+            rotation: PI / 2.0,
+            ..still.clone()
+        };
+        let ahead = still.radiance(Vec3::NEG_Z);
+        let left = turned.radiance(Vec3::NEG_X);
+        assert!((ahead - left).length() < 1e-4, "{ahead} and {left}");
+    }
+}

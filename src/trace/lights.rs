@@ -1,0 +1,342 @@
+//! Lights as points: each kind gives, for a shading point and two random numbers, a direction,
+//! a distance and what arrives from there.
+//!
+//! | kind | arrives (Physical), before the surface's cosine |
+//! |---|---|
+//! | point | `I · cone / d²`, W/m² |
+//! | directional | `E`, W/m² |
+//! | segment | `I'(x) · length / d²` for a uniform point x of it |
+//! | parallelogram | `L(x) · cos θ · area / d²` for a uniform point x of it, θ at the emitter |
+//!
+//! With Classic lighting the colour itself arrives, whatever the distance and the angle; a
+//! parallelogram shines to both sides then, as the original program's did.
+
+use super::disc::concentric;
+use crate::scene::Lighting;
+use glam::Vec3;
+
+/// The lights of a world, one array per kind, each sorted by id.
+#[derive(Clone, Debug, Default)]
+#[expect(missing_docs, reason = "the names say it all")]
+pub struct Lights {
+    pub points: Vec<PointLight>,
+    pub directionals: Vec<DirectionalLight>,
+    pub segments: Vec<SegmentLight>,
+    pub parallelograms: Vec<ParallelogramLight>,
+}
+
+/// A point that shines in all directions, or within a cone.
+#[derive(Clone, Debug)]
+pub struct PointLight {
+    /// The entity's `SceneId`.
+    pub id: u64,
+    /// Where it stands.
+    pub position: Vec3,
+    /// Linear RGB, W/sr.
+    pub color: Vec3,
+    /// Limits it to a cone.
+    pub cone: Option<SpotCone>,
+}
+
+/// Full strength where the cosine to `axis` exceeds `cos_inner`, none below `cos_outer`.
+#[derive(Clone, Copy, Debug)]
+pub struct SpotCone {
+    /// Unit vector along which the spot shines.
+    pub axis: Vec3,
+    /// Cosine of the inner half-angle.
+    pub cos_inner: f32,
+    /// Cosine of the outer half-angle, ≤ `cos_inner`.
+    pub cos_outer: f32,
+}
+
+/// Light from infinitely far.
+#[derive(Clone, Debug)]
+pub struct DirectionalLight {
+    /// The entity's `SceneId`.
+    pub id: u64,
+    /// Unit vector towards the middle of the source.
+    pub to_light: Vec3,
+    /// Linear RGB, W/m² on a facing surface.
+    pub color: Vec3,
+    /// Tangent of half of the angle under which the source is seen.
+    pub tan_half_angle: f32,
+    /// Shadow rays at the first hit.
+    pub samples: u32,
+}
+
+/// A glowing line.
+#[derive(Clone, Debug)]
+pub struct SegmentLight {
+    /// The entity's `SceneId`.
+    pub id: u64,
+    /// Both ends in world space.
+    pub ends: [Vec3; 2],
+    /// Linear RGB at the ends, W/(sr·m).
+    pub colors: [Vec3; 2],
+    /// Shadow rays at the first hit.
+    pub samples: u32,
+}
+
+/// A glowing parallelogram.
+#[derive(Clone, Debug)]
+pub struct ParallelogramLight {
+    /// The entity's `SceneId`.
+    pub id: u64,
+    /// One corner in world space.
+    pub corner: Vec3,
+    /// The two edges that leave it.
+    pub edges: [Vec3; 2],
+    /// Linear RGB at corner, corner + edges[0], corner + edges[1] and opposite, W/(sr·m²).
+    pub colors: [Vec3; 4],
+    /// Whether the side that `edges[0] × edges[1]` points away from shines too.
+    pub two_sided: bool,
+    /// Whether camera and mirror rays see it.
+    pub visible: bool,
+    /// Shadow rays at the first hit.
+    pub samples: u32,
+}
+
+/// One point of a light as a shading point sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightPoint {
+    /// Unit vector from the shading point.
+    pub direction: Vec3,
+    /// From the shading point; infinite for directional lights.
+    pub distance: f32,
+    /// What arrives if nothing is in the way, before the surface's cosine.
+    pub arriving: Vec3,
+}
+
+/// Below this squared distance (in m²) a light is at the point: `1/d²` stays finite in f32.
+const LEAST_SQUARED_DISTANCE: f32 = 1e-30;
+
+/// Direction and distance from one point to another; `None` where they coincide.
+fn towards(from: Vec3, to: Vec3) -> Option<(Vec3, f32)> {
+    let offset = to - from;
+    // Scaled first: squares of tiny and huge offsets leave f32's range.
+    let scale = offset.abs().max_element();
+    if !(scale > 0.0 && scale < f32::INFINITY) {
+        return None;
+    }
+    let length = (offset / scale).length();
+    Some(((offset / scale) / length, length * scale))
+}
+
+fn inverse_square(distance: f32) -> f32 {
+    1.0 / (distance * distance).max(LEAST_SQUARED_DISTANCE)
+}
+
+impl PointLight {
+    /// The light as `from` sees it; `None` where nothing can arrive.
+    pub fn point(&self, from: Vec3, lighting: Lighting) -> Option<LightPoint> {
+        let (direction, distance) = towards(from, self.position)?;
+        let cone = self.cone.map_or(1.0, |cone| cone.fall_off(-direction));
+        (cone > 0.0).then(|| LightPoint {
+            direction,
+            distance,
+            arriving: match lighting {
+                Lighting::Physical => self.color * (cone * inverse_square(distance)),
+                Lighting::Classic => self.color * cone,
+            },
+        })
+    }
+}
+
+impl SpotCone {
+    /// In [0, 1]: a smoothstep of the cosine between the outer and the inner half-angle.
+    fn fall_off(&self, leaving: Vec3) -> f32 {
+        let cosine = self.axis.dot(leaving);
+        if cosine >= self.cos_inner {
+            return 1.0;
+        }
+        let x = ((cosine - self.cos_outer) / (self.cos_inner - self.cos_outer)).clamp(0.0, 1.0);
+        x * x * (3.0 - 2.0 * x)
+    }
+}
+
+impl DirectionalLight {
+    /// The direction that the numbers `u` in [0, 1)² choose within the source's disc.
+    pub fn point(&self, u: [f32; 2]) -> LightPoint {
+        let direction = if self.tan_half_angle > 0.0 {
+            let p = self.tan_half_angle * concentric(u);
+            let (x, y) = self.to_light.any_orthonormal_pair();
+            (self.to_light + p.x * x + p.y * y).normalize()
+        } else {
+            self.to_light
+        };
+        LightPoint {
+            direction,
+            distance: f32::INFINITY,
+            arriving: self.color,
+        }
+    }
+}
+
+impl SegmentLight {
+    /// The point at fraction `u` of the segment, as `from` sees it.
+    pub fn point(&self, from: Vec3, u: f32, lighting: Lighting) -> Option<LightPoint> {
+        let along = self.ends[1] - self.ends[0];
+        let (direction, distance) = towards(from, self.ends[0] + u * along)?;
+        let color = self.colors[0].lerp(self.colors[1], u);
+        Some(LightPoint {
+            direction,
+            distance,
+            arriving: match lighting {
+                Lighting::Physical => color * (along.length() * inverse_square(distance)),
+                Lighting::Classic => color,
+            },
+        })
+    }
+}
+
+impl ParallelogramLight {
+    /// `edges[0] × edges[1]`: along the front's normal, its length the area.
+    pub fn area_normal(&self) -> Vec3 {
+        self.edges[0].cross(self.edges[1])
+    }
+
+    /// Linear RGB at the place (u, v) in [0, 1]².
+    pub fn color(&self, u: f32, v: f32) -> Vec3 {
+        let near = self.colors[0].lerp(self.colors[1], u);
+        let far = self.colors[2].lerp(self.colors[3], u);
+        near.lerp(far, v)
+    }
+
+    /// The point at `u` in [0, 1)², as `from` sees it; `None` from behind a one-sided light.
+    pub fn point(&self, from: Vec3, u: [f32; 2], lighting: Lighting) -> Option<LightPoint> {
+        let at = self.corner + u[0] * self.edges[0] + u[1] * self.edges[1];
+        let (direction, distance) = towards(from, at)?;
+        let color = self.color(u[0], u[1]);
+        if lighting == Lighting::Classic {
+            return Some(LightPoint {
+                direction,
+                distance,
+                arriving: color,
+            });
+        }
+        // Cosine times area in one: the normal's length is the area.
+        let facing = -direction.dot(self.area_normal());
+        let facing = if self.two_sided { facing.abs() } else { facing };
+        (facing > 0.0).then(|| LightPoint {
+            direction,
+            distance,
+            arriving: color * (facing * inverse_square(distance)),
+        })
+    }
+
+    /// Where a ray meets the light's shining side: distance along the ray and radiance.
+    pub fn meet(&self, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
+        let normal = self.area_normal();
+        let slope = direction.dot(normal);
+        if slope == 0.0 || (slope > 0.0 && !self.two_sided) {
+            return None;
+        }
+        let t = (self.corner - origin).dot(normal) / slope;
+        let at = origin + t * direction - self.corner;
+        let area_squared = normal.length_squared();
+        let u = at.cross(self.edges[1]).dot(normal) / area_squared;
+        let v = self.edges[0].cross(at).dot(normal) / area_squared;
+        let inside = (0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v);
+        (t > 0.0 && inside).then(|| (t, self.color(u, v)))
+    }
+}
+
+/// How many shadow rays a light of `samples` asks for at a first hit: `samples`, or that many per
+/// unit of `size` (m, m² or sr), always 1–1000.
+pub fn sample_count(samples: u32, size: f32, scale_by_size: bool) -> u32 {
+    if scale_by_size {
+        (samples as f32 * size).ceil().clamp(1.0, 1000.0) as u32
+    } else {
+        samples.clamp(1, 1000)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square() -> ParallelogramLight {
+        ParallelogramLight {
+            id: 1,
+            corner: Vec3::new(-1.0, 2.0, -1.0),
+            edges: [Vec3::X * 2.0, Vec3::Z * 2.0],
+            colors: [Vec3::X, Vec3::Y, Vec3::Z, Vec3::ONE],
+            two_sided: false,
+            visible: true,
+            samples: 1,
+        }
+    }
+
+    #[test]
+    fn a_point_light_follows_the_inverse_square_and_a_classic_one_does_not() {
+        let light = PointLight {
+            id: 1,
+            position: Vec3::Y * 2.0,
+            color: Vec3::new(4.0, 8.0, 12.0),
+            cone: None,
+        };
+        let physical = light.point(Vec3::ZERO, Lighting::Physical).unwrap();
+        assert_eq!(physical.arriving, Vec3::new(1.0, 2.0, 3.0));
+        assert_eq!((physical.direction, physical.distance), (Vec3::Y, 2.0));
+        let classic = light.point(Vec3::ZERO, Lighting::Classic).unwrap();
+        assert_eq!(classic.arriving, light.color);
+    }
+
+    #[test]
+    fn a_light_on_the_point_or_next_to_it_gives_nothing_that_is_not_finite() {
+        let light = |offset: f32| PointLight {
+            id: 1,
+            position: Vec3::ONE + Vec3::X * offset,
+            color: Vec3::ONE,
+            cone: None,
+        };
+        assert!(light(0.0).point(Vec3::ONE, Lighting::Physical).is_none());
+        for exponent in 1..40 {
+            let light = PointLight {
+                position: Vec3::X * 10f32.powi(-exponent),
+                ..light(0.0)
+            };
+            let point = light.point(Vec3::ZERO, Lighting::Physical);
+            assert!(point.is_none_or(|p| p.arriving.is_finite() && p.direction.is_finite()));
+        }
+    }
+
+    #[test]
+    fn a_spot_is_full_inside_none_outside_and_falls_without_a_step() {
+        let cone = SpotCone {
+            axis: Vec3::NEG_Y,
+            cos_inner: 0.3_f32.cos(),
+            cos_outer: 0.5_f32.cos(),
+        };
+        let at = |angle: f32| cone.fall_off(Vec3::new(angle.sin(), -angle.cos(), 0.0));
+        assert_eq!((at(0.0), at(0.29), at(0.51), at(3.0)), (1.0, 1.0, 0.0, 0.0));
+        let mut last = 1.0;
+        for i in 0..=1000 {
+            let value = at(0.25 + 0.3 * i as f32 / 1000.0);
+            assert!(value <= last && last - value < 0.01, "step of {}", last - value);
+            last = value;
+        }
+    }
+
+    #[test]
+    fn colours_are_bilinear_between_the_corners_in_their_documented_order() {
+        let light = square();
+        assert_eq!(light.color(0.0, 0.0), Vec3::X);
+        assert_eq!(light.color(1.0, 0.0), Vec3::Y);
+        assert_eq!(light.color(0.0, 1.0), Vec3::Z);
+        assert_eq!(light.color(1.0, 1.0), Vec3::ONE);
+        assert_eq!(light.color(0.5, 0.5), Vec3::splat(0.5));
+    }
+
+    #[test]
+    fn a_one_sided_light_is_neither_seen_nor_felt_from_behind() {
+        // X × Z points down: the front is below.
+        let light = square();
+        let below = light.meet(Vec3::new(0.0, 0.0, 0.0), Vec3::Y);
+        assert_eq!(below.map(|(t, _)| t), Some(2.0));
+        assert!(light.meet(Vec3::Y * 4.0, Vec3::NEG_Y).is_none());
+        assert!(light.meet(Vec3::new(1.5, 0.0, 0.0), Vec3::Y).is_none());
+        assert!(light.point(Vec3::Y * 4.0, [0.5; 2], Lighting::Physical).is_none());
+        assert!(light.point(Vec3::ZERO, [0.5; 2], Lighting::Physical).is_some());
+    }
+}

@@ -1,0 +1,35 @@
+use glam::Vec3;
+
+/// A Phong material, resolved: colours in linear RGB, textures as indices into `World::textures`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// kd.
+    pub diffuse: Vec3,
+    /// ks.
+    pub specular: Vec3,
+    /// s ≥ 1.
+    pub shininess: f32,
+    /// d in [0, 1].
+    pub opacity: f32,
+    /// ke, radiance.
+    pub emission: Vec3,
+    /// Takes the place of `diffuse`.
+    pub diffuse_map: Option<u32>,
+    /// Multiplies `opacity`.
+    pub opacity_map: Option<u32>,
+}
+
+impl Default for Material {
+    /// Grey, matt, opaque.
+    fn default() -> Self {
+        Self {
+            diffuse: Vec3::splat(0.8),
+            specular: Vec3::ZERO,
+            shininess: 10.0,
+            opacity: 1.0,
+            emission: Vec3::ZERO,
+            diffuse_map: None,
+            opacity_map: None,
+        }
+    }
+}

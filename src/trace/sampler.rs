@@ -1,0 +1,115 @@
+use sobol_burley::sample_4d;
+
+/// Low-discrepancy numbers for one pixel: Owen-scrambled Sobol points (Burley 2020, "Practical
+/// Hash-based Owen Scrambling", JCGT 9(4)), padded as he advises.
+///
+/// Numbers come in blocks of four. Within a block they are stratified together over the sample
+/// index; two blocks are independent of each other. A block is named by its [`Purpose`] and by the
+/// path that asks: the same question at the same place of the same path gets the same block.
+#[derive(Clone, Copy, Debug)]
+pub struct Sampler {
+    seed: u32,
+}
+
+/// What a block of four numbers is used for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// Two for the place in the pixel, two for the lens.
+    Camera,
+    /// One: when in the shutter's time.
+    Time,
+    /// Two: the point of the light with this id.
+    Light(u64),
+    /// Two: the place in a glossy reflection's disc.
+    Gloss,
+    /// Two: the place in a translucent surface's disc.
+    Translucency,
+    /// One: which way a ray goes on that could go two.
+    Branch,
+}
+
+impl Purpose {
+    fn key(self) -> u32 {
+        match self {
+            Self::Camera => 1,
+            Self::Time => 2,
+            Self::Gloss => 3,
+            Self::Translucency => 4,
+            Self::Branch => 5,
+            Self::Light(id) => mix(mix(6, id as u32), (id >> 32) as u32),
+        }
+    }
+}
+
+/// The sequence is 2^16 points long; a longer run goes on with another scrambling.
+const LENGTH_BITS: u32 = 16;
+
+impl Sampler {
+    /// The numbers of pixel (x, y) under `seed`.
+    pub fn new(x: u32, y: u32, seed: u32) -> Self {
+        Self {
+            seed: mix(mix(mix(0x9e37_79b9, seed), x), y),
+        }
+    }
+
+    /// Four numbers in [0, 1): point `index` of the block for `purpose` on the path `path`
+    /// (0 at the camera and at the first hit).
+    pub fn block(self, index: u64, purpose: Purpose, path: u32) -> [f32; 4] {
+        let mut seed = mix(mix(self.seed, purpose.key()), path);
+        let beyond = (index >> LENGTH_BITS) as u32;
+        if beyond != 0 {
+            seed = mix(seed, beyond);
+        }
+        sample_4d((index & ((1 << LENGTH_BITS) - 1)) as u32, 0, seed)
+    }
+}
+
+/// Mixes `value` into `state`: one round of MurmurHash3's finaliser (Appleby, public domain), whose
+/// every output bit depends on every input bit.
+pub(super) fn mix(state: u32, value: u32) -> u32 {
+    let mut h = state ^ value.wrapping_mul(0xcc9e_2d51).rotate_left(15).wrapping_mul(0x1b87_3593);
+    h = h.rotate_left(13).wrapping_mul(5).wrapping_add(0xe654_6b64);
+    h ^= h >> 16;
+    h = h.wrapping_mul(0x85eb_ca6b);
+    h ^= h >> 13;
+    h = h.wrapping_mul(0xc2b2_ae35);
+    h ^ (h >> 16)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pair_of_a_block_is_stratified_in_every_elementary_interval() {
+        // The first 256 points of a (0, m, 2)-net have exactly one point in each cell of every
+        // 2^a × 2^b grid with a + b = 8.
+        let sampler = Sampler::new(3, 5, 7);
+        for a in 0..=8 {
+            let (columns, rows) = (1usize << a, 1usize << (8 - a));
+            let mut cells = vec![0; 256];
+            for i in 0..256 {
+                let [u, v, ..] = sampler.block(i, Purpose::Light(9), 0);
+                cells[(v * rows as f32) as usize * columns + (u * columns as f32) as usize] += 1;
+            }
+            assert!(
+                cells.iter().all(|&n| n == 1),
+                "{columns}x{rows}: {cells:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn different_purposes_pixels_paths_and_seeds_give_different_numbers() {
+        let base = Sampler::new(1, 2, 3).block(4, Purpose::Gloss, 0);
+        for other in [
+            Sampler::new(2, 1, 3).block(4, Purpose::Gloss, 0),
+            Sampler::new(1, 2, 4).block(4, Purpose::Gloss, 0),
+            Sampler::new(1, 2, 3).block(4, Purpose::Camera, 0),
+            Sampler::new(1, 2, 3).block(4, Purpose::Gloss, 1),
+            Sampler::new(1, 2, 3).block(4 + (1 << 16), Purpose::Gloss, 0),
+        ] {
+            assert_ne!(base, other);
+        }
+    }
+}
