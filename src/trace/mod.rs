@@ -11,12 +11,14 @@
 //! Formulas: the module docs of [`lights`], [`shading`] and [`camera`].
 
 pub mod camera;
+mod direct;
 mod disc;
 mod environment;
 pub mod lights;
 mod material;
 mod radiance;
 mod sampler;
+mod scatter;
 pub mod shading;
 mod surface;
 mod texture;

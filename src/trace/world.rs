@@ -21,6 +21,8 @@ pub struct World {
     pub lights: Arc<Lights>,
     /// What a ray carries that meets nothing.
     pub environment: Environment,
+    /// Whether any material that an object uses lets light through: shadow rays must look closer then.
+    pub has_transparency: bool,
 }
 
 /// One instance as shading sees it.

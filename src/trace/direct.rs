@@ -1,0 +1,189 @@
+//! Direct light: shadow rays to points of the lights, gathered for a whole batch, then traced.
+
+use super::lights::{LightPoint, sample_count};
+use super::radiance::{Batch, Path, Shadow, Workspace};
+use super::sampler::Purpose;
+use super::shading::reflected;
+use super::{Lights, Surface};
+use crate::bvh::{Hit, Ray};
+use crate::scene::Lighting;
+use glam::Vec3;
+
+/// A shadow ray ends this much before its light, as a fraction of the distance: a light that lies
+/// in a surface is not hidden by it. 64 units of rounding; t itself is good to a few.
+const SHORT_OF_THE_LIGHT: f32 = 1.0 - 64.0 * f32::EPSILON;
+
+/// The middle of a light, in the numbers that choose its points.
+const MIDDLE: [f32; 2] = [0.5, 0.5];
+
+impl Batch<'_> {
+    /// Adds a shadow ray for every light point that can add something; `weight` is the path's
+    /// throughput times the surface's opacity.
+    pub(super) fn gather_direct_light(
+        &mut self,
+        path: &Path,
+        surface: &Surface,
+        weight: Vec3,
+        workspace: &mut Workspace,
+    ) {
+        let world = self.world;
+        let lights = &*world.lights;
+        let lighting = self.settings.lighting;
+        let weight = match lighting {
+            Lighting::Physical => weight,
+            Lighting::Classic => weight / lights.count().max(1) as f32,
+        };
+        if weight == Vec3::ZERO {
+            return;
+        }
+        let at = surface.position;
+        for light in &lights.points {
+            self.gather_point(path, surface, light.point(at, lighting), weight, workspace);
+        }
+        for light in &lights.directionals {
+            let count = if light.tan_half_angle > 0.0 { light.samples } else { 0 };
+            let size = std::f32::consts::PI * light.tan_half_angle * light.tan_half_angle;
+            self.gather_area(path, surface, light.id, (count, size), weight, workspace, |u| {
+                Some(light.point(u))
+            });
+        }
+        for light in &lights.segments {
+            let size = (light.ends[1] - light.ends[0]).length();
+            let count = (light.samples, size);
+            self.gather_area(path, surface, light.id, count, weight, workspace, |u| {
+                light.point(at, u[0], lighting)
+            });
+        }
+        for light in &lights.parallelograms {
+            let count = (light.samples, light.area_normal().length());
+            self.gather_area(path, surface, light.id, count, weight, workspace, |u| {
+                light.point(at, u, lighting)
+            });
+        }
+    }
+
+    /// Several points of one light: `samples` of them at the first hit, stratified together over
+    /// all samples of the pixel; one at later hits, and where the light has no extent.
+    #[expect(clippy::too_many_arguments, reason = "a light's numbers, a path's and the arrays")]
+    fn gather_area(
+        &mut self,
+        path: &Path,
+        surface: &Surface,
+        id: u64,
+        (samples, size): (u32, f32),
+        weight: Vec3,
+        workspace: &mut Workspace,
+        point: impl Fn([f32; 2]) -> Option<LightPoint>,
+    ) {
+        let features = &self.settings.features;
+        if samples == 0 || !features.soft_shadows {
+            self.gather_point(path, surface, point(MIDDLE), weight, workspace);
+            return;
+        }
+        let count = if path.first {
+            sample_count(samples, size, features.scale_light_samples)
+        } else {
+            1
+        };
+        let (sampler, index) = self.sampler(path.sample);
+        let weight = weight / count as f32;
+        for i in 0..u64::from(count) {
+            let index = index * u64::from(count) + i;
+            let [u, v, ..] = sampler.block(index, Purpose::Light(id), path.name);
+            self.gather_point(path, surface, point([u, v]), weight, workspace);
+        }
+    }
+
+    fn gather_point(
+        &mut self,
+        path: &Path,
+        surface: &Surface,
+        point: Option<LightPoint>,
+        weight: Vec3,
+        workspace: &mut Workspace,
+    ) {
+        let Some(point) = point else { return };
+        let value = weight * reflected(surface, &point, self.settings.lighting);
+        if value == Vec3::ZERO {
+            return;
+        }
+        if !self.settings.features.shadows {
+            self.add(path.sample, value);
+            return;
+        }
+        workspace.shadows.push(Shadow {
+            sample: path.sample,
+            value,
+        });
+        workspace.shadow_rays.push(shadow_ray(surface, &point));
+    }
+
+    /// Traces all shadow rays of the batch and adds what arrives.
+    pub(super) fn add_arriving_light(&mut self, workspace: &mut Workspace) {
+        self.counts.shadow += workspace.shadow_rays.len() as u64;
+        if self.settings.features.transparency && self.world.has_transparency {
+            for (shadow, ray) in workspace.shadows.iter().zip(&workspace.shadow_rays) {
+                let value = shadow.value * self.transmittance(ray);
+                self.add(shadow.sample, value);
+            }
+            return;
+        }
+        let aggregate = &self.world.aggregate;
+        aggregate.occlusions(&workspace.shadow_rays, &mut workspace.occluded);
+        for (shadow, occluded) in workspace.shadows.iter().zip(&workspace.occluded) {
+            if !occluded {
+                self.add(shadow.sample, shadow.value);
+            }
+        }
+    }
+
+    /// What a shadow ray lets through: the product of `(1-d) · lerp(1, kd, d)` over its crossings.
+    fn transmittance(&self, ray: &Ray) -> Vec3 {
+        let mut transmittance = Vec3::ONE;
+        let mut after: Option<Hit> = None;
+        loop {
+            let aggregate = &self.world.aggregate;
+            let hit = match &after {
+                None => aggregate.closest_hit(ray),
+                Some(after) => aggregate.closest_hit_after(ray, after),
+            };
+            let Some(hit) = hit else { return transmittance };
+            let surface = Surface::at(self.world, self.settings, ray.direction, &hit);
+            let d = surface.opacity;
+            transmittance *= (1.0 - d) * Vec3::ONE.lerp(surface.diffuse, d);
+            if transmittance == Vec3::ZERO {
+                return Vec3::ZERO;
+            }
+            after = Some(hit);
+        }
+    }
+}
+
+/// From a surface to a light point, ending just before it.
+fn shadow_ray(surface: &Surface, point: &LightPoint) -> Ray {
+    let origin = surface.spawn(point.direction);
+    if point.distance == f32::INFINITY {
+        return Ray {
+            origin,
+            direction: point.direction,
+            t_max: f32::INFINITY,
+        };
+    }
+    // From the moved origin to the light itself, so that the ray still ends there.
+    let to_light = surface.position + point.distance * point.direction - origin;
+    Ray {
+        origin,
+        direction: to_light,
+        t_max: SHORT_OF_THE_LIGHT,
+    }
+}
+
+impl Lights {
+    /// How many there are of all kinds.
+    pub fn count(&self) -> usize {
+        self.points.len()
+            + self.directionals.len()
+            + self.segments.len()
+            + self.parallelograms.len()
+    }
+}

@@ -1,0 +1,261 @@
+//! The value of samples: a batch at a time, bounce by bounce.
+
+use super::sampler::{Purpose, Sampler};
+use super::{Camera, Surface, World};
+use crate::bvh::{Hit, Ray};
+use crate::scene::{Lighting, RenderSettings};
+use glam::{UVec2, Vec3};
+
+/// Names one sample of one pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SampleId {
+    /// (0, 0) is the top left pixel.
+    pub pixel: UVec2,
+    /// Counts the pixel's samples from 0.
+    pub index: u64,
+}
+
+/// Rays traced, by what they were for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[expect(missing_docs, reason = "the names say it all")]
+pub struct RayCounts {
+    pub camera: u64,
+    pub mirror: u64,
+    pub transmission: u64,
+    pub shadow: u64,
+}
+
+impl RayCounts {
+    /// All of them.
+    pub fn total(&self) -> u64 {
+        self.camera + self.mirror + self.transmission + self.shadow
+    }
+}
+
+impl std::ops::AddAssign for RayCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.camera += other.camera;
+        self.mirror += other.mirror;
+        self.transmission += other.transmission;
+        self.shadow += other.shadow;
+    }
+}
+
+/// The arrays that a batch fills. Kept from batch to batch, so that nothing is allocated once they
+/// have grown to their size. One per thread.
+#[derive(Default)]
+pub struct Workspace {
+    paths: Vec<Path>,
+    pub(super) next: Vec<Path>,
+    rays: Vec<Ray>,
+    hits: Vec<Option<Hit>>,
+    pub(super) shadows: Vec<Shadow>,
+    pub(super) shadow_rays: Vec<Ray>,
+    pub(super) occluded: Vec<bool>,
+}
+
+/// A path on its way: its next ray, and what that ray's radiance will be multiplied by.
+#[derive(Clone, Copy)]
+pub(super) struct Path {
+    pub origin: Vec3,
+    pub direction: Vec3,
+    pub throughput: Vec3,
+    /// Index into the batch.
+    pub sample: u32,
+    /// Names this path among those of its sample, for its random numbers: 0 from the camera on.
+    pub name: u32,
+    /// Mirror bounces so far.
+    pub bounces: u32,
+    /// Scatterings in translucent surfaces so far.
+    pub scatterings: u32,
+    /// True until the first hit.
+    pub first: bool,
+    /// A straight continuation behind this hit of the same ray, instead of a ray from its start.
+    pub after: Option<Hit>,
+}
+
+/// What a shadow ray adds to which sample, if the light arrives.
+#[derive(Clone, Copy)]
+pub(super) struct Shadow {
+    pub sample: u32,
+    pub value: Vec3,
+}
+
+/// A visible light that lies in a surface wins against it within this fraction of the distance:
+/// 64 units of rounding; t itself is good to a few.
+const LIGHT_BEFORE_SURFACE: f32 = 1.0 + 64.0 * f32::EPSILON;
+
+/// Gives each sample of a batch its radiance: `values[i]` becomes that of `samples[i]`, linear RGB.
+///
+/// The value of a sample depends on nothing but the sample, the world, the camera and the settings;
+/// not on what else is in the batch.
+///
+/// # Panics
+/// If there is not exactly one value for each sample.
+pub fn radiance(
+    world: &World,
+    camera: &Camera,
+    settings: &RenderSettings,
+    samples: &[SampleId],
+    values: &mut [Vec3],
+    workspace: &mut Workspace,
+) -> RayCounts {
+    assert_eq!(samples.len(), values.len(), "one value for each sample");
+    values.fill(Vec3::ZERO);
+    let mut batch = Batch {
+        world,
+        settings,
+        samples,
+        values,
+        counts: RayCounts::default(),
+    };
+    batch.start(camera, workspace);
+    while !workspace.paths.is_empty() {
+        batch.trace(workspace);
+        batch.shade(workspace);
+        batch.add_arriving_light(workspace);
+        std::mem::swap(&mut workspace.paths, &mut workspace.next);
+    }
+    batch.counts
+}
+
+/// What the steps of a batch share.
+pub(super) struct Batch<'a> {
+    pub world: &'a World,
+    pub settings: &'a RenderSettings,
+    samples: &'a [SampleId],
+    pub values: &'a mut [Vec3],
+    pub counts: RayCounts,
+}
+
+impl Batch<'_> {
+    /// The random numbers of a sample of the batch, and its index in its pixel.
+    pub(super) fn sampler(&self, sample: u32) -> (Sampler, u64) {
+        let SampleId { pixel, index } = self.samples[sample as usize];
+        (Sampler::new(pixel.x, pixel.y, self.settings.seed), index)
+    }
+
+    /// One path per sample, at the camera.
+    fn start(&mut self, camera: &Camera, workspace: &mut Workspace) {
+        workspace.paths.clear();
+        for (i, sample) in self.samples.iter().enumerate() {
+            let (sampler, index) = self.sampler(i as u32);
+            let time = if camera.optics.velocity == Vec3::ZERO {
+                camera.optics.shutter[0]
+            } else {
+                camera.time(sampler.block(index, Purpose::Time, 0)[0])
+            };
+            let ray = camera.sample_ray(
+                sample.pixel,
+                self.settings.size,
+                index,
+                sampler,
+                self.settings.pixel,
+                time,
+            );
+            workspace.paths.push(Path {
+                origin: ray.origin,
+                direction: ray.direction,
+                throughput: Vec3::ONE,
+                sample: i as u32,
+                name: 0,
+                bounces: 0,
+                scatterings: 0,
+                first: true,
+                after: None,
+            });
+        }
+        self.counts.camera += self.samples.len() as u64;
+    }
+
+    /// What every path's ray hits.
+    fn trace(&self, workspace: &mut Workspace) {
+        let aggregate = &self.world.aggregate;
+        workspace.rays.clear();
+        workspace.rays.extend(workspace.paths.iter().map(|path| Ray {
+            origin: path.origin,
+            direction: path.direction,
+            t_max: f32::INFINITY,
+        }));
+        if workspace.paths.iter().all(|path| path.after.is_none()) {
+            aggregate.closest_hits(&workspace.rays, &mut workspace.hits);
+            return;
+        }
+        workspace.hits.clear();
+        for (path, ray) in workspace.paths.iter().zip(&workspace.rays) {
+            workspace.hits.push(match &path.after {
+                Some(after) => aggregate.closest_hit_after(ray, after),
+                None => aggregate.closest_hit(ray),
+            });
+        }
+    }
+
+    /// Turns every hit into what it adds by itself, shadow rays, and the paths of the next bounce.
+    fn shade(&mut self, workspace: &mut Workspace) {
+        workspace.next.clear();
+        workspace.shadows.clear();
+        workspace.shadow_rays.clear();
+        // Taken out, so that the paths can be read while the rest is written; no array is lost.
+        let paths = std::mem::take(&mut workspace.paths);
+        let hits = std::mem::take(&mut workspace.hits);
+        for (path, hit) in paths.iter().zip(&hits) {
+            if let Some(light) = self.visible_light(path, hit.as_ref()) {
+                self.add(path.sample, path.throughput * light);
+            } else if let Some(hit) = hit {
+                let surface = Surface::at(self.world, self.settings, path.direction, hit);
+                self.shade_surface(path, hit, &surface, workspace);
+            } else {
+                self.add(path.sample, path.throughput * self.background(path.direction));
+            }
+        }
+        workspace.paths = paths;
+        workspace.hits = hits;
+    }
+
+    fn shade_surface(&mut self, path: &Path, hit: &Hit, surface: &Surface, workspace: &mut Workspace) {
+        let opaque = path.throughput * surface.opacity;
+        if self.settings.features.shading {
+            if self.settings.lighting == Lighting::Physical {
+                self.add(path.sample, opaque * surface.emission);
+            }
+            self.gather_direct_light(path, surface, opaque, workspace);
+            self.continue_paths(path, hit, surface, workspace);
+        } else {
+            self.add(path.sample, opaque * surface.diffuse);
+            self.transmit(path, hit, surface, 1.0, workspace);
+        }
+    }
+
+    pub(super) fn add(&mut self, sample: u32, value: Vec3) {
+        self.values[sample as usize] += value;
+    }
+
+    fn background(&self, direction: Vec3) -> Vec3 {
+        if self.settings.features.environment {
+            self.world.environment.radiance(direction)
+        } else {
+            self.world.environment.background
+        }
+    }
+
+    /// Radiance of the nearest visible light that the path's ray meets before its hit.
+    fn visible_light(&self, path: &Path, hit: Option<&Hit>) -> Option<Vec3> {
+        // Classic lights are nowhere to be seen, as in the original program.
+        if self.settings.lighting == Lighting::Classic {
+            return None;
+        }
+        let behind = path.after.map_or(0.0, |hit| hit.t);
+        let mut nearest = hit.map_or(f32::INFINITY, |hit| hit.t * LIGHT_BEFORE_SURFACE);
+        let mut radiance = None;
+        for light in self.world.lights.parallelograms.iter().filter(|l| l.visible) {
+            if let Some((t, value)) = light.meet(path.origin, path.direction)
+                && t > behind
+                && t < nearest
+            {
+                nearest = t;
+                radiance = Some(value);
+            }
+        }
+        radiance
+    }
+}

@@ -1,0 +1,150 @@
+//! How paths go on: mirrors, glossy reflections, transparency and translucency.
+
+use super::disc::offset_direction;
+use super::radiance::{Batch, Path, Workspace};
+use super::sampler::{Purpose, mix};
+use super::Surface;
+use crate::bvh::Hit;
+use glam::Vec3;
+
+/// A path that both reflects and transmits goes on as two while its largest throughput exceeds
+/// this, then as one, chosen by chance: at 1/8 a stack of glass makes eight paths, not 2^depth.
+const SPLIT_ABOVE: f32 = 0.125;
+
+/// After this many scatterings in translucent surfaces a path ends: between fully transparent,
+/// scattering walls it would go on for ever.
+const MAX_SCATTERINGS: u32 = 256;
+
+impl Batch<'_> {
+    /// Adds the paths that leave a hit: what it reflects and what it lets through.
+    pub(super) fn continue_paths(
+        &mut self,
+        path: &Path,
+        hit: &Hit,
+        surface: &Surface,
+        workspace: &mut Workspace,
+    ) {
+        let settings = self.settings;
+        let mirrors = settings.features.mirrors && path.bounces < settings.max_depth;
+        let reflects = if mirrors {
+            (path.throughput * surface.opacity * surface.specular).max_element()
+        } else {
+            0.0
+        };
+        let transmits = (path.throughput * (1.0 - surface.opacity)).max_element();
+        if reflects > 0.0 && transmits > 0.0 && path.throughput.max_element() <= SPLIT_ABOVE {
+            let (sampler, index) = self.sampler(path.sample);
+            let u = sampler.block(index, Purpose::Branch, path.name)[0];
+            let share = reflects / (reflects + transmits);
+            if u < share {
+                self.reflect(path, surface, 1.0 / share, workspace);
+            } else {
+                self.transmit(path, hit, surface, 1.0 / (1.0 - share), workspace);
+            }
+            return;
+        }
+        if reflects > 0.0 {
+            self.reflect(path, surface, 1.0, workspace);
+        }
+        self.transmit(path, hit, surface, 1.0, workspace);
+    }
+
+    fn reflect(&mut self, path: &Path, surface: &Surface, weight: f32, workspace: &mut Workspace) {
+        let throughput = path.throughput * surface.specular * (surface.opacity * weight);
+        let mirrored = surface.mirrored();
+        let glossy = self.settings.features.glossy;
+        let count = if glossy && path.first {
+            self.settings.gloss_samples.clamp(1, 1000)
+        } else {
+            1
+        };
+        for i in 0..count {
+            let direction = if glossy {
+                let u = self.numbers(path, Purpose::Gloss, count, i);
+                let radius = 1.0 / surface.shininess;
+                offset_direction(mirrored, surface.geometric_normal, radius, u)
+                    .unwrap_or_else(|| surface.mirrored_geometric())
+            } else {
+                mirrored
+            };
+            workspace.next.push(Path {
+                origin: surface.spawn(direction),
+                direction,
+                throughput: throughput / count as f32,
+                name: child(path.name, 1, i),
+                bounces: path.bounces + 1,
+                first: false,
+                after: None,
+                ..*path
+            });
+        }
+        self.counts.mirror += u64::from(count);
+    }
+
+    /// Adds the path through the surface, if it lets anything through; `weight` corrects for chance.
+    pub(super) fn transmit(
+        &mut self,
+        path: &Path,
+        hit: &Hit,
+        surface: &Surface,
+        weight: f32,
+        workspace: &mut Workspace,
+    ) {
+        let throughput = path.throughput * ((1.0 - surface.opacity) * weight);
+        if throughput == Vec3::ZERO {
+            return;
+        }
+        if !self.settings.features.translucency {
+            // The same ray, from behind its hit: nothing is spawned, so no layer is met twice or
+            // missed, however thin.
+            workspace.next.push(Path {
+                throughput,
+                name: child(path.name, 2, 0),
+                first: false,
+                after: Some(*hit),
+                ..*path
+            });
+            self.counts.transmission += 1;
+            return;
+        }
+        if path.scatterings >= MAX_SCATTERINGS {
+            return;
+        }
+        let count = if path.first {
+            self.settings.translucency_samples.clamp(1, 1000)
+        } else {
+            1
+        };
+        let straight = -surface.to_viewer;
+        for i in 0..count {
+            let u = self.numbers(path, Purpose::Translucency, count, i);
+            let radius = 1.0 / surface.shininess;
+            let direction = offset_direction(straight, -surface.geometric_normal, radius, u)
+                .unwrap_or(straight);
+            workspace.next.push(Path {
+                origin: surface.spawn(direction),
+                direction,
+                throughput: throughput / count as f32,
+                name: child(path.name, 2, i),
+                scatterings: path.scatterings + 1,
+                first: false,
+                after: None,
+                ..*path
+            });
+        }
+        self.counts.transmission += u64::from(count);
+    }
+
+    /// Two numbers for ray `i` of `count` at this hit, stratified over all samples of the pixel.
+    fn numbers(&self, path: &Path, purpose: Purpose, count: u32, i: u32) -> [f32; 2] {
+        let (sampler, index) = self.sampler(path.sample);
+        let index = index * u64::from(count) + u64::from(i);
+        let [u, v, ..] = sampler.block(index, purpose, path.name);
+        [u, v]
+    }
+}
+
+/// The name of a path's continuation: which way it went, and the how-many-eth of several.
+fn child(name: u32, way: u32, i: u32) -> u32 {
+    mix(name, way | i << 2)
+}

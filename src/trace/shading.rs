@@ -1,0 +1,103 @@
+//! Phong's model: what of a light's arriving radiance leaves towards the viewer.
+//!
+//! Physical: `n·l · (kd/π + ks·(s+2)/(2π)·max(r·v,0)^s)`, Phong's lobe normalised to keep energy
+//! (Lafortune, Willems 1994, "Using the modified Phong reflectance model", eq. 7).
+//! Classic: `kd·max(n·l,0) + ks·max(r·v,0)^s`, as the original program has it.
+
+use super::{LightPoint, Surface};
+use crate::scene::Lighting;
+use glam::Vec3;
+use std::f32::consts::{FRAC_1_PI, PI};
+
+/// Radiance towards the viewer from one light point that nothing hides.
+///
+/// Zero in all channels where the light stands behind the surface: no shadow ray is needed then.
+pub fn reflected(surface: &Surface, light: &LightPoint, lighting: Lighting) -> Vec3 {
+    let n = surface.normal;
+    let l = light.direction;
+    let cosine = n.dot(l);
+    match lighting {
+        Lighting::Physical => {
+            // A smooth normal may face a light that the triangle itself turns its back to.
+            if cosine <= 0.0 || surface.geometric_normal.dot(l) <= 0.0 {
+                return Vec3::ZERO;
+            }
+            let mut value = surface.diffuse * FRAC_1_PI;
+            if surface.specular != Vec3::ZERO {
+                let s = surface.shininess;
+                value += surface.specular * ((s + 2.0) / (2.0 * PI) * lobe(surface, l));
+            }
+            light.arriving * value * cosine
+        }
+        Lighting::Classic => {
+            let mut value = surface.diffuse * cosine.max(0.0);
+            if surface.specular != Vec3::ZERO {
+                value += surface.specular * lobe(surface, l);
+            }
+            light.arriving * value
+        }
+    }
+}
+
+/// `max(r·v, 0)^s`.
+fn lobe(surface: &Surface, l: Vec3) -> f32 {
+    let r = 2.0 * surface.normal.dot(l) * surface.normal - l;
+    r.dot(surface.to_viewer).max(0.0).powf(surface.shininess)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn surface(specular: f32, shininess: f32, to_viewer: Vec3) -> Surface {
+        Surface {
+            diffuse: Vec3::splat(0.5),
+            specular: Vec3::splat(specular),
+            shininess,
+            ..Surface::flat(Vec3::ZERO, Vec3::Y, to_viewer)
+        }
+    }
+
+    fn light(direction: Vec3) -> LightPoint {
+        LightPoint {
+            direction,
+            distance: 1.0,
+            arriving: Vec3::ONE,
+        }
+    }
+
+    #[test]
+    fn a_matt_surface_reflects_kd_over_pi_times_the_cosine() {
+        let l = Vec3::new(0.6, 0.8, 0.0);
+        let value = reflected(&surface(0.0, 1.0, Vec3::Y), &light(l), Lighting::Physical);
+        assert!((value.x - 0.5 * 0.8 / PI).abs() < 1e-7, "{value}");
+        let classic = reflected(&surface(0.0, 1.0, Vec3::Y), &light(l), Lighting::Classic);
+        assert!((classic.x - 0.5 * 0.8).abs() < 1e-7, "{classic}");
+    }
+
+    #[test]
+    fn light_from_below_reflects_nothing() {
+        let l = Vec3::new(0.6, -0.8, 0.0);
+        assert_eq!(
+            reflected(&surface(0.9, 5.0, Vec3::Y), &light(l), Lighting::Physical),
+            Vec3::ZERO
+        );
+    }
+
+    #[test]
+    fn the_lobe_never_reflects_more_than_arrives() {
+        // A viewer straight above a uniform hemisphere of lights: ∫ ks (s+2)/(2π) cos^s θ cos θ dω = ks.
+        for shininess in [1.0_f32, 10.0, 200.0] {
+            let n = 20_000;
+            let mut sum = 0.0_f64;
+            for i in 0..n {
+                let cosine = (i as f32 + 0.5) / n as f32;
+                let l = Vec3::new((1.0 - cosine * cosine).sqrt(), cosine, 0.0);
+                let with = reflected(&surface(1.0, shininess, Vec3::Y), &light(l), Lighting::Physical);
+                let without = reflected(&surface(0.0, shininess, Vec3::Y), &light(l), Lighting::Physical);
+                sum += f64::from((with - without).x) * 2.0 * std::f64::consts::PI / f64::from(n);
+            }
+            assert!((sum - 1.0).abs() < 2e-3, "s = {shininess}: {sum}");
+        }
+    }
+}

@@ -1,0 +1,154 @@
+use super::World;
+use crate::bvh::Hit;
+use crate::scene::{Lighting, RenderSettings};
+use glam::{Vec2, Vec3};
+
+/// A place on a surface, with everything that shading reads.
+#[derive(Clone, Debug)]
+pub struct Surface {
+    /// World space; within `error` of the exact point in each coordinate.
+    pub position: Vec3,
+    /// Bound of the rounding error of `position`.
+    pub error: Vec3,
+    /// Unit normal of the triangle, turned to the viewer.
+    pub geometric_normal: Vec3,
+    /// Unit normal for shading: Physical turns it to the viewer's side, Classic takes it as given.
+    pub normal: Vec3,
+    /// Unit vector towards where the ray came from.
+    pub to_viewer: Vec3,
+    /// kd, texture included.
+    pub diffuse: Vec3,
+    /// ks.
+    pub specular: Vec3,
+    /// s ≥ 1.
+    pub shininess: f32,
+    /// d, opacity map included.
+    pub opacity: f32,
+    /// ke.
+    pub emission: Vec3,
+}
+
+impl Surface {
+    /// What the ray along `direction` found at `hit`.
+    pub fn at(world: &World, settings: &RenderSettings, direction: Vec3, hit: &Hit) -> Self {
+        let instance = &world.aggregate.instances()[hit.instance as usize];
+        let object = &world.objects[hit.instance as usize];
+        let material = &world.materials[object.material as usize];
+        let point = instance.surface_point(hit);
+        let to_viewer = -direction.normalize();
+
+        let mut normal = point.normal;
+        let mesh = &object.mesh;
+        let corners = mesh.tree.triangles().indices()[hit.triangle as usize];
+        let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
+        if settings.features.normal_interpolation && !mesh.normals.is_empty() {
+            let smooth: Vec3 = (0..3)
+                .map(|i| weights[i] * mesh.normals[corners[i] as usize])
+                .sum();
+            if let Some(smooth) = instance.to_world_normal(smooth).try_normalize() {
+                normal = smooth;
+            }
+        }
+        let geometric_normal = if point.normal.dot(to_viewer) < 0.0 {
+            -point.normal
+        } else {
+            point.normal
+        };
+        if settings.lighting == Lighting::Physical && normal.dot(geometric_normal) < 0.0 {
+            normal = -normal;
+        }
+
+        let mut diffuse = material.diffuse;
+        let mut opacity = material.opacity;
+        if settings.features.textures
+            && !mesh.uvs.is_empty()
+            && (material.diffuse_map.is_some() || material.opacity_map.is_some())
+        {
+            let uv: Vec2 = (0..3)
+                .map(|i| weights[i] * mesh.uvs[corners[i] as usize])
+                .sum();
+            let raw = settings.lighting == Lighting::Classic;
+            if let Some(map) = material.diffuse_map {
+                diffuse = world.textures[map as usize].sample(uv, settings.texture_filter, raw);
+            }
+            if let Some(map) = material.opacity_map {
+                opacity *= world.textures[map as usize].opacity(uv, settings.texture_filter);
+            }
+        }
+        if !settings.features.transparency {
+            opacity = 1.0;
+        }
+        Self {
+            position: point.position,
+            error: point.error,
+            geometric_normal,
+            normal,
+            to_viewer,
+            diffuse,
+            specular: material.specular,
+            shininess: material.shininess,
+            opacity,
+            emission: material.emission,
+        }
+    }
+
+    /// A matt grey surface at `position`, seen from its normal's side; exact. For the probe and for tests.
+    pub fn flat(position: Vec3, normal: Vec3, to_viewer: Vec3) -> Self {
+        Self {
+            position,
+            error: Vec3::ZERO,
+            geometric_normal: normal,
+            normal,
+            to_viewer,
+            diffuse: Vec3::splat(0.8),
+            specular: Vec3::ZERO,
+            shininess: 1.0,
+            opacity: 1.0,
+            emission: Vec3::ZERO,
+        }
+    }
+
+    /// Where a ray along `direction` starts, so that it does not meet this surface again: moved
+    /// along the geometric normal, to the side that the ray leaves by, out of the box in which the
+    /// exact point lies (Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 6.8.6).
+    pub fn spawn(&self, direction: Vec3) -> Vec3 {
+        let n = self.geometric_normal;
+        let side = if direction.dot(n) < 0.0 { -1.0 } else { 1.0 };
+        let offset = side * n.abs().dot(self.error) * n;
+        let away = |p: f32, d: f32| {
+            let moved = p + d;
+            if d > 0.0 {
+                moved.next_up()
+            } else if d < 0.0 {
+                moved.next_down()
+            } else {
+                moved
+            }
+        };
+        Vec3::new(
+            away(self.position.x, offset.x),
+            away(self.position.y, offset.y),
+            away(self.position.z, offset.z),
+        )
+    }
+
+    /// The direction of a mirror's ray. Where a smooth normal would send it into the surface, it is
+    /// that of the geometric normal.
+    pub fn mirrored(&self) -> Vec3 {
+        let direction = self.mirrored_about(self.normal);
+        if direction.dot(self.geometric_normal) > 0.0 {
+            direction
+        } else {
+            self.mirrored_geometric()
+        }
+    }
+
+    /// The mirror direction about the geometric normal: it always leaves the surface.
+    pub fn mirrored_geometric(&self) -> Vec3 {
+        self.mirrored_about(self.geometric_normal)
+    }
+
+    fn mirrored_about(&self, n: Vec3) -> Vec3 {
+        (2.0 * n.dot(self.to_viewer) * n - self.to_viewer).normalize()
+    }
+}
