@@ -1,0 +1,96 @@
+use glam::Vec3;
+
+/// The exact sum of colours, whatever the order in which they are added: 128-bit fixed point.
+///
+/// A value is rounded to a multiple of 2^-64 and limited to ±2^40 when it is added; both limits are
+/// far outside what 24-bit values of a scene-referred picture can show. 2^22 samples of the largest
+/// value fit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sum([i128; 3]);
+
+const FRACTION_BITS: u32 = 64;
+const LARGEST: f32 = (1u64 << 40) as f32;
+
+impl Sum {
+    /// Adds a colour. A component that is not a number counts as zero, an infinite one as the largest.
+    pub fn add(&mut self, value: Vec3) {
+        for (sum, value) in self.0.iter_mut().zip(value.to_array()) {
+            *sum += to_fixed(value);
+        }
+    }
+
+    /// Adds what another sum holds.
+    pub fn merge(&mut self, other: &Self) {
+        for (sum, other) in self.0.iter_mut().zip(other.0) {
+            *sum += other;
+        }
+    }
+
+    /// The mean over `count` values; zero where there are none.
+    pub fn mean(&self, count: u32) -> Vec3 {
+        if count == 0 {
+            return Vec3::ZERO;
+        }
+        let unit = (2.0_f64).powi(-(FRACTION_BITS as i32)) / f64::from(count);
+        let [r, g, b] = self.0.map(|sum| (sum as f64 * unit) as f32);
+        Vec3::new(r, g, b)
+    }
+}
+
+/// Exact but for what lies below 2^-64; NaN becomes zero.
+fn to_fixed(value: f32) -> i128 {
+    let value = value.clamp(-LARGEST, LARGEST);
+    // `value` = mantissa · 2^exponent with a 24-bit mantissa; a shift puts it in place.
+    let bits = value.to_bits();
+    let biased = (bits >> 23) & 0xff;
+    if biased == 0 || biased == 0xff {
+        return 0; // Zero, what is smaller than 2^-126, or NaN.
+    }
+    let mantissa = i128::from((bits & 0x7f_ffff) | 0x80_0000);
+    let shift = biased as i32 - 150 + FRACTION_BITS as i32;
+    let magnitude = match shift {
+        0.. => mantissa << shift,
+        -24..0 => (mantissa + (1 << (-shift - 1))) >> -shift,
+        _ => 0,
+    };
+    if bits >> 31 == 1 { -magnitude } else { magnitude }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_value_comes_back_as_it_was(exponent in -38..39_i32, mantissa in 1.0..2.0_f32, negative: bool) {
+            let value = mantissa * 2f32.powi(exponent) * if negative { -1.0 } else { 1.0 };
+            let mut sum = Sum::default();
+            sum.add(Vec3::splat(value));
+            prop_assert_eq!(sum.mean(1).x, value);
+        }
+
+        #[test]
+        fn the_order_does_not_matter(mut values in prop::collection::vec(-1e6..1e6_f32, 1..64)) {
+            let total = |values: &[f32]| {
+                let mut sum = Sum::default();
+                values.iter().for_each(|&v| sum.add(Vec3::splat(v)));
+                sum
+            };
+            let forwards = total(&values);
+            values.reverse();
+            prop_assert_eq!(forwards, total(&values));
+            let (a, b) = values.split_at(values.len() / 2);
+            let mut merged = total(b);
+            merged.merge(&total(a));
+            prop_assert_eq!(forwards, merged);
+        }
+    }
+
+    #[test]
+    fn nan_counts_as_nothing_and_infinity_as_the_largest_value() {
+        let mut sum = Sum::default();
+        sum.add(Vec3::new(f32::NAN, f32::INFINITY, f32::NEG_INFINITY));
+        assert_eq!(sum.mean(1), Vec3::new(0.0, LARGEST, -LARGEST));
+    }
+}
