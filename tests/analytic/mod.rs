@@ -1,0 +1,113 @@
+//! The picture against closed forms: what the tracer computes is compared with what it should be.
+
+mod irradiance;
+mod mirrors;
+
+use glam::{UVec2, Vec3};
+use glassbox::bvh::{Aggregate, BuildOptions, Instance, MeshTree, Triangles};
+use glassbox::scene::{PixelSampling, RenderSettings};
+use glassbox::trace::{
+    Camera, Material, Mesh, Object, RayCounts, SampleId, Workspace, World, radiance,
+};
+use std::sync::Arc;
+
+/// Deterministic numbers for set-ups: a splitmix64 generator.
+pub struct Numbers(pub u64);
+
+impl Numbers {
+    pub fn unit(&mut self) -> f32 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 40) as f32 / (1u64 << 24) as f32
+    }
+
+    pub fn between(&mut self, low: f32, high: f32) -> f32 {
+        low + (high - low) * self.unit()
+    }
+
+    pub fn point(&mut self, low: f32, high: f32) -> Vec3 {
+        Vec3::new(
+            self.between(low, high),
+            self.between(low, high),
+            self.between(low, high),
+        )
+    }
+
+    pub fn direction(&mut self) -> Vec3 {
+        loop {
+            let p = self.point(-1.0, 1.0);
+            let length = p.length();
+            if length > 0.1 && length < 1.0 {
+                return p / length;
+            }
+        }
+    }
+}
+
+/// An object: corner positions in threes, and a material.
+pub fn object(id: u64, corners: &[Vec3], material: u32) -> (Instance, Object) {
+    let indices = (0..corners.len() as u32 / 3)
+        .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
+        .collect();
+    let triangles = Triangles::new(corners.to_vec(), indices).unwrap();
+    let tree = Arc::new(MeshTree::build(triangles, &BuildOptions::default()));
+    let mesh = Mesh {
+        tree: tree.clone(),
+        normals: vec![],
+        uvs: vec![],
+    };
+    let instance = Instance::new(tree, &glam::Affine3A::IDENTITY).unwrap();
+    (
+        instance,
+        Object {
+            id,
+            material,
+            mesh: Arc::new(mesh),
+        },
+    )
+}
+
+/// Two triangles of the quad `corner + u·a + v·b`, facing along `a × b`.
+pub fn quad(corner: Vec3, a: Vec3, b: Vec3) -> [Vec3; 6] {
+    [corner, corner + a, corner + a + b, corner, corner + a + b, corner + b]
+}
+
+pub fn world(objects: Vec<(Instance, Object)>, materials: Vec<Material>) -> World {
+    let (instances, objects): (Vec<_>, Vec<_>) = objects.into_iter().unzip();
+    let has_transparency = materials.iter().any(|m| m.opacity < 1.0);
+    World {
+        aggregate: Arc::new(Aggregate::build(instances, &BuildOptions::default())),
+        objects: Arc::new(objects),
+        materials: Arc::new(materials),
+        has_transparency,
+        ..World::default()
+    }
+}
+
+/// The mean radiance of `spp` samples along the camera's central ray.
+pub fn central_radiance(world: &World, camera: &Camera, settings: &RenderSettings) -> (Vec3, RayCounts) {
+    let settings = RenderSettings {
+        size: UVec2::ONE,
+        pixel: PixelSampling::Center,
+        ..settings.clone()
+    };
+    let samples: Vec<_> = (0..u64::from(settings.spp))
+        .map(|index| SampleId {
+            pixel: UVec2::ZERO,
+            index,
+        })
+        .collect();
+    let mut values = vec![Vec3::ZERO; samples.len()];
+    let counts = radiance(
+        world,
+        camera,
+        &settings,
+        &samples,
+        &mut values,
+        &mut Workspace::default(),
+    );
+    let sum = values.iter().fold(glam::DVec3::ZERO, |sum, v| sum + v.as_dvec3());
+    ((sum / values.len() as f64).as_vec3(), counts)
+}
