@@ -1,1 +1,3 @@
 //! Tests of the whole stack. A module a subject; tests of one file stand in that file.
+
+mod analytic;

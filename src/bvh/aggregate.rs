@@ -161,6 +161,22 @@ impl Aggregate {
         (best.instance != u32::MAX).then_some(best)
     }
 
+    /// The next hit behind `after`, a hit of the same ray: the ray goes straight on through what it met, and meets every
+    /// crossing exactly once, however close they lie.
+    pub fn closest_hit_after(&self, ray: &Ray, after: &Hit) -> Option<Hit> {
+        let mut best: Option<Hit> = None;
+        self.each_hit(ray, &mut (), |hit, limit| {
+            let wanted = after.beats(&hit) && best.is_none_or(|best| hit.beats(&best));
+            if wanted {
+                best = Some(hit);
+                (true, hit.t)
+            } else {
+                (false, limit)
+            }
+        });
+        best
+    }
+
     /// Whether anything is hit in `0 < t < t_max`.
     pub fn occluded(&self, ray: &Ray) -> bool {
         self.occluded_with(ray, &mut ())

@@ -143,6 +143,16 @@ impl Instance {
         self.mirrored
     }
 
+    /// Whether rays pass unchanged.
+    pub(crate) fn is_identity(&self) -> bool {
+        self.identity
+    }
+
+    /// κ of the module docs.
+    pub(crate) fn condition(&self) -> f32 {
+        self.condition as f32
+    }
+
     /// A point of the mesh, in the world.
     #[inline]
     pub fn to_world_point(&self, point: Vec3) -> Vec3 {

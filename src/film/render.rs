@@ -78,7 +78,15 @@ fn add_samples(
     let tiles: Vec<_> = film.tiles_mut().collect();
     tiles.into_par_iter().for_each(|(tile, pixels)| {
         let rays = SCRATCH.with_borrow_mut(|scratch| {
-            sample_tile(tile, pixels, world, camera, settings, indices.clone(), scratch)
+            sample_tile(
+                tile,
+                pixels,
+                world,
+                camera,
+                settings,
+                indices.clone(),
+                scratch,
+            )
         });
         if let Ok(mut counts) = counts.lock() {
             *counts += rays;

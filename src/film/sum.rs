@@ -53,7 +53,11 @@ fn to_fixed(value: f32) -> i128 {
         -24..0 => (mantissa + (1 << (-shift - 1))) >> -shift,
         _ => 0,
     };
-    if bits >> 31 == 1 { -magnitude } else { magnitude }
+    if bits >> 31 == 1 {
+        -magnitude
+    } else {
+        magnitude
+    }
 }
 
 #[cfg(test)]

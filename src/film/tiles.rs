@@ -106,7 +106,9 @@ mod tests {
             let mut film = Film::new(size);
             for (tile, pixels) in film.tiles_mut() {
                 for (at, place) in tile.pixels() {
-                    pixels[place].sum.add(Vec3::new(at.x as f32, at.y as f32, 1.0));
+                    pixels[place]
+                        .sum
+                        .add(Vec3::new(at.x as f32, at.y as f32, 1.0));
                     pixels[place].count += 1;
                 }
             }

@@ -47,6 +47,6 @@ mod tests {
     #[test]
     fn middle_grey_becomes_a_half_on_the_screen() {
         assert!((srgb(0.214_04) - 0.5).abs() < 1e-4, "{}", srgb(0.214_04));
-        assert_eq!((srgb(0.0), srgb(1.0)), (0.0, 1.0));
+        assert!(srgb(0.0) == 0.0 && (srgb(1.0) - 1.0).abs() < 1e-6);
     }
 }

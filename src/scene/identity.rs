@@ -6,9 +6,7 @@ use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 /// The tracer sorts everything by it and resolves equal distances with it, so that a picture does
 /// not depend on the order in which entities were spawned. Zero means "not assigned yet": the room
 /// `sync` gives such an entity the next free number before it is traced for the first time.
-#[derive(
-    Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash,
-)]
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[reflect(Component, Default, Clone, PartialEq, Debug)]
 pub struct SceneId(pub u64);
 

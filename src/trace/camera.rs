@@ -116,10 +116,7 @@ impl Camera {
     /// point that the numbers `lens` in [0, 1)² choose.
     pub fn ray(&self, place: Vec2, size: UVec2, lens: [f32; 2], time: f32) -> Ray {
         let size = size.as_vec2();
-        let ndc = Vec2::new(
-            2.0 * place.x / size.x - 1.0,
-            1.0 - 2.0 * place.y / size.y,
-        );
+        let ndc = Vec2::new(2.0 * place.x / size.x - 1.0, 1.0 - 2.0 * place.y / size.y);
         let ndc = Vec2::new(ndc.x * (size.x / size.y), ndc.y);
         let (mut origin, mut direction) = match self.projection {
             Projection::Perspective { fov_y } => {
@@ -129,7 +126,10 @@ impl Camera {
             }
             Projection::Orthographic { height } => {
                 let at = ndc * (0.5 * height);
-                (self.position + at.x * self.right + at.y * self.up, self.forward)
+                (
+                    self.position + at.x * self.right + at.y * self.up,
+                    self.forward,
+                )
             }
         };
         let optics = &self.optics;

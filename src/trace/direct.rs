@@ -41,11 +41,21 @@ impl Batch<'_> {
             self.gather_point(path, surface, light.point(at, lighting), weight, workspace);
         }
         for light in &lights.directionals {
-            let count = if light.tan_half_angle > 0.0 { light.samples } else { 0 };
+            let count = if light.tan_half_angle > 0.0 {
+                light.samples
+            } else {
+                0
+            };
             let size = std::f32::consts::PI * light.tan_half_angle * light.tan_half_angle;
-            self.gather_area(path, surface, light.id, (count, size), weight, workspace, |u| {
-                Some(light.point(u))
-            });
+            self.gather_area(
+                path,
+                surface,
+                light.id,
+                (count, size),
+                weight,
+                workspace,
+                |u| Some(light.point(u)),
+            );
         }
         for light in &lights.segments {
             let size = (light.ends[1] - light.ends[0]).length();
@@ -64,7 +74,10 @@ impl Batch<'_> {
 
     /// Several points of one light: `samples` of them at the first hit, stratified together over
     /// all samples of the pixel; one at later hits, and where the light has no extent.
-    #[expect(clippy::too_many_arguments, reason = "a light's numbers, a path's and the arrays")]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "a light's numbers, a path's and the arrays"
+    )]
     fn gather_area(
         &mut self,
         path: &Path,

@@ -99,7 +99,11 @@ mod tests {
     fn a_cut_disc_is_filled_evenly_and_only_on_its_side() {
         for border in [-0.9_f32, -0.3, 0.0, 0.4, 0.95] {
             let points: Vec<_> = grid(200).map(|u| beyond(border, u)).collect();
-            assert!(points.iter().all(|p| p.x >= border - 1e-5 && p.length() <= 1.0 + 1e-5));
+            assert!(
+                points
+                    .iter()
+                    .all(|p| p.x >= border - 1e-5 && p.length() <= 1.0 + 1e-5)
+            );
             // The centroid of a circular segment: 2/3 (1 − b²)^(3/2) / A(b).
             let area = border.acos() - border * (1.0 - border * border).sqrt();
             let expected = 2.0 / 3.0 * (1.0 - border * border).powf(1.5) / area;

@@ -59,7 +59,9 @@ mod tests {
             })
             .collect();
         Environment {
-            map: Some(Arc::new(Texture::new(width, height, Texels::Linear32(texels)).unwrap())),
+            map: Some(Arc::new(
+                Texture::new(width, height, Texels::Linear32(texels)).unwrap(),
+            )),
             intensity: 1.0,
             ..Environment::default()
         }

@@ -313,7 +313,11 @@ mod tests {
         let mut last = 1.0;
         for i in 0..=1000 {
             let value = at(0.25 + 0.3 * i as f32 / 1000.0);
-            assert!(value <= last && last - value < 0.01, "step of {}", last - value);
+            assert!(
+                value <= last && last - value < 0.01,
+                "step of {}",
+                last - value
+            );
             last = value;
         }
     }
@@ -336,7 +340,15 @@ mod tests {
         assert_eq!(below.map(|(t, _)| t), Some(2.0));
         assert!(light.meet(Vec3::Y * 4.0, Vec3::NEG_Y).is_none());
         assert!(light.meet(Vec3::new(1.5, 0.0, 0.0), Vec3::Y).is_none());
-        assert!(light.point(Vec3::Y * 4.0, [0.5; 2], Lighting::Physical).is_none());
-        assert!(light.point(Vec3::ZERO, [0.5; 2], Lighting::Physical).is_some());
+        assert!(
+            light
+                .point(Vec3::Y * 4.0, [0.5; 2], Lighting::Physical)
+                .is_none()
+        );
+        assert!(
+            light
+                .point(Vec3::ZERO, [0.5; 2], Lighting::Physical)
+                .is_some()
+        );
     }
 }

@@ -172,11 +172,13 @@ impl Batch<'_> {
     fn trace(&self, workspace: &mut Workspace) {
         let aggregate = &self.world.aggregate;
         workspace.rays.clear();
-        workspace.rays.extend(workspace.paths.iter().map(|path| Ray {
-            origin: path.origin,
-            direction: path.direction,
-            t_max: f32::INFINITY,
-        }));
+        workspace
+            .rays
+            .extend(workspace.paths.iter().map(|path| Ray {
+                origin: path.origin,
+                direction: path.direction,
+                t_max: f32::INFINITY,
+            }));
         if workspace.paths.iter().all(|path| path.after.is_none()) {
             aggregate.closest_hits(&workspace.rays, &mut workspace.hits);
             return;
@@ -205,14 +207,23 @@ impl Batch<'_> {
                 let surface = Surface::at(self.world, self.settings, path.direction, hit);
                 self.shade_surface(path, hit, &surface, workspace);
             } else {
-                self.add(path.sample, path.throughput * self.background(path.direction));
+                self.add(
+                    path.sample,
+                    path.throughput * self.background(path.direction),
+                );
             }
         }
         workspace.paths = paths;
         workspace.hits = hits;
     }
 
-    fn shade_surface(&mut self, path: &Path, hit: &Hit, surface: &Surface, workspace: &mut Workspace) {
+    fn shade_surface(
+        &mut self,
+        path: &Path,
+        hit: &Hit,
+        surface: &Surface,
+        workspace: &mut Workspace,
+    ) {
         let opaque = path.throughput * surface.opacity;
         if self.settings.features.shading {
             if self.settings.lighting == Lighting::Physical {
@@ -247,7 +258,13 @@ impl Batch<'_> {
         let behind = path.after.map_or(0.0, |hit| hit.t);
         let mut nearest = hit.map_or(f32::INFINITY, |hit| hit.t * LIGHT_BEFORE_SURFACE);
         let mut radiance = None;
-        for light in self.world.lights.parallelograms.iter().filter(|l| l.visible) {
+        for light in self
+            .world
+            .lights
+            .parallelograms
+            .iter()
+            .filter(|l| l.visible)
+        {
             if let Some((t, value)) = light.meet(path.origin, path.direction)
                 && t > behind
                 && t < nearest

@@ -67,7 +67,11 @@ impl Sampler {
 /// Mixes `value` into `state`: one round of MurmurHash3's finaliser (Appleby, public domain), whose
 /// every output bit depends on every input bit.
 pub(super) fn mix(state: u32, value: u32) -> u32 {
-    let mut h = state ^ value.wrapping_mul(0xcc9e_2d51).rotate_left(15).wrapping_mul(0x1b87_3593);
+    let mut h = state
+        ^ value
+            .wrapping_mul(0xcc9e_2d51)
+            .rotate_left(15)
+            .wrapping_mul(0x1b87_3593);
     h = h.rotate_left(13).wrapping_mul(5).wrapping_add(0xe654_6b64);
     h ^= h >> 16;
     h = h.wrapping_mul(0x85eb_ca6b);
@@ -92,10 +96,7 @@ mod tests {
                 let [u, v, ..] = sampler.block(i, Purpose::Light(9), 0);
                 cells[(v * rows as f32) as usize * columns + (u * columns as f32) as usize] += 1;
             }
-            assert!(
-                cells.iter().all(|&n| n == 1),
-                "{columns}x{rows}: {cells:?}"
-            );
+            assert!(cells.iter().all(|&n| n == 1), "{columns}x{rows}: {cells:?}");
         }
     }
 

@@ -1,9 +1,9 @@
 //! How paths go on: mirrors, glossy reflections, transparency and translucency.
 
+use super::Surface;
 use super::disc::offset_direction;
 use super::radiance::{Batch, Path, Workspace};
 use super::sampler::{Purpose, mix};
-use super::Surface;
 use crate::bvh::Hit;
 use glam::Vec3;
 

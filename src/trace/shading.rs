@@ -93,8 +93,16 @@ mod tests {
             for i in 0..n {
                 let cosine = (i as f32 + 0.5) / n as f32;
                 let l = Vec3::new((1.0 - cosine * cosine).sqrt(), cosine, 0.0);
-                let with = reflected(&surface(1.0, shininess, Vec3::Y), &light(l), Lighting::Physical);
-                let without = reflected(&surface(0.0, shininess, Vec3::Y), &light(l), Lighting::Physical);
+                let with = reflected(
+                    &surface(1.0, shininess, Vec3::Y),
+                    &light(l),
+                    Lighting::Physical,
+                );
+                let without = reflected(
+                    &surface(0.0, shininess, Vec3::Y),
+                    &light(l),
+                    Lighting::Physical,
+                );
                 sum += f64::from((with - without).x) * 2.0 * std::f64::consts::PI / f64::from(n);
             }
             assert!((sum - 1.0).abs() < 2e-3, "s = {shininess}: {sum}");

@@ -154,7 +154,11 @@ impl Texture {
         let (y, fy) = split(uv.y * self.height as f32 - 0.5);
         let row = |y: i64| {
             let beyond_pole = y < 0 || y >= i64::from(self.height);
-            let turn = if beyond_pole { i64::from(self.width / 2) } else { 0 };
+            let turn = if beyond_pole {
+                i64::from(self.width / 2)
+            } else {
+                0
+            };
             let y = y.clamp(0, i64::from(self.height) - 1) as u32;
             let left = self.texel(wrap(x + turn, self.width), y, false);
             let right = self.texel(wrap(x + turn + 1, self.width), y, false);
@@ -203,7 +207,10 @@ mod tests {
     fn nearest_reads_the_texel_that_holds_the_point_and_bilinear_the_mean_between_four() {
         let t = two_by_two();
         let nearest = |u, v| t.sample(Vec2::new(u, v), TextureFilter::Nearest, false).x;
-        assert_eq!([nearest(0.1, 0.1), nearest(0.9, 0.1), nearest(0.1, 0.9)], [0.0, 1.0, 2.0]);
+        assert_eq!(
+            [nearest(0.1, 0.1), nearest(0.9, 0.1), nearest(0.1, 0.9)],
+            [0.0, 1.0, 2.0]
+        );
         let bilinear = |u, v| t.sample(Vec2::new(u, v), TextureFilter::Bilinear, false).x;
         assert_eq!(bilinear(0.25, 0.25), 0.0);
         assert_eq!(bilinear(0.5, 0.5), 1.5);
@@ -220,14 +227,20 @@ mod tests {
                 assert!((a - b).length() < 1e-5, "{filter:?}: {a} and {b}");
             }
         }
-        assert!(t.sample(Vec2::NAN, TextureFilter::Bilinear, false).is_finite());
+        assert!(
+            t.sample(Vec2::NAN, TextureFilter::Bilinear, false)
+                .is_finite()
+        );
     }
 
     #[test]
     fn srgb_is_decoded_unless_raw_is_asked_for() {
         let t = Texture::new(1, 1, Texels::Srgb8(vec![[188, 0, 255, 255]])).unwrap();
         let linear = t.texel(0, 0, false);
-        assert!((linear - Vec3::new(0.5029, 0.0, 1.0)).length() < 1e-3, "{linear}");
+        assert!(
+            (linear - Vec3::new(0.5029, 0.0, 1.0)).length() < 1e-3,
+            "{linear}"
+        );
         assert_eq!(t.texel(0, 0, true).x, 188.0 / 255.0);
     }
 

@@ -61,13 +61,18 @@ fn segment_irradiance(at: DVec3, n: DVec3, ends: [DVec3; 2]) -> f64 {
     let (mut from, mut to) = (0.0, length);
     if slope != 0.0 {
         let crossing = (-constant / slope).clamp(0.0, length);
-        if slope > 0.0 { from = crossing } else { to = crossing }
+        if slope > 0.0 {
+            from = crossing
+        } else {
+            to = crossing
+        }
     } else if constant <= 0.0 {
         return 0.0;
     }
     let (p, q) = (a.dot(d), a.length_squared());
     let antiderivative = |x: f64| {
-        (constant * (x + p) - slope * (p * x + q)) / ((q - p * p) * (x * x + 2.0 * p * x + q).sqrt())
+        (constant * (x + p) - slope * (p * x + q))
+            / ((q - p * p) * (x * x + 2.0 * p * x + q).sqrt())
     };
     (antiderivative(to) - antiderivative(from)).max(0.0)
 }

@@ -61,7 +61,11 @@ fn a_mirrors_image_is_the_picture_of_the_virtual_scene() {
     let box_at = |z: f32| {
         let c = Vec3::new(-0.3, -0.2, z);
         let mut corners = quad(c, Vec3::X * 0.7, Vec3::Y * 0.6).to_vec();
-        corners.extend(quad(c + Vec3::new(0.1, 0.3, 0.2), Vec3::X * 0.4, Vec3::new(0.1, 0.5, 0.1)));
+        corners.extend(quad(
+            c + Vec3::new(0.1, 0.3, 0.2),
+            Vec3::X * 0.4,
+            Vec3::new(0.1, 0.5, 0.1),
+        ));
         corners
     };
     let flip = |p: &Vec3| Vec3::new(p.x, p.y, -p.z);
@@ -99,7 +103,12 @@ fn a_mirrors_image_is_the_picture_of_the_virtual_scene() {
         ..RenderSettings::default()
     };
     // From where the real boxes themselves are out of view: only what lies beyond the mirror counts.
-    let camera = Camera::looking_at(Vec3::new(at.x, at.y, 1.0), Vec3::new(0.0, 0.1, -1.5), Vec3::Y, 0.6);
+    let camera = Camera::looking_at(
+        Vec3::new(at.x, at.y, 1.0),
+        Vec3::new(0.0, 0.1, -1.5),
+        Vec3::Y,
+        0.6,
+    );
     let a = render(&seen_in_mirror, &camera, &settings, &|_, _| {}).picture;
     let b = render(&seen_directly, &camera, &settings, &|_, _| {}).picture;
     let lit = b.pixels.iter().filter(|p| p.x > 0.0).count();

@@ -71,7 +71,14 @@ pub fn object(id: u64, corners: &[Vec3], material: u32) -> (Instance, Object) {
 
 /// Two triangles of the quad `corner + u·a + v·b`, facing along `a × b`.
 pub fn quad(corner: Vec3, a: Vec3, b: Vec3) -> [Vec3; 6] {
-    [corner, corner + a, corner + a + b, corner, corner + a + b, corner + b]
+    [
+        corner,
+        corner + a,
+        corner + a + b,
+        corner,
+        corner + a + b,
+        corner + b,
+    ]
 }
 
 pub fn world(objects: Vec<(Instance, Object)>, materials: Vec<Material>) -> World {
@@ -87,7 +94,11 @@ pub fn world(objects: Vec<(Instance, Object)>, materials: Vec<Material>) -> Worl
 }
 
 /// The mean radiance of `spp` samples along the camera's central ray.
-pub fn central_radiance(world: &World, camera: &Camera, settings: &RenderSettings) -> (Vec3, RayCounts) {
+pub fn central_radiance(
+    world: &World,
+    camera: &Camera,
+    settings: &RenderSettings,
+) -> (Vec3, RayCounts) {
     let settings = RenderSettings {
         size: UVec2::ONE,
         pixel: PixelSampling::Center,
@@ -108,6 +119,8 @@ pub fn central_radiance(world: &World, camera: &Camera, settings: &RenderSetting
         &mut values,
         &mut Workspace::default(),
     );
-    let sum = values.iter().fold(glam::DVec3::ZERO, |sum, v| sum + v.as_dvec3());
+    let sum = values
+        .iter()
+        .fold(glam::DVec3::ZERO, |sum, v| sum + v.as_dvec3());
     ((sum / values.len() as f64).as_vec3(), counts)
 }
