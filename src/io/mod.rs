@@ -1,1 +1,3 @@
 //! The room `io`.
+
+pub mod shapes;

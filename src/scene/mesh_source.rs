@@ -1,7 +1,7 @@
 use super::{Phong, SceneId};
 use bevy::camera::visibility::Visibility;
 use bevy::ecs::{component::Component, reflect::ReflectComponent};
-use bevy::math::Vec3;
+use bevy::math::{Vec2, Vec3};
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 use bevy::transform::components::Transform;
 
@@ -43,10 +43,23 @@ pub enum Shape {
         /// The two edges that leave it.
         edges: [Vec3; 2],
     },
+    /// Two flat triangles between four corners, which need not lie in one plane.
+    Quadrilateral {
+        /// Once around, counter-clockwise seen from the side that its normals point to. The triangles
+        /// meet along the line from the first to the third.
+        corners: [Vec3; 4],
+    },
     /// A six-sided block with flat sides, centred, axis-parallel; each side carries the whole texture.
     Cuboid {
         /// Edge lengths.
         size: Vec3,
+    },
+    /// An upright block over a convex polygon, its foot on y = 0; closed, with flat sides.
+    Prism {
+        /// Corners of its foot as (x, z), once around, either way.
+        base: Vec<Vec2>,
+        /// Extent along y.
+        height: f32,
     },
     /// A latitude–longitude sphere with smooth normals, its poles on the y axis.
     Sphere {
@@ -82,14 +95,14 @@ pub enum Shape {
         /// Each patch becomes `divisions × divisions` quads, at least 1.
         divisions: u32,
     },
-    /// A head-like mesh: a smooth, displaced, closed surface.
+    /// A head with a neck: a smooth, displaced, closed surface, two units high, centred, facing +Z.
     Head {
         /// Divisions around the axis, at least 3.
         segments: u32,
         /// Divisions from chin to crown, at least 2.
         rings: u32,
     },
-    /// A (p, q) torus knot with a displaced tube.
+    /// A (p, q) torus knot around the y axis with a displaced tube. It lies on a torus of radii 1 and 0.4.
     Knot {
         /// Turns around the axis, coprime to `q`.
         p: u32,
