@@ -1,3 +1,4 @@
 //! The room `io`.
 
+pub mod builtin;
 pub mod shapes;

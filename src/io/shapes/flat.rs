@@ -105,8 +105,8 @@ pub(super) fn prism(base: &[DVec2], height: f64) -> Result<Surface, ShapeError> 
     }
     for (lift, normal) in [(up, DVec3::Y), (DVec3::ZERO, DVec3::NEG_Y)] {
         let first = surface.positions.len() as u32;
-        for k in 0..n {
-            let uv = (ordered[k] - low) / (high - low);
+        for (k, &corner) in ordered.iter().enumerate() {
+            let uv = (corner - low) / (high - low);
             let v = if normal.y > 0.0 { uv.y } else { 1.0 - uv.y };
             surface.vertex(place(k) + lift, normal, DVec2::new(uv.x, v));
         }

@@ -23,6 +23,9 @@ const SIDE: u32 = 512;
 /// Pixels of the sky.
 const SKY: [u32; 2] = [1024, 512];
 
+/// Where the sun of `builtin:sky` stands, of any length: to the left behind a camera that looks along -Z.
+pub const SUN: DVec3 = DVec3::new(-0.62, 0.60, 0.50);
+
 /// The picture of a name with its prefix: `builtin:checker` (8 × 8 squares) and `builtin:uv` (a
 /// colour for every place, a grid of eighths) as 8-bit sRGB; `builtin:sky` as linear radiance in
 /// `f32`, equirectangular, +Y up, its middle column at -Z and +X to the right of it.
@@ -112,7 +115,7 @@ fn sky_radiance(direction: DVec3) -> Vec3 {
             + 0.9 * towards_sun.powf(60.0)
             + 0.25 * towards_sun.powf(6.0));
     let below = smooth_step(0.015, -0.03, up);
-    let ground = haze.lerp(ground, smooth_step(0.0, 0.5, -up).max(0.35));
+    let ground = haze.lerp(ground, smooth_step(-0.02, 0.22, -up));
     color.lerp(ground, below).as_vec3()
 }
 
