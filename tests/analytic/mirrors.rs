@@ -85,9 +85,8 @@ fn a_mirrors_image_is_the_picture_of_the_virtual_scene() {
         }],
         ..Lights::default()
     };
-    // The mirror looks towards +z; what stands at +z is behind the camera's view of it.
-    let at = Vec3::new(0.4, 0.3, 4.0);
-    let lamp = Vec3::new(1.0, 2.0, 3.0);
+    // The mirror looks towards +z; the boxes stand behind the camera, lit from the mirror's side.
+    let lamp = Vec3::new(1.0, 2.0, 0.5);
     let mut seen_in_mirror = world(
         vec![object(1, &real, 0), object(2, &glass, 1)],
         vec![matt.clone(), mirror(1.0)],
@@ -104,7 +103,7 @@ fn a_mirrors_image_is_the_picture_of_the_virtual_scene() {
     };
     // From where the real boxes themselves are out of view: only what lies beyond the mirror counts.
     let camera = Camera::looking_at(
-        Vec3::new(at.x, at.y, 1.0),
+        Vec3::new(0.4, 0.3, 1.0),
         Vec3::new(0.0, 0.1, -1.5),
         Vec3::Y,
         0.6,
