@@ -48,6 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         objects: Arc::new(vec![Object {
             id: 1,
             material: 0,
+            motion_samples: 0,
             mesh: Arc::new(Mesh {
                 tree,
                 normals: vec![],
@@ -65,7 +66,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             ..Lights::default()
         }),
         ..World::default()
-    };
+    }
+    .with_needs();
     let camera = Camera::looking_at(Vec3::new(1.5, 2.0, 4.0), Vec3::Y * 0.3, Vec3::Y, 0.7);
     let settings = RenderSettings {
         size: UVec2::new(320, 240),
@@ -74,7 +76,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let rendered = film::render(&world, &camera, &settings, &|_, _| {});
     let screen = film::view_transform(&rendered.picture, &settings.output);
     let mut ppm = std::io::BufWriter::new(std::fs::File::create("plain.ppm")?);
-    write!(ppm, "P6 320 240 255\n")?;
+    writeln!(ppm, "P6 320 240 255")?;
     for pixel in screen {
         ppm.write_all(&pixel.map(|c| (c * 255.0).round() as u8))?;
     }

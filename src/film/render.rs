@@ -1,7 +1,7 @@
 use super::tiles::{FilmPixel, Tile};
 use super::{Film, Picture, TILE};
 use crate::scene::RenderSettings;
-use crate::trace::{Camera, RayCounts, SampleId, Workspace, World, radiance};
+use crate::trace::{Camera, RayCounts, SampleId, Workspace, World, radiance, samples_per_pixel};
 use glam::Vec3;
 use rayon::prelude::*;
 use std::cell::RefCell;
@@ -21,7 +21,8 @@ pub struct Rendered {
     pub seconds: f64,
 }
 
-/// Renders `settings.spp` samples of every pixel on the current rayon pool.
+/// Renders every pixel with as many samples as the scene and its settings ask for
+/// ([`samples_per_pixel`]), on the current rayon pool.
 ///
 /// `progress` is told, from any thread, how many samples of how many are done.
 pub fn render(
@@ -37,7 +38,7 @@ pub fn render(
         world,
         camera,
         settings,
-        0..u64::from(settings.spp),
+        0..u64::from(samples_per_pixel(world, camera, settings)),
         progress,
     );
     Rendered {

@@ -40,8 +40,10 @@ impl Default for Environment {
 pub struct RenderSettings {
     /// Pixels, 1 to 65,536 each and at most 2^28 together.
     pub size: UVec2,
-    /// Samples of each pixel, 1 to 2^20.
+    /// Samples of each pixel, 1 to 2^20: at least so many; effects may ask for more.
     pub spp: u32,
+    /// n of n × n jittered samples of each pixel, 1–16: they ask for n² samples.
+    pub jitter: u32,
     /// Chooses the random numbers; the same seed gives the same picture.
     pub seed: u32,
     /// Where in the pixel samples lie.
@@ -69,6 +71,7 @@ impl Default for RenderSettings {
         Self {
             size: UVec2::new(800, 800),
             spp: 16,
+            jitter: 1,
             seed: 0,
             pixel: PixelSampling::default(),
             lighting: Lighting::default(),

@@ -39,6 +39,10 @@ pub struct Optics {
     pub shutter: [f32; 2],
     /// The camera stands at `position + velocity · t`.
     pub velocity: Vec3,
+    /// Samples of a pixel that the lens asks for.
+    pub lens_samples: u32,
+    /// Samples of a pixel that the camera's motion asks for; 0 where it stands still.
+    pub motion_samples: u32,
 }
 
 impl Default for Optics {
@@ -48,6 +52,8 @@ impl Default for Optics {
             focus_distance: 1.0,
             shutter: [0.0, 1.0],
             velocity: Vec3::ZERO,
+            lens_samples: 1,
+            motion_samples: 0,
         }
     }
 }

@@ -134,7 +134,7 @@ impl Batch<'_> {
     /// Traces all shadow rays of the batch and adds what arrives.
     pub(super) fn add_arriving_light(&mut self, workspace: &mut Workspace) {
         self.counts.shadow += workspace.shadow_rays.len() as u64;
-        if self.settings.features.transparency && self.world.has_transparency {
+        if self.settings.features.transparency && self.world.needs.transparency {
             for (shadow, ray) in workspace.shadows.iter().zip(&workspace.shadow_rays) {
                 let value = shadow.value * self.transmittance(ray);
                 self.add(shadow.sample, value);

@@ -16,6 +16,7 @@ mod disc;
 mod environment;
 pub mod lights;
 mod material;
+mod needs;
 mod radiance;
 mod sampler;
 mod scatter;
@@ -30,6 +31,7 @@ pub use lights::{
     DirectionalLight, LightPoint, Lights, ParallelogramLight, PointLight, SegmentLight, SpotCone,
 };
 pub use material::Material;
+pub use needs::{Needs, samples_per_pixel};
 pub use radiance::{RayCounts, SampleId, Workspace, radiance};
 pub use sampler::{Purpose, Sampler};
 pub use surface::Surface;

@@ -252,7 +252,7 @@ impl Batch<'_> {
     /// Radiance of the nearest visible light that the path's ray meets before its hit.
     fn visible_light(&self, path: &Path, hit: Option<&Hit>) -> Option<Vec3> {
         // Classic lights are nowhere to be seen, as in the original program.
-        if self.settings.lighting == Lighting::Classic {
+        if !self.world.needs.visible_lights || self.settings.lighting == Lighting::Classic {
             return None;
         }
         let behind = path.after.map_or(0.0, |hit| hit.t);

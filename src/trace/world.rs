@@ -1,4 +1,4 @@
-use super::{Environment, Lights, Material, Texture};
+use super::{Environment, Lights, Material, Needs, Texture};
 use crate::bvh::{Aggregate, MeshTree};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
@@ -21,8 +21,16 @@ pub struct World {
     pub lights: Arc<Lights>,
     /// What a ray carries that meets nothing.
     pub environment: Environment,
-    /// Whether any material that an object uses lets light through: shadow rays must look closer then.
-    pub has_transparency: bool,
+    /// What of the model all this uses: [`Needs::of`], taken when the rest is set.
+    pub needs: Needs,
+}
+
+impl World {
+    /// This world with its needs looked up: the last step of putting one together.
+    pub fn with_needs(mut self) -> Self {
+        self.needs = Needs::of(&self);
+        self
+    }
 }
 
 /// One instance as shading sees it.
@@ -32,6 +40,8 @@ pub struct Object {
     pub id: u64,
     /// Index into [`World::materials`].
     pub material: u32,
+    /// Samples of a pixel that its motion asks for; 0 where it does not move.
+    pub motion_samples: u32,
     /// Normals and texture coordinates, shared by all instances of the mesh.
     pub mesh: Arc<Mesh>,
 }

@@ -64,6 +64,7 @@ pub fn object(id: u64, corners: &[Vec3], material: u32) -> (Instance, Object) {
         Object {
             id,
             material,
+            motion_samples: 0,
             mesh: Arc::new(mesh),
         },
     )
@@ -83,14 +84,13 @@ pub fn quad(corner: Vec3, a: Vec3, b: Vec3) -> [Vec3; 6] {
 
 pub fn world(objects: Vec<(Instance, Object)>, materials: Vec<Material>) -> World {
     let (instances, objects): (Vec<_>, Vec<_>) = objects.into_iter().unzip();
-    let has_transparency = materials.iter().any(|m| m.opacity < 1.0);
     World {
         aggregate: Arc::new(Aggregate::build(instances, &BuildOptions::default())),
         objects: Arc::new(objects),
         materials: Arc::new(materials),
-        has_transparency,
         ..World::default()
     }
+    .with_needs()
 }
 
 /// The mean radiance of `spp` samples along the camera's central ray.

@@ -1,0 +1,49 @@
+use super::{Camera, World};
+use crate::scene::RenderSettings;
+
+/// What of the model a world uses at all. What it does not use is not computed, drawn or asked for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Needs {
+    /// Some object lets light through: shadow rays must look at what they cross.
+    pub transparency: bool,
+    /// Some light is to be seen itself.
+    pub visible_lights: bool,
+    /// Samples of a pixel that moving objects ask for; 0 where none moves.
+    pub motion_samples: u32,
+}
+
+impl Needs {
+    /// Looks through a world's objects, materials and lights.
+    pub fn of(world: &World) -> Self {
+        let transparent = |material: u32| {
+            let material = &world.materials[material as usize];
+            material.opacity < 1.0 || material.opacity_map.is_some()
+        };
+        Self {
+            transparency: world.objects.iter().any(|o| transparent(o.material)),
+            visible_lights: world.lights.parallelograms.iter().any(|l| l.visible),
+            motion_samples: world
+                .objects
+                .iter()
+                .map(|o| o.motion_samples)
+                .max()
+                .unwrap_or(0),
+        }
+    }
+}
+
+/// Samples of each pixel: the largest number that `spp`, n × n jittering, the lens and motion ask
+/// for, of those in use. Effects share their samples; none multiplies another's.
+pub fn samples_per_pixel(world: &World, camera: &Camera, settings: &RenderSettings) -> u32 {
+    let features = &settings.features;
+    let mut samples = settings.spp.max(settings.jitter * settings.jitter).max(1);
+    if features.lens && camera.has_lens() {
+        samples = samples.max(camera.optics.lens_samples);
+    }
+    if features.motion {
+        samples = samples
+            .max(camera.optics.motion_samples)
+            .max(world.needs.motion_samples);
+    }
+    samples
+}
