@@ -1,3 +1,4 @@
 //! Tests of the whole stack. A module a subject; tests of one file stand in that file.
 
 mod analytic;
+mod files;

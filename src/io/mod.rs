@@ -1,4 +1,123 @@
-//! The room `io`.
+//! Files: scenes in and out, models, pictures, and what Glassbox generates itself.
+//!
+//! [`open`] replaces the open scene by a file's or a built-in one, [`save`] writes it. Between the
+//! two the systems of [`IoPlugin`] keep handles in step with sources. Everything that can fail ends
+//! in a [`FileError`], one line that names the file, the place in it and what would help.
+//!
+//! | file | in | out |
+//! |---|---|---|
+//! | `.scn.ron` | everything | everything |
+//! | `.obj` with `.mtl` | meshes, materials, pictures | the same, in the world's space |
+//! | `.glb`, `.gltf` | meshes, hierarchy, materials, pictures, lights, cameras | `.glb`, the same |
+//! | `.png`, `.jpg`, `.exr`, `.hdr` | pictures | pictures |
+//!
+//! Texture coordinates count from a picture's top left corner, v downwards, as Bevy and glTF do;
+//! OBJ, which counts from the bottom, is turned over on the way in and out.
 
 pub mod builtin;
+mod error;
+mod folder;
+mod frame;
+mod gltf;
+mod ids;
+mod limits;
+mod loader;
+mod model;
+mod obj;
+mod open;
+mod picture;
+mod place;
+mod problems;
+mod replace;
+mod save;
+mod scene_file;
 pub mod shapes;
+mod sources;
+
+pub use error::{FileError, Place, Problem};
+pub use folder::Folder;
+pub use limits::Limits;
+pub use open::{OpenOptions, Opened, SceneSource, open};
+pub use picture::{PictureFormat, check_size, write_picture};
+pub use problems::{LoadProblem, LoadProblems};
+pub use replace::check_writable;
+pub use save::save;
+pub use sources::SceneFiles;
+
+use crate::scene::EnvironmentMap;
+use bevy::app::{App, Plugin, PreUpdate};
+use bevy::asset::AssetApp;
+use bevy::image::Image;
+use bevy::mesh::Mesh;
+use bevy::prelude::IntoScheduleConfigs;
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::Path;
+
+/// Resolves sources into handles. Needs Bevy's `AssetPlugin`, and no renderer.
+pub struct IoPlugin;
+
+impl Plugin for IoPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_asset::<Mesh>()
+            .init_asset::<Image>()
+            .init_resource::<SceneFiles>()
+            .init_resource::<LoadProblems>()
+            .init_resource::<EnvironmentMap>()
+            .add_systems(
+                PreUpdate,
+                (
+                    sources::resolve_meshes,
+                    sources::resolve_pictures,
+                    sources::resolve_environment,
+                )
+                    .chain(),
+            );
+    }
+}
+
+/// A file's extension in lower case; `scn.ron` is one.
+fn extension(path: &Path) -> String {
+    let name = path
+        .file_name()
+        .map(|name| name.to_string_lossy().to_lowercase());
+    let name = name.unwrap_or_default();
+    if name.ends_with(".scn.ron") {
+        return "scn.ron".to_owned();
+    }
+    name.rsplit_once('.')
+        .map_or_else(String::new, |(_, extension)| extension.to_owned())
+}
+
+/// Opens a file that shall be read, no larger than the limit.
+fn open_to_read(path: &Path, limit: u64) -> Result<BufReader<File>, FileError> {
+    let reading = |error: std::io::Error| FileError::reading(path, &error);
+    let file = File::open(path).map_err(reading)?;
+    let metadata = file.metadata().map_err(reading)?;
+    if metadata.is_dir() {
+        return Err(FileError::new(path, Problem::IsAFolder));
+    }
+    let size = metadata.len();
+    if size > limit {
+        return Err(FileError::new(path, Problem::TooLarge { size, limit }));
+    }
+    if metadata.is_file() && size == 0 {
+        return Err(FileError::new(path, Problem::Empty));
+    }
+    Ok(BufReader::with_capacity(1 << 16, file))
+}
+
+/// The content of a file, no larger than the limit.
+fn read_bytes(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
+    let mut bytes = Vec::new();
+    let mut reader = open_to_read(path, limit)?.take(limit.saturating_add(1));
+    reader
+        .read_to_end(&mut bytes)
+        .map_err(|error| FileError::reading(path, &error))?;
+    // A pipe has no size beforehand.
+    let size = bytes.len() as u64;
+    if size > limit {
+        return Err(FileError::new(path, Problem::TooLarge { size, limit }));
+    }
+    Ok(bytes)
+}

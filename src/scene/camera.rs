@@ -9,6 +9,7 @@ use bevy::transform::components::Transform;
 /// Not Bevy's `Camera`, which draws to a window as soon as it exists: a scene may hold many.
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq, Debug)]
+#[type_path = "glassbox::scene"]
 #[require(Transform, SceneId)]
 pub struct SceneCamera {
     /// How directions become places in the picture.
@@ -56,6 +57,7 @@ impl Default for Projection {
 /// A thin lens on a camera: what is not at the focus distance is blurred.
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq, Debug)]
+#[type_path = "glassbox::scene"]
 pub struct Lens {
     /// Radius of the aperture in metres; 0 is a pinhole.
     pub aperture_radius: f32,
@@ -78,6 +80,7 @@ impl Default for Lens {
 /// Moves an object or a camera while the shutter is open: it stands at `transform + velocity · t`.
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq, Debug)]
+#[type_path = "glassbox::scene"]
 pub struct Motion {
     /// Metres per unit of shutter time, in the parent's space.
     pub velocity: Vec3,

@@ -8,6 +8,7 @@ use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 /// `sync` gives such an entity the next free number before it is traced for the first time.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[reflect(Component, Default, Clone, PartialEq, Debug)]
+#[type_path = "glassbox::scene"]
 pub struct SceneId(pub u64);
 
 impl SceneId {

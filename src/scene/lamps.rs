@@ -11,6 +11,7 @@ use bevy::transform::components::Transform;
 /// A light at the entity's position. Strength: radiant intensity, W/sr.
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq, Debug)]
+#[type_path = "glassbox::scene"]
 #[require(Transform, Visibility, SceneId)]
 pub struct PointLamp {
     /// Linear RGB.
@@ -53,6 +54,7 @@ impl Default for Cone {
 /// Light from infinitely far, along the entity's local -Z. Strength: irradiance on a facing surface, W/m².
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq, Debug)]
+#[type_path = "glassbox::scene"]
 #[require(Transform, Visibility, SceneId)]
 pub struct DirectionalLamp {
     /// Linear RGB.
@@ -79,6 +81,7 @@ impl Default for DirectionalLamp {
 /// A glowing line. Strength: radiant intensity per length, W/(sr·m), the same in all directions.
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq, Debug)]
+#[type_path = "glassbox::scene"]
 #[require(Transform, Visibility, SceneId)]
 pub struct SegmentLamp {
     /// Both ends in the entity's space.
@@ -105,6 +108,7 @@ impl Default for SegmentLamp {
 /// A glowing parallelogram. Strength: radiance, W/(sr·m²), with the emitter's cosine.
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq, Debug)]
+#[type_path = "glassbox::scene"]
 #[require(Transform, Visibility, SceneId)]
 pub struct ParallelogramLamp {
     /// One corner in the entity's space.

@@ -11,6 +11,7 @@ use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 /// shared material, which objects name with [`UsesMaterial`].
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq, Debug)]
+#[type_path = "glassbox::scene"]
 pub struct Phong {
     /// kd, in [0, 1]. A diffuse map takes its place.
     pub diffuse: LinearRgba,
@@ -54,6 +55,7 @@ pub struct TextureSource {
 /// The pictures of a [`Phong`], loaded. Not saved: made again from the sources.
 #[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq, Debug)]
+#[type_path = "glassbox::scene"]
 pub struct PhongMaps {
     /// Takes the place of `Phong::diffuse`.
     pub diffuse: Option<Handle<Image>>,
@@ -64,4 +66,5 @@ pub struct PhongMaps {
 /// Names the entity whose [`Phong`] this object uses instead of its own.
 #[derive(Component, Reflect, MapEntities, Clone, Copy, Debug, PartialEq, Eq)]
 #[reflect(Component, MapEntities, Clone, PartialEq, Debug)]
+#[type_path = "glassbox::scene"]
 pub struct UsesMaterial(#[entities] pub Entity);

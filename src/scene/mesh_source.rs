@@ -8,6 +8,7 @@ use bevy::transform::components::Transform;
 /// Where an object's mesh comes from, so that it can be saved and made again.
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq, Debug)]
+#[type_path = "glassbox::scene"]
 #[require(Transform, Visibility, SceneId, Phong)]
 pub enum MeshSource {
     /// A shape with its numbers, generated.

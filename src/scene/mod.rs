@@ -30,8 +30,8 @@ pub use lamps::{Cone, DirectionalLamp, ParallelogramLamp, PointLamp, SegmentLamp
 pub use material::{Phong, PhongMaps, TextureSource, UsesMaterial};
 pub use mesh_source::{MeshSource, Shape};
 pub use settings::{
-    Builder, Environment, Features, Levels, Lighting, Output, PixelSampling, Preset,
-    RenderSettings, TextureFilter, TreeSettings, ViewTransform,
+    Builder, Environment, EnvironmentMap, Features, Levels, Lighting, Output, PixelSampling,
+    Preset, RenderSettings, TextureFilter, TreeSettings, ViewTransform,
 };
 
 use bevy::app::{App, Plugin};
@@ -55,8 +55,10 @@ impl Plugin for ScenePlugin {
             .register_type::<Lens>()
             .register_type::<Motion>()
             .register_type::<Environment>()
+            .register_type::<EnvironmentMap>()
             .register_type::<RenderSettings>()
             .init_resource::<Environment>()
+            .init_resource::<EnvironmentMap>()
             .init_resource::<RenderSettings>();
     }
 }

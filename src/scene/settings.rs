@@ -4,14 +4,17 @@
 //! `features.shadows=false` or `tree.builder=Sah`.
 
 use super::TextureSource;
+use bevy::asset::Handle;
 use bevy::color::LinearRgba;
 use bevy::ecs::{reflect::ReflectResource, resource::Resource};
+use bevy::image::Image;
 use bevy::math::UVec2;
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 
 /// What a ray carries that meets nothing.
 #[derive(Resource, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Resource, Default, Clone, PartialEq, Debug)]
+#[type_path = "glassbox::scene"]
 pub struct Environment {
     /// Used where there is no map, or where `RenderSettings::features.environment` is off.
     pub background: LinearRgba,
@@ -34,9 +37,16 @@ impl Default for Environment {
     }
 }
 
+/// The map of the [`Environment`], loaded. Not saved: made again from its source.
+#[derive(Resource, Reflect, Clone, Debug, Default, PartialEq)]
+#[reflect(Resource, Default, Clone, PartialEq, Debug)]
+#[type_path = "glassbox::scene"]
+pub struct EnvironmentMap(pub Option<Handle<Image>>);
+
 /// How the scene is rendered.
 #[derive(Resource, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Resource, Default, Clone, PartialEq, Debug)]
+#[type_path = "glassbox::scene"]
 pub struct RenderSettings {
     /// Pixels, 1 to 65,536 each and at most 2^28 together.
     pub size: UVec2,

@@ -1,0 +1,171 @@
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// What went wrong with a file: which one, where in it, and what would help. One line.
+#[derive(Debug, thiserror::Error)]
+#[error("{}{place}: {problem}", file.display())]
+pub struct FileError {
+    /// The file as the user or the file that refers to it named it.
+    pub file: PathBuf,
+    /// Where in it.
+    pub place: Place,
+    /// What is wrong there.
+    pub problem: Problem,
+}
+
+impl FileError {
+    /// A problem with a file as a whole.
+    pub fn new(file: impl Into<PathBuf>, problem: Problem) -> Self {
+        Self::at(file, Place::Whole, problem)
+    }
+
+    /// A problem at a place in a file.
+    pub fn at(file: impl Into<PathBuf>, place: Place, problem: Problem) -> Self {
+        Self {
+            file: file.into(),
+            place,
+            problem,
+        }
+    }
+
+    /// What the operating system said about a file that was to be read.
+    pub(crate) fn reading(file: &Path, error: &std::io::Error) -> Self {
+        let problem = match error.kind() {
+            std::io::ErrorKind::NotFound => Problem::NotFound,
+            std::io::ErrorKind::IsADirectory => Problem::IsAFolder,
+            _ => Problem::Unreadable(error.to_string()),
+        };
+        Self::new(file, problem)
+    }
+
+    /// What the operating system said about a file that was to be written.
+    pub(crate) fn writing(file: &Path, error: &std::io::Error) -> Self {
+        Self::new(file, Problem::Unwritable(error.to_string()))
+    }
+}
+
+/// A place in a file.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum Place {
+    /// The file as a whole.
+    #[default]
+    Whole,
+    /// A line, counted from 1.
+    Line(u64),
+    /// A line and a column, counted from 1.
+    LineColumn(usize, usize),
+    /// A part with a name, for example `mesh 2 "lid", primitive 0`.
+    Part(String),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole => Ok(()),
+            Self::Line(line) => write!(f, ":{line}"),
+            Self::LineColumn(line, column) => write!(f, ":{line}:{column}"),
+            Self::Part(part) => write!(f, ": {part}"),
+        }
+    }
+}
+
+/// What can be wrong with a file, and what to do about it.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say it")]
+pub enum Problem {
+    #[error("no such file; check the name and the folder")]
+    NotFound,
+    #[error(
+        "neither a file nor a built-in scene; `glassbox scenes` lists the built-in ones: {known}"
+    )]
+    NoSuchScene { known: String },
+    #[error("is a folder; name a file in it")]
+    IsAFolder,
+    #[error("cannot be read: {0}")]
+    Unreadable(String),
+    #[error("cannot be written: {0}; choose another place or change its permissions")]
+    Unwritable(String),
+    #[error("the folder does not exist; create it first")]
+    NoFolder,
+    #[error("files that end in `{extension}` are not {wanted}")]
+    UnknownExtension {
+        extension: String,
+        wanted: &'static str,
+    },
+    #[error("is empty")]
+    Empty,
+    #[error("{size} bytes, and the limit is {limit}; split it up")]
+    TooLarge { size: u64, limit: u64 },
+    #[error(
+        "points outside the folder of the file that names it; copy it there, or use --allow-outside"
+    )]
+    Outside,
+    #[error(
+        "refers to `{path}`, which points outside this file's folder; copy it there, or use --allow-outside"
+    )]
+    RefersOutside { path: String },
+    #[error("`{path}` does not exist; put it beside this file or correct the name")]
+    MissingFile { path: String },
+    #[error("{0}")]
+    Malformed(String),
+    #[error("ends too early: {0}; get a complete copy")]
+    Truncated(String),
+    #[error("{what} {index} is used, and there are {count}; the file is damaged")]
+    IndexOutOfRange {
+        what: &'static str,
+        index: String,
+        count: usize,
+    },
+    #[error("{what} is not a finite number; repair the mesh where it was made")]
+    NotFinite { what: String },
+    #[error("{what} is {value}, and must be {range}")]
+    OutOfRange {
+        what: String,
+        value: String,
+        range: &'static str,
+    },
+    #[error("material `{name}` is in none of the MTL files named above this line")]
+    UnknownMaterial { name: String },
+    #[error("holds no triangles")]
+    NoTriangles,
+    #[error("no mesh named `{name}`; it has {known}")]
+    NoSuchMesh { name: String, known: String },
+    #[error("no picture `{name}`; it has {count}, counted from texture0")]
+    NoSuchTexture { name: String, count: usize },
+    #[error("{0}")]
+    Builtin(String),
+    #[error("{count} {what}, and the limit is {limit}")]
+    TooMany {
+        what: &'static str,
+        count: u64,
+        limit: u64,
+    },
+    #[error(
+        "{width}x{height} pixels, and the limit is {limit} together and 65536 a side; scale the picture down"
+    )]
+    PictureTooLarge { width: u64, height: u64, limit: u64 },
+    #[error("a picture of {width}x{height} pixels has no pixels; both must be at least 1")]
+    PictureEmpty { width: u32, height: u32 },
+    #[error("{given} pixels were given for a picture of {width}x{height}")]
+    PictureSize {
+        width: u32,
+        height: u32,
+        given: usize,
+    },
+    #[error(
+        "was written by a newer Glassbox (file version {found}, this program reads up to {known}); update Glassbox"
+    )]
+    NewerVersion { found: u32, known: u32 },
+    #[error("says no `FileVersion`; is it a Glassbox scene?")]
+    NoVersion,
+    #[error("`{name}` is not a component that Glassbox scenes keep; remove it or update Glassbox")]
+    UnknownComponent { name: String },
+    #[error("two entities carry SceneId {0}; give one of them another number")]
+    DuplicateId(u64),
+    #[error("refers to entity {0}, which the file does not hold")]
+    NoSuchEntity(String),
+    #[error("the extension {0} is required and not supported; export without it")]
+    UnsupportedExtension(String),
+    #[error("{0}; correct the numbers of the shape")]
+    Shape(String),
+}

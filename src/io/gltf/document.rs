@@ -1,0 +1,201 @@
+use super::super::error::{FileError, Place, Problem};
+use super::super::folder::Folder;
+use super::uri::{data_of, is_data, path_of};
+use crate::io::Limits;
+use std::borrow::Cow;
+use std::path::{Path, PathBuf};
+
+/// A parsed glTF file with the bytes of its buffers.
+pub(super) struct Document {
+    pub file: PathBuf,
+    pub folder: Folder,
+    pub limits: Limits,
+    pub gltf: gltf::Document,
+    buffers: Vec<Vec<u8>>,
+}
+
+impl Document {
+    /// Reads a `.gltf` or `.glb` file and the buffers that it refers to.
+    pub fn read(file: &Path, folder: &Folder, limits: &Limits) -> Result<Self, FileError> {
+        let bytes = super::super::read_bytes(file, limits.file_bytes)?;
+        let gltf::Gltf { document, blob } =
+            gltf::Gltf::from_slice(&bytes).map_err(|error| parse_error(file, error))?;
+        drop(bytes);
+        let mut document = Self {
+            file: file.to_path_buf(),
+            folder: folder.clone(),
+            limits: limits.clone(),
+            gltf: document,
+            buffers: Vec::new(),
+        };
+        document.check_json()?;
+        document.read_buffers(blob)?;
+        Ok(document)
+    }
+
+    /// An error at a part of this file.
+    pub fn error(&self, part: impl Into<String>, problem: Problem) -> FileError {
+        FileError::at(&self.file, Place::Part(part.into()), problem)
+    }
+
+    /// The bytes of a buffer view.
+    pub fn view(&self, view: &gltf::buffer::View) -> Result<&[u8], Problem> {
+        let buffer = self.buffers.get(view.buffer().index());
+        let end = view.offset().checked_add(view.length());
+        buffer
+            .zip(end)
+            .and_then(|(buffer, end)| buffer.get(view.offset()..end))
+            .ok_or_else(|| {
+                Problem::Truncated(format!("buffer view {} leaves its buffer", view.index()))
+            })
+    }
+
+    /// Where a texture's picture is: a file beside this one, or bytes inside it.
+    pub fn texture(&self, texture: &gltf::Texture) -> Result<Picture<'_>, FileError> {
+        let index = texture.source().index();
+        let part = || format!("image {index}");
+        // Not through `Image::source`, which takes for granted that one of the two is there.
+        let image = self.gltf.as_json().images.get(index);
+        let view = image.and_then(|image| image.buffer_view);
+        if let Some(view) = view.and_then(|view| self.gltf.views().nth(view.value())) {
+            let bytes = self.view(&view).map_err(|p| self.error(part(), p))?;
+            return Ok(Picture::Inside(Cow::Borrowed(bytes)));
+        }
+        match image.and_then(|image| image.uri.as_deref()) {
+            Some(uri) if is_data(uri) => match data_of(uri) {
+                Some(bytes) => Ok(Picture::Inside(Cow::Owned(bytes))),
+                None => {
+                    let text = "its data is not base64".to_owned();
+                    Err(self.error(part(), Problem::Malformed(text)))
+                }
+            },
+            Some(uri) => Ok(Picture::Beside(path_of(uri))),
+            None => {
+                let text = "it has neither a file nor data".to_owned();
+                Err(self.error(part(), Problem::Malformed(text)))
+            }
+        }
+    }
+
+    /// What the crate's own validation leaves to whoever follows an index.
+    fn check_json(&self) -> Result<(), FileError> {
+        let json = self.gltf.as_json();
+        if !json.asset.version.starts_with("2.") {
+            let version = &json.asset.version;
+            let text = format!("is glTF {version}, and only 2.0 is read; export it again");
+            return Err(FileError::new(&self.file, Problem::Malformed(text)));
+        }
+        let nodes = json.nodes.len() as u64;
+        if nodes > self.limits.entities {
+            let problem = Problem::TooMany {
+                what: "nodes",
+                count: nodes,
+                limit: self.limits.entities,
+            };
+            return Err(FileError::new(&self.file, problem));
+        }
+        let lights = self.gltf.lights().map_or(0, Iterator::count);
+        for (index, node) in json.nodes.iter().enumerate() {
+            let light = node.extensions.as_ref();
+            let light = light.and_then(|all| all.khr_lights_punctual.as_ref());
+            let Some(light) = light.map(|light| light.light.value()) else {
+                continue;
+            };
+            if light >= lights {
+                let problem = Problem::IndexOutOfRange {
+                    what: "light",
+                    index: light.to_string(),
+                    count: lights,
+                };
+                return Err(self.error(format!("node {index}"), problem));
+            }
+        }
+        Ok(())
+    }
+
+    fn read_buffers(&mut self, mut blob: Option<Vec<u8>>) -> Result<(), FileError> {
+        let mut buffers = Vec::new();
+        for (index, buffer) in self.gltf.as_json().buffers.iter().enumerate() {
+            let part = || format!("buffer {index}");
+            let bytes = match buffer.uri.as_deref() {
+                None => blob.take().ok_or_else(|| {
+                    let text = "the binary part of the file".to_owned();
+                    self.error(part(), Problem::Truncated(text))
+                })?,
+                Some(uri) if is_data(uri) => data_of(uri).ok_or_else(|| {
+                    let text = "its data is not base64".to_owned();
+                    self.error(part(), Problem::Malformed(text))
+                })?,
+                Some(uri) => self.read_beside(&path_of(uri), part())?,
+            };
+            if (bytes.len() as u64) < buffer.byte_length.0 {
+                let text = format!(
+                    "{} of {} bytes are there",
+                    bytes.len(),
+                    buffer.byte_length.0
+                );
+                return Err(self.error(part(), Problem::Truncated(text)));
+            }
+            buffers.push(bytes);
+        }
+        self.buffers = buffers;
+        Ok(())
+    }
+
+    fn read_beside(&self, path: &str, part: String) -> Result<Vec<u8>, FileError> {
+        let path = path.to_owned();
+        let Ok(file) = self.folder.resolve(&path) else {
+            return Err(self.error(part, Problem::RefersOutside { path }));
+        };
+        if !file.exists() {
+            return Err(self.error(part, Problem::MissingFile { path }));
+        }
+        super::super::read_bytes(&file, self.limits.file_bytes)
+    }
+}
+
+/// Where a picture is.
+pub(super) enum Picture<'a> {
+    /// A path from the file's folder.
+    Beside(String),
+    /// A PNG or JPEG inside it.
+    Inside(Cow<'a, [u8]>),
+}
+
+fn parse_error(file: &Path, error: gltf::Error) -> FileError {
+    use gltf::binary::Error as Glb;
+    use gltf::json::validation::Error as Invalid;
+    let problem = match error {
+        gltf::Error::Validation(errors) => match errors.into_iter().next() {
+            Some((path, Invalid::Unsupported)) => Problem::UnsupportedExtension(path.to_string()),
+            Some((path, Invalid::IndexOutOfBounds)) => Problem::Malformed(format!(
+                "{path} names something that the file does not hold"
+            )),
+            Some((path, error)) => Problem::Malformed(format!("{path}: {error}")),
+            None => Problem::Malformed("is not valid glTF".into()),
+        },
+        gltf::Error::Binary(Glb::Length {
+            length,
+            length_read,
+        }) => Problem::Truncated(format!("{length_read} of {length} bytes are there")),
+        gltf::Error::Binary(Glb::ChunkLength {
+            length,
+            length_read,
+            ..
+        }) => Problem::Truncated(format!(
+            "{length_read} of a part's {length} bytes are there"
+        )),
+        gltf::Error::Binary(Glb::Io(_)) => Problem::Truncated("the header is incomplete".into()),
+        gltf::Error::Deserialize(error) if error.is_eof() => {
+            Problem::Truncated("the JSON is incomplete".into())
+        }
+        gltf::Error::Deserialize(error) => {
+            let place = Place::LineColumn(error.line(), error.column());
+            let text = error.to_string();
+            let text = text.split(" at line").next().unwrap_or_default().to_owned();
+            return FileError::at(file, place, Problem::Malformed(text));
+        }
+        other => Problem::Malformed(other.to_string()),
+    };
+    FileError::new(file, problem)
+}

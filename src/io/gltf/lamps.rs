@@ -1,0 +1,121 @@
+//! Lights and cameras of glTF, in both directions.
+//!
+//! `KHR_lights_punctual` measures what the eye sees: candela (lm/sr) for point and spot lights, lux
+//! (lm/m²) for directional ones. We measure power: W/sr and W/m². One watt of the light to which
+//! the eye is most sensitive is 683 lumens, by the definition of the candela; everything is taken
+//! as that light, which is also what Blender's exporter does in its standard mode.
+//!
+//! | glTF | here |
+//! |---|---|
+//! | point, intensity in cd | `PointLamp`, intensity / 683 W/sr |
+//! | spot | the same with `cone` |
+//! | directional, intensity in lx | `DirectionalLamp`, intensity / 683 W/m² |
+//! | `range` | left out: light has none |
+//! | perspective, `yfov` | `Projection::Perspective` |
+//! | orthographic, `ymag` | `Projection::Orthographic`, height = 2 `ymag` |
+//! | aspect, near, far | left out: the picture's size decides, and rays have no planes |
+
+use crate::scene::{Cone, DirectionalLamp, PointLamp, Projection, SceneCamera};
+use bevy::color::LinearRgba;
+use serde_json::{Value, json};
+use std::f32::consts::{FRAC_PI_2, PI};
+
+/// lm/W at 540 THz (SI, ninth edition, 2.3.1).
+pub(super) const LUMENS_PER_WATT: f32 = 683.0;
+
+/// A light of a file.
+pub(super) enum Lamp {
+    Point(PointLamp),
+    Directional(DirectionalLamp),
+}
+
+/// A light; `None` where its numbers make no sense.
+pub(super) fn lamp_of(light: &gltf::khr_lights_punctual::Light) -> Option<Lamp> {
+    use gltf::khr_lights_punctual::Kind;
+    let [r, g, b] = light.color();
+    let intensity = light.intensity() / LUMENS_PER_WATT;
+    let numbers = [r, g, b, intensity];
+    if !numbers.iter().all(|n| n.is_finite() && *n >= 0.0) {
+        return None;
+    }
+    let color = LinearRgba::rgb(r, g, b);
+    let cone = match light.kind() {
+        Kind::Directional => {
+            return Some(Lamp::Directional(DirectionalLamp {
+                color,
+                intensity,
+                ..DirectionalLamp::default()
+            }));
+        }
+        Kind::Point => None,
+        Kind::Spot {
+            inner_cone_angle,
+            outer_cone_angle,
+        } => {
+            let outer = outer_cone_angle.clamp(0.0, FRAC_PI_2);
+            let inner = inner_cone_angle.clamp(0.0, outer);
+            (outer.is_finite() && inner.is_finite()).then_some(Cone { inner, outer })
+        }
+    };
+    Some(Lamp::Point(PointLamp {
+        color,
+        intensity,
+        cone,
+    }))
+}
+
+/// A camera; `None` where its numbers make no sense.
+pub(super) fn camera_of(camera: &gltf::Camera) -> Option<SceneCamera> {
+    let projection = match camera.projection() {
+        gltf::camera::Projection::Perspective(p) if p.yfov() > 0.0 && p.yfov() < PI => {
+            Projection::Perspective { fov_y: p.yfov() }
+        }
+        gltf::camera::Projection::Orthographic(o) if o.ymag().is_normal() => {
+            Projection::Orthographic {
+                height: 2.0 * o.ymag().abs(),
+            }
+        }
+        _ => return None,
+    };
+    Some(SceneCamera {
+        projection,
+        ..SceneCamera::default()
+    })
+}
+
+/// A point light as glTF says it. Where it has a cone it is a spot.
+pub(super) fn point_json(lamp: &PointLamp) -> Value {
+    let mut light = json!({
+        "type": "point",
+        "color": [lamp.color.red, lamp.color.green, lamp.color.blue],
+        "intensity": lamp.intensity * LUMENS_PER_WATT,
+    });
+    if let Some(cone) = lamp.cone {
+        light["type"] = json!("spot");
+        light["spot"] = json!({ "innerConeAngle": cone.inner, "outerConeAngle": cone.outer });
+    }
+    light
+}
+
+/// A directional light as glTF says it.
+pub(super) fn directional_json(lamp: &DirectionalLamp) -> Value {
+    json!({
+        "type": "directional",
+        "color": [lamp.color.red, lamp.color.green, lamp.color.blue],
+        "intensity": lamp.intensity * LUMENS_PER_WATT,
+    })
+}
+
+/// A camera as glTF says it. glTF demands planes; these hold anything.
+pub(super) fn camera_json(camera: &SceneCamera) -> Value {
+    match camera.projection {
+        Projection::Perspective { fov_y } => json!({
+            "type": "perspective",
+            "perspective": { "yfov": fov_y, "znear": 0.01 },
+        }),
+        Projection::Orthographic { height } => json!({
+            "type": "orthographic",
+            "orthographic": { "xmag": 0.5 * height, "ymag": 0.5 * height, "znear": 0.0, "zfar": 1e6 },
+        }),
+    }
+}

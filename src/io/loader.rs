@@ -1,0 +1,106 @@
+use super::error::{FileError, Problem};
+use super::folder::Folder;
+use super::model::Model;
+use super::picture::{PictureUse, read_picture};
+use super::sources::{BUILTIN, split_fragment};
+use super::{Limits, extension, gltf, obj, shapes};
+use crate::scene::{MeshSource, TextureSource};
+use bevy::image::Image;
+use bevy::mesh::Mesh;
+use std::collections::HashMap;
+
+/// Loads what sources name, and parses each model file once however many of its meshes are asked
+/// for. Lives as long as one pass over the changed sources.
+pub(crate) struct Loader<'a> {
+    folder: &'a Folder,
+    limits: &'a Limits,
+    models: HashMap<String, Model>,
+}
+
+impl<'a> Loader<'a> {
+    pub fn new(folder: &'a Folder, limits: &'a Limits) -> Self {
+        Self {
+            folder,
+            limits,
+            models: HashMap::new(),
+        }
+    }
+
+    /// The mesh that a source names. A mesh of a file is handed out once.
+    pub fn mesh(&mut self, source: &MeshSource) -> Result<Mesh, FileError> {
+        let (path, name) = match source {
+            MeshSource::Shape(shape) => {
+                return shapes::mesh(shape)
+                    .map_err(|error| FileError::new("shape", Problem::Shape(error.to_string())));
+            }
+            MeshSource::File { path, name } => (path, name),
+        };
+        let model = match self.models.entry(path.clone()) {
+            std::collections::hash_map::Entry::Occupied(known) => known.into_mut(),
+            std::collections::hash_map::Entry::Vacant(free) => {
+                let file = self.folder.resolve(path)?;
+                let folder = Folder::of(&file, self.folder.allow_outside);
+                free.insert(read_model(&file, &folder, self.limits)?)
+            }
+        };
+        let key = match model.meshes.keys().next() {
+            Some(only) if name.is_empty() && model.meshes.len() == 1 => only.clone(),
+            _ => name.clone(),
+        };
+        model.meshes.remove(&key).ok_or_else(|| {
+            let mut known: Vec<_> = model.meshes.keys().take(8).cloned().collect();
+            if model.meshes.len() > known.len() {
+                known.push(format!("{} more", model.meshes.len() - known.len()));
+            }
+            let known = known.join(", ");
+            FileError::new(
+                path,
+                Problem::NoSuchMesh {
+                    name: name.clone(),
+                    known,
+                },
+            )
+        })
+    }
+
+    /// The picture that a source names.
+    pub fn picture(&self, source: &TextureSource, usage: PictureUse) -> Result<Image, FileError> {
+        let path = &source.path;
+        if path.starts_with(BUILTIN) {
+            return shapes::texture(path)
+                .map_err(|error| FileError::new(path, Problem::Builtin(error.to_string())));
+        }
+        let (name, fragment) = split_fragment(path);
+        let file = self.folder.resolve(name)?;
+        let (part, usage) = match fragment.strip_suffix("alpha") {
+            Some(part) => (part.trim_end_matches('.'), PictureUse::Alpha),
+            None => (fragment, usage),
+        };
+        if part.is_empty() {
+            read_picture(&file, usage, self.limits)
+        } else {
+            let folder = Folder::of(&file, self.folder.allow_outside);
+            gltf::read_texture(&file, part, &folder, usage, self.limits)
+        }
+    }
+}
+
+/// Reads a model file of any kind, by its extension.
+pub(crate) fn read_model(
+    file: &std::path::Path,
+    folder: &Folder,
+    limits: &Limits,
+) -> Result<Model, FileError> {
+    let extension = extension(file);
+    match extension.as_str() {
+        "obj" => obj::read_obj(file, folder, limits),
+        "gltf" | "glb" => gltf::read_gltf(file, folder, limits),
+        _ => Err(FileError::new(
+            file,
+            Problem::UnknownExtension {
+                extension,
+                wanted: "models; .obj, .gltf and .glb are",
+            },
+        )),
+    }
+}

@@ -1,0 +1,111 @@
+//! What an importer found in a file, before it becomes entities.
+
+use crate::scene::{DirectionalLamp, Phong, PointLamp, SceneCamera};
+use bevy::asset::RenderAssetUsages;
+use bevy::mesh::{Indices, Mesh, PrimitiveTopology};
+use bevy::transform::components::Transform;
+use std::collections::BTreeMap;
+
+/// The content of a model file.
+#[derive(Default)]
+pub(crate) struct Model {
+    /// Materials with their names; objects refer to them by index.
+    pub materials: Vec<(String, Phong)>,
+    /// Parents before their children.
+    pub nodes: Vec<Node>,
+    /// By the name that `MeshSource::File` carries.
+    pub meshes: BTreeMap<String, Mesh>,
+    /// What could not be taken over, a line each.
+    pub notes: Vec<String>,
+}
+
+/// One entity to be.
+#[derive(Default)]
+pub(crate) struct Node {
+    pub name: String,
+    /// Index of its parent, smaller than its own.
+    pub parent: Option<usize>,
+    pub transform: Transform,
+    /// Name of its mesh.
+    pub mesh: Option<String>,
+    /// Index of its material.
+    pub material: Option<usize>,
+    pub point_lamp: Option<PointLamp>,
+    pub directional_lamp: Option<DirectionalLamp>,
+    pub camera: Option<SceneCamera>,
+}
+
+/// A triangle mesh as Bevy keeps it. Normals and texture coordinates may be empty.
+///
+/// Texture coordinates count from the picture's top left corner, v downwards, as in glTF and Bevy.
+pub(crate) fn triangle_mesh(
+    positions: Vec<[f32; 3]>,
+    normals: Vec<[f32; 3]>,
+    uvs: Vec<[f32; 2]>,
+    indices: Vec<u32>,
+) -> Mesh {
+    let mut mesh = Mesh::new(
+        PrimitiveTopology::TriangleList,
+        RenderAssetUsages::default(),
+    );
+    mesh.insert_attribute(Mesh::ATTRIBUTE_POSITION, positions);
+    if !normals.is_empty() {
+        mesh.insert_attribute(Mesh::ATTRIBUTE_NORMAL, normals);
+    }
+    if !uvs.is_empty() {
+        mesh.insert_attribute(Mesh::ATTRIBUTE_UV_0, uvs);
+    }
+    mesh.insert_indices(Indices::U32(indices));
+    mesh
+}
+
+/// What a mesh of triangles holds, borrowed.
+pub(crate) struct MeshParts<'a> {
+    pub positions: &'a [[f32; 3]],
+    /// As many as positions, or none.
+    pub normals: &'a [[f32; 3]],
+    /// As many as positions, or none.
+    pub uvs: &'a [[f32; 2]],
+    pub indices: &'a Indices,
+}
+
+impl<'a> MeshParts<'a> {
+    /// `None` where the mesh is not an indexed triangle list with positions in this program's memory.
+    pub fn of(mesh: &'a Mesh) -> Option<Self> {
+        use bevy::mesh::VertexAttributeValues as Values;
+        if mesh.primitive_topology() != PrimitiveTopology::TriangleList {
+            return None;
+        }
+        let three = |id| match mesh.try_attribute_option(id) {
+            Ok(Some(Values::Float32x3(values))) => Some(values.as_slice()),
+            _ => None,
+        };
+        let positions = three(Mesh::ATTRIBUTE_POSITION)?;
+        let whole = |length: usize| length == positions.len();
+        let uvs = match mesh.try_attribute_option(Mesh::ATTRIBUTE_UV_0) {
+            Ok(Some(Values::Float32x2(values))) if whole(values.len()) => values.as_slice(),
+            _ => &[],
+        };
+        Some(Self {
+            positions,
+            normals: three(Mesh::ATTRIBUTE_NORMAL)
+                .filter(|values| whole(values.len()))
+                .unwrap_or(&[]),
+            uvs,
+            indices: mesh.try_indices_option().ok().flatten()?,
+        })
+    }
+
+    /// Whole triangles whose corners exist.
+    pub fn triangles(&self) -> impl Iterator<Item = [usize; 3]> {
+        let count = self.positions.len();
+        (0..self.indices.len() / 3)
+            .map(|t| {
+                [0, 1, 2].map(|corner| match self.indices {
+                    Indices::U16(indices) => usize::from(indices[3 * t + corner]),
+                    Indices::U32(indices) => indices[3 * t + corner] as usize,
+                })
+            })
+            .filter(move |corners| corners.iter().all(|&corner| corner < count))
+    }
+}

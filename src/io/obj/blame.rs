@@ -1,0 +1,100 @@
+//! Finding the line of an error that tobj reports without one. Runs only after a failure.
+
+use super::super::error::{FileError, Place, Problem};
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+/// The first line of an OBJ that names a number that is not one, or a corner that does not exist.
+pub(super) fn first_fault(file: &Path) -> Option<FileError> {
+    let mut reader = BufReader::new(File::open(file).ok()?);
+    let mut buffer = Vec::new();
+    let mut counts = [0_usize; 3];
+    for number in 1.. {
+        buffer.clear();
+        if reader.read_until(b'\n', &mut buffer).ok()? == 0 {
+            break;
+        }
+        let line = String::from_utf8_lossy(&buffer);
+        if let Some(problem) = fault_of(&line, &mut counts) {
+            return Some(FileError::at(file, Place::Line(number), problem));
+        }
+    }
+    None
+}
+
+fn fault_of(line: &str, counts: &mut [usize; 3]) -> Option<Problem> {
+    let mut words = line.split_ascii_whitespace();
+    let (kind, count, what) = match words.next()? {
+        "v" => (0, 3, "a vertex"),
+        "vt" => (1, 2, "a texture coordinate"),
+        "vn" => (2, 3, "a normal"),
+        "f" => return words.find_map(|corner| fault_of_corner(corner, counts)),
+        _ => return None,
+    };
+    counts[kind] += 1;
+    let given: Vec<&str> = words.collect();
+    if given.len() < count {
+        return Some(Problem::Truncated(format!(
+            "{what} needs {count} numbers and has {}",
+            given.len()
+        )));
+    }
+    for word in &given {
+        match word.parse::<f32>() {
+            Err(_) => return Some(Problem::Malformed(format!("`{word}` is not a number"))),
+            Ok(value) if !value.is_finite() => {
+                return Some(Problem::NotFinite {
+                    what: format!("{what}'s `{word}`"),
+                });
+            }
+            Ok(_) => {}
+        }
+    }
+    let w_is_zero = kind == 0 && given.len() == 4 && given[3].parse() == Ok(0.0_f32);
+    if w_is_zero {
+        return Some(Problem::Malformed("a vertex has w = 0".into()));
+    }
+    if kind == 0 && !matches!(given.len(), 3 | 4 | 6) {
+        return Some(Problem::Malformed(format!(
+            "a vertex has {} numbers; 3, 4 or 6 are possible",
+            given.len()
+        )));
+    }
+    None
+}
+
+fn fault_of_corner(corner: &str, counts: &[usize; 3]) -> Option<Problem> {
+    const WHAT: [&str; 3] = ["vertex", "texture coordinate", "normal"];
+    for (kind, index) in corner.split('/').enumerate() {
+        let Some(&count) = counts.get(kind) else {
+            return Some(Problem::Malformed(format!(
+                "the corner `{corner}` has more than three indices"
+            )));
+        };
+        if index.is_empty() && kind > 0 {
+            continue;
+        }
+        match index.parse::<i64>() {
+            Ok(i) if i != 0 && i.unsigned_abs() <= count as u64 => {}
+            Err(error)
+                if !matches!(
+                    error.kind(),
+                    std::num::IntErrorKind::PosOverflow | std::num::IntErrorKind::NegOverflow
+                ) =>
+            {
+                return Some(Problem::Malformed(format!(
+                    "the corner `{corner}` of a face is not an index"
+                )));
+            }
+            _ => {
+                return Some(Problem::IndexOutOfRange {
+                    what: WHAT[kind],
+                    index: index.into(),
+                    count,
+                });
+            }
+        }
+    }
+    None
+}

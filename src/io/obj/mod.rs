@@ -1,0 +1,11 @@
+//! Wavefront OBJ and MTL. `tobj` parses; [`lines`] watches the lines go by, so that an error knows
+//! its line, and [`blame`] finds the line of an error that shows only later.
+
+mod blame;
+mod lines;
+mod mtl;
+mod read;
+mod write;
+
+pub(crate) use read::read_obj;
+pub(crate) use write::write_obj;

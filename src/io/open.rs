@@ -1,0 +1,328 @@
+use super::builtin::{self, BuiltinScene};
+use super::error::{FileError, Problem};
+use super::folder::Folder;
+use super::frame::frame;
+use super::ids::assign_ids;
+use super::loader::{Loader, read_model};
+use super::model::Model;
+use super::picture::PictureUse;
+use super::scene_file::{SceneFile, read_scene, scene_entities};
+use super::sources::{SceneFiles, resolve_environment, resolve_meshes, resolve_pictures};
+use super::{Limits, LoadProblems, extension};
+use crate::scene::{
+    Environment, MeshSource, Phong, RenderSettings, SceneId, TextureSource, UsesMaterial,
+};
+use bevy::asset::{Assets, Handle};
+use bevy::camera::visibility::Visibility;
+use bevy::ecs::hierarchy::ChildOf;
+use bevy::ecs::name::Name;
+use bevy::image::Image;
+use bevy::mesh::Mesh;
+use bevy::prelude::{Entity, World};
+use std::path::{Path, PathBuf};
+
+/// What can be opened.
+#[derive(Clone)]
+pub enum SceneSource {
+    /// `.scn.ron`, `.obj`, `.gltf` or `.glb`.
+    File(PathBuf),
+    /// A scene that Glassbox makes.
+    Builtin(&'static BuiltinScene),
+}
+
+impl SceneSource {
+    /// A built-in scene's name, or else a file. A file that is called like a built-in scene is
+    /// reached as `./name`.
+    pub fn named(name: impl AsRef<Path>) -> Self {
+        let path = name.as_ref();
+        match path.to_str().and_then(builtin::find) {
+            Some(scene) => Self::Builtin(scene),
+            None => Self::File(path.to_path_buf()),
+        }
+    }
+}
+
+/// What opening may do.
+#[derive(Clone, Debug, Default)]
+pub struct OpenOptions {
+    /// Whether files may refer to others outside their own folder.
+    pub allow_outside: bool,
+    /// How much files may ask for.
+    pub limits: Limits,
+}
+
+/// What was opened.
+#[derive(Clone, Debug, Default)]
+pub struct Opened {
+    /// The built-in scene's name, or the file's without its folder.
+    pub name: String,
+    /// What was left out, changed or added, a line each.
+    pub notes: Vec<String>,
+}
+
+/// Replaces the open scene by another. Everything is loaded and checked first: on an error the
+/// world is as it was.
+///
+/// A model file without a camera or a light gets one of each that it lacks, and a note says so.
+pub fn open(
+    world: &mut World,
+    source: &SceneSource,
+    options: OpenOptions,
+) -> Result<Opened, FileError> {
+    let file = match source {
+        SceneSource::Builtin(scene) => return Ok(open_builtin(world, scene, options)),
+        SceneSource::File(file) => file,
+    };
+    let mut opened = Opened {
+        name: file
+            .file_name()
+            .map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
+        notes: Vec::new(),
+    };
+    let extension = extension(file);
+    if !file.exists() && extension.is_empty() {
+        let names: Vec<_> = builtin::SCENES.iter().map(|scene| scene.name).collect();
+        let known = names.join(", ");
+        return Err(FileError::new(file, Problem::NoSuchScene { known }));
+    }
+    let folder = Folder::of(file, options.allow_outside);
+    match extension.as_str() {
+        "scn.ron" | "ron" => open_scene(world, file, folder, options.limits)?,
+        "obj" | "gltf" | "glb" => {
+            let model = read_model(file, &folder, &options.limits)?;
+            opened.notes = open_model(world, model, file, folder, options.limits)?;
+            opened.notes.extend(frame(world));
+        }
+        _ => {
+            return Err(FileError::new(
+                file,
+                Problem::UnknownExtension {
+                    extension,
+                    wanted: "scenes; .scn.ron, .obj, .gltf and .glb are",
+                },
+            ));
+        }
+    }
+    Ok(opened)
+}
+
+fn open_builtin(world: &mut World, scene: &BuiltinScene, options: OpenOptions) -> Opened {
+    let folder = Folder {
+        path: PathBuf::new(),
+        allow_outside: options.allow_outside,
+    };
+    clear(world, SceneFiles::new(folder, options.limits));
+    (scene.spawn)(world);
+    let entities = scene_entities(world);
+    assign_ids(world, &entities);
+    resolve(world);
+    Opened {
+        name: scene.name.to_owned(),
+        notes: Vec::new(),
+    }
+}
+
+fn open_scene(
+    world: &mut World,
+    file: &Path,
+    folder: Folder,
+    limits: Limits,
+) -> Result<(), FileError> {
+    let scene = read_scene(file, &limits)?;
+    let loaded =
+        Loaded::for_scene(&scene, &folder, &limits).map_err(|error| name_referrer(file, error))?;
+    clear(world, SceneFiles::new(folder, limits));
+    let held = loaded.hand_over(world);
+    let entities = scene
+        .spawn(world)
+        .map_err(|error| FileError::new(file, Problem::Malformed(error)))?;
+    assign_ids(world, &entities);
+    resolve(world);
+    drop(held);
+    Ok(())
+}
+
+fn open_model(
+    world: &mut World,
+    model: Model,
+    file: &Path,
+    folder: Folder,
+    limits: Limits,
+) -> Result<Vec<String>, FileError> {
+    let path = file
+        .file_name()
+        .map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let Model {
+        materials,
+        nodes,
+        meshes,
+        notes,
+    } = model;
+    let mut loaded = Loaded::default();
+    let loader = Loader::new(&folder, &limits);
+    for (_, phong) in &materials {
+        loaded.load_pictures(phong, &loader)?;
+    }
+    for (name, mesh) in meshes {
+        let path = path.clone();
+        loaded.meshes.push((MeshSource::File { path, name }, mesh));
+    }
+    clear(world, SceneFiles::new(folder, limits));
+    let held = loaded.hand_over(world);
+    let mut next = 0;
+    let mut id = || {
+        next += 1;
+        SceneId(next)
+    };
+    let materials: Vec<Entity> = materials
+        .into_iter()
+        .map(|(name, phong)| world.spawn((id(), Name::new(name), phong)).id())
+        .collect();
+    let mut spawned: Vec<Entity> = Vec::with_capacity(nodes.len());
+    for node in nodes {
+        let mut entity = world.spawn((
+            id(),
+            Name::new(node.name),
+            node.transform,
+            Visibility::default(),
+        ));
+        if let Some(&parent) = node.parent.and_then(|parent| spawned.get(parent)) {
+            entity.insert(ChildOf(parent));
+        }
+        if let Some(name) = node.mesh {
+            let path = path.clone();
+            entity.insert(MeshSource::File { path, name });
+        }
+        if let Some(&material) = node.material.and_then(|index| materials.get(index)) {
+            entity.insert(UsesMaterial(material));
+        }
+        if let Some(lamp) = node.point_lamp {
+            entity.insert(lamp);
+        }
+        if let Some(lamp) = node.directional_lamp {
+            entity.insert(lamp);
+        }
+        if let Some(camera) = node.camera {
+            entity.insert(camera);
+        }
+        spawned.push(entity.id());
+    }
+    resolve(world);
+    drop(held);
+    Ok(notes)
+}
+
+/// A scene that points at a missing or forbidden file is at fault itself: say which scene it was.
+fn name_referrer(file: &Path, error: FileError) -> FileError {
+    let path = error.file.display().to_string();
+    match error.problem {
+        Problem::Outside => FileError::new(file, Problem::RefersOutside { path }),
+        Problem::NotFound => FileError::new(file, Problem::MissingFile { path }),
+        Problem::Shape(text) => FileError::new(file, Problem::Shape(text)),
+        _ => error,
+    }
+}
+
+/// Everything that a scene's sources name, loaded before the open scene is given up.
+#[derive(Default)]
+struct Loaded {
+    meshes: Vec<(MeshSource, Mesh)>,
+    pictures: Vec<(TextureSource, PictureUse, Image)>,
+}
+
+/// Keeps assets alive until entities hold them.
+type Held = (Vec<Handle<Mesh>>, Vec<Handle<Image>>);
+
+impl Loaded {
+    fn for_scene(scene: &SceneFile, folder: &Folder, limits: &Limits) -> Result<Self, FileError> {
+        let mut loaded = Self::default();
+        let mut loader = Loader::new(folder, limits);
+        let mut seen = std::collections::HashSet::new();
+        for source in scene.mesh_sources() {
+            if seen.insert(super::sources::mesh_key(source)) {
+                loaded.meshes.push((source.clone(), loader.mesh(source)?));
+            }
+        }
+        for phong in scene.materials() {
+            loaded.load_pictures(phong, &loader)?;
+        }
+        if let Some(map) = scene.environment().and_then(|e| e.map.as_ref()) {
+            loaded.load_picture(map, PictureUse::Color, &loader)?;
+        }
+        Ok(loaded)
+    }
+
+    fn load_pictures(&mut self, phong: &Phong, loader: &Loader) -> Result<(), FileError> {
+        if let Some(source) = &phong.diffuse_map {
+            self.load_picture(source, PictureUse::Color, loader)?;
+        }
+        if let Some(source) = &phong.opacity_map {
+            self.load_picture(source, PictureUse::Data, loader)?;
+        }
+        Ok(())
+    }
+
+    fn load_picture(
+        &mut self,
+        source: &TextureSource,
+        usage: PictureUse,
+        loader: &Loader,
+    ) -> Result<(), FileError> {
+        let mut known = self.pictures.iter();
+        if !known.any(|(other, how, _)| other == source && *how == usage) {
+            let picture = loader.picture(source, usage)?;
+            self.pictures.push((source.clone(), usage, picture));
+        }
+        Ok(())
+    }
+
+    fn hand_over(self, world: &mut World) -> Held {
+        let meshes = world.resource_scope(|world, mut files: bevy::prelude::Mut<SceneFiles>| {
+            let mut assets = world.resource_mut::<Assets<Mesh>>();
+            let add = |(source, mesh)| {
+                let handle = assets.add(mesh);
+                files.adopt_mesh(&source, &handle);
+                handle
+            };
+            self.meshes.into_iter().map(add).collect()
+        });
+        let pictures = world.resource_scope(|world, mut files: bevy::prelude::Mut<SceneFiles>| {
+            let mut assets = world.resource_mut::<Assets<Image>>();
+            let add = |(source, usage, image)| {
+                let handle = assets.add(image);
+                files.adopt_picture(&source, usage, &handle);
+                handle
+            };
+            self.pictures.into_iter().map(add).collect()
+        });
+        (meshes, pictures)
+    }
+}
+
+/// Removes the open scene; everything else in the world stays.
+fn clear(world: &mut World, files: SceneFiles) {
+    for entity in scene_entities(world) {
+        // It may have gone with its parent.
+        if let Ok(entity) = world.get_entity_mut(entity) {
+            entity.despawn();
+        }
+    }
+    world.insert_resource(Environment::default());
+    world.insert_resource(RenderSettings::default());
+    world.insert_resource(LoadProblems::default());
+    world.insert_resource(files);
+}
+
+/// What the systems of [`super::IoPlugin`] do each frame, now.
+fn resolve(world: &mut World) {
+    for result in [
+        world.run_system_cached(resolve_meshes),
+        world.run_system_cached(resolve_pictures),
+        world.run_system_cached(resolve_environment),
+    ] {
+        // Fails only where the plugin's resources are missing; the first frame would say the same.
+        if let Err(error) = result {
+            bevy::log::error!("sources were not resolved: {error}");
+        }
+    }
+}

@@ -1,0 +1,114 @@
+use super::super::error::{FileError, Problem};
+use super::{PictureFormat, check_size};
+use crate::io::Limits;
+use bevy::asset::RenderAssetUsages;
+use bevy::image::Image;
+use image::{DynamicImage, ImageBuffer, ImageReader, Luma};
+use std::fs::File;
+use std::io::{BufRead, BufReader, Cursor, Seek};
+use std::path::Path;
+
+/// What a picture's values stand for, and so how they are kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum PictureUse {
+    /// Colours: 8-bit files become sRGB-encoded `Rgba8UnormSrgb`, others linear `Rgba32Float`.
+    Color,
+    /// Numbers: 8-bit files become `Rgba8Unorm` as they are.
+    Data,
+    /// Only the alpha channel, spread over red, green and blue as numbers.
+    Alpha,
+}
+
+/// Reads a picture file. Its size is checked in the header, before anything is decoded.
+pub(crate) fn read_picture(
+    path: &Path,
+    usage: PictureUse,
+    limits: &Limits,
+) -> Result<Image, FileError> {
+    let format = PictureFormat::of(path)?;
+    let open = || {
+        let file = File::open(path).map_err(|error| FileError::reading(path, &error))?;
+        let metadata = file.metadata();
+        if metadata.is_ok_and(|metadata| metadata.is_dir()) {
+            return Err(FileError::new(path, Problem::IsAFolder));
+        }
+        Ok(ImageReader::with_format(
+            BufReader::new(file),
+            format.image_format(),
+        ))
+    };
+    decode(path, open()?, open()?, usage, limits)
+}
+
+/// Decodes a picture that lies inside another file. PNG or JPEG, by its first bytes.
+pub(crate) fn decode_picture(
+    name: &Path,
+    bytes: &[u8],
+    usage: PictureUse,
+    limits: &Limits,
+) -> Result<Image, FileError> {
+    let format = image::guess_format(bytes).map_err(|error| failure(name, error))?;
+    let open = || ImageReader::with_format(Cursor::new(bytes), format);
+    decode(name, open(), open(), usage, limits)
+}
+
+fn decode<R: BufRead + Seek>(
+    name: &Path,
+    header: ImageReader<R>,
+    mut body: ImageReader<R>,
+    usage: PictureUse,
+    limits: &Limits,
+) -> Result<Image, FileError> {
+    let (width, height) = header
+        .into_dimensions()
+        .map_err(|error| failure(name, error))?;
+    check_size(name, width.into(), height.into(), limits)?;
+    let mut decoder_limits = image::Limits::default();
+    // Four channels of 16 bytes at most, and as much again for what a decoder needs meanwhile.
+    decoder_limits.max_alloc = Some(limits.pixels.saturating_mul(32));
+    body.limits(decoder_limits);
+    let picture = body.decode().map_err(|error| failure(name, error))?;
+    Ok(to_image(picture, usage))
+}
+
+fn to_image(picture: DynamicImage, usage: PictureUse) -> Image {
+    let floating = matches!(
+        picture,
+        DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_)
+    );
+    let picture = match usage {
+        PictureUse::Alpha => {
+            let rgba = picture.into_rgba8();
+            let alpha = ImageBuffer::from_fn(rgba.width(), rgba.height(), |x, y| {
+                Luma([rgba.get_pixel(x, y).0[3]])
+            });
+            DynamicImage::ImageLuma8(alpha)
+        }
+        _ if floating => picture,
+        _ => DynamicImage::ImageRgba8(picture.into_rgba8()),
+    };
+    Image::from_dynamic(
+        picture,
+        usage == PictureUse::Color,
+        RenderAssetUsages::default(),
+    )
+}
+
+fn failure(name: &Path, error: image::ImageError) -> FileError {
+    use image::ImageError as E;
+    let problem = match error {
+        E::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
+            Problem::Truncated("the picture is incomplete".into())
+        }
+        E::IoError(error) => Problem::Unreadable(one_line(&error.to_string())),
+        other => Problem::Malformed(format!(
+            "is not a picture that can be decoded: {}",
+            one_line(&other.to_string())
+        )),
+    };
+    FileError::new(name, problem)
+}
+
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,142 @@
+use super::super::error::{FileError, Problem};
+use super::super::replace::replace_file;
+use super::{PictureFormat, check_size};
+use crate::io::Limits;
+use image::codecs::jpeg::JpegEncoder;
+use image::{DynamicImage, ImageBuffer, ImageResult};
+use std::io;
+use std::path::Path;
+
+/// Of 1 to 100. The step where colour is still not subsampled visibly and files stay small.
+const JPEG_QUALITY: u8 = 95;
+
+/// Writes a picture, row by row from the top left. The extension decides on the format:
+/// `.png` and `.jpg` take view-transformed values, clamped to [0, 1] and rounded to 8 bits
+/// (not a number becomes 0); `.exr` and `.hdr` take linear light as it is.
+///
+/// The file appears complete or not at all.
+pub fn write_picture(
+    path: &Path,
+    width: u32,
+    height: u32,
+    pixels: &[[f32; 3]],
+) -> Result<(), FileError> {
+    let format = PictureFormat::of(path)?;
+    check_size(path, width.into(), height.into(), &Limits::default())?;
+    let wrong_size = || {
+        FileError::new(
+            path,
+            Problem::PictureSize {
+                width,
+                height,
+                given: pixels.len(),
+            },
+        )
+    };
+    if pixels.len() as u64 != u64::from(width) * u64::from(height) {
+        return Err(wrong_size());
+    }
+    let picture = if format.is_linear() {
+        ImageBuffer::from_raw(width, height, pixels.as_flattened().to_vec())
+            .map(DynamicImage::ImageRgb32F)
+    } else {
+        let bytes = pixels.as_flattened().iter().map(|&v| to_byte(v)).collect();
+        ImageBuffer::from_raw(width, height, bytes).map(DynamicImage::ImageRgb8)
+    }
+    .ok_or_else(wrong_size)?;
+    replace_file(path, |writer| {
+        io_result(match format {
+            PictureFormat::Jpeg => {
+                picture.write_with_encoder(JpegEncoder::new_with_quality(writer, JPEG_QUALITY))
+            }
+            _ => picture.write_to(writer, format.image_format()),
+        })
+    })
+}
+
+/// Encodes an 8-bit RGBA picture as a PNG in memory, to embed it in a model file.
+pub(crate) fn encode_png(picture: &DynamicImage) -> io::Result<Vec<u8>> {
+    let mut bytes = io::Cursor::new(Vec::new());
+    io_result(picture.write_to(&mut bytes, image::ImageFormat::Png))?;
+    Ok(bytes.into_inner())
+}
+
+fn io_result(result: ImageResult<()>) -> io::Result<()> {
+    result.map_err(|error| match error {
+        image::ImageError::IoError(error) => error,
+        other => io::Error::other(other),
+    })
+}
+
+fn to_byte(value: f32) -> u8 {
+    // A float becomes an integer by saturation, and not a number becomes 0.
+    (value * 255.0 + 0.5) as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::picture::{PictureUse, read_picture};
+
+    const PIXELS: [[f32; 3]; 4] = [
+        [0.0, 0.25, 0.5],
+        [1.0, 2.0, -1.0],
+        [f32::NAN, 0.75, 0.1],
+        [0.2, 0.4, 0.6],
+    ];
+
+    #[test]
+    fn a_png_holds_the_nearest_of_256_values_and_clamps() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        write_picture(&path, 2, 2, &PIXELS).unwrap();
+        let bytes = image::open(&path).unwrap().into_rgb8().into_raw();
+        assert_eq!(
+            bytes,
+            [0, 64, 128, 255, 255, 0, 0, 191, 26, 51, 102, 153],
+            "{bytes:?}"
+        );
+    }
+
+    #[test]
+    fn an_exr_holds_linear_light_exactly_and_an_hdr_within_its_mantissa() {
+        let folder = tempfile::tempdir().unwrap();
+        let pixels = [[0.0_f32, 0.25, 0.5], [1.0, 200.0, 0.125]];
+        for (name, tolerance) in [("a.exr", 0.0), ("a.hdr", 1.0 / 128.0)] {
+            let path = folder.path().join(name);
+            write_picture(&path, 2, 1, &pixels).unwrap();
+            let image = read_picture(&path, PictureUse::Color, &Limits::default()).unwrap();
+            let read: Vec<f32> = image
+                .data
+                .unwrap()
+                .as_chunks()
+                .0
+                .iter()
+                .map(|&b| f32::from_le_bytes(b))
+                .collect();
+            for (pixel, back) in pixels.iter().zip(read.as_chunks::<4>().0) {
+                let largest = pixel.iter().copied().fold(0.0, f32::max);
+                for i in 0..3 {
+                    let error = (pixel[i] - back[i]).abs();
+                    assert!(
+                        error <= tolerance * largest,
+                        "{name}: {pixel:?} came back as {back:?}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_picture_that_cannot_be_written_leaves_nothing_behind() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let error = write_picture(&path, 3, 1, &PIXELS).unwrap_err();
+        assert!(
+            matches!(error.problem, Problem::PictureSize { .. }),
+            "{error}"
+        );
+        let left = std::fs::read_dir(folder.path()).unwrap().count();
+        assert_eq!(left, 0, "{left} files were left");
+    }
+}

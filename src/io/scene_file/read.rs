@@ -1,0 +1,306 @@
+use super::super::error::{FileError, Place, Problem};
+use super::check::check_value;
+use super::{FileVersion, is_kept_component, kept_types};
+use crate::io::Limits;
+use crate::scene::{Environment, MeshSource, Phong, RenderSettings, SceneId, UsesMaterial};
+use bevy::asset::{AssetPath, Handle, LoadFromPath, UntypedHandle};
+use bevy::ecs::entity::EntityHashMap;
+use bevy::ecs::hierarchy::ChildOf;
+use bevy::image::Image;
+use bevy::prelude::{Entity, World};
+use bevy::reflect::PartialReflect;
+use bevy::world_serialization::DynamicWorld;
+use bevy::world_serialization::serde::WorldDeserializer;
+use serde::de::{DeserializeSeed, IgnoredAny, MapAccess, Visitor};
+use std::any::TypeId;
+use std::cell::Cell;
+use std::collections::BTreeSet;
+use std::fmt;
+use std::path::Path;
+
+/// The content of a scene file, checked, before it becomes entities.
+pub(crate) struct SceneFile {
+    content: DynamicWorld,
+}
+
+/// Reads a scene file and checks everything in it that can be checked without other files.
+pub(crate) fn read_scene(file: &Path, limits: &Limits) -> Result<SceneFile, FileError> {
+    let bytes = super::super::read_bytes(file, limits.file_bytes)?;
+    if bytes.trim_ascii().is_empty() {
+        return Err(FileError::new(file, Problem::Empty));
+    }
+    let text = std::str::from_utf8(&bytes).map_err(|error| {
+        let line = bytes[..error.valid_up_to()].split(|&b| b == b'\n').count();
+        let problem = Problem::Malformed("is not UTF-8 text".into());
+        FileError::at(file, Place::Line(line as u64), problem)
+    })?;
+    check_version(file, text)?;
+    let registry = kept_types();
+    let mut deserializer =
+        ron::de::Deserializer::from_str(text).map_err(|error| ron_error(file, &error))?;
+    let content = WorldDeserializer {
+        type_registry: &registry,
+        load_from_path: &mut NoAssets,
+    }
+    .deserialize(&mut deserializer)
+    .and_then(|content| deserializer.end().map(|()| content))
+    .map_err(|error| ron_error(file, &deserializer.span_error(error)))?;
+    let mut scene = SceneFile { content };
+    scene
+        .content
+        .resources
+        .retain(|resource| resource.try_downcast_ref::<FileVersion>().is_none());
+    scene.check(file, limits)?;
+    Ok(scene)
+}
+
+impl SceneFile {
+    fn check(&self, file: &Path, limits: &Limits) -> Result<(), FileError> {
+        let count = self.content.entities.len() as u64;
+        if count > limits.entities {
+            let problem = Problem::TooMany {
+                what: "entities",
+                count,
+                limit: limits.entities,
+            };
+            return Err(FileError::new(file, problem));
+        }
+        for resource in &self.content.resources {
+            let is_ours =
+                |id| id == TypeId::of::<Environment>() || id == TypeId::of::<RenderSettings>();
+            check_kind(resource.as_ref(), is_ours)
+                .and_then(|()| check_value(resource.as_ref()))
+                .map_err(|problem| FileError::at(file, part("resources"), problem))?;
+        }
+        let labels: BTreeSet<Entity> = self.content.entities.iter().map(|e| e.entity).collect();
+        let mut ids = BTreeSet::new();
+        for entity in &self.content.entities {
+            let place = || part(&format!("entity {}", entity.entity.to_bits()));
+            let mut check = |component: &dyn PartialReflect| {
+                check_kind(component, is_kept_component)?;
+                check_value(component)?;
+                if let Some(id) = component.try_downcast_ref::<SceneId>()
+                    && !id.is_unassigned()
+                    && !ids.insert(*id)
+                {
+                    return Err(Problem::DuplicateId(id.0));
+                }
+                match refers_to(component) {
+                    Some(other) if !labels.contains(&other) => {
+                        Err(Problem::NoSuchEntity(other.to_bits().to_string()))
+                    }
+                    _ => Ok(()),
+                }
+            };
+            for component in &entity.components {
+                check(component.as_ref())
+                    .map_err(|problem| FileError::at(file, place(), problem))?;
+            }
+        }
+        if labels.len() < self.content.entities.len() {
+            let problem = Problem::Malformed("two entities have the same label".into());
+            return Err(FileError::new(file, problem));
+        }
+        self.check_no_cycle(file)
+    }
+
+    /// An entity among its own ancestors would hang whatever walks up.
+    fn check_no_cycle(&self, file: &Path) -> Result<(), FileError> {
+        let parents: EntityHashMap<Entity> = self
+            .content
+            .entities
+            .iter()
+            .filter_map(|e| {
+                let mut components = e.components.iter();
+                let parent = components.find_map(|c| c.try_downcast_ref::<ChildOf>())?;
+                Some((e.entity, parent.0))
+            })
+            .collect();
+        let mut safe = BTreeSet::new();
+        for &start in parents.keys() {
+            let mut path = BTreeSet::new();
+            let mut at = start;
+            while let Some(&parent) = parents.get(&at) {
+                if safe.contains(&at) {
+                    break;
+                }
+                if !path.insert(at) {
+                    let problem = Problem::Malformed("is among its own ancestors".into());
+                    let place = part(&format!("entity {}", at.to_bits()));
+                    return Err(FileError::at(file, place, problem));
+                }
+                at = parent;
+            }
+            safe.append(&mut path);
+        }
+        Ok(())
+    }
+
+    /// Everything in the file of one type: entities' components and resources.
+    fn all<T: bevy::reflect::Reflect>(&self) -> impl Iterator<Item = &T> {
+        let entities = self.content.entities.iter();
+        entities
+            .flat_map(|entity| &entity.components)
+            .chain(&self.content.resources)
+            .filter_map(|value| value.as_ref().try_downcast_ref::<T>())
+    }
+
+    /// Where meshes come from.
+    pub fn mesh_sources(&self) -> impl Iterator<Item = &MeshSource> {
+        self.all::<MeshSource>()
+    }
+
+    /// Materials, which name pictures.
+    pub fn materials(&self) -> impl Iterator<Item = &Phong> {
+        self.all::<Phong>()
+    }
+
+    /// The environment, which may name a map.
+    pub fn environment(&self) -> Option<&Environment> {
+        self.all::<Environment>().next()
+    }
+
+    /// Makes entities and resources. Returns the entities in the order of the file.
+    pub fn spawn(self, world: &mut World) -> Result<Vec<Entity>, String> {
+        let registry = kept_types();
+        let mut entities = EntityHashMap::default();
+        self.content
+            .write_to_world_with(world, &mut entities, &registry)
+            .map_err(|error| error.to_string())?;
+        let mut spawned = Vec::with_capacity(self.content.entities.len());
+        for dynamic in &self.content.entities {
+            let Some(&entity) = entities.get(&dynamic.entity) else {
+                continue;
+            };
+            spawned.push(entity);
+            // World serialization leaves out the hooks that make `Children`; inserting runs them.
+            if let Some(&ChildOf(parent)) = world.get::<ChildOf>(entity) {
+                world.entity_mut(entity).insert(ChildOf(parent));
+            }
+        }
+        Ok(spawned)
+    }
+}
+
+/// The other entity that a component names.
+fn refers_to(component: &dyn PartialReflect) -> Option<Entity> {
+    let parent = component.try_downcast_ref::<ChildOf>().map(|c| c.0);
+    parent.or_else(|| component.try_downcast_ref::<UsesMaterial>().map(|m| m.0))
+}
+
+fn check_kind(value: &dyn PartialReflect, kept: impl Fn(TypeId) -> bool) -> Result<(), Problem> {
+    match value.get_represented_type_info() {
+        Some(info) if kept(info.type_id()) => Ok(()),
+        _ => Err(Problem::UnknownComponent {
+            name: value.reflect_type_path().to_owned(),
+        }),
+    }
+}
+
+fn part(name: &str) -> Place {
+    Place::Part(name.to_owned())
+}
+
+fn ron_error(file: &Path, error: &ron::error::SpannedError) -> FileError {
+    let text = error.code.to_string();
+    let unknown = text
+        .split_once("no registration found for `")
+        .and_then(|(_, rest)| rest.split_once('`'));
+    let problem = match (&error.code, unknown) {
+        (_, Some((name, _))) => Problem::UnknownComponent { name: name.into() },
+        (ron::Error::Eof, _) => Problem::Truncated("the scene is incomplete".into()),
+        _ => Problem::Malformed(text.split_whitespace().collect::<Vec<_>>().join(" ")),
+    };
+    let place = Place::LineColumn(error.span.start.line, error.span.start.col);
+    FileError::at(file, place, problem)
+}
+
+/// Scene files hold no handles, so nothing is ever loaded through this.
+struct NoAssets;
+
+impl LoadFromPath for NoAssets {
+    fn load_from_path_erased(&mut self, _: TypeId, _: AssetPath<'static>) -> UntypedHandle {
+        Handle::<Image>::default().untyped()
+    }
+}
+
+/// Looks for the version before anything else is understood: a newer file may hold what this
+/// program does not know, and "newer" is then the helpful answer.
+fn check_version(file: &Path, text: &str) -> Result<(), FileError> {
+    let found = Cell::new(None);
+    let mut deserializer =
+        ron::de::Deserializer::from_str(text).map_err(|error| ron_error(file, &error))?;
+    let result = serde::Deserializer::deserialize_struct(
+        &mut deserializer,
+        "World",
+        &["resources", "entities"],
+        WorldProbe { found: &found },
+    );
+    match (found.get(), result) {
+        (Some(version), _) if version > FileVersion::CURRENT.0 => Err(FileError::new(
+            file,
+            Problem::NewerVersion {
+                found: version,
+                known: FileVersion::CURRENT.0,
+            },
+        )),
+        (Some(_), _) => Ok(()),
+        (None, Ok(())) => Err(FileError::new(file, Problem::NoVersion)),
+        (None, Err(error)) => Err(ron_error(file, &deserializer.span_error(error))),
+    }
+}
+
+struct WorldProbe<'a> {
+    found: &'a Cell<Option<u32>>,
+}
+
+impl<'de> Visitor<'de> for WorldProbe<'_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a scene: (resources: {…}, entities: {…})")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
+        while let Some(key) = map.next_key::<String>()? {
+            if key == "resources" {
+                map.next_value_seed(ResourcesProbe { found: self.found })?;
+            } else {
+                map.next_value::<IgnoredAny>()?;
+            }
+        }
+        Ok(())
+    }
+}
+
+struct ResourcesProbe<'a> {
+    found: &'a Cell<Option<u32>>,
+}
+
+impl<'de> DeserializeSeed<'de> for ResourcesProbe<'_> {
+    type Value = ();
+
+    fn deserialize<D: serde::Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
+        deserializer.deserialize_map(self)
+    }
+}
+
+impl<'de> Visitor<'de> for ResourcesProbe<'_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("resources: {\"type\": value, …}")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
+        while let Some(key) = map.next_key::<String>()? {
+            if key.ends_with("::FileVersion") {
+                let (version,) = map.next_value::<(u32,)>()?;
+                self.found.set(Some(version));
+            } else {
+                map.next_value::<IgnoredAny>()?;
+            }
+        }
+        Ok(())
+    }
+}

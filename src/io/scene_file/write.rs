@@ -1,0 +1,156 @@
+use super::super::error::{FileError, Problem};
+use super::super::folder::Folder;
+use super::super::ids::assign_ids;
+use super::super::replace::replace_file;
+use super::super::sources::SceneFiles;
+use super::{FileVersion, kept_only, kept_types, scene_entities};
+use crate::scene::{Environment, MeshSource, Phong, SceneId, TextureSource, UsesMaterial};
+use bevy::ecs::entity::EntityHashMap;
+use bevy::ecs::hierarchy::ChildOf;
+use bevy::mesh::Mesh3d;
+use bevy::prelude::{Entity, World};
+use bevy::reflect::PartialReflect;
+use bevy::world_serialization::serde::DynamicWorldSerializer;
+use bevy::world_serialization::serialize_ron;
+use std::io::Write;
+use std::path::Path;
+
+/// Writes the scene. Entities without a [`SceneId`], or with one that another has, get the next
+/// free number first. Paths are written relative to the new file's folder. Returns a line for each
+/// thing that the file cannot say.
+pub(crate) fn write_scene(world: &mut World, file: &Path) -> Result<Vec<String>, FileError> {
+    let mut notes = Vec::new();
+    let entities = scene_entities(world);
+    assign_ids(world, &entities);
+    let mut labels = EntityHashMap::default();
+    for &entity in &entities {
+        let id = world.get::<SceneId>(entity).map_or(0, |id| id.0);
+        // Fails for multiples of 2^32, which nobody reaches by counting.
+        let label = Entity::try_from_bits(id).ok_or_else(|| {
+            let problem = Problem::OutOfRange {
+                what: "a SceneId".into(),
+                value: id.to_string(),
+                range: "no multiple of 2^32",
+            };
+            FileError::new(file, problem)
+        })?;
+        labels.insert(entity, label);
+        if world.get::<Mesh3d>(entity).is_some() && world.get::<MeshSource>(entity).is_none() {
+            notes.push(format!(
+                "entity {id}: its mesh has no MeshSource, so the file cannot say it"
+            ));
+        }
+    }
+    let rebase = Rebase::new(world, file);
+    let registry = kept_types();
+    let mut content = kept_only(world, &registry)
+        .extract_entities(entities.iter().copied())
+        .extract_resources()
+        .build();
+    for dynamic in &mut content.entities {
+        dynamic.components.retain_mut(|component| {
+            let kept = relabel(component.as_mut(), &labels);
+            if !kept {
+                notes.push("a reference to an entity outside the scene was left out".into());
+            }
+            rebase.apply(component.as_mut(), &mut notes);
+            kept
+        });
+        if let Some(&label) = labels.get(&dynamic.entity) {
+            dynamic.entity = label;
+        }
+    }
+    for resource in &mut content.resources {
+        rebase.apply(resource.as_mut(), &mut notes);
+    }
+    content
+        .entities
+        .sort_by_key(|dynamic| dynamic.entity.to_bits());
+    content.resources.push(Box::new(FileVersion::CURRENT));
+    let malformed = |error: ron::Error| FileError::new(file, Problem::Malformed(error.to_string()));
+    let mut text =
+        serialize_ron(DynamicWorldSerializer::new(&content, &registry)).map_err(malformed)?;
+    text.push('\n');
+    replace_file(file, |writer| writer.write_all(text.as_bytes()))?;
+    notes.sort();
+    notes.dedup();
+    Ok(notes)
+}
+
+/// Replaces the entity that a component names by its label. False where it has none.
+fn relabel(component: &mut dyn PartialReflect, labels: &EntityHashMap<Entity>) -> bool {
+    let named = if let Some(ChildOf(parent)) = component.try_downcast_mut::<ChildOf>() {
+        parent
+    } else if let Some(UsesMaterial(material)) = component.try_downcast_mut::<UsesMaterial>() {
+        material
+    } else {
+        return true;
+    };
+    match labels.get(named) {
+        Some(&label) => {
+            *named = label;
+            true
+        }
+        None => false,
+    }
+}
+
+/// Turns paths that start from the folder that was opened into paths from the one written to.
+pub(crate) struct Rebase {
+    from: Folder,
+    to: Folder,
+}
+
+impl Rebase {
+    pub fn new(world: &World, file: &Path) -> Self {
+        let from = world
+            .get_resource::<SceneFiles>()
+            .map(|files| files.folder.clone())
+            .unwrap_or_default();
+        Self {
+            from,
+            to: Folder::of(file, true),
+        }
+    }
+
+    fn apply(&self, value: &mut dyn PartialReflect, notes: &mut Vec<String>) {
+        let mut texture = |source: &mut Option<TextureSource>| {
+            if let Some(TextureSource { path }) = source {
+                *path = self.path(path, notes);
+            }
+        };
+        if let Some(MeshSource::File { path, .. }) = value.try_downcast_mut::<MeshSource>() {
+            *path = self.path(path, notes);
+        } else if let Some(phong) = value.try_downcast_mut::<Phong>() {
+            texture(&mut phong.diffuse_map);
+            texture(&mut phong.opacity_map);
+        } else if let Some(environment) = value.try_downcast_mut::<Environment>() {
+            texture(&mut environment.map);
+        }
+    }
+
+    /// The same file, named from the other folder.
+    pub fn path(&self, path: &str, notes: &mut Vec<String>) -> String {
+        if path.starts_with(super::super::sources::BUILTIN) {
+            return path.to_owned();
+        }
+        let (name, fragment) = match path.split_once('#') {
+            Some((name, fragment)) => (name, Some(fragment)),
+            None => (path, None),
+        };
+        let full = self.from.path.join(name);
+        let mut named = self.to.name_of(&full);
+        if self.from.name_of(&full) == named {
+            return path.to_owned();
+        }
+        if named.starts_with("..") {
+            notes.push(format!(
+                "`{named}` lies outside the written file's folder: copy it there, or open with --allow-outside"
+            ));
+        }
+        if let Some(fragment) = fragment {
+            named = format!("{named}#{fragment}");
+        }
+        named
+    }
+}

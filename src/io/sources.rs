@@ -1,0 +1,193 @@
+//! From what files keep to what the rest reads: `MeshSource` to `Mesh3d`, the pictures of a `Phong`
+//! to `PhongMaps`, `Environment::map` to `EnvironmentMap`.
+//!
+//! Two objects with the same source share one mesh. Where a source cannot be loaded, what was
+//! loaded before stays, and [`LoadProblems`] says why.
+
+use super::error::FileError;
+use super::folder::Folder;
+use super::loader::Loader;
+use super::picture::PictureUse;
+use super::{LoadProblem, LoadProblems};
+use crate::io::Limits;
+use crate::scene::{Environment, EnvironmentMap, MeshSource, Phong, PhongMaps, TextureSource};
+use bevy::asset::{AssetId, Assets, Handle};
+use bevy::image::Image;
+use bevy::mesh::{Mesh, Mesh3d};
+use bevy::prelude::{Changed, Commands, DetectChanges, Entity, Query, Res, ResMut, Resource};
+use std::collections::HashMap;
+
+/// How the path of a picture begins that Glassbox generates.
+pub(crate) const BUILTIN: &str = "builtin:";
+
+/// Where the open scene's paths start from, and what was loaded from them.
+///
+/// It holds no asset alive: what no entity uses any more is dropped, and loaded again when needed.
+#[derive(Resource, Default)]
+pub struct SceneFiles {
+    /// The open scene's folder.
+    pub folder: Folder,
+    /// How much its files may ask for.
+    pub limits: Limits,
+    meshes: HashMap<String, AssetId<Mesh>>,
+    pictures: HashMap<(String, PictureUse), AssetId<Image>>,
+}
+
+impl SceneFiles {
+    /// For a scene in another folder: nothing is loaded yet.
+    pub(crate) fn new(folder: Folder, limits: Limits) -> Self {
+        Self {
+            folder,
+            limits,
+            ..Self::default()
+        }
+    }
+
+    /// Takes over a mesh that was loaded already. The handle must live until an entity holds it.
+    pub(crate) fn adopt_mesh(&mut self, source: &MeshSource, handle: &Handle<Mesh>) {
+        self.meshes.insert(mesh_key(source), handle.id());
+    }
+
+    /// The same for a picture.
+    pub(crate) fn adopt_picture(
+        &mut self,
+        source: &TextureSource,
+        usage: PictureUse,
+        handle: &Handle<Image>,
+    ) {
+        self.pictures
+            .insert((source.path.clone(), usage), handle.id());
+    }
+
+    fn mesh(
+        &mut self,
+        source: &MeshSource,
+        assets: &mut Assets<Mesh>,
+        load: impl FnOnce() -> Result<Mesh, FileError>,
+    ) -> Result<Handle<Mesh>, FileError> {
+        let key = mesh_key(source);
+        let known = self.meshes.get(&key).copied();
+        if let Some(handle) = known.and_then(|id| assets.get_strong_handle(id)) {
+            return Ok(handle);
+        }
+        let handle = assets.add(load()?);
+        self.meshes.insert(key, handle.id());
+        Ok(handle)
+    }
+
+    fn picture(
+        &mut self,
+        source: &TextureSource,
+        usage: PictureUse,
+        assets: &mut Assets<Image>,
+    ) -> Result<Handle<Image>, FileError> {
+        let key = (source.path.clone(), usage);
+        let known = self.pictures.get(&key).copied();
+        if let Some(handle) = known.and_then(|id| assets.get_strong_handle(id)) {
+            return Ok(handle);
+        }
+        let picture = Loader::new(&self.folder, &self.limits).picture(source, usage)?;
+        let handle = assets.add(picture);
+        self.pictures.insert(key, handle.id());
+        Ok(handle)
+    }
+}
+
+/// A source as a key. `Debug` prints floating point numbers so that they read back the same.
+pub(crate) fn mesh_key(source: &MeshSource) -> String {
+    format!("{source:?}")
+}
+
+/// Gives each object whose source changed the mesh that it names.
+pub(crate) fn resolve_meshes(
+    mut commands: Commands,
+    mut files: ResMut<SceneFiles>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut problems: ResMut<LoadProblems>,
+    changed: Query<(Entity, &MeshSource, Option<&Mesh3d>), Changed<MeshSource>>,
+) {
+    if changed.is_empty() {
+        return;
+    }
+    let (folder, limits) = (files.folder.clone(), files.limits.clone());
+    // One for all, so that a file with many meshes is parsed once.
+    let mut loader = Loader::new(&folder, &limits);
+    for (entity, source, current) in &changed {
+        problems.forget(entity, LoadProblem::MESH);
+        match files.mesh(source, &mut meshes, || loader.mesh(source)) {
+            Ok(handle) if current.is_some_and(|mesh| mesh.0 == handle) => {}
+            Ok(handle) => {
+                commands.entity(entity).insert(Mesh3d(handle));
+            }
+            Err(error) => problems.add(Some(entity), LoadProblem::MESH, error),
+        }
+    }
+}
+
+/// Gives each material whose pictures changed their handles.
+pub(crate) fn resolve_pictures(
+    mut commands: Commands,
+    mut files: ResMut<SceneFiles>,
+    mut images: ResMut<Assets<Image>>,
+    mut problems: ResMut<LoadProblems>,
+    changed: Query<(Entity, &Phong, Option<&PhongMaps>), Changed<Phong>>,
+) {
+    for (entity, phong, current) in &changed {
+        let before = current.cloned().unwrap_or_default();
+        problems.forget(entity, LoadProblem::PICTURE);
+        let mut load = |source: &Option<TextureSource>, usage, before: Option<Handle<Image>>| {
+            let source = source.as_ref()?;
+            match files.picture(source, usage, &mut images) {
+                Ok(handle) => Some(handle),
+                Err(error) => {
+                    problems.add(Some(entity), LoadProblem::PICTURE, error);
+                    before
+                }
+            }
+        };
+        let maps = PhongMaps {
+            diffuse: load(
+                &phong.diffuse_map,
+                PictureUse::Color,
+                before.diffuse.clone(),
+            ),
+            opacity: load(&phong.opacity_map, PictureUse::Data, before.opacity.clone()),
+        };
+        if maps == before && (current.is_some() || maps == PhongMaps::default()) {
+            continue;
+        }
+        commands.entity(entity).insert(maps);
+    }
+}
+
+/// Loads the environment's map where it changed.
+pub(crate) fn resolve_environment(
+    environment: Res<Environment>,
+    mut files: ResMut<SceneFiles>,
+    mut images: ResMut<Assets<Image>>,
+    mut problems: ResMut<LoadProblems>,
+    mut map: ResMut<EnvironmentMap>,
+) {
+    if !environment.is_changed() {
+        return;
+    }
+    problems.forget_environment();
+    let handle = match &environment.map {
+        None => None,
+        Some(source) => match files.picture(source, PictureUse::Color, &mut images) {
+            Ok(handle) => Some(handle),
+            Err(error) => {
+                problems.add(None, LoadProblem::ENVIRONMENT, error);
+                return;
+            }
+        },
+    };
+    if map.0 != handle {
+        map.0 = handle;
+    }
+}
+
+/// The file's name and the part after `#` of a picture's path.
+pub(crate) fn split_fragment(path: &str) -> (&str, &str) {
+    path.split_once('#').unwrap_or((path, ""))
+}

@@ -1,0 +1,4 @@
+//! Scenes and models through files and back.
+
+mod app;
+mod round_trip;
