@@ -3,6 +3,7 @@
 mod aggregate;
 mod boxes;
 mod build;
+mod crossing;
 mod instance;
 mod layout;
 mod median;

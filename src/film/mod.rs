@@ -17,4 +17,4 @@ pub use picture::Picture;
 pub use render::{Rendered, render};
 pub use sum::Sum;
 pub use tiles::{Film, TILE};
-pub use view_transform::{srgb, view_transform};
+pub use view_transform::view_transform;

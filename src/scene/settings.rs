@@ -182,6 +182,8 @@ pub enum TextureFilter {
     /// Between the four nearest.
     #[default]
     Bilinear,
+    /// Bilinear, between the two sizes of the picture whose texels are as large as the ray is wide.
+    Mipmap,
 }
 
 /// How the trees are built. The picture does not depend on it.

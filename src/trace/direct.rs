@@ -158,10 +158,11 @@ impl Batch<'_> {
             let aggregate = &self.world.aggregate;
             let hit = match &after {
                 None => aggregate.closest_hit(ray),
-                Some(after) => aggregate.closest_hit_after(ray, after),
+                Some(after) => aggregate.next_crossing(ray, after),
             };
             let Some(hit) = hit else { return transmittance };
-            let surface = Surface::at(self.world, self.settings, ray.direction, &hit);
+            // The finest level: a shadow ray's own width is not known.
+            let surface = Surface::at(self.world, self.settings, ray.direction, 0.0, &hit);
             let d = surface.opacity;
             transmittance *= (1.0 - d) * Vec3::ONE.lerp(surface.diffuse, d);
             if transmittance == Vec3::ZERO {

@@ -14,19 +14,23 @@ pub mod camera;
 mod direct;
 mod disc;
 mod environment;
+mod footprint;
 pub mod lights;
 mod material;
+mod mipmap;
 mod needs;
 mod radiance;
 mod sampler;
 mod scatter;
 pub mod shading;
+pub mod srgb;
 mod surface;
 mod texture;
 mod world;
 
 pub use camera::{Camera, Optics};
 pub use environment::Environment;
+pub use footprint::Cone;
 pub use lights::{
     DirectionalLight, LightPoint, Lights, ParallelogramLight, PointLight, SegmentLight, SpotCone,
 };

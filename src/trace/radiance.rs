@@ -1,7 +1,7 @@
 //! The value of samples: a batch at a time, bounce by bounce.
 
 use super::sampler::{Purpose, Sampler};
-use super::{Camera, Surface, World};
+use super::{Camera, Cone, Surface, World};
 use crate::bvh::{Hit, Ray};
 use crate::scene::{Lighting, RenderSettings};
 use glam::{UVec2, Vec3};
@@ -60,6 +60,7 @@ pub(super) struct Path {
     pub origin: Vec3,
     pub direction: Vec3,
     pub throughput: Vec3,
+    pub cone: Cone,
     /// Index into the batch.
     pub sample: u32,
     /// Names this path among those of its sample, for its random numbers: 0 from the camera on.
@@ -138,6 +139,7 @@ impl Batch<'_> {
     /// One path per sample, at the camera.
     fn start(&mut self, camera: &Camera, workspace: &mut Workspace) {
         workspace.paths.clear();
+        let cone = Cone::of_pixel(camera, self.settings.size);
         for (i, sample) in self.samples.iter().enumerate() {
             let (sampler, index) = self.sampler(i as u32);
             let time = if camera.optics.velocity == Vec3::ZERO {
@@ -157,6 +159,7 @@ impl Batch<'_> {
                 origin: ray.origin,
                 direction: ray.direction,
                 throughput: Vec3::ONE,
+                cone,
                 sample: i as u32,
                 name: 0,
                 bounces: 0,
@@ -186,7 +189,7 @@ impl Batch<'_> {
         workspace.hits.clear();
         for (path, ray) in workspace.paths.iter().zip(&workspace.rays) {
             workspace.hits.push(match &path.after {
-                Some(after) => aggregate.closest_hit_after(ray, after),
+                Some(after) => aggregate.next_crossing(ray, after),
                 None => aggregate.closest_hit(ray),
             });
         }
@@ -204,7 +207,8 @@ impl Batch<'_> {
             if let Some(light) = self.visible_light(path, hit.as_ref()) {
                 self.add(path.sample, path.throughput * light);
             } else if let Some(hit) = hit {
-                let surface = Surface::at(self.world, self.settings, path.direction, hit);
+                let width = path.cone.width_at(hit.t);
+                let surface = Surface::at(self.world, self.settings, path.direction, width, hit);
                 self.shade_surface(path, hit, &surface, workspace);
             } else {
                 self.add(

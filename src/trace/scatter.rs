@@ -37,19 +37,26 @@ impl Batch<'_> {
             let u = sampler.block(index, Purpose::Branch, path.name)[0];
             let share = reflects / (reflects + transmits);
             if u < share {
-                self.reflect(path, surface, 1.0 / share, workspace);
+                self.reflect(path, hit, surface, 1.0 / share, workspace);
             } else {
                 self.transmit(path, hit, surface, 1.0 / (1.0 - share), workspace);
             }
             return;
         }
         if reflects > 0.0 {
-            self.reflect(path, surface, 1.0, workspace);
+            self.reflect(path, hit, surface, 1.0, workspace);
         }
         self.transmit(path, hit, surface, 1.0, workspace);
     }
 
-    fn reflect(&mut self, path: &Path, surface: &Surface, weight: f32, workspace: &mut Workspace) {
+    fn reflect(
+        &mut self,
+        path: &Path,
+        hit: &Hit,
+        surface: &Surface,
+        weight: f32,
+        workspace: &mut Workspace,
+    ) {
         let throughput = path.throughput * surface.specular * (surface.opacity * weight);
         let mirrored = surface.mirrored();
         let glossy = self.settings.features.glossy;
@@ -71,6 +78,9 @@ impl Batch<'_> {
                 origin: surface.spawn(direction),
                 direction,
                 throughput: throughput / count as f32,
+                cone: path
+                    .cone
+                    .reflected(hit.t, if glossy { 1.0 / surface.shininess } else { 0.0 }),
                 name: child(path.name, 1, i),
                 bounces: path.bounces + 1,
                 first: false,
@@ -125,6 +135,7 @@ impl Batch<'_> {
                 origin: surface.spawn(direction),
                 direction,
                 throughput: throughput / count as f32,
+                cone: path.cone.reflected(hit.t, 1.0 / surface.shininess),
                 name: child(path.name, 2, i),
                 scatterings: path.scatterings + 1,
                 first: false,

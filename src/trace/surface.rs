@@ -1,6 +1,7 @@
 use super::World;
+use super::footprint::texture_footprint;
 use crate::bvh::Hit;
-use crate::scene::{Lighting, RenderSettings};
+use crate::scene::{Lighting, RenderSettings, TextureFilter};
 use glam::{Vec2, Vec3};
 
 /// A place on a surface, with everything that shading reads.
@@ -29,8 +30,14 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// What the ray along `direction` found at `hit`.
-    pub fn at(world: &World, settings: &RenderSettings, direction: Vec3, hit: &Hit) -> Self {
+    /// What the ray along `direction`, `width` metres wide at the hit, found at `hit`.
+    pub fn at(
+        world: &World,
+        settings: &RenderSettings,
+        direction: Vec3,
+        width: f32,
+        hit: &Hit,
+    ) -> Self {
         let instance = &world.aggregate.instances()[hit.instance as usize];
         let object = &world.objects[hit.instance as usize];
         let material = &world.materials[object.material as usize];
@@ -67,12 +74,26 @@ impl Surface {
             let uv: Vec2 = (0..3)
                 .map(|i| weights[i] * mesh.uvs[corners[i] as usize])
                 .sum();
+            let filter = settings.texture_filter;
+            let footprint = if filter == TextureFilter::Mipmap {
+                texture_footprint(
+                    mesh.tree
+                        .triangles()
+                        .corners(hit.triangle)
+                        .map(|p| instance.to_world_point(p)),
+                    corners.map(|i| mesh.uvs[i as usize]),
+                    width,
+                    geometric_normal.dot(to_viewer),
+                )
+            } else {
+                0.0
+            };
             let raw = settings.lighting == Lighting::Classic;
             if let Some(map) = material.diffuse_map {
-                diffuse = world.textures[map as usize].sample(uv, settings.texture_filter, raw);
+                diffuse = world.textures[map as usize].sample(uv, footprint, filter, raw);
             }
             if let Some(map) = material.opacity_map {
-                opacity *= world.textures[map as usize].opacity(uv, settings.texture_filter);
+                opacity *= world.textures[map as usize].opacity(uv, footprint, filter);
             }
         }
         if !settings.features.transparency {

@@ -1,5 +1,6 @@
+use super::{mipmap, srgb};
 use crate::scene::TextureFilter;
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 use std::sync::OnceLock;
 
 /// A picture that rays read. Row 0 is the top one; (0, 0) is the top left corner, v grows downwards.
@@ -8,6 +9,8 @@ pub struct Texture {
     width: u32,
     height: u32,
     texels: Texels,
+    /// Made when first asked for: a scene without mipmaps has none.
+    levels: OnceLock<Vec<Texture>>,
 }
 
 /// How the texels are kept: as the file had them, so that a large map stays small.
@@ -65,11 +68,27 @@ impl Texture {
                 found,
             });
         }
-        Ok(Self {
+        Ok(Self::level(width, height, texels))
+    }
+
+    /// A level of a pyramid: its texels are known to be as many as its size says.
+    pub(super) fn level(width: u32, height: u32, texels: Texels) -> Self {
+        Self {
             width,
             height,
             texels,
-        })
+            levels: OnceLock::new(),
+        }
+    }
+
+    /// As they are kept.
+    pub(super) fn texels(&self) -> &Texels {
+        &self.texels
+    }
+
+    /// Linear RGB and alpha of one texel.
+    pub(super) fn linear_texel(&self, x: u32, y: u32) -> Vec4 {
+        self.texel(x, y, false).extend(self.alpha(x, y))
     }
 
     /// Pixels a row.
@@ -87,7 +106,7 @@ impl Texture {
         let i = y as usize * self.width as usize + x as usize;
         match &self.texels {
             Texels::Srgb8(t) if !raw => {
-                let table = srgb_table();
+                let table = srgb::decode_table();
                 Vec3::new(
                     table[t[i][0] as usize],
                     table[t[i][1] as usize],
@@ -111,18 +130,52 @@ impl Texture {
         }
     }
 
-    /// Colour at `uv`, repeated in both directions.
-    pub fn sample(&self, uv: Vec2, filter: TextureFilter, raw: bool) -> Vec3 {
-        self.filtered(uv, filter, |x, y| self.texel(x, y, raw))
+    /// Colour at `uv`, repeated in both directions. `footprint` is the edge of the square that the
+    /// ray covers, in texture coordinates: only mipmaps look at it.
+    pub fn sample(&self, uv: Vec2, footprint: f32, filter: TextureFilter, raw: bool) -> Vec3 {
+        self.across_levels(footprint, filter, |level| {
+            level.filtered(uv, filter, |x, y| level.texel(x, y, raw))
+        })
     }
 
     /// Opacity at `uv`: the alpha channel times the brightest colour channel, so that both a
     /// grey map (MTL's map_d) and a colour map with alpha (glTF) say what they mean.
-    pub fn opacity(&self, uv: Vec2, filter: TextureFilter) -> f32 {
-        self.filtered(uv, filter, |x, y| {
-            Vec3::splat(self.alpha(x, y) * self.texel(x, y, true).max_element())
-        })
-        .x
+    pub fn opacity(&self, uv: Vec2, footprint: f32, filter: TextureFilter) -> f32 {
+        let opacity = self.across_levels(footprint, filter, |level| {
+            level.filtered(uv, filter, |x, y| {
+                Vec3::splat(level.alpha(x, y) * level.texel(x, y, true).max_element())
+            })
+        });
+        opacity.x
+    }
+
+    /// Between the two levels whose texels are about as large as the footprint.
+    fn across_levels(
+        &self,
+        footprint: f32,
+        filter: TextureFilter,
+        look_up: impl Fn(&Texture) -> Vec3,
+    ) -> Vec3 {
+        if filter != TextureFilter::Mipmap {
+            return look_up(self);
+        }
+        let texels = footprint * self.width.max(self.height) as f32;
+        let level = texels.log2();
+        if level.is_nan() || level <= 0.0 {
+            return look_up(self);
+        }
+        let levels = self.levels.get_or_init(|| mipmap::pyramid(self));
+        let level = level.min(levels.len() as f32);
+        let (below, fraction) = (level as usize, level.fract());
+        let finer = if below == 0 {
+            look_up(self)
+        } else {
+            look_up(&levels[below - 1])
+        };
+        match levels.get(below) {
+            Some(coarser) => finer.lerp(look_up(coarser), fraction),
+            None => finer,
+        }
     }
 
     fn filtered(&self, uv: Vec2, filter: TextureFilter, texel: impl Fn(u32, u32) -> Vec3) -> Vec3 {
@@ -135,7 +188,7 @@ impl Texture {
                 ((uv.x * width) as u32).min(self.width - 1),
                 ((uv.y * height) as u32).min(self.height - 1),
             ),
-            TextureFilter::Bilinear => {
+            TextureFilter::Bilinear | TextureFilter::Mipmap => {
                 let (x, fx) = split(uv.x * width - 0.5);
                 let (y, fy) = split(uv.y * height - 0.5);
                 let (x0, x1) = (wrap(x, self.width), wrap(x + 1, self.width));
@@ -178,22 +231,6 @@ fn wrap(i: i64, n: u32) -> u32 {
     i.rem_euclid(i64::from(n)) as u32
 }
 
-/// The sRGB curve (IEC 61966-2-1), decoded once for each of the 256 values.
-fn srgb_table() -> &'static [f32; 256] {
-    static TABLE: OnceLock<[f32; 256]> = OnceLock::new();
-    TABLE.get_or_init(|| {
-        std::array::from_fn(|i| {
-            let c = i as f64 / 255.0;
-            let linear = if c <= 0.04045 {
-                c / 12.92
-            } else {
-                ((c + 0.055) / 1.055).powf(2.4)
-            };
-            linear as f32
-        })
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -206,12 +243,18 @@ mod tests {
     #[test]
     fn nearest_reads_the_texel_that_holds_the_point_and_bilinear_the_mean_between_four() {
         let t = two_by_two();
-        let nearest = |u, v| t.sample(Vec2::new(u, v), TextureFilter::Nearest, false).x;
+        let nearest = |u, v| {
+            t.sample(Vec2::new(u, v), 0.0, TextureFilter::Nearest, false)
+                .x
+        };
         assert_eq!(
             [nearest(0.1, 0.1), nearest(0.9, 0.1), nearest(0.1, 0.9)],
             [0.0, 1.0, 2.0]
         );
-        let bilinear = |u, v| t.sample(Vec2::new(u, v), TextureFilter::Bilinear, false).x;
+        let bilinear = |u, v| {
+            t.sample(Vec2::new(u, v), 0.0, TextureFilter::Bilinear, false)
+                .x
+        };
         assert_eq!(bilinear(0.25, 0.25), 0.0);
         assert_eq!(bilinear(0.5, 0.5), 1.5);
         assert_eq!(bilinear(0.5, 0.25), 0.5);
@@ -222,15 +265,27 @@ mod tests {
         let t = two_by_two();
         for filter in [TextureFilter::Nearest, TextureFilter::Bilinear] {
             for (a, b) in [((0.0, 0.0), (1.0, 1.0)), ((0.3, 0.7), (-0.7, 5.7))] {
-                let a = t.sample(Vec2::from(a), filter, false);
-                let b = t.sample(Vec2::from(b), filter, false);
+                let a = t.sample(Vec2::from(a), 0.0, filter, false);
+                let b = t.sample(Vec2::from(b), 0.0, filter, false);
                 assert!((a - b).length() < 1e-5, "{filter:?}: {a} and {b}");
             }
         }
         assert!(
-            t.sample(Vec2::NAN, TextureFilter::Bilinear, false)
+            t.sample(Vec2::NAN, 0.0, TextureFilter::Bilinear, false)
                 .is_finite()
         );
+    }
+
+    #[test]
+    fn a_wide_ray_sees_the_mean_of_the_picture_and_a_narrow_one_its_texels() {
+        let t = two_by_two();
+        let at = |footprint| {
+            t.sample(Vec2::splat(0.25), footprint, TextureFilter::Mipmap, false)
+                .x
+        };
+        assert_eq!((at(0.0), at(0.5), at(1.0), at(100.0)), (0.0, 0.0, 1.5, 1.5));
+        let between = at(0.5_f32.sqrt());
+        assert!((between - 0.75).abs() < 1e-5, "{between}");
     }
 
     #[test]
