@@ -7,9 +7,12 @@ use obvhs::{aabb::Aabb, bvh2::node::Bvh2Node};
 ///
 /// Areas then neither overflow (obvhs turns ∞ − ∞ into a broken tree) nor vanish, and a scene scaled by a
 /// power of two gets the very same tree. Nothing is rounded but what falls 2^126 below the scene's size.
+/// A box that is not finite becomes a point at the origin.
 pub(super) fn normalised(boxes: &[Aabb]) -> Vec<Aabb> {
+    let is_finite = |b: &&Aabb| b.min.is_finite() && b.max.is_finite();
     let largest = boxes
         .iter()
+        .filter(is_finite)
         .fold(Vec3A::ZERO, |largest, b| {
             largest.max(b.min.abs()).max(b.max.abs())
         })
@@ -18,6 +21,7 @@ pub(super) fn normalised(boxes: &[Aabb]) -> Vec<Aabb> {
     let scaled = |v: Vec3A| (v.as_dvec3() * scale).as_vec3a();
     boxes
         .iter()
+        .map(|b| Some(b).filter(is_finite).copied().unwrap_or_default())
         .map(|b| Aabb::new(scaled(b.min), scaled(b.max)))
         .collect()
 }

@@ -74,7 +74,9 @@ fn copy(
             deepest = deepest.max(visit.depth);
             continue;
         }
-        if visit.depth == REBUILD_DEPTH && exceeds(draft, visit.from, MAX_DEPTH - REBUILD_DEPTH) {
+        if visit.depth == REBUILD_DEPTH
+            && exceeds(draft.nodes, visit.from, MAX_DEPTH - REBUILD_DEPTH)
+        {
             deepest = deepest.max(rebuild(draft, visit, tree, boxes, options));
             continue;
         }
@@ -103,13 +105,13 @@ fn leaf(primitives: &[u32], first: usize, boxes: &[Aabb]) -> Bvh2Node {
 }
 
 /// Is any leaf more than `levels` below `root`?
-fn exceeds(draft: Draft, root: usize, levels: usize) -> bool {
+pub(super) fn exceeds(nodes: &[Bvh2Node], root: usize, levels: usize) -> bool {
     let mut stack = vec![(root, 0)];
     while let Some((index, level)) = stack.pop() {
         if level > levels {
             return true;
         }
-        let node = draft.nodes[index];
+        let node = nodes[index];
         if !node.is_leaf() {
             let child = node.first_index as usize;
             stack.extend([(child, level + 1), (child + 1, level + 1)]);

@@ -5,9 +5,10 @@
 //! WHEN to use it: always, unless you want to see what another rule does. Its trees cost rays least.
 
 use super::{
-    boxes,
+    boxes, layout,
     options::{BuildOptions, Preset},
     sah::{COST_INTERSECT, COST_TRAVERSE},
+    stats,
 };
 use obvhs::{
     BvhBuildParams,
@@ -35,28 +36,50 @@ fn parameters(options: &BuildOptions) -> BvhBuildParams {
     }
 }
 
+/// Reinsertion searches the tree for a better place for each of its candidates, and the more the boxes overlap
+/// the longer it searches: about as the tree's SAH cost. Above this cost there are fewer candidates in
+/// proportion, so that time stays O(n log n). Meshes of millions of triangles cost 40 to 100; 1e5 identical
+/// triangles cost 1e5, and took `VerySlow` 17 s.
+const UNLIMITED_COST: f64 = 4096.0;
+
+/// A tree that is deeper is not reinserted into: obvhs' search keeps a stack of 192 entries and panics when
+/// that is full, and reinsertion makes trees deeper. (Two million triangles of a sphere with slivers at its
+/// poles are 75 deep.)
+const REINSERTION_DEPTH: usize = 96;
+
 /// A tree over `boxes`, which are normalised. Its boxes are those of the jittered primitives, its nodes in no
-/// particular order, its depth not bounded: [`layout`](super::layout) sees to all three.
-pub(super) fn build(boxes: &[Aabb], options: &BuildOptions) -> Bvh2 {
+/// particular order, its depth not bounded: [`layout`](super::layout) sees to all three. `None` where obvhs
+/// panicked: what is known to make it panic is kept from it, and another builder steps in for the rest.
+pub(super) fn build(boxes: &[Aabb], options: &BuildOptions) -> Option<Bvh2> {
     let parameters = parameters(options);
     let boxes = boxes::jittered(boxes);
+    std::panic::catch_unwind(|| cluster(&boxes, parameters)).ok()
+}
+
+fn cluster(boxes: &[Aabb], parameters: BvhBuildParams) -> Bvh2 {
     let indices = (0..boxes.len() as u32).collect();
     let mut tree = PlocBuilder::with_capacity(boxes.len()).build(
         parameters.ploc_search_distance,
-        &boxes,
+        boxes,
         indices,
         parameters.sort_precision,
         parameters.search_depth_threshold,
     );
-    let before = parameters.reinsertion_batch_ratio;
+    let limit = (UNLIMITED_COST / stats::sah_cost(&tree)).min(1.0) as f32;
+    let before = parameters.reinsertion_batch_ratio * limit;
     let after = before * parameters.post_collapse_reinsertion_batch_ratio_multiplier;
-    let mut reinsertion = ReinsertionOptimizer::default();
-    reinsertion.run(&mut tree, before, None);
+    reinsert(&mut tree, before);
     collapse(
         &mut tree,
         parameters.max_prims_per_leaf,
         parameters.collapse_traversal_cost,
     );
-    reinsertion.run(&mut tree, after, None);
+    reinsert(&mut tree, after);
     tree
+}
+
+fn reinsert(tree: &mut Bvh2, batch_ratio: f32) {
+    if batch_ratio > 0.0 && !layout::exceeds(&tree.nodes, 0, REINSERTION_DEPTH) {
+        ReinsertionOptimizer::default().run(tree, batch_ratio, None);
+    }
 }

@@ -24,7 +24,7 @@ pub struct TreeStats {
     pub depths: Vec<u32>,
     /// What a random ray that meets the root's box pays in this tree: see [`sah_cost`].
     pub sah_cost: f64,
-    /// Effective parent overlap, where it was asked for: see `epo`.
+    /// Effective parent overlap, where it was asked for: see [`epo`](super::epo()).
     pub epo: Option<f64>,
     /// Memory of nodes and primitive indices.
     pub bytes: usize,
@@ -105,7 +105,7 @@ pub(super) fn own_cost(node: &Bvh2Node) -> f64 {
 }
 
 /// In f64, where the areas of f32 boxes neither overflow nor vanish.
-fn half_area(node: &Bvh2Node) -> f64 {
+pub(super) fn half_area(node: &Bvh2Node) -> f64 {
     let d = node.max.as_dvec3() - node.min.as_dvec3();
     (d.x + d.y) * d.z + d.x * d.y
 }
