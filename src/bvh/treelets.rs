@@ -127,7 +127,8 @@ fn replacement(
         }
     });
     let new_cost = cost(&with_boxes(&nodes, &items), 0);
-    (new_cost < cost(&tree.nodes, treelet.root)).then_some(Replacement { nodes, items })
+    // Of two that cost the same (points have no area) the halved one is shallower.
+    (new_cost <= cost(&tree.nodes, treelet.root)).then_some(Replacement { nodes, items })
 }
 
 /// The nodes with the boxes that [`top_down`] leaves out.
