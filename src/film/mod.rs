@@ -7,14 +7,20 @@
 //! Nothing here traces a ray but [`render`](render()), which hands tiles of samples to
 //! [`trace::radiance`](crate::trace::radiance()).
 
+mod agx;
+mod bloom;
+mod gaussian;
 mod picture;
 mod render;
 mod sum;
 mod tiles;
 mod view_transform;
 
+pub use agx::agx;
+pub use bloom::{BloomError, bloom_layer, bloom_threshold, check_bloom, with_bloom};
+pub use gaussian::{MAX_SIGMA, blurred, kernel};
 pub use picture::Picture;
 pub use render::{Rendered, render};
 pub use sum::Sum;
 pub use tiles::{Film, TILE};
-pub use view_transform::view_transform;
+pub use view_transform::{develop, view_transform};

@@ -30,7 +30,7 @@ pub use lamps::{Cone, DirectionalLamp, ParallelogramLamp, PointLamp, SegmentLamp
 pub use material::{Phong, PhongMaps, TextureSource, UsesMaterial};
 pub use mesh_source::{MeshSource, Shape};
 pub use settings::{
-    Builder, Environment, EnvironmentMap, Features, Levels, Lighting, Output, PixelSampling,
+    Bloom, Builder, Environment, EnvironmentMap, Features, Levels, Lighting, Output, PixelSampling,
     Preset, RenderSettings, TextureFilter, TreeSettings, ViewTransform,
 };
 

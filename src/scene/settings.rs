@@ -272,10 +272,40 @@ pub enum Preset {
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Default, Clone, PartialEq, Debug)]
 pub struct Output {
+    /// Light that bright places spill over their surroundings; it comes before the exposure.
+    pub bloom: Bloom,
     /// In stops: the picture is multiplied by 2^exposure.
     pub exposure: f32,
     /// From scene-referred values to a screen's.
     pub view_transform: ViewTransform,
+}
+
+/// Light that bright places spill over their surroundings, as in an eye or a lens.
+///
+/// Pixels whose largest component exceeds `threshold`, through a Gaussian of `sigma` pixels, times
+/// `intensity`, are added to the linear picture.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Default, Clone, PartialEq, Debug)]
+pub struct Bloom {
+    /// Off: the picture stays as it was traced.
+    pub enabled: bool,
+    /// 0–1, in the linear picture's unit.
+    pub threshold: f32,
+    /// 0–1: the part of the bright pixels' light that is added again around them.
+    pub intensity: f32,
+    /// Standard deviation of the Gaussian in pixels, 0–1000; 0 does not blur.
+    pub sigma: f32,
+}
+
+impl Default for Bloom {
+    fn default() -> Self {
+        Self {
+            enabled: false,
+            threshold: 0.8,
+            intensity: 0.25,
+            sigma: 8.0,
+        }
+    }
 }
 
 /// From scene-referred values to a screen's.
@@ -287,4 +317,7 @@ pub enum ViewTransform {
     /// Clamped, then the sRGB curve.
     #[default]
     Srgb,
+    /// Troy Sobotka's AgX: 16.5 stops are fitted into the screen's range, and what is very bright
+    /// loses its colour instead of being clipped in one channel after the other.
+    AgX,
 }
