@@ -1,4 +1,6 @@
 //! Tests of the whole stack. A module a subject; tests of one file stand in that file.
 
 mod analytic;
+mod convergence;
+mod effects;
 mod files;

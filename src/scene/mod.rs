@@ -31,7 +31,7 @@ pub use material::{Phong, PhongMaps, TextureSource, UsesMaterial};
 pub use mesh_source::{MeshSource, Shape};
 pub use settings::{
     Bloom, Builder, Environment, EnvironmentMap, Features, Levels, Lighting, Output, PixelSampling,
-    Preset, RenderSettings, TextureFilter, TreeSettings, ViewTransform,
+    Preset, RenderSettings, Sequence, TextureFilter, TreeSettings, ViewTransform,
 };
 
 use bevy::app::{App, Plugin};

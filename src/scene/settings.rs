@@ -56,6 +56,8 @@ pub struct RenderSettings {
     pub jitter: u32,
     /// Chooses the random numbers; the same seed gives the same picture.
     pub seed: u32,
+    /// Where the random numbers come from.
+    pub sequence: Sequence,
     /// Where in the pixel samples lie.
     pub pixel: PixelSampling,
     /// What a light's colour means.
@@ -83,6 +85,7 @@ impl Default for RenderSettings {
             spp: 16,
             jitter: 1,
             seed: 0,
+            sequence: Sequence::default(),
             pixel: PixelSampling::default(),
             lighting: Lighting::default(),
             max_depth: 6,
@@ -94,6 +97,17 @@ impl Default for RenderSettings {
             output: Output::default(),
         }
     }
+}
+
+/// Where the random numbers come from.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[reflect(Default, Clone, PartialEq, Debug)]
+pub enum Sequence {
+    /// Owen-scrambled Sobol points: the error falls faster than one over the root of the samples.
+    #[default]
+    Sobol,
+    /// Independent random numbers, to compare with.
+    Independent,
 }
 
 /// Where in the pixel samples lie.

@@ -200,7 +200,7 @@ mod tests {
     #[test]
     fn the_corner_of_a_pixel_is_its_lower_left_one() {
         let camera = camera(Optics::default());
-        let sampler = Sampler::new(0, 0, 0);
+        let sampler = Sampler::new(0, 0, 0, crate::scene::Sequence::Sobol);
         let pixel = UVec2::new(10, 20);
         let corner = camera.sample_ray(pixel, SIZE, 0, sampler, PixelSampling::Corner, 0.0);
         let expected = camera.ray(Vec2::new(10.0, 21.0), SIZE, [0.0; 2], 0.0);

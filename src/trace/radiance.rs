@@ -133,7 +133,9 @@ impl Batch<'_> {
     /// The random numbers of a sample of the batch, and its index in its pixel.
     pub(super) fn sampler(&self, sample: u32) -> (Sampler, u64) {
         let SampleId { pixel, index } = self.samples[sample as usize];
-        (Sampler::new(pixel.x, pixel.y, self.settings.seed), index)
+        let settings = self.settings;
+        let sampler = Sampler::new(pixel.x, pixel.y, settings.seed, settings.sequence);
+        (sampler, index)
     }
 
     /// One path per sample, at the camera.

@@ -1,3 +1,4 @@
+use crate::scene::Sequence;
 use sobol_burley::sample_4d;
 
 /// Low-discrepancy numbers for one pixel: Owen-scrambled Sobol points (Burley 2020, "Practical
@@ -9,6 +10,7 @@ use sobol_burley::sample_4d;
 #[derive(Clone, Copy, Debug)]
 pub struct Sampler {
     seed: u32,
+    sequence: Sequence,
 }
 
 /// What a block of four numbers is used for.
@@ -46,9 +48,10 @@ const LENGTH_BITS: u32 = 16;
 
 impl Sampler {
     /// The numbers of pixel (x, y) under `seed`.
-    pub fn new(x: u32, y: u32, seed: u32) -> Self {
+    pub fn new(x: u32, y: u32, seed: u32, sequence: Sequence) -> Self {
         Self {
             seed: mix(mix(mix(0x9e37_79b9, seed), x), y),
+            sequence,
         }
     }
 
@@ -56,6 +59,11 @@ impl Sampler {
     /// (0 at the camera and at the first hit).
     pub fn block(self, index: u64, purpose: Purpose, path: u32) -> [f32; 4] {
         let mut seed = mix(mix(self.seed, purpose.key()), path);
+        if self.sequence == Sequence::Independent {
+            let of_sample = mix(mix(seed, index as u32), (index >> 32) as u32);
+            // 24 bits, as many as a float in [0, 1) holds evenly.
+            return [0, 1, 2, 3].map(|i| (mix(of_sample, i) >> 8) as f32 / (1 << 24) as f32);
+        }
         let beyond = (index >> LENGTH_BITS) as u32;
         if beyond != 0 {
             seed = mix(seed, beyond);
@@ -88,7 +96,7 @@ mod tests {
     fn a_pair_of_a_block_is_stratified_in_every_elementary_interval() {
         // The first 256 points of a (0, m, 2)-net have exactly one point in each cell of every
         // 2^a × 2^b grid with a + b = 8.
-        let sampler = Sampler::new(3, 5, 7);
+        let sampler = Sampler::new(3, 5, 7, Sequence::Sobol);
         for a in 0..=8 {
             let (columns, rows) = (1usize << a, 1usize << (8 - a));
             let mut cells = vec![0; 256];
@@ -101,14 +109,29 @@ mod tests {
     }
 
     #[test]
+    fn independent_numbers_fill_the_square_without_order() {
+        let sampler = Sampler::new(3, 5, 7, Sequence::Independent);
+        let mut cells = [0.0_f64; 64];
+        let n = 64 * 1024;
+        for i in 0..n {
+            let [u, v, ..] = sampler.block(i, Purpose::Gloss, 0);
+            cells[(v * 8.0) as usize * 8 + (u * 8.0) as usize] += 1.0;
+        }
+        // χ² of 63 degrees of freedom: between 30 and 115 but for one time in ten thousand; a
+        // stratified sequence would give nearly zero.
+        let chi: f64 = cells.iter().map(|c| (c - 1024.0).powi(2) / 1024.0).sum();
+        assert!((30.0..115.0).contains(&chi), "χ² = {chi:.1}");
+    }
+
+    #[test]
     fn different_purposes_pixels_paths_and_seeds_give_different_numbers() {
-        let base = Sampler::new(1, 2, 3).block(4, Purpose::Gloss, 0);
+        let base = Sampler::new(1, 2, 3, Sequence::Sobol).block(4, Purpose::Gloss, 0);
         for other in [
-            Sampler::new(2, 1, 3).block(4, Purpose::Gloss, 0),
-            Sampler::new(1, 2, 4).block(4, Purpose::Gloss, 0),
-            Sampler::new(1, 2, 3).block(4, Purpose::Camera, 0),
-            Sampler::new(1, 2, 3).block(4, Purpose::Gloss, 1),
-            Sampler::new(1, 2, 3).block(4 + (1 << 16), Purpose::Gloss, 0),
+            Sampler::new(2, 1, 3, Sequence::Sobol).block(4, Purpose::Gloss, 0),
+            Sampler::new(1, 2, 4, Sequence::Sobol).block(4, Purpose::Gloss, 0),
+            Sampler::new(1, 2, 3, Sequence::Sobol).block(4, Purpose::Camera, 0),
+            Sampler::new(1, 2, 3, Sequence::Sobol).block(4, Purpose::Gloss, 1),
+            Sampler::new(1, 2, 3, Sequence::Sobol).block(4 + (1 << 16), Purpose::Gloss, 0),
         ] {
             assert_ne!(base, other);
         }

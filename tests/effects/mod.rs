@@ -1,0 +1,5 @@
+//! Lens, gloss, transparency and translucency: each against what it should be.
+
+mod gloss;
+mod lens;
+mod transparency;
