@@ -44,6 +44,13 @@ pub enum Shape {
         /// The two edges that leave it.
         edges: [Vec3; 2],
     },
+    /// A flat rectangle in the plane y = 0, centred, facing up; its texture repeats.
+    Ground {
+        /// Extent along x and z.
+        size: Vec2,
+        /// Extent of one copy of the texture; one copy begins at the corner with the least x and z.
+        tile: Vec2,
+    },
     /// Two flat triangles between four corners, which need not lie in one plane.
     Quadrilateral {
         /// Once around, counter-clockwise seen from the side that its normals point to. The triangles

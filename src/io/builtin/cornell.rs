@@ -3,8 +3,8 @@
 //! they are in metres, turned half around the vertical and centred over the origin, so that the
 //! camera looks along -Z. The tall block is a mirror.
 
-use super::stage::{Stage, matte, plain_background};
-use crate::scene::{MeshSource, ParallelogramLamp, Phong, PointLamp, Shape};
+use super::stage::{Stage, matte, sky};
+use crate::scene::{Environment, MeshSource, ParallelogramLamp, Phong, PointLamp, Shape};
 use bevy::color::LinearRgba;
 use bevy::ecs::world::World;
 use bevy::math::{Vec2, Vec3};
@@ -21,6 +21,65 @@ const CEILING: f32 = 548.8;
 /// How far under the ceiling the light hangs, in published units: the published ceiling has a hole
 /// there instead.
 const DROP: f32 = 0.5;
+
+/// Name, paint, glow and corners in the published order, which goes counter-clockwise as seen from inside.
+const WALLS: [(&str, [f32; 3], f32, [[f32; 3]; 4]); 5] = [
+    (
+        "Floor",
+        WHITE,
+        0.03,
+        [
+            [552.8, 0.0, 0.0],
+            [0.0, 0.0, 0.0],
+            [0.0, 0.0, 559.2],
+            [549.6, 0.0, 559.2],
+        ],
+    ),
+    (
+        "Ceiling",
+        WHITE,
+        0.10,
+        [
+            [556.0, 548.8, 0.0],
+            [556.0, 548.8, 559.2],
+            [0.0, 548.8, 559.2],
+            [0.0, 548.8, 0.0],
+        ],
+    ),
+    (
+        "Back wall",
+        WHITE,
+        0.06,
+        [
+            [549.6, 0.0, 559.2],
+            [0.0, 0.0, 559.2],
+            [0.0, 548.8, 559.2],
+            [556.0, 548.8, 559.2],
+        ],
+    ),
+    (
+        "Green wall",
+        GREEN,
+        0.06,
+        [
+            [0.0, 0.0, 559.2],
+            [0.0, 0.0, 0.0],
+            [0.0, 548.8, 0.0],
+            [0.0, 548.8, 559.2],
+        ],
+    ),
+    (
+        "Red wall",
+        RED,
+        0.06,
+        [
+            [552.8, 0.0, 0.0],
+            [549.6, 0.0, 559.2],
+            [556.0, 548.8, 559.2],
+            [556.0, 548.8, 0.0],
+        ],
+    ),
+];
 
 /// Published coordinates to ours.
 fn place([x, y, z]: [f32; 3]) -> Vec3 {
@@ -41,10 +100,10 @@ pub(super) fn with_point_light(world: &mut World) {
     stage.add("Light panel", (MeshSource::Shape(shape), panel));
     let lamp = PointLamp {
         color: LinearRgba::rgb(1.0, 0.94, 0.84),
-        intensity: 0.42,
+        intensity: 0.26,
         cone: None,
     };
-    let below = place([278.0, CEILING - 60.0, 279.6]);
+    let below = place([278.0, CEILING - 40.0, 279.6]);
     stage.add("Lamp", (lamp, Transform::from_translation(below)));
 }
 
@@ -69,67 +128,30 @@ fn light() -> [Vec3; 3] {
     [corner, along - corner, across - corner]
 }
 
+/// What a wall is painted with. Light that walls pass on to each other is not traced; `glow`, a
+/// little even radiance (white's own, tinted by the paint), stands in for it.
+fn paint([r, g, b]: [f32; 3], glow: f32) -> Phong {
+    Phong {
+        emission: LinearRgba::rgb(r, g, b) * glow,
+        ..matte(r, g, b)
+    }
+}
+
 /// Walls, blocks and camera.
 fn room(world: &mut World) -> Stage<'_> {
-    let mut stage = Stage::new(world, 16, plain_background(0.0, 0.0, 0.0));
-    // Corners in the published order, which goes counter-clockwise as seen from inside.
-    let walls = [
-        (
-            "Floor",
-            WHITE,
-            [
-                [552.8, 0.0, 0.0],
-                [0.0, 0.0, 0.0],
-                [0.0, 0.0, 559.2],
-                [549.6, 0.0, 559.2],
-            ],
-        ),
-        (
-            "Ceiling",
-            WHITE,
-            [
-                [556.0, 548.8, 0.0],
-                [556.0, 548.8, 559.2],
-                [0.0, 548.8, 559.2],
-                [0.0, 548.8, 0.0],
-            ],
-        ),
-        (
-            "Back wall",
-            WHITE,
-            [
-                [549.6, 0.0, 559.2],
-                [0.0, 0.0, 559.2],
-                [0.0, 548.8, 559.2],
-                [556.0, 548.8, 559.2],
-            ],
-        ),
-        (
-            "Green wall",
-            GREEN,
-            [
-                [0.0, 0.0, 559.2],
-                [0.0, 0.0, 0.0],
-                [0.0, 548.8, 0.0],
-                [0.0, 548.8, 559.2],
-            ],
-        ),
-        (
-            "Red wall",
-            RED,
-            [
-                [552.8, 0.0, 0.0],
-                [549.6, 0.0, 559.2],
-                [556.0, 548.8, 559.2],
-                [556.0, 548.8, 0.0],
-            ],
-        ),
-    ];
-    for (name, [r, g, b], corners) in walls {
+    let mut stage = Stage::new(
+        world,
+        16,
+        Environment {
+            intensity: 0.5,
+            ..sky()
+        },
+    );
+    for (name, color, glow, corners) in WALLS {
         let shape = Shape::Quadrilateral {
             corners: corners.map(place),
         };
-        stage.add(name, (MeshSource::Shape(shape), matte(r, g, b)));
+        stage.add(name, (MeshSource::Shape(shape), paint(color, glow)));
     }
     let block = |corners: [[f32; 2]; 4], height: f32| Shape::Prism {
         base: corners
@@ -138,10 +160,9 @@ fn room(world: &mut World) -> Stage<'_> {
             .to_vec(),
         height: height / 1000.0,
     };
-    let [r, g, b] = WHITE;
     let short = [[130.0, 65.0], [82.0, 225.0], [240.0, 272.0], [290.0, 114.0]];
     let short = MeshSource::Shape(block(short, 165.0));
-    stage.add("Short block", (short, matte(r, g, b)));
+    stage.add("Short block", (short, paint(WHITE, 0.05)));
     let mirror = Phong {
         specular: LinearRgba::rgb(0.9, 0.9, 0.9),
         shininess: 400.0,

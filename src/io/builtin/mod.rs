@@ -62,12 +62,12 @@ pub const SCENES: &[BuiltinScene] = &[
     },
     BuiltinScene {
         name: "teapot",
-        sentence: "Newell's teapot, glazed, under a parallelogram light.",
+        sentence: "Newell's teapot, glazed, under sun and sky.",
         spawn: meshes::teapot,
     },
     BuiltinScene {
         name: "knot",
-        sentence: "A rippled trefoil knot of 87 thousand triangles that reflects the sky.",
+        sentence: "A golden rope of 87 thousand triangles, tied in a trefoil knot.",
         spawn: meshes::knot,
     },
     BuiltinScene {

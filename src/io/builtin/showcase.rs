@@ -1,6 +1,6 @@
 //! Everything at once: what a newcomer may take apart.
 
-use super::stage::{Stage, floor, from_to, glossy, matte, pictured, sky};
+use super::stage::{FLOOR, Stage, from_to, glossy, matte, pictured, sky};
 use crate::io::shapes::SUN;
 use crate::scene::{Cone, DirectionalLamp, ParallelogramLamp, PointLamp, SegmentLamp, Shape};
 use bevy::color::LinearRgba;
@@ -14,28 +14,28 @@ pub(super) fn showcase(world: &mut World) {
     add_lights(&mut stage);
     stage.camera(
         "Camera",
-        Vec3::new(0.6, 2.6, 7.4),
-        Vec3::new(0.0, 0.85, 0.0),
+        Vec3::new(0.2, 2.5, 8.0),
+        Vec3::new(-0.02, 0.95, 0.0),
         36.0,
     );
     stage.camera(
         "Close-up",
-        Vec3::new(-1.2, 1.3, 3.6),
-        Vec3::new(-0.3, 0.7, 0.0),
-        40.0,
+        Vec3::new(1.4, 1.25, 5.2),
+        Vec3::new(0.35, 0.5, 0.6),
+        34.0,
     );
 }
 
 fn add_objects(stage: &mut Stage) {
-    let checkered = Transform::from_scale(Vec3::splat(24.0));
-    stage.object("Floor", floor(1.0), pictured("builtin:checker"), checkered);
+    let checkered = pictured("builtin:checker");
+    stage.object("Floor", FLOOR, checkered, Transform::default());
     let turned = |angle| Quat::from_rotation_y(angle);
-    let glaze = glossy([0.70, 0.68, 0.62], [0.12; 3], 90.0);
+    let glaze = glossy([0.74, 0.71, 0.64], [0.08; 3], 300.0);
     let scale = Vec3::splat(0.6);
     let pot = Transform::from_xyz(-0.35, 0.0, 1.15).with_scale(scale);
     let shape = Shape::Teapot { divisions: 16 };
     stage.object("Teapot", shape, glaze, pot.with_rotation(turned(0.4)));
-    let mirror = glossy([0.02; 3], [0.88; 3], 500.0);
+    let mirror = glossy([0.02; 3], [0.88; 3], 300.0);
     let shape = Shape::Sphere {
         radius: 0.85,
         segments: 96,
@@ -50,7 +50,7 @@ fn add_objects(stage: &mut Stage) {
     let shape = Shape::Cuboid {
         size: Vec3::splat(0.9),
     };
-    let cube = Transform::from_xyz(1.95, 0.45, 0.7).with_rotation(turned(0.5));
+    let cube = Transform::from_xyz(1.8, 0.45, 0.6).with_rotation(turned(0.5));
     stage.object("Textured cube", shape, pictured("builtin:uv"), cube);
     let shape = Shape::Knot {
         p: 3,
@@ -90,8 +90,8 @@ fn add_objects(stage: &mut Stage) {
         rings: 88,
     };
     let marble = matte(0.74, 0.72, 0.69);
-    let head = Transform::from_xyz(-2.55, 0.75, 0.35)
-        .with_rotation(turned(0.6))
+    let head = Transform::from_xyz(-2.0, 0.75, 0.5)
+        .with_rotation(turned(0.1))
         .with_scale(Vec3::splat(0.75));
     stage.object("Head", shape, marble, head);
 }
@@ -99,15 +99,15 @@ fn add_objects(stage: &mut Stage) {
 fn add_lights(stage: &mut Stage) {
     let sun = DirectionalLamp {
         color: LinearRgba::rgb(1.0, 0.92, 0.8),
-        intensity: 1.7,
-        angular_diameter: 0.03,
-        samples: 2,
+        intensity: 2.1,
+        angular_diameter: 0.02,
+        samples: 1,
     };
     let downwards = Transform::default().looking_to(-SUN.as_vec3(), Vec3::Y);
     stage.add("Sun", (sun, downwards));
     let spot = PointLamp {
         color: LinearRgba::rgb(1.0, 0.75, 0.5),
-        intensity: 16.0,
+        intensity: 45.0,
         cone: Some(Cone {
             inner: 0.20,
             outer: 0.30,
@@ -116,7 +116,7 @@ fn add_lights(stage: &mut Stage) {
     let at = from_to(Vec3::new(2.6, 4.0, 2.2), Vec3::new(0.8, 0.0, 1.4));
     stage.add("Spot", (spot, at));
     let tube = SegmentLamp {
-        ends: [Vec3::NEG_X * 1.2, Vec3::X * 1.2],
+        ends: [Vec3::NEG_X * 0.9, Vec3::X * 0.9],
         colors: [
             LinearRgba::rgb(1.0, 0.25, 0.55),
             LinearRgba::rgb(0.2, 0.55, 1.0),
@@ -124,17 +124,17 @@ fn add_lights(stage: &mut Stage) {
         intensity: 1.4,
         samples: 2,
     };
-    stage.add("Neon tube", (tube, Transform::from_xyz(0.4, 0.25, -2.6)));
+    stage.add("Neon tube", (tube, Transform::from_xyz(-0.4, 0.2, -0.6)));
     let softbox = ParallelogramLamp {
-        corner: Vec3::new(-4.0, 6.0, -4.0),
-        edges: [Vec3::X * 8.0, Vec3::Z * 8.0],
+        corner: Vec3::new(-0.5, 7.0, 1.0),
+        edges: [Vec3::X * 2.5, Vec3::Z * 2.5],
         colors: [
             LinearRgba::rgb(0.75, 0.87, 1.0),
             LinearRgba::rgb(0.85, 0.9, 1.0),
             LinearRgba::rgb(0.75, 0.87, 1.0),
             LinearRgba::rgb(1.0, 0.92, 0.85),
         ],
-        intensity: 0.3,
+        intensity: 4.5,
         visible: false,
         samples: 2,
         ..ParallelogramLamp::default()

@@ -1,6 +1,6 @@
 //! Spheres with different materials.
 
-use super::stage::{Stage, floor, glossy, matte, pictured, sky};
+use super::stage::{FLOOR, Stage, glossy, matte, pictured, sky};
 use crate::scene::Shape;
 use bevy::ecs::world::World;
 use bevy::math::Vec3;
@@ -8,12 +8,12 @@ use bevy::transform::components::Transform;
 
 pub(super) fn spheres(world: &mut World) {
     let mut stage = Stage::new(world, 16, sky());
-    let checkered = Transform::from_scale(Vec3::splat(24.0));
-    stage.object("Floor", floor(1.0), pictured("builtin:checker"), checkered);
+    let checkered = pictured("builtin:checker");
+    stage.object("Floor", FLOOR, checkered, Transform::default());
     let balls = [
         (
             "Mirror",
-            glossy([0.02; 3], [0.9; 3], 500.0),
+            glossy([0.02; 3], [0.9; 3], 300.0),
             1.0,
             [0.0, -0.6],
         ),
@@ -61,7 +61,7 @@ pub(super) fn spheres(world: &mut World) {
     stage.sun_and_sky(2.6);
     stage.camera(
         "Camera",
-        Vec3::new(0.0, 2.1, 6.4),
+        Vec3::new(0.0, 2.3, 7.4),
         Vec3::new(0.0, 0.65, 0.0),
         40.0,
     );

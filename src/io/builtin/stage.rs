@@ -7,7 +7,7 @@ use crate::scene::{
 };
 use bevy::color::LinearRgba;
 use bevy::ecs::{bundle::Bundle, name::Name, world::World};
-use bevy::math::{UVec2, Vec3};
+use bevy::math::{UVec2, Vec2, Vec3};
 use bevy::transform::components::Transform;
 
 /// A scene that is being spawned.
@@ -51,22 +51,24 @@ impl<'w> Stage<'w> {
         self.add(name, (camera, from_to(eye, target)));
     }
 
-    /// Spawns the sun of `builtin:sky`, `intensity` in W/m², and a large dim light overhead in place
-    /// of the light that the rest of the sky would send: the environment itself lights nothing.
+    /// Spawns the sun of `builtin:sky`, `intensity` in W/m², and a dimmer light overhead in place of
+    /// the light that the rest of the sky would send: the environment itself lights nothing. It is
+    /// no larger than it is because a mirror shows a light's highlight, and few samples of a larger
+    /// light would fall into it.
     pub fn sun_and_sky(&mut self, intensity: f32) {
         let sun = DirectionalLamp {
             color: LinearRgba::rgb(1.0, 0.93, 0.82),
             intensity,
-            angular_diameter: 0.03,
-            samples: 2,
+            angular_diameter: 0.02,
+            samples: 1,
         };
         let downwards = Transform::default().looking_to(-SUN.as_vec3(), Vec3::Y);
         self.add("Sun", (sun, downwards));
         let sky = ParallelogramLamp {
-            corner: Vec3::new(-6.0, 9.0, -6.0),
-            edges: [Vec3::X * 12.0, Vec3::Z * 12.0],
+            corner: Vec3::new(-0.5, 9.0, -0.5),
+            edges: [Vec3::X * 3.0, Vec3::Z * 3.0],
             colors: [LinearRgba::rgb(0.75, 0.87, 1.0); 4],
-            intensity: 0.16 * intensity,
+            intensity: 2.2 * intensity,
             visible: false,
             samples: 2,
             ..ParallelogramLamp::default()
@@ -107,13 +109,11 @@ pub(super) fn pictured(name: &'static str) -> Phong {
     }
 }
 
-/// A square floor in the plane y = 0, centred.
-pub(super) fn floor(side: f32) -> Shape {
-    Shape::Quad {
-        corner: Vec3::new(-side / 2.0, 0.0, side / 2.0),
-        edges: [Vec3::X * side, Vec3::NEG_Z * side],
-    }
-}
+/// A floor that reaches to the horizon; a checkered one has squares of half a metre.
+pub(super) const FLOOR: Shape = Shape::Ground {
+    size: Vec2::splat(200.0),
+    tile: Vec2::splat(4.0),
+};
 
 /// No map, one colour all around.
 pub(super) fn plain_background(r: f32, g: f32, b: f32) -> Environment {

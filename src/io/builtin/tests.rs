@@ -32,11 +32,11 @@ fn scenes_have_the_listed_triangles_objects_and_lights() {
     let listed = [
         ("triangle", 1, 1, [1, 0, 0, 0], 1),
         ("cube-segment-light", 14, 2, [0, 0, 1, 0], 1),
-        ("textured-cube", 14, 2, [2, 0, 0, 0], 1),
+        ("textured-cube", 14, 2, [0, 1, 0, 1], 1),
         ("cornell-box", 36, 8, [1, 0, 0, 0], 1),
         ("cornell-box-parallelogram-light", 34, 7, [0, 0, 0, 1], 1),
         ("head", 1_008, 1, [3, 0, 0, 0], 1),
-        ("teapot", 16_258, 2, [1, 0, 0, 1], 1),
+        ("teapot", 16_258, 2, [0, 1, 0, 1], 1),
         ("knot", 87_042, 2, [0, 1, 0, 1], 1),
         ("spheres", 96_770, 9, [0, 1, 0, 1], 1),
         ("showcase", 87_694, 8, [1, 1, 1, 1], 2),

@@ -31,6 +31,21 @@ pub(super) fn quad(corner: DVec3, edges: [DVec3; 2]) -> Result<Surface, ShapeErr
     Ok(surface)
 }
 
+pub(super) fn ground(size: DVec2, tile: DVec2) -> Surface {
+    let mut surface = Surface::default();
+    let [a, b, c, d] = WHOLE_TEXTURE.map(|uv| {
+        let place = (uv - 0.5) * size;
+        surface.vertex(
+            DVec3::new(place.x, 0.0, place.y),
+            DVec3::Y,
+            uv * size / tile,
+        )
+    });
+    surface.triangle([a, b, c]);
+    surface.triangle([a, c, d]);
+    surface
+}
+
 /// Two triangles, each with its own normal: the four corners need not lie in one plane.
 pub(super) fn quadrilateral(corners: [DVec3; 4]) -> Result<Surface, ShapeError> {
     let halves = [[0, 1, 2], [0, 2, 3]];

@@ -39,7 +39,7 @@ const SECTIONS: [Section; 23] = [
 /// A hill or hollow of the face: its height along z, its middle (|x|, y), its reach (x, y).
 struct Feature(f64, [f64; 2], [f64; 2]);
 
-const FEATURES: [Feature; 13] = [
+const FEATURES: [Feature; 12] = [
     // brow, eye hollow, eyeball
     Feature(0.065, [0.17, 0.335], [0.17, 0.055]),
     Feature(-0.12, [0.20, 0.20], [0.10, 0.085]),
@@ -51,10 +51,9 @@ const FEATURES: [Feature; 13] = [
     // cheekbone, cheek
     Feature(0.05, [0.33, 0.04], [0.11, 0.09]),
     Feature(-0.04, [0.30, -0.22], [0.10, 0.13]),
-    // below the nose, upper lip, between the lips, lower lip
+    // below the nose, upper lip, lower lip
     Feature(-0.02, [0.0, -0.15], [0.05, 0.04]),
-    Feature(0.045, [0.0, -0.215], [0.13, 0.035]),
-    Feature(-0.015, [0.0, -0.27], [0.15, 0.025]),
+    Feature(0.045, [0.0, -0.215], [0.13, 0.045]),
     Feature(0.04, [0.0, -0.325], [0.11, 0.04]),
     // chin
     Feature(0.07, [0.0, -0.53], [0.13, 0.08]),

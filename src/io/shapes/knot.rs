@@ -7,8 +7,9 @@ use std::f64::consts::TAU;
 
 /// The torus on which the knot lies: from its centre to the middle of its tube, and its tube.
 const TORUS: [f64; 2] = [1.0, 0.4];
-/// Ripples along the whole knot and around its tube; whole numbers, so that they close.
-const RIPPLES: [f64; 2] = [90.0, 4.0];
+/// Strands around the tube and how often each winds around it along the whole knot, as in a rope:
+/// whole numbers, so that they close.
+const STRANDS: [f64; 2] = [5.0, 10.0];
 
 pub(super) fn knot(
     [p, q]: [u32; 2],
@@ -25,8 +26,8 @@ pub(super) fn knot(
         let [centre, out, side] = frames[column as usize];
         let along = f64::from(column) / f64::from(segments);
         let around = f64::from(row) / f64::from(sides);
-        let [ripples_along, ripples_around] = RIPPLES;
-        let ripple = (TAU * ripples_along * along).sin() * (TAU * ripples_around * around).cos();
+        let [strands, windings] = STRANDS;
+        let ripple = (TAU * strands * (around + windings * along)).cos();
         let radius = tube_radius * (1.0 + displacement * ripple);
         let angle = TAU * around;
         let direction = out * angle.cos() + side * angle.sin();

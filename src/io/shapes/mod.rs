@@ -125,7 +125,7 @@ pub fn triangle_count(shape: &Shape) -> Result<u64, ShapeError> {
     };
     let triangles = match *shape {
         Shape::Triangle { .. } => 1,
-        Shape::Quad { .. } | Shape::Quadrilateral { .. } => 2,
+        Shape::Quad { .. } | Shape::Quadrilateral { .. } | Shape::Ground { .. } => 2,
         Shape::Cuboid { .. } => 12,
         Shape::Prism { ref base, .. } => {
             let corners = u32::try_from(base.len()).unwrap_or(u32::MAX);
@@ -195,6 +195,11 @@ fn surface(shape: &Shape) -> Result<surface::Surface, ShapeError> {
                 .iter()
                 .try_for_each(|e| finite("edges", &e.to_array()))?;
             flat::quad(corner.as_dvec3(), edges.map(|e| e.as_dvec3()))
+        }
+        Shape::Ground { size, tile } => {
+            let size = DVec2::new(length("size.x", size.x)?, length("size.y", size.y)?);
+            let tile = DVec2::new(length("tile.x", tile.x)?, length("tile.y", tile.y)?);
+            Ok(flat::ground(size, tile))
         }
         Shape::Quadrilateral { corners } => {
             corners
@@ -276,6 +281,7 @@ fn name(shape: &Shape) -> &'static str {
     match shape {
         Shape::Triangle { .. } => "Triangle",
         Shape::Quad { .. } => "Quad",
+        Shape::Ground { .. } => "Ground",
         Shape::Quadrilateral { .. } => "Quadrilateral",
         Shape::Cuboid { .. } => "Cuboid",
         Shape::Prism { .. } => "Prism",

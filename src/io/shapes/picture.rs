@@ -52,7 +52,7 @@ fn checker(at: DVec2) -> [u8; 3] {
     let cell = (at * 8.0).floor();
     match (cell.x + cell.y) % 2.0 == 0.0 {
         true => [238, 232, 220],
-        false => [70, 88, 116],
+        false => [112, 124, 142],
     }
 }
 
@@ -97,10 +97,10 @@ fn sky() -> DynamicImage {
 /// its poles are one colour.
 fn sky_radiance(direction: DVec3) -> Vec3 {
     let up = direction.y;
-    let zenith = DVec3::new(0.10, 0.25, 0.62);
-    let haze = DVec3::new(0.72, 0.80, 0.90);
+    let zenith = DVec3::new(0.07, 0.19, 0.52);
+    let haze = DVec3::new(0.50, 0.63, 0.82);
     let ground = DVec3::new(0.20, 0.185, 0.17);
-    let mut color = haze.lerp(zenith, up.max(0.0).powf(0.55));
+    let mut color = haze.lerp(zenith, up.max(0.0).powf(0.5));
     if up > 0.0 {
         // Clouds hang in a plane and fade before they crowd together at the horizon.
         let at = DVec2::new(direction.x, direction.z) / (up + 0.12) * 1.4;

@@ -93,7 +93,8 @@ impl Surface {
     /// The finished mesh, unless its numbers left the range of `f32`.
     pub fn into_mesh(self, shape: &'static str) -> Result<Mesh, ShapeError> {
         let coordinates = || self.positions.iter().flatten();
-        let finite = coordinates().all(|x| x.is_finite());
+        let mut numbers = coordinates().chain(self.uvs.iter().flatten());
+        let finite = numbers.all(|x| x.is_finite());
         let extent = coordinates().fold(0.0_f32, |extent, x| extent.max(x.abs()));
         if !finite || extent < SMALLEST_EXTENT {
             return Err(ShapeError::OutOfRange { shape });

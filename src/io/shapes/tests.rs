@@ -16,6 +16,10 @@ fn shapes() -> Vec<Shape> {
             corner: Vec3::ZERO,
             edges: [Vec3::X, Vec3::Z],
         },
+        Shape::Ground {
+            size: Vec2::new(3.0, 2.0),
+            tile: Vec2::new(3.0, 2.0),
+        },
         Shape::Quadrilateral {
             corners: [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.1), Vec3::Y],
         },
