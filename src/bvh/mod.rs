@@ -1,4 +1,38 @@
-//! Triangles, trees over them, and the rays that walk those trees.
+//! Triangles, trees over them, and the rays that walk those trees. Knows no scene and no ECS.
+//!
+//! # The way of a ray
+//! ```text
+//! positions, indices ── Triangles ── MeshTree ──┐            Ray
+//!                       (checked)    (built once)├─ Instance ─┤
+//!                                      Affine3A ─┘            │
+//!                                                 Aggregate ──┴─ Hit, or nothing
+//! ```
+//! 1. [`Triangles`] checks a mesh: an index out of range is an error, a corner that is not finite leaves its triangle
+//!    out, and both that and degenerate triangles are counted. Triangles keep their numbers whatever happens.
+//! 2. [`MeshTree`] hands their boxes to [`build_tree`] (by [`BuildOptions`]: none, median, SAH or obvhs' PLOC; every
+//!    builder makes the same kind of [`obvhs::bvh2::Bvh2`]) and copies the corners into the order of the leaves.
+//! 3. An [`Instance`] places a mesh by a transform. Many share one mesh.
+//! 4. An [`Aggregate`] holds the instances, and a tree over them ([`Levels::Two`]) or over all their triangles
+//!    ([`Levels::One`]). Moving an instance rebuilds this one only.
+//! 5. A [`Ray`] asks it for the nearest hit ([`Aggregate::closest_hit`]), for any ([`Aggregate::occluded`]), for the next
+//!    one behind a hit, for all; one ray at a time or in batches. A [`Visitor`] may watch every node and triangle.
+//! 6. [`Instance::surface_point`] tells where a [`Hit`] lies, and how far off a new ray must start.
+//!
+//! # What is promised
+//! * **Nothing leaks.** A ray that passes a closed mesh's surface hits it, on edges and in corners too, at any distance
+//!   from the origin (`triangle`, `slab`).
+//! * **The tree changes no bit.** Every builder, one level or two, or no tree at all find the same hits, to the last bit
+//!   of `t`. Three things make it so. A triangle is only hit where the ray passes its own box, and `t` is clamped to
+//!   the ray's stretch within it. The slab test is monotone under rounding, so no box above that one is entered later
+//!   (`slab`). And boxes in the world are padded by what a ray's way into object space may be off (`instance`). Equal
+//!   `t` go to the smaller (instance, triangle).
+//! * **`t` is exact** to an ulp where the instance is not transformed: it comes from the triangle's plane in f64. Where it
+//!   is, the error is that of the object ray.
+//! * **A ray costs no allocation.** No tree is deeper than [`MAX_DEPTH`].
+//! * **No input panics.** NaN and infinite rays miss.
+//!
+//! Rules at the borders: both sides are hit; an edge belongs to all its triangles; a ray in a triangle's plane misses it;
+//! hits lie strictly between 0 and `t_max`.
 
 mod aggregate;
 mod boxes;
@@ -11,7 +45,9 @@ mod median;
 mod mesh_tree;
 mod options;
 mod ploc;
+mod queries;
 mod ray;
+mod safe_ray;
 mod sah;
 mod slab;
 #[cfg(test)]
@@ -19,6 +55,8 @@ mod specimens;
 mod split_plane;
 mod stats;
 mod surface_point;
+#[cfg(test)]
+mod tests;
 mod top_down;
 mod traverse;
 mod treelets;

@@ -91,6 +91,14 @@ impl SlabRay {
         )
     }
 
+    /// The same for the part of the line ahead of the origin: `entry` is not negative.
+    #[inline(always)]
+    pub(crate) fn span_ahead(&self, bounds: &Aabb) -> (f32, f32) {
+        let (entry, exit) = self.span(bounds);
+        // One instruction; `f32::max` takes five, for NaNs that cannot occur.
+        (if entry > 0.0 { entry } else { 0.0 }, exit)
+    }
+
     /// The slack that the object-space test of a ray from `origin` needs.
     #[inline(always)]
     pub(crate) fn pad_of(origin: Vec3) -> f32 {

@@ -15,6 +15,32 @@ pub struct SurfacePoint {
     pub normal: Vec3,
 }
 
+impl SurfacePoint {
+    /// Where a ray along `direction` starts, so that it does not meet this surface again: moved along the normal, to
+    /// the side that the ray leaves by, out of the box in which the exact point lies (Pharr, Jakob, Humphreys,
+    /// "Physically Based Rendering", 4th ed., 6.8.6).
+    pub fn leave(&self, direction: Vec3) -> Vec3 {
+        let n = self.normal;
+        let side = if direction.dot(n) < 0.0 { -1.0 } else { 1.0 };
+        let offset = side * n.abs().dot(self.error) * n;
+        let away = |p: f32, d: f32| {
+            let moved = p + d;
+            if d > 0.0 {
+                moved.next_up()
+            } else if d < 0.0 {
+                moved.next_down()
+            } else {
+                moved
+            }
+        };
+        Vec3::new(
+            away(self.position.x, offset.x),
+            away(self.position.y, offset.y),
+            away(self.position.z, offset.z),
+        )
+    }
+}
+
 /// Half an ulp of 1.
 const U: f32 = f32::EPSILON / 2.0;
 

@@ -11,14 +11,20 @@ use super::{
 /// A ray that ends here wants nothing more.
 pub(crate) const STOP: f32 = f32::NEG_INFINITY;
 
+/// Nodes put off for later, with where the ray enters them: one a level at most, and no tree is deeper than this.
+/// Made once for a batch of rays, since clearing it takes as long as a few nodes.
+pub(crate) type Stack = [(f32, u32); MAX_DEPTH];
+
+/// An empty stack.
+pub(crate) const EMPTY: Stack = [(0.0, 0); MAX_DEPTH];
+
 /// Walks `nodes` along the ray, nearest child first, and hands the primitives of each leaf it reaches to
 /// `leaf(first, count, limit, visitor)`, which returns the new limit: the `t` beyond which nothing matters any more,
 /// or [`STOP`]. Nodes entered exactly at the limit are still walked, since ties are decided by number.
-///
-/// No allocation: one entry a level is pending at most, and no tree is deeper than [`MAX_DEPTH`].
 #[inline(always)]
 pub(crate) fn walk<V: Visitor>(
     nodes: &[Bvh2Node],
+    stack: &mut Stack,
     slab: &SlabRay,
     mut limit: f32,
     tree: TreeRef,
@@ -28,8 +34,7 @@ pub(crate) fn walk<V: Visitor>(
     let Some(root) = nodes.first() else {
         return limit;
     };
-    let (entry, exit) = slab.span(root.aabb());
-    let entry = entry.max(0.0);
+    let (entry, exit) = slab.span_ahead(root.aabb());
     if entry > exit {
         visitor.node(tree, 0, NodeEvent::Missed, entry);
         return limit;
@@ -40,7 +45,6 @@ pub(crate) fn walk<V: Visitor>(
     }
     visitor.node(tree, 0, NodeEvent::Entered, entry);
 
-    let mut stack = [(0.0f32, 0u32); MAX_DEPTH];
     let mut pending = 0;
     let mut node = root;
     loop {
@@ -52,9 +56,9 @@ pub(crate) fn walk<V: Visitor>(
             None
         } else {
             let (left, right) = (node.first_index, node.first_index + 1);
-            let (left_entry, left_exit) = slab.span(nodes[left as usize].aabb());
-            let (right_entry, right_exit) = slab.span(nodes[right as usize].aabb());
-            let (left_entry, right_entry) = (left_entry.max(0.0), right_entry.max(0.0));
+            let children = &nodes[left as usize..][..2];
+            let (left_entry, left_exit) = slab.span_ahead(children[0].aabb());
+            let (right_entry, right_exit) = slab.span_ahead(children[1].aabb());
             let left_hit = left_entry <= left_exit && left_entry <= limit;
             let right_hit = right_entry <= right_exit && right_entry <= limit;
             let mut settle = |node, hit: bool, entry: f32, exit: f32| {

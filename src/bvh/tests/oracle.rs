@@ -1,0 +1,299 @@
+//! What is true, found without a tree: every ray against every triangle.
+//!
+//! [`brute`] uses our own triangle test in f32; the trees must agree with it to the last bit.
+//!
+//! [`Exact`] computes in f64, with transforms, inverses and formulas of its own. Around each edge lies a band in which
+//! f32 cannot tell the sides apart; it is where an edge function is smaller than its error bound. With u = 2⁻²⁴, all
+//! quantities relative to the ray's origin in object space, M the largest coordinate of the three corners:
+//! * a corner's sheared x and y are off by `δ = 6uM`, and with a transform by `2|εo| + 2|z||εd|/|dz|` more, where
+//!   `εo = 6u |L⁻¹||o - T|` and `εd = 5u |L⁻¹||d|` bound the object ray's own error;
+//! * so an edge function `P x Q` is off by `E = δ (|Px| + |Py| + |Qx| + |Qy|) + 2δ² + 2u (|Px Qy| + |Py Qx|)`.
+//!
+//! Outside the band the answer must be the truth. `t = Σ Uᵢ zᵢ / Σ Uᵢ / dz` is off by at most
+//! `Σ (Eᵢ + 4u |Uᵢ|) |zᵢ - z| / (|det| - Σ Eᵢ) / |dz|`, and by relative roundings of z and dz: the running bound.
+
+use glam::{DMat3, DVec3, Vec3};
+
+use crate::bvh::{
+    Aggregate, Hit, Ray,
+    instance::Instance,
+    mesh_tree::ObjectRay,
+    safe_ray::SafeRay,
+    triangle::{LeafTriangle, Shear, cross},
+};
+
+const U: f64 = f32::EPSILON as f64 / 2.0;
+
+/// The nearest hit, by our triangle test, over every triangle of every instance in turn.
+pub(super) fn brute(aggregate: &Aggregate, ray: &Ray) -> Option<Hit> {
+    let safe = SafeRay::new(ray)?;
+    let mut best: Option<Hit> = None;
+    for (number, instance) in aggregate.instances().iter().enumerate() {
+        let Some(ObjectRay {
+            origin,
+            direction,
+            slab,
+        }) = instance.to_object_ray(&safe.world)
+        else {
+            continue;
+        };
+        let shear = Shear::new(origin, direction);
+        let triangles = instance.mesh.triangles();
+        for triangle in (0..triangles.len() as u32).filter(|&t| triangles.is_traced(t)) {
+            let leaf = LeafTriangle::new(triangles.corners(triangle), triangle);
+            let Some(crossing) = cross(&shear, &slab, &leaf, f32::INFINITY) else {
+                continue;
+            };
+            let hit = Hit {
+                t: crossing.t,
+                instance: number as u32,
+                triangle,
+                u: crossing.u,
+                v: crossing.v,
+            };
+            if safe.reaches(hit.t) && best.is_none_or(|best| hit.beats(&best)) {
+                best = Some(hit);
+            }
+        }
+    }
+    best.map(|hit| safe.scaled(hit))
+}
+
+/// What f64 says of one ray and one triangle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Exact {
+    pub(super) verdict: Verdict,
+    /// Where the ray meets the triangle's plane; meaningless for a miss.
+    pub(super) t: f64,
+    /// How far f32 may be from it; infinite inside the band.
+    pub(super) t_bound: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Verdict {
+    Hit,
+    Miss,
+    /// f32 may say either.
+    Band,
+}
+
+/// A ray as f64 sees it from an instance.
+pub(super) struct ExactRay {
+    origin: DVec3,
+    direction: DVec3,
+    origin_error: f64,
+    direction_error: f64,
+}
+
+impl ExactRay {
+    pub(super) fn new(instance: &Instance, ray: &Ray) -> Self {
+        let transform = instance.world_from_object();
+        let linear = transform.matrix3;
+        let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis].map(|v| v.as_dvec3());
+        let translation = transform.translation.as_dvec3();
+        // Cramer's rule.
+        let determinant = x.dot(y.cross(z));
+        let rows = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)).transpose();
+        let inverse = rows * (1.0 / determinant);
+        let from = ray.origin.as_dvec3() - translation;
+        let direction = ray.direction.as_dvec3();
+        let exact = *transform == glam::Affine3A::IDENTITY;
+        let blur = |k: f64, v: DVec3| {
+            if exact {
+                0.0
+            } else {
+                k * U * (inverse.abs() * v.abs()).max_element()
+            }
+        };
+        Self {
+            origin: inverse * from,
+            direction: inverse * direction,
+            origin_error: blur(6.0, from),
+            direction_error: blur(5.0, direction),
+        }
+    }
+
+    pub(super) fn cross(&self, corners: [Vec3; 3]) -> Exact {
+        let size = self.direction.abs();
+        let z = if size.x == size.max_element() {
+            0
+        } else if size.y == size.max_element() {
+            1
+        } else {
+            2
+        };
+        let (x, y) = ((z + 1) % 3, (z + 2) % 3);
+        let along = self.direction;
+        let relative = corners.map(|corner| corner.as_dvec3() - self.origin);
+        let largest = relative
+            .iter()
+            .map(|p| p.abs().max_element())
+            .fold(0.0, f64::max);
+        let flat = relative.map(|p| {
+            (
+                p[x] - along[x] / along[z] * p[z],
+                p[y] - along[y] / along[z] * p[z],
+            )
+        });
+        let deepest = relative.iter().map(|p| p[z].abs()).fold(0.0, f64::max);
+        let delta = 6.001 * U * largest
+            + 2.0 * self.origin_error
+            + 2.0 * deepest * self.direction_error / along[z].abs();
+        let mut values = [0.0; 3];
+        let mut errors = [0.0; 3];
+        for i in 0..3 {
+            let (p, q) = (flat[(i + 2) % 3], flat[(i + 1) % 3]);
+            values[i] = p.0 * q.1 - p.1 * q.0;
+            errors[i] = delta * (p.0.abs() + p.1.abs() + q.0.abs() + q.1.abs())
+                + 2.0 * delta * delta
+                + 2.0 * U * ((p.0 * q.1).abs() + (p.1 * q.0).abs());
+        }
+        let sure = |sign: f64, i: usize| values[i] * sign > errors[i];
+        let [plus, minus] = [1.0, -1.0].map(|sign| (0..3).filter(|&i| sure(sign, i)).count());
+        let verdict = if plus == 3 || minus == 3 {
+            Verdict::Hit
+        } else if plus > 0 && minus > 0 {
+            Verdict::Miss
+        } else {
+            Verdict::Band
+        };
+        let det: f64 = values.iter().sum();
+        let depth = (0..3).map(|i| values[i] * relative[i][z]).sum::<f64>() / det;
+        let slack = det.abs() - errors.iter().sum::<f64>();
+        let t_bound = if slack > 0.0 {
+            let spread: f64 = (0..3)
+                .map(|i| (errors[i] + 4.0 * U * values[i].abs()) * (relative[i][z] - depth).abs())
+                .sum();
+            let roundings = 12.0 * U * deepest
+                + self.origin_error
+                + deepest * self.direction_error / along[z].abs();
+            (spread / slack + roundings) / along[z].abs()
+        } else {
+            f64::INFINITY
+        };
+        Exact {
+            verdict,
+            t: depth / along[z],
+            t_bound,
+        }
+    }
+}
+
+/// How many rays of a test lay inside the band, and how many disagreed outside of it.
+#[derive(Debug, Default)]
+pub(super) struct Tally {
+    pub(super) rays: usize,
+    pub(super) hits: usize,
+    pub(super) in_band: usize,
+    pub(super) wrong: usize,
+    pub(super) first_wrong: Option<String>,
+}
+
+impl Tally {
+    /// Compares what was found with the truth in f64.
+    pub(super) fn judge(&mut self, aggregate: &Aggregate, ray: &Ray, found: Option<Hit>) {
+        self.rays += 1;
+        self.hits += usize::from(found.is_some());
+        let mut wrong = |why: String| {
+            self.wrong += 1;
+            self.first_wrong
+                .get_or_insert(format!("{why}: {ray:?} {found:?}"));
+        };
+        let mut of_found = None;
+        // A `t` that f32 cannot hold is beyond every ray's end.
+        let end = f64::from(ray.t_max.min(f32::MAX));
+        // The nearest end of what surely is hit, at its latest.
+        let mut nearest_sure = f64::INFINITY;
+        let mut band = false;
+        for (number, instance) in aggregate.instances().iter().enumerate() {
+            let exact_ray = ExactRay::new(instance, ray);
+            let triangles = instance.mesh.triangles();
+            for triangle in (0..triangles.len() as u32).filter(|&t| triangles.is_traced(t)) {
+                let exact = exact_ray.cross(triangles.corners(triangle));
+                if found.is_some_and(|h| (h.instance, h.triangle) == (number as u32, triangle)) {
+                    of_found = Some(exact);
+                }
+                let (early, late) = (exact.t - exact.t_bound, exact.t + exact.t_bound);
+                match exact.verdict {
+                    Verdict::Hit if early > 0.0 && late < end => {
+                        nearest_sure = nearest_sure.min(late);
+                    }
+                    Verdict::Hit if early > end => {}
+                    Verdict::Miss => {}
+                    // Also a hit that lies on one of the ray's ends.
+                    _ => band |= late > 0.0 || exact.t_bound.is_nan(),
+                }
+            }
+        }
+        match (found, of_found) {
+            (None, _) if nearest_sure < f64::INFINITY => {
+                return wrong(format!("missed what is at {nearest_sure}"));
+            }
+            (Some(_), Some(exact)) if exact.verdict == Verdict::Miss => {
+                return wrong("hit what is missed".into());
+            }
+            (Some(hit), Some(exact)) => {
+                let t = f64::from(hit.t);
+                if exact.verdict == Verdict::Hit && (t - exact.t).abs() > exact.t_bound {
+                    return wrong(format!("t is {} off, bound {}", t - exact.t, exact.t_bound));
+                }
+                if t > nearest_sure {
+                    return wrong(format!("there is a nearer hit at {nearest_sure}"));
+                }
+            }
+            _ => {}
+        }
+        self.in_band += usize::from(band);
+    }
+
+    pub(super) fn assert(&self, what: &str) {
+        assert_eq!(
+            self.wrong, 0,
+            "{what}: {} of {} rays disagree with f64 outside the band ({} in it); first: {:?}",
+            self.wrong, self.rays, self.in_band, self.first_wrong
+        );
+        println!(
+            "{what}: {} rays, {} hits, {} in the band",
+            self.rays, self.hits, self.in_band
+        );
+    }
+}
+
+/// Both oracles at once: the tree's answer is brute force's to the last bit, and f64's outside the band.
+pub(super) fn check(
+    what: &str,
+    aggregate: &Aggregate,
+    rays: impl IntoIterator<Item = Ray>,
+) -> Tally {
+    let mut tally = Tally::default();
+    for ray in rays {
+        let found = aggregate.closest_hit(&ray);
+        let truth = brute(aggregate, &ray);
+        assert!(
+            same(found, truth),
+            "{what}: the tree found {found:?}, brute force {truth:?}, {ray:?}"
+        );
+        assert_eq!(
+            aggregate.occluded(&ray),
+            truth.is_some(),
+            "{what}: occlusion of {ray:?}"
+        );
+        tally.judge(aggregate, &ray, found);
+    }
+    tally.assert(what);
+    tally
+}
+
+/// The same to the last bit.
+pub(super) fn same(a: Option<Hit>, b: Option<Hit>) -> bool {
+    let bits = |h: Hit| {
+        (
+            h.t.to_bits(),
+            h.instance,
+            h.triangle,
+            h.u.to_bits(),
+            h.v.to_bits(),
+        )
+    };
+    a.map(bits) == b.map(bits)
+}
