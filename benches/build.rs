@@ -20,22 +20,22 @@ const MESHES: [(&str, usize); 4] = [
     ("soup", 90_000),
 ];
 
-#[divan::bench(args = MESHES)]
+#[divan::bench(args = MESHES, sample_count = 20)]
 fn median(bencher: Bencher, mesh: (&str, usize)) {
     bench(bencher, mesh, Builder::Median, Preset::Medium);
 }
 
-#[divan::bench(args = MESHES)]
+#[divan::bench(args = MESHES, sample_count = 20)]
 fn sah(bencher: Bencher, mesh: (&str, usize)) {
     bench(bencher, mesh, Builder::Sah, Preset::Medium);
 }
 
-#[divan::bench(args = MESHES)]
+#[divan::bench(args = MESHES, sample_count = 20)]
 fn ploc_fastest(bencher: Bencher, mesh: (&str, usize)) {
     bench(bencher, mesh, Builder::Ploc, Preset::Fastest);
 }
 
-#[divan::bench(args = MESHES)]
+#[divan::bench(args = MESHES, sample_count = 20)]
 fn ploc_medium(bencher: Bencher, mesh: (&str, usize)) {
     bench(bencher, mesh, Builder::Ploc, Preset::Medium);
 }

@@ -50,8 +50,9 @@ pub(super) fn centroid(item: &Bvh2Node) -> Vec3A {
     item.aabb().center()
 }
 
-/// By how much of its longest side a box is jittered at most. Measured on the benches' meshes: the cost of
-/// the tree changes by less than 0.1 % either way, and 2^-16 still separates 1e5 identical triangles.
+/// By how much of its longest side a box is jittered at most. Measured on five meshes of 100k triangles, three
+/// presets: against no jitter the cost of the tree is 0.5 % lower to 0.25 % higher, and a sixteenth of this
+/// still separates 1e5 identical triangles.
 const JITTER_OF_SIDE: f32 = 1.0 / 4096.0;
 /// The same relative to the coordinates: four units in the last place, for boxes without any extent.
 const JITTER_OF_COORDINATE: f32 = 4.0 * f32::EPSILON;

@@ -9,7 +9,8 @@ use obvhs::bvh2::{Bvh2, node::Bvh2Node};
 use rayon::prelude::*;
 
 /// Triangles that [`epo`] looks at. Up to this many all of them, and the value is exact; of more a sample
-/// spread evenly over the tree, for about a third of a second on a core, and the value is good to a few per cent.
+/// spread evenly over the tree, so that the time hardly grows with the mesh; the value is then good to a few per
+/// cent.
 pub const EPO_SAMPLES: usize = 4096;
 
 /// EPO = Σ over nodes of C · A(surface inside the node's box that belongs to none of its primitives) / A(all

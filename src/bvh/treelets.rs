@@ -14,7 +14,7 @@ use std::ops::Range;
 
 /// Primitives of the largest treelet. Measured on 100k-triangle spheres, knots, soups and hairballs, `Medium`:
 /// SAH cost against binned SAH's 1.02–1.06 with 32, 1.00–1.04 with 128, 1.00–1.01 with 512 (and 1.02–1.10
-/// without treelets), for the same time.
+/// without treelets).
 const LARGEST_TREELET: u32 = 512;
 
 /// Below this depth treelets are halved, so that their leaves are no larger than they may be.
