@@ -1,1 +1,103 @@
-//! The room `sync`.
+//! Entities to the tracer's world: what changed, and only that.
+//!
+//! Once a frame, after transforms, visibility and asset events have settled, the systems of
+//! [`SyncSystems`] run one after the other:
+//!
+//! | system | reads | redoes |
+//! |---|---|---|
+//! | `assign_scene_ids` | entities without a `SceneId`, or with one that another has | their numbers |
+//! | `sync_meshes` | `Mesh` assets that an object uses | that mesh's triangles and tree |
+//! | `sync_instances` | which mesh stands where and is visible | the tree over the objects |
+//! | `sync_textures` | `Image` assets that a material or the environment uses | that texture |
+//! | `sync_materials` | `Phong`, `PhongMaps`, `UsesMaterial` | materials, and which object has which |
+//! | `sync_lights` | the four lamps | lights |
+//! | `sync_environment` | `Environment`, `EnvironmentMap` | background and map |
+//! | `sync_cameras` | `SceneCamera`, `Lens`, `Motion` | [`TracedCameras`] |
+//! | `publish_snapshot` | what the systems above redid | [`Traced`] |
+//!
+//! A system does its part again, in full, whenever something that it reads changed, appeared or
+//! went; what is expensive (textures, meshes and their trees) is kept per asset. A part that comes
+//! out as it was is not replaced, so a snapshot shares it with the one before. Because nothing but
+//! those caches is carried over from frame to frame, a world after a thousand edits equals one
+//! that is made from the same entities at once.
+//!
+//! What cannot be traced is left out, and named in [`Traced::problems`]; the rest stays intact.
+//!
+//! Visibility is Bevy's `InheritedVisibility`: an app needs its `VisibilityPlugin` (which is in
+//! `CameraPlugin` and so in `DefaultPlugins`; `headless_app` adds it).
+
+mod cameras;
+mod environment;
+mod ids;
+mod instances;
+mod lights;
+mod materials;
+mod mesh_data;
+mod meshes;
+mod problem;
+mod reading;
+mod texture_data;
+mod textures;
+mod traced;
+
+#[cfg(test)]
+mod edits_tests;
+#[cfg(test)]
+mod sharing_tests;
+
+pub use cameras::{TracedCamera, TracedCameras};
+pub use mesh_data::MeshFault;
+pub use problem::{Fault, SyncProblem};
+pub use texture_data::TextureFault;
+pub use traced::{Changes, Traced};
+
+use bevy::app::{App, Plugin, PostUpdate};
+use bevy::asset::AssetEventSystems;
+use bevy::camera::visibility::VisibilitySystems;
+use bevy::ecs::schedule::{IntoScheduleConfigs, SystemSet};
+use bevy::transform::TransformSystems;
+
+/// Everything of this room, in `PostUpdate`, one system after the other.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct SyncSystems;
+
+/// Keeps [`Traced`] and [`TracedCameras`] equal to the entities.
+///
+/// Needs `TransformPlugin`, `AssetPlugin` with `Mesh` and `Image`, `VisibilityPlugin` and
+/// [`ScenePlugin`](crate::scene::ScenePlugin).
+pub struct SyncPlugin;
+
+impl Plugin for SyncPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<Traced>()
+            .init_resource::<TracedCameras>()
+            .init_resource::<traced::Draft>()
+            .init_resource::<ids::IdOwners>()
+            .init_resource::<meshes::TracedMeshes>()
+            .init_resource::<textures::TracedTextures>()
+            .init_resource::<instances::TracedInstances>()
+            .configure_sets(
+                PostUpdate,
+                SyncSystems
+                    .after(TransformSystems::Propagate)
+                    .after(VisibilitySystems::VisibilityPropagate)
+                    .after(AssetEventSystems),
+            )
+            .add_systems(
+                PostUpdate,
+                (
+                    ids::assign_scene_ids,
+                    meshes::sync_meshes,
+                    instances::sync_instances,
+                    textures::sync_textures,
+                    materials::sync_materials,
+                    lights::sync_lights,
+                    environment::sync_environment,
+                    cameras::sync_cameras,
+                    traced::publish_snapshot,
+                )
+                    .chain()
+                    .in_set(SyncSystems),
+            );
+    }
+}

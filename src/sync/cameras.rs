@@ -1,0 +1,243 @@
+use super::problem::Fault;
+use super::reading::{Reader, Switched};
+use super::traced::Draft;
+use crate::scene::{Lens, Motion, Projection, RenderSettings, SceneCamera, SceneId};
+use crate::trace::{Camera, Optics};
+use bevy::ecs::change_detection::DetectChanges;
+use bevy::ecs::entity::Entity;
+use bevy::ecs::hierarchy::ChildOf;
+use bevy::ecs::lifecycle::RemovedComponents;
+use bevy::ecs::name::Name;
+use bevy::ecs::query::{Changed, Or, With};
+use bevy::ecs::resource::Resource;
+use bevy::ecs::system::{Query, Res, ResMut};
+use bevy::math::Vec3;
+use bevy::transform::components::GlobalTransform;
+use std::f32::consts::PI;
+
+/// The cameras of the scene, sorted by `SceneId`.
+#[derive(Resource, Default)]
+pub struct TracedCameras(pub Vec<TracedCamera>);
+
+/// One camera.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TracedCamera {
+    /// The entity's number.
+    pub id: SceneId,
+    /// The entity's name, or `camera-7` for the one with the number 7.
+    pub name: String,
+    /// What rays need of it.
+    pub camera: Camera,
+}
+
+type Edited = (
+    With<SceneCamera>,
+    Or<(
+        Changed<SceneCamera>,
+        Changed<Lens>,
+        Changed<Motion>,
+        Changed<GlobalTransform>,
+        Changed<ChildOf>,
+        Changed<Name>,
+        Changed<SceneId>,
+    )>,
+);
+
+type CameraQuery<'w, 's> = Query<
+    'w,
+    's,
+    (
+        &'static SceneId,
+        &'static SceneCamera,
+        &'static GlobalTransform,
+        Option<&'static Lens>,
+        Option<&'static Motion>,
+        Option<&'static ChildOf>,
+        Option<&'static Name>,
+    ),
+>;
+
+/// Makes the cameras again where one changed, moved, appeared or went.
+pub(super) fn sync_cameras(
+    edited: Query<Entity, Edited>,
+    mut no_camera: RemovedComponents<SceneCamera>,
+    mut no_lens: RemovedComponents<Lens>,
+    mut no_motion: RemovedComponents<Motion>,
+    mut no_parent: RemovedComponents<ChildOf>,
+    mut switched: Switched,
+    settings: Res<RenderSettings>,
+    cameras: CameraQuery,
+    parents: Query<&GlobalTransform>,
+    mut traced: ResMut<TracedCameras>,
+    mut draft: ResMut<Draft>,
+) {
+    // Not `||`: every reader has to be emptied.
+    let gone = no_camera.read().count()
+        + no_lens.read().count()
+        + no_motion.read().count()
+        + no_parent.read().count();
+    let switched = switched.any();
+    if gone == 0 && !switched && edited.is_empty() && !settings.is_changed() {
+        return;
+    }
+    let draft = draft.into_inner();
+    draft.problems.cameras.clear();
+    draft.reread = true;
+    let mut sorted: Vec<_> = cameras.iter().collect();
+    sorted.sort_unstable_by_key(|(id, ..)| **id);
+    let mut list = Vec::with_capacity(sorted.len());
+    for (&id, camera, transform, lens, motion, parent, name) in sorted {
+        let mut reader = Reader {
+            kind: "camera",
+            id,
+            name,
+            problems: &mut draft.problems.cameras,
+        };
+        let lens = lens.filter(|_| settings.features.lens);
+        let motion = motion.filter(|_| settings.features.motion);
+        // A velocity is in the parent's space.
+        let velocity = motion.map_or(Vec3::ZERO, |motion| {
+            let parent = parent.and_then(|parent| parents.get(parent.parent()).ok());
+            parent.map_or(motion.velocity, |parent| {
+                parent.affine().transform_vector3(motion.velocity)
+            })
+        });
+        let Some(camera) = read_camera(camera, transform, lens, velocity, &mut reader) else {
+            continue;
+        };
+        list.push(TracedCamera {
+            id,
+            name: name.map_or_else(|| format!("camera-{}", id.0), |name| name.to_string()),
+            camera,
+        });
+    }
+    if list != traced.0 {
+        traced.0 = list;
+        draft.changes.cameras = true;
+    }
+}
+
+fn read_camera(
+    camera: &SceneCamera,
+    transform: &GlobalTransform,
+    lens: Option<&Lens>,
+    velocity: Vec3,
+    reader: &mut Reader,
+) -> Option<Camera> {
+    let affine = transform.affine();
+    if !affine.is_finite() || !velocity.is_finite() {
+        reader.note(Fault::NotFinite {
+            field: "transform or motion",
+        });
+        return None;
+    }
+    let projection = match camera.projection {
+        Projection::Perspective { fov_y } if fov_y > 0.0 && fov_y < PI => camera.projection,
+        Projection::Perspective { .. } => {
+            reader.note(Fault::Degenerate {
+                field: "field of view (which must lie between 0 and pi)",
+            });
+            return None;
+        }
+        Projection::Orthographic { height } if height > 0.0 && height.is_finite() => {
+            camera.projection
+        }
+        Projection::Orthographic { .. } => {
+            reader.note(Fault::Degenerate {
+                field: "height (which must be above 0)",
+            });
+            return None;
+        }
+    };
+    // Scale and shear of the parents do not distort the picture: the axes are made unit vectors,
+    // the view axis first.
+    let axis = |axis: bevy::math::Vec3A| Vec3::from(axis).try_normalize();
+    let axes = (|| {
+        let forward = -axis(affine.matrix3.z_axis)?;
+        let up = axis(affine.matrix3.y_axis)?;
+        let right = forward.cross(up).try_normalize()?;
+        Some((right, right.cross(forward), forward))
+    })();
+    let Some((right, up, forward)) = axes else {
+        reader.note(Fault::Degenerate { field: "direction" });
+        return None;
+    };
+    let open = reader.number("shutter's opening", camera.shutter_open, 0.0..=1.0)?;
+    let close = reader.number("shutter's closing", camera.shutter_close, open..=1.0)?;
+    let mut optics = Optics {
+        shutter: [open, close],
+        velocity,
+        ..Optics::default()
+    };
+    if let Some(lens) = lens {
+        optics.aperture_radius =
+            reader.number("aperture radius", lens.aperture_radius, 0.0..=f32::MAX)?;
+        optics.focus_distance = reader.number(
+            "focus distance",
+            lens.focus_distance,
+            f32::MIN_POSITIVE..=f32::INFINITY,
+        )?;
+    }
+    Some(Camera {
+        position: transform.translation(),
+        right,
+        up,
+        forward,
+        projection,
+        optics,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::math::{Affine3A, Mat3, Quat};
+    use bevy::transform::components::Transform;
+
+    fn read(transform: GlobalTransform, camera: &SceneCamera) -> (Option<Camera>, usize) {
+        let mut problems = Vec::new();
+        let mut reader = Reader {
+            kind: "camera",
+            id: SceneId(1),
+            name: None,
+            problems: &mut problems,
+        };
+        let camera = read_camera(camera, &transform, None, Vec3::ZERO, &mut reader);
+        (camera, problems.len())
+    }
+
+    #[test]
+    fn scale_shear_and_mirroring_of_a_parent_do_not_distort_the_picture() {
+        let transform = Transform::from_rotation(Quat::from_rotation_y(0.7));
+        let (plain, _) = read(GlobalTransform::from(transform), &SceneCamera::default());
+        let plain = plain.unwrap();
+        let sheared = Affine3A::from_mat3(
+            Mat3::from(transform.compute_affine().matrix3)
+                * Mat3::from_cols(Vec3::X * -3.0, Vec3::Y * 2.0, Vec3::Z * 0.5),
+        );
+        let (other, _) = read(GlobalTransform::from(sheared), &SceneCamera::default());
+        let other = other.unwrap();
+        for (a, b) in [
+            (plain.right, other.right),
+            (plain.up, other.up),
+            (plain.forward, other.forward),
+        ] {
+            assert!((a - b).length() < 1e-6, "{a} and {b}");
+        }
+    }
+
+    #[test]
+    fn a_camera_that_sees_nothing_is_left_out_and_named() {
+        for fov_y in [0.0, -1.0, PI, f32::NAN, f32::INFINITY] {
+            let camera = SceneCamera {
+                projection: Projection::Perspective { fov_y },
+                ..SceneCamera::default()
+            };
+            let (camera, problems) = read(GlobalTransform::IDENTITY, &camera);
+            assert!(camera.is_none() && problems == 1, "field of view {fov_y}");
+        }
+        let flat = GlobalTransform::from(Transform::from_scale(Vec3::ZERO));
+        let (camera, problems) = read(flat, &SceneCamera::default());
+        assert!(camera.is_none() && problems == 1);
+    }
+}

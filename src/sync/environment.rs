@@ -1,0 +1,75 @@
+use super::problem::Fault;
+use super::reading::Reader;
+use super::texture_data::TextureFault;
+use super::textures::TracedTextures;
+use super::traced::Draft;
+use crate::scene::{Environment, EnvironmentMap, RenderSettings, SceneId};
+use crate::trace;
+use bevy::ecs::change_detection::DetectChanges;
+use bevy::ecs::system::{Res, ResMut};
+use std::sync::Arc;
+
+/// Takes over the background and its map.
+pub(super) fn sync_environment(
+    environment: Res<Environment>,
+    map: Res<EnvironmentMap>,
+    settings: Res<RenderSettings>,
+    textures: Res<TracedTextures>,
+    mut draft: ResMut<Draft>,
+) {
+    let stale = environment.is_changed()
+        || map.is_changed()
+        || settings.is_changed()
+        || draft.changes.textures;
+    if !stale {
+        return;
+    }
+    let draft = draft.into_inner();
+    draft.problems.environment.clear();
+    draft.reread = true;
+    let mut reader = Reader {
+        kind: "environment",
+        id: SceneId::default(),
+        name: None,
+        problems: &mut draft.problems.environment,
+    };
+    let map = if settings.features.environment {
+        match (&map.0, &environment.map) {
+            (Some(handle), _) => textures.get(handle.id()).cloned().map(Some),
+            (None, Some(source)) => Err(TextureFault::Unresolved(source.path.clone())),
+            (None, None) => Ok(None),
+        }
+    } else {
+        Ok(None)
+    };
+    let map = map.unwrap_or_else(|fault| {
+        reader.note(Fault::Texture { field: "map", fault });
+        None
+    });
+    let new = trace::Environment {
+        background: reader.color("background", environment.background, f32::MAX),
+        map,
+        rotation: reader
+            .number("rotation", environment.rotation, f32::MIN..=f32::MAX)
+            .unwrap_or(0.0),
+        intensity: reader
+            .number("intensity", environment.intensity, 0.0..=f32::MAX)
+            .unwrap_or(1.0),
+    };
+    if !same(&new, &draft.world.environment) {
+        draft.world.environment = new;
+        draft.changes.environment = true;
+    }
+}
+
+fn same(a: &trace::Environment, b: &trace::Environment) -> bool {
+    let same_map = match (&a.map, &b.map) {
+        (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+        (None, None) => true,
+        _ => false,
+    };
+    same_map
+        && a.background == b.background
+        && a.rotation == b.rotation
+        && a.intensity == b.intensity
+}

@@ -1,0 +1,146 @@
+use super::meshes::TracedMeshes;
+use super::problem::Fault;
+use super::reading::{Reader, Switched};
+use super::traced::Draft;
+use crate::bvh::{Aggregate, BuildOptions, Instance};
+use crate::scene::SceneId;
+use crate::trace;
+use bevy::camera::visibility::InheritedVisibility;
+use bevy::ecs::entity::Entity;
+use bevy::ecs::lifecycle::RemovedComponents;
+use bevy::ecs::name::Name;
+use bevy::ecs::query::{Changed, Or, With};
+use bevy::ecs::resource::Resource;
+use bevy::ecs::system::{Query, Res, ResMut};
+use bevy::math::Affine3A;
+use bevy::mesh::Mesh3d;
+use bevy::transform::components::GlobalTransform;
+use std::sync::Arc;
+
+/// Which mesh stands where, sorted by `SceneId`: row `i` is instance `i` of the top level.
+#[derive(Resource, Default)]
+pub(super) struct TracedInstances {
+    pub rows: Vec<Row>,
+    options: BuildOptions,
+}
+
+/// One object as the top level sees it.
+pub(super) struct Row {
+    pub id: SceneId,
+    pub entity: Entity,
+    pub mesh: Arc<trace::Mesh>,
+    transform: Affine3A,
+}
+
+impl Row {
+    /// True where the tree over the objects would come out the same.
+    fn same(&self, other: &Self) -> bool {
+        self.id == other.id
+            && self.entity == other.entity
+            && Arc::ptr_eq(&self.mesh, &other.mesh)
+            && self.transform.to_cols_array().map(f32::to_bits)
+                == other.transform.to_cols_array().map(f32::to_bits)
+    }
+}
+
+type Moved = (
+    With<Mesh3d>,
+    Or<(
+        Changed<Mesh3d>,
+        Changed<GlobalTransform>,
+        Changed<InheritedVisibility>,
+        Changed<SceneId>,
+    )>,
+);
+
+type ObjectQuery<'w, 's> = Query<
+    'w,
+    's,
+    (
+        Entity,
+        &'static SceneId,
+        &'static Mesh3d,
+        &'static GlobalTransform,
+        Option<&'static InheritedVisibility>,
+        Option<&'static Name>,
+    ),
+>;
+
+/// Makes the tree over the objects again where one moved, appeared, went or has another mesh.
+pub(super) fn sync_instances(
+    moved: Query<(), Moved>,
+    mut no_mesh: RemovedComponents<Mesh3d>,
+    mut no_transform: RemovedComponents<GlobalTransform>,
+    mut no_visibility: RemovedComponents<InheritedVisibility>,
+    mut no_id: RemovedComponents<SceneId>,
+    mut switched: Switched,
+    objects: ObjectQuery,
+    meshes: Res<TracedMeshes>,
+    mut known: ResMut<TracedInstances>,
+    mut draft: ResMut<Draft>,
+) {
+    // Not `||`: every reader has to be emptied.
+    let gone = no_mesh.read().count()
+        + no_transform.read().count()
+        + no_visibility.read().count()
+        + no_id.read().count();
+    let switched = switched.any();
+    let options_changed = known.options != *meshes.options();
+    if gone == 0 && !switched && !options_changed && moved.is_empty() && !draft.changes.meshes {
+        return;
+    }
+    let draft = draft.into_inner();
+    draft.problems.instances.clear();
+    draft.reread = true;
+
+    let mut visible: Vec<_> = objects
+        .iter()
+        .filter(|(.., visibility, _)| visibility.is_none_or(|v| v.get()))
+        .collect();
+    visible.sort_unstable_by_key(|(_, id, ..)| **id);
+
+    let mut rows = Vec::with_capacity(visible.len());
+    let mut instances = Vec::with_capacity(visible.len());
+    for (entity, &id, mesh, transform, _, name) in visible {
+        let mut reader = Reader {
+            kind: "object",
+            id,
+            name,
+            problems: &mut draft.problems.instances,
+        };
+        let mesh = match meshes.get(mesh.id()) {
+            Ok(mesh) => mesh,
+            Err(fault) => {
+                reader.note(Fault::Mesh(fault));
+                continue;
+            }
+        };
+        let left_out = mesh.tree.triangles().left_out();
+        if left_out > 0 {
+            reader.note(Fault::TrianglesLeftOut { count: left_out });
+        }
+        let transform = transform.affine();
+        match Instance::new(mesh.tree.clone(), &transform) {
+            Ok(instance) => instances.push(instance),
+            Err(fault) => {
+                reader.note(Fault::Transform(fault));
+                continue;
+            }
+        }
+        rows.push(Row {
+            id,
+            entity,
+            mesh: mesh.clone(),
+            transform,
+        });
+    }
+    let same = rows.len() == known.rows.len()
+        && rows.iter().zip(&known.rows).all(|(new, old)| new.same(old));
+    if same && !options_changed {
+        return;
+    }
+    known.rows = rows;
+    known.options = *meshes.options();
+    draft.world.aggregate = Arc::new(Aggregate::build(instances, meshes.options()));
+    draft.changes.top_level = true;
+}

@@ -1,0 +1,246 @@
+use super::problem::Fault;
+use super::reading::{Reader, Switched};
+use super::traced::Draft;
+use crate::scene::{DirectionalLamp, ParallelogramLamp, PointLamp, SceneId, SegmentLamp};
+use crate::trace::{
+    DirectionalLight, Lights, ParallelogramLight, PointLight, SegmentLight, SpotCone,
+};
+use bevy::camera::visibility::InheritedVisibility;
+use bevy::color::LinearRgba;
+use bevy::ecs::component::Component;
+use bevy::ecs::lifecycle::RemovedComponents;
+use bevy::ecs::name::Name;
+use bevy::ecs::query::{Changed, Or, With};
+use bevy::ecs::system::{Query, ResMut, SystemParam};
+use bevy::math::Vec3;
+use bevy::transform::components::GlobalTransform;
+use std::f32::consts::{FRAC_PI_2, PI};
+use std::sync::Arc;
+
+type LampQuery<'w, 's, L> = Query<
+    'w,
+    's,
+    (
+        &'static SceneId,
+        &'static L,
+        &'static GlobalTransform,
+        Option<&'static InheritedVisibility>,
+        Option<&'static Name>,
+    ),
+>;
+
+/// The lamps of one kind, and whether any of them changed or went.
+#[derive(SystemParam)]
+pub(super) struct Lamps<'w, 's, L: Component> {
+    lamps: LampQuery<'w, 's, L>,
+    edited: Query<
+        'w,
+        's,
+        (),
+        (
+            With<L>,
+            Or<(
+                Changed<L>,
+                Changed<GlobalTransform>,
+                Changed<InheritedVisibility>,
+                Changed<SceneId>,
+            )>,
+        ),
+    >,
+    gone: RemovedComponents<'w, 's, L>,
+}
+
+impl<L: Component> Lamps<'_, '_, L> {
+    fn changed(&mut self) -> bool {
+        self.gone.read().count() > 0 || !self.edited.is_empty()
+    }
+
+    /// The lights of the visible lamps, sorted by id, without those that `light` makes nothing of.
+    fn read<T>(
+        &self,
+        problems: &mut Vec<super::SyncProblem>,
+        light: impl Fn(&L, &GlobalTransform, &mut Reader) -> Option<T>,
+    ) -> Vec<T> {
+        let mut visible: Vec<_> = self
+            .lamps
+            .iter()
+            .filter(|(.., visibility, _)| visibility.is_none_or(|v| v.get()))
+            .collect();
+        visible.sort_unstable_by_key(|(id, ..)| **id);
+        visible
+            .into_iter()
+            .filter_map(|(&id, lamp, transform, _, name)| {
+                let mut reader = Reader {
+                    kind: "light",
+                    id,
+                    name,
+                    problems,
+                };
+                if !transform.affine().is_finite() {
+                    reader.note(Fault::NotFinite { field: "transform" });
+                    return None;
+                }
+                light(lamp, transform, &mut reader)
+            })
+            .collect()
+    }
+}
+
+/// Makes the lights again, in world space, where a lamp changed, moved, appeared or went.
+pub(super) fn sync_lights(
+    mut points: Lamps<PointLamp>,
+    mut directionals: Lamps<DirectionalLamp>,
+    mut segments: Lamps<SegmentLamp>,
+    mut parallelograms: Lamps<ParallelogramLamp>,
+    mut switched: Switched,
+    mut draft: ResMut<Draft>,
+) {
+    // An array, not `||`: every reader has to be emptied.
+    let stale = [
+        points.changed(),
+        directionals.changed(),
+        segments.changed(),
+        parallelograms.changed(),
+        switched.any(),
+    ];
+    if !stale.contains(&true) {
+        return;
+    }
+    let draft = draft.into_inner();
+    let problems = &mut draft.problems.lights;
+    problems.clear();
+    draft.reread = true;
+    draft.world.lights = Arc::new(Lights {
+        points: points.read(problems, point),
+        directionals: directionals.read(problems, directional),
+        segments: segments.read(problems, segment),
+        parallelograms: parallelograms.read(problems, parallelogram),
+    });
+    draft.changes.lights = true;
+}
+
+fn point(lamp: &PointLamp, transform: &GlobalTransform, reader: &mut Reader) -> Option<PointLight> {
+    let cone = match lamp.cone {
+        None => None,
+        Some(cone) => {
+            let outer = reader.number("cone's outer angle", cone.outer, 0.0..=FRAC_PI_2)?;
+            let inner = reader.number("cone's inner angle", cone.inner, 0.0..=outer)?;
+            Some(SpotCone {
+                axis: -backward(transform, reader)?,
+                cos_inner: inner.cos(),
+                cos_outer: outer.cos(),
+            })
+        }
+    };
+    Some(PointLight {
+        id: reader.id.0,
+        position: transform.translation(),
+        color: reader.strength("colour times intensity", lamp.color, lamp.intensity)?,
+        cone,
+    })
+}
+
+fn directional(
+    lamp: &DirectionalLamp,
+    transform: &GlobalTransform,
+    reader: &mut Reader,
+) -> Option<DirectionalLight> {
+    // Half of a half-turn has no tangent; a source that wide is no directional light.
+    let diameter = reader.number("angular diameter", lamp.angular_diameter, 0.0..=0.9 * PI)?;
+    Some(DirectionalLight {
+        id: reader.id.0,
+        to_light: backward(transform, reader)?,
+        color: reader.strength("colour times intensity", lamp.color, lamp.intensity)?,
+        tan_half_angle: (0.5 * diameter).tan(),
+        samples: samples(lamp.samples, reader),
+    })
+}
+
+fn segment(
+    lamp: &SegmentLamp,
+    transform: &GlobalTransform,
+    reader: &mut Reader,
+) -> Option<SegmentLight> {
+    let ends = lamp.ends.map(|end| transform.transform_point(end));
+    if !ends.iter().all(|end| end.is_finite()) {
+        reader.note(Fault::NotFinite { field: "ends" });
+        return None;
+    }
+    if ends[0] == ends[1] {
+        reader.note(Fault::Degenerate { field: "length" });
+        return None;
+    }
+    Some(SegmentLight {
+        id: reader.id.0,
+        ends,
+        colors: strengths(lamp.colors, lamp.intensity, reader)?,
+        samples: samples(lamp.samples, reader),
+    })
+}
+
+fn parallelogram(
+    lamp: &ParallelogramLamp,
+    transform: &GlobalTransform,
+    reader: &mut Reader,
+) -> Option<ParallelogramLight> {
+    let linear = transform.affine().matrix3;
+    let corner = transform.transform_point(lamp.corner);
+    let mut edges = lamp.edges.map(|edge| linear * edge);
+    if !(corner.is_finite() && edges[0].is_finite() && edges[1].is_finite()) {
+        reader.note(Fault::NotFinite { field: "corners" });
+        return None;
+    }
+    let area = edges[0].cross(edges[1]).length();
+    if !(area > 0.0 && area.is_finite()) {
+        reader.note(Fault::Degenerate { field: "area" });
+        return None;
+    }
+    let mut colors = strengths(lamp.colors, lamp.intensity, reader)?;
+    // A mirroring transform turns the cross product of the edges around, but not the light's front.
+    if linear.determinant() < 0.0 {
+        edges.swap(0, 1);
+        colors.swap(1, 2);
+    }
+    Some(ParallelogramLight {
+        id: reader.id.0,
+        corner,
+        edges,
+        colors,
+        two_sided: lamp.two_sided,
+        visible: lamp.visible,
+        samples: samples(lamp.samples, reader),
+    })
+}
+
+/// Unit vector along the entity's local +Z, in the world.
+fn backward(transform: &GlobalTransform, reader: &mut Reader) -> Option<Vec3> {
+    let direction = Vec3::from(transform.affine().matrix3.z_axis).try_normalize();
+    if direction.is_none() {
+        reader.note(Fault::Degenerate { field: "direction" });
+    }
+    direction
+}
+
+fn strengths<const N: usize>(
+    colors: [LinearRgba; N],
+    intensity: f32,
+    reader: &mut Reader,
+) -> Option<[Vec3; N]> {
+    let mut strengths = [Vec3::ZERO; N];
+    for (strength, color) in strengths.iter_mut().zip(colors) {
+        *strength = reader.strength("colour times intensity", color, intensity)?;
+    }
+    Some(strengths)
+}
+
+fn samples(samples: u32, reader: &mut Reader) -> u32 {
+    let used = samples.clamp(1, 1000);
+    if used != samples {
+        reader.note(Fault::OutOfRange {
+            field: "samples",
+            value: samples as f32,
+            used: used as f32,
+        });
+    }
+    used
+}

@@ -1,0 +1,155 @@
+//! A Bevy mesh as the tracer keeps it: positions and triangles in a tree, normals and texture
+//! coordinates beside it.
+
+use crate::bvh::{BuildOptions, MeshTree, Triangles};
+use crate::trace;
+use bevy::math::{Vec2, Vec3};
+use bevy::mesh::{Indices, Mesh, MeshAccessError, PrimitiveTopology, VertexAttributeValues};
+use std::sync::Arc;
+
+/// Why a mesh cannot be traced.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MeshFault {
+    /// The asset is not there: not loaded yet, failed to load, or removed.
+    #[error("is not loaded")]
+    Missing,
+    /// The renderer took the vertices away.
+    #[error("was moved to the GPU; give its asset RenderAssetUsages::MAIN_WORLD too")]
+    Extracted,
+    /// It has no positions, or they are not three floats each.
+    #[error("has no positions of three floats each")]
+    NoPositions,
+    /// It consists of points or lines.
+    #[error("is made of {0:?}, not of triangles")]
+    NotTriangles(PrimitiveTopology),
+    /// It says more corners than an index can count, or an index that no vertex has.
+    #[error("is broken: {0}")]
+    Broken(String),
+}
+
+/// The mesh with its tree. An empty mesh is one without triangles, not a fault.
+pub(super) fn trace_mesh(mesh: &Mesh, options: &BuildOptions) -> Result<trace::Mesh, MeshFault> {
+    let positions: Vec<Vec3> = match mesh.try_attribute(Mesh::ATTRIBUTE_POSITION) {
+        Ok(VertexAttributeValues::Float32x3(values)) => {
+            values.iter().copied().map(Vec3::from).collect()
+        }
+        Ok(_) | Err(MeshAccessError::NotFound) => return Err(MeshFault::NoPositions),
+        Err(MeshAccessError::ExtractedToRenderWorld) => return Err(MeshFault::Extracted),
+    };
+    let count = positions.len();
+    let indices = triangle_indices(mesh, count)?;
+    let triangles = Triangles::new(positions, indices)
+        .map_err(|error| MeshFault::Broken(error.to_string()))?;
+
+    // Attributes that do not fit the positions are no use: shading then takes the flat normal.
+    let normals = match mesh.try_attribute(Mesh::ATTRIBUTE_NORMAL) {
+        Ok(VertexAttributeValues::Float32x3(values)) if values.len() == count => {
+            values.iter().copied().map(Vec3::from).collect()
+        }
+        _ => Vec::new(),
+    };
+    let uvs = match mesh.try_attribute(Mesh::ATTRIBUTE_UV_0) {
+        Ok(VertexAttributeValues::Float32x2(values)) if values.len() == count => {
+            values.iter().copied().map(Vec2::from).collect()
+        }
+        _ => Vec::new(),
+    };
+    Ok(trace::Mesh {
+        tree: Arc::new(MeshTree::build(triangles, options)),
+        normals,
+        uvs,
+    })
+}
+
+/// Three indices a triangle. A list's surplus indices are no triangle, as in Bevy; every other
+/// triangle of a strip is turned over, so that all of them face the same way.
+fn triangle_indices(mesh: &Mesh, vertices: usize) -> Result<Vec<[u32; 3]>, MeshFault> {
+    let topology = mesh.primitive_topology();
+    if vertices > u32::MAX as usize {
+        return Err(MeshFault::Broken(format!("{vertices} vertices")));
+    }
+    let in_order: Vec<u32>;
+    let wide: Vec<u32>;
+    let indices: &[u32] = match mesh.try_indices_option() {
+        Ok(Some(Indices::U32(indices))) => indices,
+        Ok(Some(Indices::U16(indices))) => {
+            wide = indices.iter().copied().map(u32::from).collect();
+            &wide
+        }
+        Ok(None) => {
+            in_order = (0..vertices as u32).collect();
+            &in_order
+        }
+        Err(_) => return Err(MeshFault::Extracted),
+    };
+    match topology {
+        PrimitiveTopology::TriangleList => Ok(indices.as_chunks().0.to_vec()),
+        PrimitiveTopology::TriangleStrip => Ok(indices
+            .array_windows()
+            .enumerate()
+            .map(|(i, &[a, b, c])| if i % 2 == 0 { [a, b, c] } else { [b, a, c] })
+            .collect()),
+        other => Err(MeshFault::NotTriangles(other)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::asset::RenderAssetUsages;
+
+    fn mesh(topology: PrimitiveTopology) -> Mesh {
+        let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+        Mesh::new(topology, RenderAssetUsages::MAIN_WORLD)
+            .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
+    }
+
+    fn indices_of(mesh: &Mesh) -> Vec<[u32; 3]> {
+        let traced = trace_mesh(mesh, &BuildOptions::default()).unwrap();
+        traced.tree.triangles().indices().to_vec()
+    }
+
+    #[test]
+    fn lists_and_strips_with_wide_narrow_and_no_indices_give_the_same_triangles() {
+        let strip = mesh(PrimitiveTopology::TriangleStrip);
+        assert_eq!(indices_of(&strip), [[0, 1, 2], [2, 1, 3]]);
+        let list = mesh(PrimitiveTopology::TriangleList);
+        // The fourth vertex is half a triangle.
+        assert_eq!(indices_of(&list), [[0, 1, 2]]);
+        for indices in [
+            Indices::U16(vec![0, 1, 2, 2, 1, 3]),
+            Indices::U32(vec![0, 1, 2, 2, 1, 3, 3]),
+        ] {
+            let list = list.clone().with_inserted_indices(indices);
+            assert_eq!(indices_of(&list), [[0, 1, 2], [2, 1, 3]]);
+        }
+    }
+
+    fn fault(mesh: &Mesh) -> MeshFault {
+        match trace_mesh(mesh, &BuildOptions::default()) {
+            Ok(_) => panic!("a broken mesh was taken"),
+            Err(fault) => fault,
+        }
+    }
+
+    #[test]
+    fn a_mesh_that_is_none_is_refused_with_the_reason() {
+        let lines = mesh(PrimitiveTopology::LineList);
+        assert_eq!(
+            fault(&lines),
+            MeshFault::NotTriangles(PrimitiveTopology::LineList)
+        );
+        let empty = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::MAIN_WORLD);
+        assert_eq!(fault(&empty), MeshFault::NoPositions);
+        let beyond = mesh(PrimitiveTopology::TriangleList)
+            .with_inserted_indices(Indices::U32(vec![0, 1, 4]));
+        assert!(matches!(fault(&beyond), MeshFault::Broken(_)));
+    }
+
+    #[test]
+    fn a_mesh_without_triangles_is_empty_and_no_fault() {
+        let none = mesh(PrimitiveTopology::TriangleList)
+            .with_inserted_indices(Indices::U32(Vec::new()));
+        assert!(indices_of(&none).is_empty());
+    }
+}

@@ -1,0 +1,102 @@
+//! What the reading systems share: noticing that entities were switched off or on, naming
+//! entities, and taking numbers that may be out of range.
+
+use super::problem::{Fault, SyncProblem};
+use crate::scene::SceneId;
+use bevy::color::LinearRgba;
+use bevy::ecs::entity_disabling::Disabled;
+use bevy::ecs::lifecycle::RemovedComponents;
+use bevy::ecs::name::Name;
+use bevy::ecs::query::Added;
+use bevy::ecs::system::{Query, SystemParam};
+use bevy::math::Vec3;
+
+/// Notices entities that vanish from queries, or come back, without losing a component.
+#[derive(SystemParam)]
+pub(super) struct Switched<'w, 's> {
+    disabled: Query<'w, 's, (), Added<Disabled>>,
+    enabled: RemovedComponents<'w, 's, Disabled>,
+}
+
+impl Switched<'_, '_> {
+    /// True where an entity was disabled or enabled since this was asked last.
+    pub fn any(&mut self) -> bool {
+        let enabled = self.enabled.read().count() > 0;
+        enabled || !self.disabled.is_empty()
+    }
+}
+
+/// Takes the numbers of one entity's component, and notes what is wrong with them.
+pub(super) struct Reader<'a> {
+    /// What the entity is, for example "light".
+    pub kind: &'static str,
+    pub id: SceneId,
+    pub name: Option<&'a Name>,
+    pub problems: &'a mut Vec<SyncProblem>,
+}
+
+impl Reader<'_> {
+    /// Notes a problem.
+    pub fn note(&mut self, fault: Fault) {
+        self.problems
+            .push(SyncProblem::new(self.kind, self.id, self.name, fault));
+    }
+
+    /// The number, moved into [least, most]; `None` where it is NaN.
+    pub fn number(
+        &mut self,
+        field: &'static str,
+        value: f32,
+        range: std::ops::RangeInclusive<f32>,
+    ) -> Option<f32> {
+        if value.is_nan() {
+            self.note(Fault::NotFinite { field });
+            return None;
+        }
+        let used = value.clamp(*range.start(), *range.end());
+        if used != value {
+            self.note(Fault::OutOfRange { field, value, used });
+        }
+        Some(used)
+    }
+
+    /// A colour times a strength: finite, and nowhere below 0.
+    pub fn strength(
+        &mut self,
+        field: &'static str,
+        color: LinearRgba,
+        intensity: f32,
+    ) -> Option<Vec3> {
+        let strength = Vec3::new(color.red, color.green, color.blue) * intensity;
+        if !strength.is_finite() {
+            self.note(Fault::NotFinite { field });
+            return None;
+        }
+        if strength.min_element() < 0.0 {
+            self.note(Fault::OutOfRange {
+                field,
+                value: strength.min_element(),
+                used: 0.0,
+            });
+        }
+        Some(strength.max(Vec3::ZERO))
+    }
+
+    /// A colour whose channels are moved into [0, most]; black where it is not finite.
+    pub fn color(&mut self, field: &'static str, color: LinearRgba, most: f32) -> Vec3 {
+        let color = Vec3::new(color.red, color.green, color.blue);
+        if !color.is_finite() {
+            self.note(Fault::NotFinite { field });
+            return Vec3::ZERO;
+        }
+        let used = color.clamp(Vec3::ZERO, Vec3::splat(most));
+        if let Some(axis) = (0..3).find(|&axis| used[axis] != color[axis]) {
+            self.note(Fault::OutOfRange {
+                field,
+                value: color[axis],
+                used: used[axis],
+            });
+        }
+        used
+    }
+}

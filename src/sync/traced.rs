@@ -1,0 +1,116 @@
+use super::SyncProblem;
+use crate::scene::RenderSettings;
+use crate::trace;
+use bevy::ecs::change_detection::{DetectChanges, DetectChangesMut};
+use bevy::ecs::resource::Resource;
+use bevy::ecs::system::{Res, ResMut};
+use std::sync::Arc;
+
+/// The tracer's world as the entities are now.
+#[derive(Resource, Default)]
+pub struct Traced {
+    /// A new snapshot after every change; what did not change is shared with the one before.
+    pub world: Arc<trace::World>,
+    /// What the last frame redid.
+    pub changes: Changes,
+    /// What cannot be traced as it is, sorted by kind and `SceneId`.
+    pub problems: Vec<SyncProblem>,
+}
+
+/// What one frame redid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Changes {
+    /// Triangles and trees of at least one mesh.
+    pub meshes: bool,
+    /// The tree over the objects: one moved, appeared, went, or has another mesh.
+    pub top_level: bool,
+    /// Which object has which material.
+    pub objects: bool,
+    /// A material.
+    pub materials: bool,
+    /// A texture.
+    pub textures: bool,
+    /// A light.
+    pub lights: bool,
+    /// The background or its map.
+    pub environment: bool,
+    /// A camera.
+    pub cameras: bool,
+}
+
+impl Changes {
+    /// True where the snapshot is another one than before. Cameras are not part of it.
+    pub fn any_in_world(self) -> bool {
+        self != Self {
+            cameras: self.cameras,
+            ..Self::default()
+        }
+    }
+
+    /// True where anything was redone.
+    pub fn any(self) -> bool {
+        self != Self::default()
+    }
+}
+
+/// The parts of the next snapshot, as this frame's systems leave them.
+#[derive(Resource, Default)]
+pub(super) struct Draft {
+    pub world: trace::World,
+    pub changes: Changes,
+    pub problems: Problems,
+    /// Some part was read again, so that its problems may be others although nothing was redone.
+    pub reread: bool,
+}
+
+/// One list per part: a part that is redone replaces its own.
+#[derive(Default)]
+pub(super) struct Problems {
+    pub settings: Vec<SyncProblem>,
+    pub instances: Vec<SyncProblem>,
+    pub materials: Vec<SyncProblem>,
+    pub lights: Vec<SyncProblem>,
+    pub environment: Vec<SyncProblem>,
+    pub cameras: Vec<SyncProblem>,
+}
+
+impl Problems {
+    fn all(&self) -> Vec<SyncProblem> {
+        [
+            &self.settings,
+            &self.instances,
+            &self.materials,
+            &self.lights,
+            &self.environment,
+            &self.cameras,
+        ]
+        .into_iter()
+        .flatten()
+        .cloned()
+        .collect()
+    }
+}
+
+/// Makes a snapshot of the draft where anything is another than before. A frame without changes
+/// leaves [`Traced`] unchanged for Bevy's change detection too.
+pub(super) fn publish_snapshot(
+    settings: Res<RenderSettings>,
+    mut draft: ResMut<Draft>,
+    mut traced: ResMut<Traced>,
+) {
+    if settings.is_changed() {
+        draft.problems.settings = SyncProblem::of_settings(&settings);
+        draft.reread = true;
+    }
+    let changes = std::mem::take(&mut draft.changes);
+    if !changes.any() && !draft.reread {
+        traced.bypass_change_detection().changes = changes;
+        return;
+    }
+    draft.reread = false;
+    traced.changes = changes;
+    traced.problems = draft.problems.all();
+    if changes.any_in_world() {
+        traced.world = Arc::new(draft.world.clone());
+    }
+}
