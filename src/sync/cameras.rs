@@ -69,7 +69,7 @@ pub(super) fn sync_cameras(
     cameras: CameraQuery,
     parents: Query<&GlobalTransform>,
     mut traced: ResMut<TracedCameras>,
-    mut draft: ResMut<Draft>,
+    draft: ResMut<Draft>,
 ) {
     // Not `||`: every reader has to be emptied.
     let gone = no_camera.read().count()

@@ -15,7 +15,7 @@ pub(super) fn sync_environment(
     map: Res<EnvironmentMap>,
     settings: Res<RenderSettings>,
     textures: Res<TracedTextures>,
-    mut draft: ResMut<Draft>,
+    draft: ResMut<Draft>,
 ) {
     let stale = environment.is_changed()
         || map.is_changed()

@@ -77,7 +77,7 @@ pub(super) fn sync_instances(
     objects: ObjectQuery,
     meshes: Res<TracedMeshes>,
     mut known: ResMut<TracedInstances>,
-    mut draft: ResMut<Draft>,
+    draft: ResMut<Draft>,
 ) {
     // Not `||`: every reader has to be emptied.
     let gone = no_mesh.read().count()

@@ -93,7 +93,7 @@ pub(super) fn sync_lights(
     mut segments: Lamps<SegmentLamp>,
     mut parallelograms: Lamps<ParallelogramLamp>,
     mut switched: Switched,
-    mut draft: ResMut<Draft>,
+    draft: ResMut<Draft>,
 ) {
     // An array, not `||`: every reader has to be emptied.
     let stale = [

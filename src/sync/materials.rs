@@ -47,7 +47,7 @@ pub(super) fn sync_materials(
     names: Query<&Name>,
     instances: Res<TracedInstances>,
     textures: Res<TracedTextures>,
-    mut draft: ResMut<Draft>,
+    draft: ResMut<Draft>,
 ) {
     // Not `||`: every reader has to be emptied.
     let gone =

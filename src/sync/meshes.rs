@@ -1,6 +1,6 @@
 use super::mesh_data::{MeshFault, trace_mesh};
 use super::traced::Draft;
-use crate::bvh::BuildOptions;
+use crate::bvh::{self, BuildOptions, Builder, Levels};
 use crate::scene::{self, RenderSettings};
 use crate::trace;
 use bevy::asset::{AssetEvent, AssetId, Assets};
@@ -46,7 +46,7 @@ pub(super) fn sync_meshes(
     users: Query<&Mesh3d>,
     assets: Res<Assets<Mesh>>,
     settings: Res<RenderSettings>,
-    mut known: ResMut<TracedMeshes>,
+    known: ResMut<TracedMeshes>,
     mut draft: ResMut<Draft>,
 ) {
     let known = known.into_inner();
@@ -79,11 +79,19 @@ pub(super) fn sync_meshes(
     if missing.is_empty() {
         return;
     }
+    // One tree over everything leaves the meshes' own unused.
+    let mesh_options = match options.levels {
+        Levels::One => BuildOptions {
+            builder: Builder::None,
+            ..options
+        },
+        Levels::Two => options,
+    };
     let built: Vec<_> = missing
         .into_par_iter()
         .map(|id| {
             let mesh = assets.get(id).ok_or(MeshFault::Missing);
-            (id, mesh.and_then(|mesh| trace_mesh(mesh, &options).map(Arc::new)))
+            (id, mesh.and_then(|mesh| trace_mesh(mesh, &mesh_options).map(Arc::new)))
         })
         .collect();
     known.by_asset.extend(built);
@@ -92,7 +100,6 @@ pub(super) fn sync_meshes(
 
 /// The tree settings as the builders take them, moved into their ranges.
 pub(super) fn build_options(tree: &scene::TreeSettings) -> BuildOptions {
-    use crate::bvh;
     BuildOptions {
         builder: match tree.builder {
             scene::Builder::None => bvh::Builder::None,

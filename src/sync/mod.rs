@@ -41,9 +41,7 @@ mod textures;
 mod traced;
 
 #[cfg(test)]
-mod edits_tests;
-#[cfg(test)]
-mod sharing_tests;
+mod tests;
 
 pub use cameras::{TracedCamera, TracedCameras};
 pub use mesh_data::MeshFault;

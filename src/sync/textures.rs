@@ -38,7 +38,7 @@ pub(super) fn sync_textures(
     users: Query<&PhongMaps>,
     environment: Res<EnvironmentMap>,
     assets: Res<Assets<Image>>,
-    mut known: ResMut<TracedTextures>,
+    known: ResMut<TracedTextures>,
     mut draft: ResMut<Draft>,
 ) {
     let known = known.into_inner();

@@ -1,0 +1,391 @@
+//! A thousand random edits, and again and again a fresh app with the same entities: the same
+//! world, the same hits.
+
+use super::*;
+use crate::bvh::Ray;
+use crate::scene::{
+    Builder, DirectionalLamp, Environment, Levels, ParallelogramLamp, PhongMaps, RenderSettings,
+    SceneId, SegmentLamp, UsesMaterial,
+};
+use crate::sync::TracedCameras;
+use bevy::camera::visibility::Visibility;
+use bevy::ecs::component::{Component, Mutable};
+use bevy::ecs::entity_disabling::Disabled;
+use bevy::ecs::hierarchy::ChildOf;
+use bevy::math::{Quat, Vec3};
+use bevy::platform::collections::HashMap;
+
+/// SplitMix64 (Steele, Lea, Flood 2014).
+struct Dice(u64);
+
+impl Dice {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn below(&mut self, n: usize) -> usize {
+        (self.next() % n as u64) as usize
+    }
+
+    /// In [-1, 1).
+    fn number(&mut self) -> f32 {
+        (self.next() >> 40) as f32 / (1u64 << 23) as f32 - 1.0
+    }
+
+    fn vector(&mut self) -> Vec3 {
+        Vec3::new(self.number(), self.number(), self.number())
+    }
+
+    fn color(&mut self) -> LinearRgba {
+        let v = self.vector().abs();
+        LinearRgba::rgb(v.x, v.y, v.z)
+    }
+
+    fn transform(&mut self) -> Transform {
+        let turn = Quat::from_scaled_axis(self.vector() * 3.0);
+        // Now and then one that is mirrored, or flat.
+        let scale = match self.below(8) {
+            0 => Vec3::new(-1.0, 1.0, 0.5),
+            1 => Vec3::new(1.0, 0.0, 1.0),
+            _ => Vec3::splat(0.5 + self.number().abs()),
+        };
+        Transform {
+            translation: self.vector() * 4.0,
+            rotation: turn,
+            scale,
+        }
+    }
+
+    fn phong(&mut self) -> Phong {
+        Phong {
+            diffuse: self.color(),
+            specular: self.color(),
+            shininess: 2.0 + self.number(),
+            ..Phong::default()
+        }
+    }
+}
+
+/// The app under test, and what its edits choose from.
+struct Edited {
+    app: App,
+    dice: Dice,
+    entities: Vec<Entity>,
+    meshes: Vec<Handle<Mesh>>,
+    images: Vec<Handle<Image>>,
+}
+
+impl Edited {
+    fn new(seed: u64) -> Self {
+        let mut app = app();
+        Self {
+            meshes: (3..8).map(|sides| add_mesh(&mut app, sides)).collect(),
+            images: (1..4).map(|value| add_image(&mut app, value * 50)).collect(),
+            app,
+            dice: Dice(seed),
+            entities: Vec::new(),
+        }
+    }
+
+    fn any(&mut self) -> Option<Entity> {
+        let n = self.entities.len();
+        (n > 0).then(|| self.entities[self.dice.below(n)])
+    }
+
+    fn spawn_object(&mut self) {
+        let mesh = self.meshes[self.dice.below(self.meshes.len())].clone();
+        let bundle = (Mesh3d(mesh), self.dice.transform(), self.dice.phong());
+        self.entities.push(self.app.world_mut().spawn(bundle).id());
+    }
+
+    fn spawn_other(&mut self) {
+        let transform = self.dice.transform();
+        let color = self.dice.color();
+        let point = self.dice.vector();
+        let kind = self.dice.below(6);
+        let phong = self.dice.phong();
+        let mut entity = self.app.world_mut().spawn(transform);
+        match kind {
+            0 => entity.insert(PointLamp {
+                color,
+                ..PointLamp::default()
+            }),
+            1 => entity.insert(DirectionalLamp {
+                color,
+                ..DirectionalLamp::default()
+            }),
+            2 => entity.insert(SegmentLamp {
+                ends: [Vec3::ZERO, point],
+                ..SegmentLamp::default()
+            }),
+            3 => entity.insert(ParallelogramLamp {
+                corner: point,
+                ..ParallelogramLamp::default()
+            }),
+            4 => entity.insert(SceneCamera::default()),
+            _ => entity.insert((phong, Visibility::default())),
+        };
+        let id = entity.id();
+        self.entities.push(id);
+    }
+
+    fn change<C: Component<Mutability = Mutable>>(&mut self, change: impl FnOnce(&mut C, &mut Dice)) {
+        if let Some(entity) = self.any()
+            && let Some(mut component) = self.app.world_mut().get_mut::<C>(entity)
+        {
+            change(&mut component, &mut self.dice);
+        }
+    }
+
+    fn reparent(&mut self) {
+        let (Some(child), Some(parent)) = (self.any(), self.any()) else {
+            return;
+        };
+        let world = self.app.world_mut();
+        let mut above = Some(parent);
+        while let Some(entity) = above {
+            if entity == child {
+                world.entity_mut(child).remove::<ChildOf>();
+                return;
+            }
+            above = world.get::<ChildOf>(entity).map(|child_of| child_of.parent());
+        }
+        world.entity_mut(child).insert(ChildOf(parent));
+    }
+
+    fn edit_mesh(&mut self) {
+        let handle = self.meshes[self.dice.below(self.meshes.len())].clone();
+        let mesh = fan(3 + self.dice.below(9) as u32);
+        let mut meshes = self.app.world_mut().resource_mut::<Assets<Mesh>>();
+        *meshes.get_mut(&handle).unwrap() = mesh;
+    }
+
+    fn edit_settings(&mut self) {
+        let builder = [Builder::Median, Builder::Sah, Builder::Ploc][self.dice.below(3)];
+        let levels = [Levels::One, Levels::Two][self.dice.below(2)];
+        let environment = self.dice.below(2) == 0;
+        let background = self.dice.color();
+        let world = self.app.world_mut();
+        let mut settings = world.resource_mut::<RenderSettings>();
+        settings.tree.builder = builder;
+        settings.tree.levels = levels;
+        settings.features.environment = environment;
+        world.resource_mut::<Environment>().background = background;
+    }
+
+    fn edit(&mut self) {
+        let image = self.images[self.dice.below(self.images.len())].clone();
+        let mesh = self.meshes[self.dice.below(self.meshes.len())].clone();
+        let target = self.any();
+        match self.dice.below(20) {
+            0 | 1 => self.spawn_object(),
+            2 => self.spawn_other(),
+            3 => {
+                if let Some(entity) = target {
+                    self.app.world_mut().despawn(entity);
+                    // Children go with their parents.
+                    let world = self.app.world();
+                    self.entities.retain(|&entity| world.get_entity(entity).is_ok());
+                }
+            }
+            4..=6 => self.change::<Transform>(|transform, dice| *transform = dice.transform()),
+            7 => self.reparent(),
+            8 | 9 => self.change::<Visibility>(|visibility, dice| {
+                *visibility = [Visibility::Hidden, Visibility::Inherited, Visibility::Visible]
+                    [dice.below(3)];
+            }),
+            10 | 11 => self.change::<Phong>(|phong, dice| *phong = dice.phong()),
+            12 => self.change::<Mesh3d>(|mesh3d, _| mesh3d.0 = mesh),
+            13 => self.change::<PointLamp>(|lamp, dice| lamp.color = dice.color()),
+            14 => self.change::<ParallelogramLamp>(|lamp, dice| lamp.corner = dice.vector()),
+            15 => {
+                if let (Some(user), Some(material)) = (target, self.any()) {
+                    let mut user = self.app.world_mut().entity_mut(user);
+                    if !user.contains::<UsesMaterial>() {
+                        user.insert(UsesMaterial(material));
+                    } else {
+                        user.remove::<UsesMaterial>();
+                    }
+                }
+            }
+            16 => {
+                if let Some(entity) = target {
+                    let mut entity = self.app.world_mut().entity_mut(entity);
+                    if entity.contains::<PhongMaps>() {
+                        entity.remove::<PhongMaps>();
+                    } else {
+                        let diffuse = Some(image);
+                        entity.insert(PhongMaps {
+                            diffuse,
+                            opacity: None,
+                        });
+                    }
+                }
+            }
+            17 => {
+                if let Some(entity) = target {
+                    let mut entity = self.app.world_mut().entity_mut(entity);
+                    if entity.contains::<Disabled>() {
+                        entity.remove::<Disabled>();
+                    } else {
+                        entity.insert(Disabled);
+                    }
+                }
+            }
+            18 => self.edit_mesh(),
+            _ => self.edit_settings(),
+        }
+    }
+
+    /// Another app with the same entities, spawned in another order and all in one frame.
+    fn fresh(&mut self) -> App {
+        let mut new = app();
+        let old = self.app.world();
+        for resource in [0, 1] {
+            match resource {
+                0 => new.insert_resource(old.resource::<RenderSettings>().clone()),
+                _ => new.insert_resource(old.resource::<Environment>().clone()),
+            };
+        }
+        let mut order = self.entities.clone();
+        for i in (1..order.len()).rev() {
+            order.swap(i, self.dice.below(i + 1));
+        }
+        let world = new.world_mut();
+        let twins: HashMap<Entity, Entity> =
+            order.iter().map(|&entity| (entity, world.spawn_empty().id())).collect();
+        let mut meshes = HashMap::new();
+        let mut images = HashMap::new();
+        for entity in order {
+            let twin = twins[&entity];
+            copy::<SceneId>(old, entity, world, twin);
+            copy::<Transform>(old, entity, world, twin);
+            copy::<Visibility>(old, entity, world, twin);
+            copy::<Phong>(old, entity, world, twin);
+            copy::<PointLamp>(old, entity, world, twin);
+            copy::<DirectionalLamp>(old, entity, world, twin);
+            copy::<SegmentLamp>(old, entity, world, twin);
+            copy::<ParallelogramLamp>(old, entity, world, twin);
+            copy::<SceneCamera>(old, entity, world, twin);
+            if old.get::<Disabled>(entity).is_some() {
+                world.entity_mut(twin).insert(Disabled);
+            }
+            if let Some(parent) = old.get::<ChildOf>(entity) {
+                world.entity_mut(twin).insert(ChildOf(twins[&parent.parent()]));
+            }
+            if let Some(material) = old.get::<UsesMaterial>(entity) {
+                // A deleted material stays a deleted one.
+                let gone = world.spawn_empty().id();
+                world.despawn(gone);
+                let material = twins.get(&material.0).copied().unwrap_or(gone);
+                world.entity_mut(twin).insert(UsesMaterial(material));
+            }
+            if let Some(mesh) = old.get::<Mesh3d>(entity) {
+                let handle = meshes.entry(mesh.id()).or_insert_with(|| {
+                    let mesh = old.resource::<Assets<Mesh>>().get(mesh.id()).unwrap();
+                    world.resource_mut::<Assets<Mesh>>().add(mesh.clone())
+                });
+                world.entity_mut(twin).insert(Mesh3d(handle.clone()));
+            }
+            if let Some(maps) = old.get::<PhongMaps>(entity) {
+                let diffuse = maps.diffuse.as_ref().map(|image| {
+                    let twin = images.entry(image.id()).or_insert_with(|| {
+                        let image = old.resource::<Assets<Image>>().get(image.id()).unwrap();
+                        world.resource_mut::<Assets<Image>>().add(image.clone())
+                    });
+                    twin.clone()
+                });
+                world.entity_mut(twin).insert(PhongMaps {
+                    diffuse,
+                    opacity: None,
+                });
+            }
+        }
+        new.update();
+        new
+    }
+}
+
+fn copy<C: Component + Clone>(
+    from: &bevy::ecs::world::World,
+    entity: Entity,
+    to: &mut bevy::ecs::world::World,
+    twin: Entity,
+) {
+    if let Some(component) = from.get::<C>(entity) {
+        to.entity_mut(twin).insert(component.clone());
+    }
+}
+
+/// Everything that rays read, as text: NaN equals itself there, and -0.0 differs from 0.0.
+fn describe(world: &trace::World) -> Vec<String> {
+    let mut lines = Vec::new();
+    for (object, instance) in world.objects.iter().zip(world.aggregate.instances()) {
+        let triangles = object.mesh.tree.triangles();
+        lines.push(format!(
+            "object {} material {} at {:?} {:?} {:?} {:?} {:?}",
+            object.id,
+            object.material,
+            instance.world_from_object(),
+            triangles.positions(),
+            triangles.indices(),
+            object.mesh.normals,
+            object.mesh.uvs,
+        ));
+    }
+    lines.extend(world.materials.iter().map(|material| format!("{material:?}")));
+    lines.extend(world.textures.iter().map(|texture| format!("{texture:?}")));
+    lines.push(format!("{:?}", world.lights));
+    lines.push(format!("{:?}", world.environment));
+    lines.push(format!("{:?}", world.aggregate.options()));
+    lines.push(format!("{:?}", world.aggregate.stats()));
+    lines
+}
+
+fn assert_same(edited: &App, fresh: &App, dice: &mut Dice, edits: usize) -> usize {
+    let (a, b) = (world(edited), world(fresh));
+    let (lines, others) = (describe(&a), describe(&b));
+    for (line, other) in lines.iter().zip(&others) {
+        assert_eq!(line, other, "after {edits} edits");
+    }
+    assert_eq!(lines.len(), others.len(), "after {edits} edits");
+    assert_eq!(problems(edited), problems(fresh), "after {edits} edits");
+    let cameras = |app: &App| app.world().resource::<TracedCameras>().0.clone();
+    assert_eq!(cameras(edited), cameras(fresh), "after {edits} edits");
+    let mut hits = 0;
+    for _ in 0..1_000 {
+        let ray = Ray::new(dice.vector() * 8.0, dice.vector());
+        let hit = a.aggregate.closest_hit(&ray);
+        assert_eq!(hit, b.aggregate.closest_hit(&ray), "after {edits} edits: {ray:?}");
+        hits += usize::from(hit.is_some());
+    }
+    hits
+}
+
+#[test]
+fn a_thousand_edits_leave_the_same_world_and_hits_as_a_fresh_build() {
+    let mut edited = Edited::new(29);
+    for _ in 0..12 {
+        edited.spawn_object();
+        edited.spawn_other();
+    }
+    let (mut hits, mut frames_with_changes) = (0, 0);
+    for edits in 1..=1_000 {
+        edited.edit();
+        // Several edits may fall into one frame.
+        if edits % 3 != 0 {
+            frames_with_changes += usize::from(frame(&mut edited.app).any());
+        }
+        if edits % 25 == 0 {
+            edited.app.update();
+            let fresh = edited.fresh();
+            hits += assert_same(&edited.app, &fresh, &mut edited.dice, edits);
+        }
+    }
+    // The test tests nothing where nothing is there, or nothing happens.
+    assert!(hits > 2_000, "only {hits} of 40,000 rays hit anything");
+    assert!(frames_with_changes > 300, "only {frames_with_changes} frames changed anything");
+}
