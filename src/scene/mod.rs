@@ -22,6 +22,7 @@ mod identity;
 mod lamps;
 mod material;
 mod mesh_source;
+mod setting_table;
 mod settings;
 
 pub use camera::{Lens, Motion, Projection, SceneCamera};
@@ -29,6 +30,7 @@ pub use identity::SceneId;
 pub use lamps::{Cone, DirectionalLamp, ParallelogramLamp, PointLamp, SegmentLamp};
 pub use material::{Phong, PhongMaps, TextureSource, UsesMaterial};
 pub use mesh_source::{MeshSource, Shape};
+pub use setting_table::{SETTINGS, Setting, SettingProblem, SettingRange, setting_problems};
 pub use settings::{
     Bloom, Builder, Environment, EnvironmentMap, Features, Levels, Lighting, Output, PixelSampling,
     Preset, RenderSettings, Sequence, TextureFilter, TreeSettings, ViewTransform,

@@ -52,35 +52,100 @@ pub const SETTINGS: &[Setting] = {
             },
             "pixels of the picture",
         ),
-        row("spp", Integer(1, 1 << 20), "samples of each pixel"),
+        row(
+            "spp",
+            Integer(1, 1 << 20),
+            "least samples of each pixel; effects may ask for more",
+        ),
+        row(
+            "jitter",
+            Integer(1, 16),
+            "n of n x n jittered samples of each pixel",
+        ),
         row("seed", Integer(0, u32::MAX), "chooses the random numbers"),
         row("pixel", Choice, "where in the pixel samples lie"),
         row("lighting", Choice, "what a light's colour means"),
         row("max_depth", Integer(0, 50), "mirror bounces"),
-        row("features.shading", Switch, "Phong shading; off: the value is kd"),
+        row(
+            "features.shading",
+            Switch,
+            "Phong shading; off: the value is kd",
+        ),
         row("features.mirrors", Switch, "ks > 0 reflects"),
         row("features.shadows", Switch, "shadow rays"),
-        row("features.soft_shadows", Switch, "area lights as areas; off: as their middle"),
-        row("features.normal_interpolation", Switch, "smooth normals; off: the triangle's own"),
+        row(
+            "features.soft_shadows",
+            Switch,
+            "area lights as areas; off: as their middle",
+        ),
+        row(
+            "features.normal_interpolation",
+            Switch,
+            "smooth normals; off: the triangle's own",
+        ),
         row("features.textures", Switch, "diffuse and opacity maps"),
-        row("features.environment", Switch, "the environment map; off: the background colour"),
-        row("features.scale_light_samples", Switch, "light samples grow with the light's size"),
+        row(
+            "features.environment",
+            Switch,
+            "the environment map; off: the background colour",
+        ),
+        row(
+            "features.scale_light_samples",
+            Switch,
+            "light samples grow with the light's size",
+        ),
         row("features.glossy", Switch, "mirrors blur by their shininess"),
-        row("features.transparency", Switch, "opacity below 1 lets light through"),
-        row("features.translucency", Switch, "transmitted rays blur by the shininess"),
+        row(
+            "features.transparency",
+            Switch,
+            "opacity below 1 lets light through",
+        ),
+        row(
+            "features.translucency",
+            Switch,
+            "transmitted rays blur by the shininess",
+        ),
         row("features.lens", Switch, "the camera's lens; off: a pinhole"),
-        row("features.motion", Switch, "things move while the shutter is open"),
-        row("gloss_samples", Integer(1, 1000), "rays of a glossy reflection at the first hit"),
-        row("translucency_samples", Integer(1, 1000), "rays through a translucent surface at the first hit"),
+        row(
+            "features.motion",
+            Switch,
+            "things move while the shutter is open",
+        ),
+        row(
+            "gloss_samples",
+            Integer(1, 1000),
+            "rays of a glossy reflection at the first hit",
+        ),
+        row(
+            "translucency_samples",
+            Integer(1, 1000),
+            "rays through a translucent surface at the first hit",
+        ),
         row("texture_filter", Choice, "how texels are read"),
         row("tree.builder", Choice, "splitting rule of the trees"),
-        row("tree.levels", Choice, "a tree per mesh and one over them, or one tree for all"),
-        row("tree.max_depth", Integer(1, 64), "levels of Median and Sah trees"),
+        row(
+            "tree.levels",
+            Choice,
+            "a tree per mesh and one over them, or one tree for all",
+        ),
+        row(
+            "tree.max_depth",
+            Integer(1, 64),
+            "levels of Median and Sah trees",
+        ),
         row("tree.max_leaf_size", Integer(1, 255), "triangles of a leaf"),
         row("tree.bins", Integer(2, 64), "bins per axis of Sah"),
-        row("tree.preset", Choice, "how much time Ploc takes for a better tree"),
+        row(
+            "tree.preset",
+            Choice,
+            "how much time Ploc takes for a better tree",
+        ),
         row("output.exposure", Number(-64.0, 64.0), "in stops"),
-        row("output.view_transform", Choice, "from scene values to a screen's"),
+        row(
+            "output.view_transform",
+            Choice,
+            "from scene values to a screen's",
+        ),
     ]
 };
 
@@ -216,7 +281,11 @@ mod tests {
                 SettingRange::Choice => setting.choices().len() > 1,
                 SettingRange::Size { .. } => value.try_downcast_ref::<UVec2>().is_some(),
             };
-            assert!(fits, "{} is {value:?}, its row says {:?}", setting.path, setting.range);
+            assert!(
+                fits,
+                "{} is {value:?}, its row says {:?}",
+                setting.path, setting.range
+            );
         }
     }
 
@@ -228,9 +297,16 @@ mod tests {
         settings.max_depth = 51;
         settings.output.exposure = f32::NAN;
         settings.size = UVec2::new(65_536, 65_536);
-        let problems: Vec<String> = setting_problems(&settings).iter().map(|p| p.to_string()).collect();
+        let problems: Vec<String> = setting_problems(&settings)
+            .iter()
+            .map(|p| p.to_string())
+            .collect();
         assert_eq!(problems.len(), 4, "{problems:#?}");
-        assert!(problems[0].starts_with("size is 65536x65536, and must be"), "{}", problems[0]);
+        assert!(
+            problems[0].starts_with("size is 65536x65536, and must be"),
+            "{}",
+            problems[0]
+        );
         assert_eq!(problems[1], "spp is 0, and must be 1 to 1048576");
         assert_eq!(problems[2], "max_depth is 51, and must be 0 to 50");
     }

@@ -102,9 +102,17 @@ pub(super) fn sync_cameras(
                 parent.affine().transform_vector3(motion.velocity)
             })
         });
-        let Some(camera) = read_camera(camera, transform, lens, velocity, &mut reader) else {
+        let Some(mut camera) = read_camera(camera, transform, lens, velocity, &mut reader) else {
             continue;
         };
+        if let Some(lens) = lens {
+            camera.optics.lens_samples = reader.samples(lens.samples);
+        }
+        if let Some(motion) = motion
+            && velocity != Vec3::ZERO
+        {
+            camera.optics.motion_samples = reader.samples(motion.samples);
+        }
         list.push(TracedCamera {
             id,
             name: name.map_or_else(|| format!("camera-{}", id.0), |name| name.to_string()),

@@ -43,7 +43,10 @@ pub(super) fn sync_environment(
         Ok(None)
     };
     let map = map.unwrap_or_else(|fault| {
-        reader.note(Fault::Texture { field: "map", fault });
+        reader.note(Fault::Texture {
+            field: "map",
+            fault,
+        });
         None
     });
     let new = trace::Environment {

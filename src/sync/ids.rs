@@ -32,7 +32,7 @@ type OfScene = Or<(
 pub(super) fn assign_scene_ids(
     changed: Query<(), Changed<SceneId>>,
     missing: Query<Entity, (OfScene, Without<SceneId>)>,
-    mut ids: Query<(Entity, &mut SceneId)>,
+    ids: Query<(Entity, &SceneId)>,
     mut known: ResMut<IdOwners>,
     mut commands: Commands,
 ) {
@@ -49,18 +49,14 @@ pub(super) fn assign_scene_ids(
             owners.insert(id.0, entity);
         }
     }
+    let mut without: Vec<Entity> = missing.iter().collect();
     for (entity, id) in all {
         if id.is_unassigned() || *owners.entry(id.0).or_insert(entity) != entity {
-            let id = next(&mut known.largest, &owners);
-            owners.insert(id.0, entity);
-            if let Ok((_, mut place)) = ids.get_mut(entity) {
-                *place = id;
-            }
+            without.push(entity);
         }
     }
-    let mut missing: Vec<Entity> = missing.iter().collect();
-    missing.sort_unstable_by_key(|entity| entity.index_u32());
-    for entity in missing {
+    without.sort_unstable_by_key(|entity| entity.index_u32());
+    for entity in without {
         let id = next(&mut known.largest, &owners);
         owners.insert(id.0, entity);
         commands.entity(entity).insert(id);
@@ -139,6 +135,9 @@ mod tests {
         app.update();
         let new = app.world_mut().spawn(SceneId(0)).id();
         app.update();
-        assert_eq!([id(&app, last), id(&app, first), id(&app, new)], [u64::MAX, 1, 2]);
+        assert_eq!(
+            [id(&app, last), id(&app, first), id(&app, new)],
+            [u64::MAX, 1, 2]
+        );
     }
 }

@@ -152,7 +152,7 @@ fn directional(
         to_light: backward(transform, reader)?,
         color: reader.strength("colour times intensity", lamp.color, lamp.intensity)?,
         tan_half_angle: (0.5 * diameter).tan(),
-        samples: samples(lamp.samples, reader),
+        samples: reader.samples(lamp.samples),
     })
 }
 
@@ -174,7 +174,7 @@ fn segment(
         id: reader.id.0,
         ends,
         colors: strengths(lamp.colors, lamp.intensity, reader)?,
-        samples: samples(lamp.samples, reader),
+        samples: reader.samples(lamp.samples),
     })
 }
 
@@ -208,7 +208,7 @@ fn parallelogram(
         colors,
         two_sided: lamp.two_sided,
         visible: lamp.visible,
-        samples: samples(lamp.samples, reader),
+        samples: reader.samples(lamp.samples),
     })
 }
 
@@ -231,16 +231,4 @@ fn strengths<const N: usize>(
         *strength = reader.strength("colour times intensity", color, intensity)?;
     }
     Some(strengths)
-}
-
-fn samples(samples: u32, reader: &mut Reader) -> u32 {
-    let used = samples.clamp(1, 1000);
-    if used != samples {
-        reader.note(Fault::OutOfRange {
-            field: "samples",
-            value: samples as f32,
-            used: used as f32,
-        });
-    }
-    used
 }

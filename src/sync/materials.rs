@@ -50,16 +50,10 @@ pub(super) fn sync_materials(
     draft: ResMut<Draft>,
 ) {
     // Not `||`: every reader has to be emptied.
-    let gone =
-        no_phong.read().count() + no_maps.read().count() + no_shared.read().count();
+    let gone = no_phong.read().count() + no_maps.read().count() + no_shared.read().count();
     let switched = switched.any();
     let changes = draft.changes;
-    if gone == 0
-        && !switched
-        && edited.is_empty()
-        && !changes.top_level
-        && !changes.textures
-    {
+    if gone == 0 && !switched && edited.is_empty() && !changes.top_level && !changes.textures {
         return;
     }
     let draft = draft.into_inner();
@@ -123,6 +117,8 @@ pub(super) fn sync_materials(
             material: user
                 .and_then(|entity| places.get(&entity).copied())
                 .unwrap_or(default_place),
+            // Trees do not move yet, so more samples would show nothing.
+            motion_samples: 0,
             mesh: row.mesh.clone(),
         })
         .collect();
@@ -146,7 +142,8 @@ fn same<T>(a: &[T], b: &[T], equal: impl Fn(&T, &T) -> bool) -> bool {
 }
 
 fn same_object(a: &Object, b: &Object) -> bool {
-    a.id == b.id && a.material == b.material && Arc::ptr_eq(&a.mesh, &b.mesh)
+    (a.id, a.material, a.motion_samples) == (b.id, b.material, b.motion_samples)
+        && Arc::ptr_eq(&a.mesh, &b.mesh)
 }
 
 /// Textures in the order in which the sorted materials name them first.
@@ -246,6 +243,10 @@ mod tests {
         assert_eq!(material.emission.to_array(), [9.0, 0.0, 0.0]);
         let named: Vec<String> = problems.iter().map(ToString::to_string).collect();
         assert_eq!(named.len(), 4, "{named:#?}");
-        assert!(named[0].starts_with("material 4: its diffuse is 2"), "{}", named[0]);
+        assert!(
+            named[0].starts_with("material 4: its diffuse is 2"),
+            "{}",
+            named[0]
+        );
     }
 }

@@ -38,8 +38,8 @@ pub(super) fn trace_mesh(mesh: &Mesh, options: &BuildOptions) -> Result<trace::M
     };
     let count = positions.len();
     let indices = triangle_indices(mesh, count)?;
-    let triangles = Triangles::new(positions, indices)
-        .map_err(|error| MeshFault::Broken(error.to_string()))?;
+    let triangles =
+        Triangles::new(positions, indices).map_err(|error| MeshFault::Broken(error.to_string()))?;
 
     // Attributes that do not fit the positions are no use: shading then takes the flat normal.
     let normals = match mesh.try_attribute(Mesh::ATTRIBUTE_NORMAL) {
@@ -99,7 +99,12 @@ mod tests {
     use bevy::asset::RenderAssetUsages;
 
     fn mesh(topology: PrimitiveTopology) -> Mesh {
-        let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+        let positions = vec![
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [1.0, 1.0, 0.0],
+        ];
         Mesh::new(topology, RenderAssetUsages::MAIN_WORLD)
             .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
     }
@@ -139,7 +144,10 @@ mod tests {
             fault(&lines),
             MeshFault::NotTriangles(PrimitiveTopology::LineList)
         );
-        let empty = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::MAIN_WORLD);
+        let empty = Mesh::new(
+            PrimitiveTopology::TriangleList,
+            RenderAssetUsages::MAIN_WORLD,
+        );
         assert_eq!(fault(&empty), MeshFault::NoPositions);
         let beyond = mesh(PrimitiveTopology::TriangleList)
             .with_inserted_indices(Indices::U32(vec![0, 1, 4]));
@@ -148,8 +156,8 @@ mod tests {
 
     #[test]
     fn a_mesh_without_triangles_is_empty_and_no_fault() {
-        let none = mesh(PrimitiveTopology::TriangleList)
-            .with_inserted_indices(Indices::U32(Vec::new()));
+        let none =
+            mesh(PrimitiveTopology::TriangleList).with_inserted_indices(Indices::U32(Vec::new()));
         assert!(indices_of(&none).is_empty());
     }
 }

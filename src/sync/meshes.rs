@@ -58,9 +58,8 @@ pub(super) fn sync_meshes(
         stale = true;
     }
     for event in events.read() {
-        let (AssetEvent::Added { id }
-        | AssetEvent::Modified { id }
-        | AssetEvent::Removed { id }) = event
+        let (AssetEvent::Added { id } | AssetEvent::Modified { id } | AssetEvent::Removed { id }) =
+            event
         else {
             continue;
         };
@@ -91,7 +90,10 @@ pub(super) fn sync_meshes(
         .into_par_iter()
         .map(|id| {
             let mesh = assets.get(id).ok_or(MeshFault::Missing);
-            (id, mesh.and_then(|mesh| trace_mesh(mesh, &mesh_options).map(Arc::new)))
+            (
+                id,
+                mesh.and_then(|mesh| trace_mesh(mesh, &mesh_options).map(Arc::new)),
+            )
         })
         .collect();
     known.by_asset.extend(built);

@@ -25,7 +25,9 @@ pub enum Fault {
     #[error("its mesh {0}; left out")]
     Mesh(MeshFault),
     /// Single triangles of the mesh cannot be traced.
-    #[error("{count} of its triangles have corners that are not finite, or farther away than 1e12; they are left out")]
+    #[error(
+        "{count} of its triangles have corners that are not finite, or farther away than 1e12; they are left out"
+    )]
     TrianglesLeftOut {
         /// How many.
         count: u32,

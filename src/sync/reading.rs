@@ -99,4 +99,17 @@ impl Reader<'_> {
         }
         used
     }
+
+    /// A number of samples, 1 to 1000.
+    pub fn samples(&mut self, samples: u32) -> u32 {
+        let used = samples.clamp(1, 1000);
+        if used != samples {
+            self.note(Fault::OutOfRange {
+                field: "samples",
+                value: samples as f32,
+                used: used as f32,
+            });
+        }
+        used
+    }
 }

@@ -20,7 +20,9 @@ pub enum TextureFault {
     #[error("is not a single flat picture")]
     NotFlat,
     /// Pixels of a kind that is not read.
-    #[error("has pixels of the format {0:?}, which is not read; use 8, 16 or 32 bits a channel, uncompressed")]
+    #[error(
+        "has pixels of the format {0:?}, which is not read; use 8, 16 or 32 bits a channel, uncompressed"
+    )]
     Format(TextureFormat),
     /// The size and the data do not fit.
     #[error("is broken: {0}")]
@@ -30,14 +32,18 @@ pub enum TextureFault {
 /// The first level of the picture. Which formats hold sRGB and which linear values, their names say.
 pub(super) fn trace_texture(image: &Image) -> Result<Texture, TextureFault> {
     let descriptor = &image.texture_descriptor;
-    let flat = descriptor.dimension == TextureDimension::D2
-        && descriptor.size.depth_or_array_layers == 1;
+    let flat =
+        descriptor.dimension == TextureDimension::D2 && descriptor.size.depth_or_array_layers == 1;
     if !flat {
         return Err(TextureFault::NotFlat);
     }
     let data = image.data.as_deref().ok_or(TextureFault::NoData)?;
     let (width, height) = (image.width(), image.height());
-    let texels = texels(descriptor.format, data, u64::from(width) * u64::from(height))?;
+    let texels = texels(
+        descriptor.format,
+        data,
+        u64::from(width) * u64::from(height),
+    )?;
     Texture::new(width, height, texels).map_err(|error| TextureFault::Broken(error.to_string()))
 }
 
@@ -81,18 +87,24 @@ fn floats<const N: usize>(
     count: usize,
     color: impl Fn([u16; N]) -> [f32; 3],
 ) -> Texels {
-    let words: Vec<u16> = data.as_chunks().0.iter().map(|&b| u16::from_ne_bytes(b)).collect();
+    let words: Vec<u16> = data
+        .as_chunks()
+        .0
+        .iter()
+        .map(|&b| u16::from_ne_bytes(b))
+        .collect();
     let texels = words.as_chunks().0.iter().take(count);
     Texels::Linear32(texels.map(|&texel| finite(color(texel))).collect())
 }
 
 /// Texels of `N` channels of four bytes each.
-fn wide<const N: usize>(
-    data: &[u8],
-    count: usize,
-    color: impl Fn([f32; N]) -> [f32; 3],
-) -> Texels {
-    let words: Vec<f32> = data.as_chunks().0.iter().map(|&b| f32::from_ne_bytes(b)).collect();
+fn wide<const N: usize>(data: &[u8], count: usize, color: impl Fn([f32; N]) -> [f32; 3]) -> Texels {
+    let words: Vec<f32> = data
+        .as_chunks()
+        .0
+        .iter()
+        .map(|&b| f32::from_ne_bytes(b))
+        .collect();
     let texels = words.as_chunks().0.iter().take(count);
     Texels::Linear32(texels.map(|&texel| finite(color(texel))).collect())
 }
@@ -140,16 +152,25 @@ mod tests {
     }
 
     fn first(format: TextureFormat, data: Vec<u8>) -> [f32; 3] {
-        trace_texture(&image(format, 1, data)).unwrap().texel(0, 0, true).into()
+        trace_texture(&image(format, 1, data))
+            .unwrap()
+            .texel(0, 0, true)
+            .into()
     }
 
     #[test]
     fn every_format_that_is_read_gives_its_channels_in_order() {
         let rgb = [51.0 / 255.0, 102.0 / 255.0, 204.0 / 255.0];
-        assert_eq!(first(TextureFormat::Rgba8UnormSrgb, vec![51, 102, 204, 9]), rgb);
+        assert_eq!(
+            first(TextureFormat::Rgba8UnormSrgb, vec![51, 102, 204, 9]),
+            rgb
+        );
         assert_eq!(first(TextureFormat::Rgba8Unorm, vec![51, 102, 204, 9]), rgb);
         assert_eq!(first(TextureFormat::Bgra8Unorm, vec![204, 102, 51, 9]), rgb);
-        assert_eq!(first(TextureFormat::Bgra8UnormSrgb, vec![204, 102, 51, 9]), rgb);
+        assert_eq!(
+            first(TextureFormat::Bgra8UnormSrgb, vec![204, 102, 51, 9]),
+            rgb
+        );
         assert_eq!(first(TextureFormat::R8Unorm, vec![255]), [1.0; 3]);
         assert_eq!(first(TextureFormat::Rg8Unorm, vec![255, 3]), [1.0; 3]);
         let floats = |v: &[f32]| v.iter().flat_map(|x| x.to_ne_bytes()).collect::<Vec<u8>>();
@@ -158,7 +179,10 @@ mod tests {
         assert_eq!(first(TextureFormat::R32Float, floats(&[2.0])), [2.0; 3]);
         let words = |v: &[u16]| v.iter().flat_map(|x| x.to_ne_bytes()).collect::<Vec<u8>>();
         let halves = words(&[0x3c00, 0xc100, 0x0001, 0]);
-        assert_eq!(first(TextureFormat::Rgba16Float, halves), [1.0, -2.5, 2f32.powi(-24)]);
+        assert_eq!(
+            first(TextureFormat::Rgba16Float, halves),
+            [1.0, -2.5, 2f32.powi(-24)]
+        );
         let units = words(&[0xffff, 0, 0xffff, 0]);
         assert_eq!(first(TextureFormat::Rgba16Unorm, units), [1.0, 0.0, 1.0]);
     }
@@ -177,7 +201,10 @@ mod tests {
     fn an_image_that_is_no_flat_readable_picture_is_refused_with_the_reason() {
         let format = TextureFormat::Bc1RgbaUnorm;
         let compressed = image(format, 4, vec![0; 8]);
-        assert_eq!(trace_texture(&compressed).unwrap_err(), TextureFault::Format(format));
+        assert_eq!(
+            trace_texture(&compressed).unwrap_err(),
+            TextureFault::Format(format)
+        );
         let mut gone = image(TextureFormat::Rgba8Unorm, 1, vec![0; 4]);
         gone.data = None;
         assert_eq!(trace_texture(&gone).unwrap_err(), TextureFault::NoData);
@@ -185,6 +212,9 @@ mod tests {
         layers.texture_descriptor.size.depth_or_array_layers = 2;
         assert_eq!(trace_texture(&layers).unwrap_err(), TextureFault::NotFlat);
         let short = image(TextureFormat::Rgba8Unorm, 4, vec![0; 8]);
-        assert!(matches!(trace_texture(&short).unwrap_err(), TextureFault::Broken(_)));
+        assert!(matches!(
+            trace_texture(&short).unwrap_err(),
+            TextureFault::Broken(_)
+        ));
     }
 }

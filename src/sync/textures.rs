@@ -42,12 +42,10 @@ pub(super) fn sync_textures(
     mut draft: ResMut<Draft>,
 ) {
     let known = known.into_inner();
-    let mut stale =
-        removed.read().count() > 0 || !changed.is_empty() || environment.is_changed();
+    let mut stale = removed.read().count() > 0 || !changed.is_empty() || environment.is_changed();
     for event in events.read() {
-        let (AssetEvent::Added { id }
-        | AssetEvent::Modified { id }
-        | AssetEvent::Removed { id }) = event
+        let (AssetEvent::Added { id } | AssetEvent::Modified { id } | AssetEvent::Removed { id }) =
+            event
         else {
             continue;
         };

@@ -111,6 +111,6 @@ pub(super) fn publish_snapshot(
     traced.changes = changes;
     traced.problems = draft.problems.all();
     if changes.any_in_world() {
-        traced.world = Arc::new(draft.world.clone());
+        traced.world = Arc::new(draft.world.clone().with_needs());
     }
 }

@@ -11,7 +11,7 @@ use crate::sync::TracedCameras;
 use bevy::camera::visibility::Visibility;
 use bevy::ecs::component::{Component, Mutable};
 use bevy::ecs::entity_disabling::Disabled;
-use bevy::ecs::hierarchy::ChildOf;
+use bevy::ecs::hierarchy::{ChildOf, Children};
 use bevy::math::{Quat, Vec3};
 use bevy::platform::collections::HashMap;
 
@@ -83,16 +83,32 @@ impl Edited {
         let mut app = app();
         Self {
             meshes: (3..8).map(|sides| add_mesh(&mut app, sides)).collect(),
-            images: (1..4).map(|value| add_image(&mut app, value * 50)).collect(),
+            images: (1..4)
+                .map(|value| add_image(&mut app, value * 50))
+                .collect(),
             app,
             dice: Dice(seed),
             entities: Vec::new(),
         }
     }
 
+    /// Any entity but a disabled one: Bevy itself forgets what happens to those, and does not
+    /// carry transforms past them.
     fn any(&mut self) -> Option<Entity> {
-        let n = self.entities.len();
-        (n > 0).then(|| self.entities[self.dice.below(n)])
+        let world = self.app.world();
+        let enabled = |entity: &&Entity| world.get::<Disabled>(**entity).is_none();
+        let enabled: Vec<&Entity> = self.entities.iter().filter(enabled).collect();
+        (!enabled.is_empty()).then(|| *enabled[self.dice.below(enabled.len())])
+    }
+
+    fn switch(&mut self) {
+        let entity = self.entities[self.dice.below(self.entities.len())];
+        let mut entity = self.app.world_mut().entity_mut(entity);
+        if entity.contains::<Disabled>() {
+            entity.remove::<Disabled>();
+        } else if !entity.contains::<ChildOf>() && !entity.contains::<Children>() {
+            entity.insert(Disabled);
+        }
     }
 
     fn spawn_object(&mut self) {
@@ -132,7 +148,10 @@ impl Edited {
         self.entities.push(id);
     }
 
-    fn change<C: Component<Mutability = Mutable>>(&mut self, change: impl FnOnce(&mut C, &mut Dice)) {
+    fn change<C: Component<Mutability = Mutable>>(
+        &mut self,
+        change: impl FnOnce(&mut C, &mut Dice),
+    ) {
         if let Some(entity) = self.any()
             && let Some(mut component) = self.app.world_mut().get_mut::<C>(entity)
         {
@@ -151,7 +170,9 @@ impl Edited {
                 world.entity_mut(child).remove::<ChildOf>();
                 return;
             }
-            above = world.get::<ChildOf>(entity).map(|child_of| child_of.parent());
+            above = world
+                .get::<ChildOf>(entity)
+                .map(|child_of| child_of.parent());
         }
         world.entity_mut(child).insert(ChildOf(parent));
     }
@@ -188,14 +209,18 @@ impl Edited {
                     self.app.world_mut().despawn(entity);
                     // Children go with their parents.
                     let world = self.app.world();
-                    self.entities.retain(|&entity| world.get_entity(entity).is_ok());
+                    self.entities
+                        .retain(|&entity| world.get_entity(entity).is_ok());
                 }
             }
             4..=6 => self.change::<Transform>(|transform, dice| *transform = dice.transform()),
             7 => self.reparent(),
             8 | 9 => self.change::<Visibility>(|visibility, dice| {
-                *visibility = [Visibility::Hidden, Visibility::Inherited, Visibility::Visible]
-                    [dice.below(3)];
+                *visibility = [
+                    Visibility::Hidden,
+                    Visibility::Inherited,
+                    Visibility::Visible,
+                ][dice.below(3)];
             }),
             10 | 11 => self.change::<Phong>(|phong, dice| *phong = dice.phong()),
             12 => self.change::<Mesh3d>(|mesh3d, _| mesh3d.0 = mesh),
@@ -225,16 +250,7 @@ impl Edited {
                     }
                 }
             }
-            17 => {
-                if let Some(entity) = target {
-                    let mut entity = self.app.world_mut().entity_mut(entity);
-                    if entity.contains::<Disabled>() {
-                        entity.remove::<Disabled>();
-                    } else {
-                        entity.insert(Disabled);
-                    }
-                }
-            }
+            17 => self.switch(),
             18 => self.edit_mesh(),
             _ => self.edit_settings(),
         }
@@ -255,8 +271,10 @@ impl Edited {
             order.swap(i, self.dice.below(i + 1));
         }
         let world = new.world_mut();
-        let twins: HashMap<Entity, Entity> =
-            order.iter().map(|&entity| (entity, world.spawn_empty().id())).collect();
+        let twins: HashMap<Entity, Entity> = order
+            .iter()
+            .map(|&entity| (entity, world.spawn_empty().id()))
+            .collect();
         let mut meshes = HashMap::new();
         let mut images = HashMap::new();
         for entity in order {
@@ -274,7 +292,9 @@ impl Edited {
                 world.entity_mut(twin).insert(Disabled);
             }
             if let Some(parent) = old.get::<ChildOf>(entity) {
-                world.entity_mut(twin).insert(ChildOf(twins[&parent.parent()]));
+                world
+                    .entity_mut(twin)
+                    .insert(ChildOf(twins[&parent.parent()]));
             }
             if let Some(material) = old.get::<UsesMaterial>(entity) {
                 // A deleted material stays a deleted one.
@@ -336,7 +356,12 @@ fn describe(world: &trace::World) -> Vec<String> {
             object.mesh.uvs,
         ));
     }
-    lines.extend(world.materials.iter().map(|material| format!("{material:?}")));
+    lines.extend(
+        world
+            .materials
+            .iter()
+            .map(|material| format!("{material:?}")),
+    );
     lines.extend(world.textures.iter().map(|texture| format!("{texture:?}")));
     lines.push(format!("{:?}", world.lights));
     lines.push(format!("{:?}", world.environment));
@@ -359,7 +384,11 @@ fn assert_same(edited: &App, fresh: &App, dice: &mut Dice, edits: usize) -> usiz
     for _ in 0..1_000 {
         let ray = Ray::new(dice.vector() * 8.0, dice.vector());
         let hit = a.aggregate.closest_hit(&ray);
-        assert_eq!(hit, b.aggregate.closest_hit(&ray), "after {edits} edits: {ray:?}");
+        assert_eq!(
+            hit,
+            b.aggregate.closest_hit(&ray),
+            "after {edits} edits: {ray:?}"
+        );
         hits += usize::from(hit.is_some());
     }
     hits
@@ -387,5 +416,8 @@ fn a_thousand_edits_leave_the_same_world_and_hits_as_a_fresh_build() {
     }
     // The test tests nothing where nothing is there, or nothing happens.
     assert!(hits > 2_000, "only {hits} of 40,000 rays hit anything");
-    assert!(frames_with_changes > 300, "only {frames_with_changes} frames changed anything");
+    assert!(
+        frames_with_changes > 300,
+        "only {frames_with_changes} frames changed anything"
+    );
 }

@@ -59,15 +59,20 @@ fn fan(sides: u32) -> Mesh {
     let positions: Vec<[f32; 3]> = rim.chain([[0.0, 0.0, 0.5]]).collect();
     let uvs: Vec<[f32; 2]> = positions.iter().map(|p| [p[0], p[1]]).collect();
     let indices = (0..sides).flat_map(|i| [i, (i + 1) % sides, sides]);
-    Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::MAIN_WORLD)
-        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
-        .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uvs)
-        .with_inserted_indices(Indices::U32(indices.collect()))
-        .with_computed_smooth_normals()
+    Mesh::new(
+        PrimitiveTopology::TriangleList,
+        RenderAssetUsages::MAIN_WORLD,
+    )
+    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
+    .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uvs)
+    .with_inserted_indices(Indices::U32(indices.collect()))
+    .with_computed_smooth_normals()
 }
 
 fn add_mesh(app: &mut App, sides: u32) -> Handle<Mesh> {
-    app.world_mut().resource_mut::<Assets<Mesh>>().add(fan(sides))
+    app.world_mut()
+        .resource_mut::<Assets<Mesh>>()
+        .add(fan(sides))
 }
 
 fn image(value: u8) -> Image {
@@ -85,7 +90,9 @@ fn image(value: u8) -> Image {
 }
 
 fn add_image(app: &mut App, value: u8) -> Handle<Image> {
-    app.world_mut().resource_mut::<Assets<Image>>().add(image(value))
+    app.world_mut()
+        .resource_mut::<Assets<Image>>()
+        .add(image(value))
 }
 
 fn grey(value: f32) -> Phong {
@@ -117,7 +124,11 @@ impl Small {
             );
             app.world_mut().spawn(object).id()
         };
-        let objects = [spawn(&a, 0.0, 0.1), spawn(&a, 3.0, 0.2), spawn(&b, 6.0, 0.3)];
+        let objects = [
+            spawn(&a, 0.0, 0.1),
+            spawn(&a, 3.0, 0.2),
+            spawn(&b, 6.0, 0.3),
+        ];
         let light = app.world_mut().spawn(PointLamp::default()).id();
         let camera = app.world_mut().spawn(SceneCamera::default()).id();
         app.update();

@@ -10,7 +10,11 @@ fn beside(break_it: impl FnOnce(&mut App, Entity)) -> (App, Vec<String>) {
     let mut small = Small::new();
     let [good, broken, gone] = small.objects;
     small.app.world_mut().despawn(gone);
-    small.app.world_mut().entity_mut(broken).insert(Name::new("broken one"));
+    small
+        .app
+        .world_mut()
+        .entity_mut(broken)
+        .insert(Name::new("broken one"));
     small.app.update();
     assert!(problems(&small.app).is_empty());
     break_it(&mut small.app, broken);
@@ -27,7 +31,11 @@ fn a_singular_transform_is_named_and_its_object_left_out() {
             app.world_mut().get_mut::<Transform>(broken).unwrap().scale = scale;
         });
         assert_eq!(problems.len(), 1, "{problems:?}");
-        assert!(problems[0].starts_with("object 2 \"broken one\": "), "{}", problems[0]);
+        assert!(
+            problems[0].starts_with("object 2 \"broken one\": "),
+            "{}",
+            problems[0]
+        );
         assert_eq!(world(&app).objects.len(), 1);
     }
 }
@@ -51,9 +59,15 @@ fn a_mesh_that_cannot_be_traced_is_named_and_returns_when_it_is_repaired() {
     assert!(problems(&app).is_empty());
     assert_eq!(world(&app).objects.len(), 2);
 
-    app.world_mut().resource_mut::<Assets<Mesh>>().remove(&handle);
+    app.world_mut()
+        .resource_mut::<Assets<Mesh>>()
+        .remove(&handle);
     app.update();
-    assert!(problems(&app)[0].contains("is not loaded"), "{:?}", problems(&app));
+    assert!(
+        problems(&app)[0].contains("is not loaded"),
+        "{:?}",
+        problems(&app)
+    );
     assert_eq!(world(&app).objects.len(), 1);
 }
 
@@ -70,7 +84,11 @@ fn triangles_with_corners_that_are_not_finite_are_counted_and_the_others_stay() 
         app.world_mut().get_mut::<Mesh3d>(broken).unwrap().0 = handle;
     });
     assert_eq!(problems.len(), 1, "{problems:?}");
-    assert!(problems[0].contains("2 of its triangles"), "{}", problems[0]);
+    assert!(
+        problems[0].contains("2 of its triangles"),
+        "{}",
+        problems[0]
+    );
     assert_eq!(world(&app).objects.len(), 2);
 }
 
@@ -109,7 +127,10 @@ fn lights_that_are_nothing_or_not_a_number_are_named_and_left_out() {
 #[test]
 fn a_picture_that_is_not_there_is_named_and_the_object_drawn_without_it() {
     let (app, problems) = beside(|app, broken| {
-        app.world_mut().get_mut::<Phong>(broken).unwrap().diffuse_map = Some(TextureSource {
+        app.world_mut()
+            .get_mut::<Phong>(broken)
+            .unwrap()
+            .diffuse_map = Some(TextureSource {
             path: "wood.png".into(),
         });
     });
@@ -123,7 +144,10 @@ fn settings_out_of_range_are_named() {
     let mut app = app();
     app.world_mut().resource_mut::<RenderSettings>().tree.bins = 1;
     app.update();
-    assert_eq!(problems(&app), ["settings: tree.bins is 1, and must be 2 to 64"]);
+    assert_eq!(
+        problems(&app),
+        ["settings: tree.bins is 1, and must be 2 to 64"]
+    );
     app.world_mut().resource_mut::<RenderSettings>().tree.bins = 2;
     app.update();
     assert!(problems(&app).is_empty());
@@ -142,7 +166,11 @@ fn lens_and_motion_count_only_where_the_settings_switch_them_on() {
         velocity: Vec3::X,
         samples: 1,
     };
-    small.app.world_mut().entity_mut(small.camera).insert((lens, motion));
+    small
+        .app
+        .world_mut()
+        .entity_mut(small.camera)
+        .insert((lens, motion));
     small.app.update();
     let optics = |app: &App| {
         let cameras = app.world().resource::<crate::sync::TracedCameras>();
@@ -166,8 +194,11 @@ fn an_empty_scene_an_empty_mesh_and_the_last_object_deleted_leave_a_clean_backgr
     let ray = Ray::new(Vec3::Z * 5.0, Vec3::NEG_Z);
     assert!(world(&app).aggregate.closest_hit(&ray).is_none());
 
-    let empty = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::MAIN_WORLD)
-        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, Vec::<[f32; 3]>::new());
+    let empty = Mesh::new(
+        PrimitiveTopology::TriangleList,
+        RenderAssetUsages::MAIN_WORLD,
+    )
+    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, Vec::<[f32; 3]>::new());
     let handle = app.world_mut().resource_mut::<Assets<Mesh>>().add(empty);
     let object = app.world_mut().spawn(Mesh3d(handle)).id();
     app.update();

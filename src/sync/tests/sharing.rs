@@ -213,7 +213,11 @@ fn hidden_disabled_and_deleted_objects_vanish_and_come_back() {
     let before = world(&small.app);
     assert_eq!(ids(&small.app), [1, 2, 3]);
 
-    small.app.world_mut().entity_mut(first).insert(Visibility::Hidden);
+    small
+        .app
+        .world_mut()
+        .entity_mut(first)
+        .insert(Visibility::Hidden);
     assert!(frame(&mut small.app).top_level);
     assert_eq!(ids(&small.app), [2, 3]);
 
@@ -225,12 +229,23 @@ fn hidden_disabled_and_deleted_objects_vanish_and_come_back() {
     assert!(frame(&mut small.app).top_level);
     assert_eq!(ids(&small.app), [0; 0]);
 
-    small.app.world_mut().entity_mut(first).insert(Visibility::Inherited);
-    small.app.world_mut().entity_mut(second).remove::<Disabled>();
+    small
+        .app
+        .world_mut()
+        .entity_mut(first)
+        .insert(Visibility::Inherited);
+    small
+        .app
+        .world_mut()
+        .entity_mut(second)
+        .remove::<Disabled>();
     frame(&mut small.app);
     assert_eq!(ids(&small.app), [1, 2]);
     // The trees of hidden and disabled objects: the first stayed in use throughout.
-    assert_eq!(world(&small.app).materials.len(), before.materials.len() - 1);
+    assert_eq!(
+        world(&small.app).materials.len(),
+        before.materials.len() - 1
+    );
 
     small.app.world_mut().despawn(first);
     small.app.world_mut().despawn(second);
@@ -242,16 +257,28 @@ fn hidden_disabled_and_deleted_objects_vanish_and_come_back() {
 fn a_child_follows_its_parents_place_and_visibility() {
     let mut small = Small::new();
     let [parent, child, _] = small.objects;
-    small.app.world_mut().entity_mut(child).insert(ChildOf(parent));
+    small
+        .app
+        .world_mut()
+        .entity_mut(child)
+        .insert(ChildOf(parent));
     small.edit::<Transform>(parent, |t| t.translation.z = 5.0);
     small.app.update();
     let place = |app: &App| {
         let world = world(app);
-        Vec3::from(world.aggregate.instances()[1].world_from_object().translation)
+        Vec3::from(
+            world.aggregate.instances()[1]
+                .world_from_object()
+                .translation,
+        )
     };
     assert_eq!(place(&small.app), Vec3::new(3.0, 0.0, 5.0));
 
-    small.app.world_mut().entity_mut(parent).insert(Visibility::Hidden);
+    small
+        .app
+        .world_mut()
+        .entity_mut(parent)
+        .insert(Visibility::Hidden);
     small.app.update();
     assert_eq!(ids(&small.app), [3]);
 
@@ -265,19 +292,29 @@ fn a_shared_material_colours_all_that_name_it_and_its_own_returns_when_it_goes()
     let mut small = Small::new();
     let shared = small.app.world_mut().spawn(grey(0.9)).id();
     for object in [small.objects[0], small.objects[2]] {
-        small.app.world_mut().entity_mut(object).insert(UsesMaterial(shared));
+        small
+            .app
+            .world_mut()
+            .entity_mut(object)
+            .insert(UsesMaterial(shared));
     }
     let changes = frame(&mut small.app);
     assert!(changes.materials && changes.objects && !changes.top_level);
     let value = |app: &App, i: usize| {
         let world = world(app);
-        world.materials[world.objects[i].material as usize].diffuse.x
+        world.materials[world.objects[i].material as usize]
+            .diffuse
+            .x
     };
     let values = |app: &App| [0, 1, 2].map(|i| value(app, i));
     assert_eq!(values(&small.app), [0.9, 0.2, 0.9]);
     assert_eq!(world(&small.app).materials.len(), 2);
 
-    small.app.world_mut().entity_mut(small.objects[0]).remove::<UsesMaterial>();
+    small
+        .app
+        .world_mut()
+        .entity_mut(small.objects[0])
+        .remove::<UsesMaterial>();
     small.app.update();
     assert_eq!(values(&small.app), [0.1, 0.2, 0.9]);
 
@@ -309,22 +346,36 @@ fn a_picture_is_shared_by_materials_and_environment_and_follows_its_asset() {
         };
         small.app.world_mut().entity_mut(object).insert(maps);
     }
-    small.app.world_mut().insert_resource(EnvironmentMap(Some(picture.clone())));
+    small
+        .app
+        .world_mut()
+        .insert_resource(EnvironmentMap(Some(picture.clone())));
     let changes = frame(&mut small.app);
     assert!(changes.textures && changes.materials && changes.environment && !changes.top_level);
     let before = world(&small.app);
     assert_eq!(before.textures.len(), 1);
     assert!(before.materials.iter().all(|m| m.diffuse_map == Some(0)));
-    assert!(Arc::ptr_eq(before.environment.map.as_ref().unwrap(), &before.textures[0]));
+    assert!(Arc::ptr_eq(
+        before.environment.map.as_ref().unwrap(),
+        &before.textures[0]
+    ));
 
     let mut images = small.app.world_mut().resource_mut::<Assets<Image>>();
     *images.get_mut(&picture).unwrap() = image(77);
     drop(images);
     let changes = frame(&mut small.app);
     assert!(changes.textures && changes.environment && !changes.materials && !changes.objects);
-    assert_eq!(world(&small.app).textures[0].texel(0, 0, true).x, 77.0 / 255.0);
+    assert_eq!(
+        world(&small.app).textures[0].texel(0, 0, true).x,
+        77.0 / 255.0
+    );
 
-    small.app.world_mut().resource_mut::<RenderSettings>().features.environment = false;
+    small
+        .app
+        .world_mut()
+        .resource_mut::<RenderSettings>()
+        .features
+        .environment = false;
     let changes = frame(&mut small.app);
     assert_eq!(
         changes,
@@ -347,7 +398,11 @@ fn the_background_and_the_camera_are_no_part_of_the_geometry() {
     let cameras = small.app.world().resource::<crate::sync::TracedCameras>();
     assert_eq!(cameras.0[0].camera.position, Vec3::Z * 9.0);
 
-    small.app.world_mut().resource_mut::<Environment>().background = LinearRgba::RED;
+    small
+        .app
+        .world_mut()
+        .resource_mut::<Environment>()
+        .background = LinearRgba::RED;
     assert!(frame(&mut small.app).environment);
     assert_eq!(shared(&before, &world(&small.app)), ALL);
     assert_eq!(world(&small.app).environment.background, Vec3::X);
@@ -377,7 +432,8 @@ fn lights_of_every_kind_are_in_world_space_and_a_mirror_keeps_a_lamps_front() {
         colors: [0.1, 0.2, 0.3, 0.4].map(|v| LinearRgba::rgb(v, v, v)),
         ..ParallelogramLamp::default()
     };
-    app.world_mut().spawn((lamp, Transform::from_scale(Vec3::new(-1.0, 1.0, 1.0))));
+    app.world_mut()
+        .spawn((lamp, Transform::from_scale(Vec3::new(-1.0, 1.0, 1.0))));
     app.update();
     let lights = world(&app).lights.clone();
     let near = |a: Vec3, b: Vec3| assert!((a - b).length() < 1e-5, "{a} instead of {b}");
@@ -392,7 +448,11 @@ fn lights_of_every_kind_are_in_world_space_and_a_mirror_keeps_a_lamps_front() {
 
     // X × Z points down; mirrored in x the lamp still shines down, each colour at its corner.
     let mirrored = &lights.parallelograms[0];
-    assert!(mirrored.area_normal().y < 0.0, "front turned: {}", mirrored.area_normal());
+    assert!(
+        mirrored.area_normal().y < 0.0,
+        "front turned: {}",
+        mirrored.area_normal()
+    );
     let at = |x: f32, z: f32| {
         let (u, v) = (
             (Vec3::new(x, 0.0, z)).dot(mirrored.edges[0]),
@@ -400,5 +460,8 @@ fn lights_of_every_kind_are_in_world_space_and_a_mirror_keeps_a_lamps_front() {
         );
         mirrored.color(u, v).x
     };
-    assert_eq!([at(-1.0, 0.0), at(0.0, 1.0), at(-1.0, 1.0)], [0.2, 0.3, 0.4]);
+    assert_eq!(
+        [at(-1.0, 0.0), at(0.0, 1.0), at(-1.0, 1.0)],
+        [0.2, 0.3, 0.4]
+    );
 }
