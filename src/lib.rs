@@ -13,10 +13,12 @@
 //! | [`film`] | pixels: samples become a picture, the picture becomes a screen's |
 //! | [`sync`] | entities to the tracer's world: what changed, and only that |
 //! | [`io`] | scene files, OBJ, glTF, pictures, shapes, built-in scenes |
+//! | [`app`] | all of the above as one app without a window |
 //! | [`cli`] | the command line: parses, calls, prints |
 //!
 //! [`bvh`] and [`trace`] need no ECS: see `examples/plain_rust.rs`.
 
+pub mod app;
 pub mod bvh;
 pub mod cli;
 pub mod film;

@@ -1,2 +1,7 @@
-//! Glassbox.
-fn main() {}
+//! The program; everything that it does is in `glassbox::cli`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    glassbox::cli::run()
+}

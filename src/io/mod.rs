@@ -41,6 +41,7 @@ pub use open::{OpenOptions, Opened, SceneSource, open};
 pub use picture::{PictureFormat, check_size, write_picture};
 pub use problems::{LoadProblem, LoadProblems};
 pub use replace::check_writable;
+pub(crate) use replace::replace_file;
 pub use save::save;
 pub use sources::SceneFiles;
 

@@ -1,0 +1,31 @@
+//! `glassbox convert`: a scene in another format.
+
+use super::Failure;
+use super::stage::{SceneArgs, Stage};
+use crate::io::{check_writable, save};
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Args)]
+pub(super) struct Convert {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Scene file to write: .scn.ron, .obj (with its .mtl) or .glb
+    output: PathBuf,
+    /// Print nothing but errors
+    #[arg(long)]
+    quiet: bool,
+}
+
+pub(super) fn run(args: Convert) -> Result<(), Failure> {
+    check_writable(&args.output)?;
+    let mut stage = Stage::open(&args.scene, args.quiet)?;
+    let notes = save(stage.app.world_mut(), &args.output)?;
+    if !args.quiet {
+        for note in notes {
+            eprintln!("note: {}: {note}", args.output.display());
+        }
+        println!("{}", args.output.display());
+    }
+    Ok(())
+}

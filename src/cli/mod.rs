@@ -1,0 +1,69 @@
+//! The command line: parses, calls, prints; no logic of its own.
+//!
+//! Results go to standard output. Errors are one line on standard error, `error: …`, with exit
+//! code 1, or 2 where the command line itself is wrong; warnings and notes go there too. Nothing
+//! that fails leaves a file behind.
+
+mod bench;
+mod bvh;
+mod convert;
+mod failure;
+mod progress;
+mod render;
+mod scenes;
+mod set;
+mod settings;
+mod stage;
+mod stats;
+mod welcome;
+
+pub use failure::Failure;
+
+use clap::{Parser, Subcommand};
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// A scene editor whose ray tracer you can see into.
+#[derive(Parser)]
+#[command(name = "glassbox", version, args_conflicts_with_subcommands = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// Scene file or built-in scene to show (default: cornell-box)
+    scene: Option<PathBuf>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Render a scene to picture files
+    Render(render::Render),
+    /// Build a scene's tree with each builder and print its statistics
+    Bvh(bvh::Bvh),
+    /// List the built-in scenes: name, triangles, lights, and what they show
+    Scenes,
+    /// Convert a scene: .scn.ron, .obj, .gltf, .glb or a built-in one to .scn.ron, .obj or .glb
+    Convert(convert::Convert),
+    /// Time a scene with each builder and print a table in Markdown
+    Bench(bench::Bench),
+}
+
+/// Runs the command line of this process.
+pub fn run() -> ExitCode {
+    match execute(std::env::args_os()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => failure.report(),
+    }
+}
+
+fn execute(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
+    let Cli { command, scene } = Cli::try_parse_from(arguments)?;
+    match command {
+        None => welcome::run(scene),
+        Some(Command::Render(render)) => render::run(render),
+        Some(Command::Bvh(bvh)) => bvh::run(bvh),
+        Some(Command::Scenes) => scenes::run(),
+        Some(Command::Convert(convert)) => convert::run(convert),
+        Some(Command::Bench(bench)) => bench::run(bench),
+    }
+}

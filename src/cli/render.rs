@@ -1,0 +1,225 @@
+//! `glassbox render`: a scene to picture files.
+
+use super::Failure;
+use super::progress::Progress;
+use super::settings::{BuilderArg, SettingArgs, builder_name, check_scene, list};
+use super::stage::{SceneArgs, Stage, with_threads};
+use super::stats::{Stats, build_time, mrays_per_second, triangles};
+use crate::film::{Rendered, render, view_transform};
+use crate::io::{FileError, PictureFormat, check_writable, replace_file, write_picture};
+use crate::scene::RenderSettings;
+use crate::sync::TracedCamera;
+use crate::trace::{RayCounts, samples_per_pixel};
+use clap::Args;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+#[derive(Args)]
+#[command(after_help = list())]
+pub(super) struct Render {
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Picture file: .png, .jpg, .exr or .hdr; with several cameras OUT-CAMERA.png and so on
+    #[arg(short, long, value_name = "OUT")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub settings: SettingArgs,
+    /// Camera to render from, by its name; may be given several times (default: the first)
+    #[arg(long, value_name = "NAME", conflicts_with = "all_cameras")]
+    pub camera: Vec<String>,
+    /// Render from every camera of the scene
+    #[arg(long)]
+    pub all_cameras: bool,
+    /// How trees are built
+    #[arg(long, value_enum)]
+    pub builder: Option<BuilderArg>,
+    /// Write what the rendering took to a file, as JSON
+    #[arg(long, value_name = "FILE.json")]
+    pub stats: Option<PathBuf>,
+    /// Print nothing but errors
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+pub(super) fn run(args: Render) -> Result<(), Failure> {
+    args.settings.check()?;
+    PictureFormat::of(&args.output)?;
+    if let Some(file) = &args.stats {
+        check_writable(file)?;
+    }
+    with_threads(args.settings.threads, || render_scene(&args))
+}
+
+fn render_scene(args: &Render) -> Result<(), Failure> {
+    // Where nothing can be written nothing needs to be rendered.
+    check_writable(&args.output)?;
+    let mut stage = Stage::open(&args.scene, args.quiet)?;
+    let settings = stage.settings();
+    args.settings.apply(settings)?;
+    if let Some(builder) = args.builder {
+        settings.tree.builder = builder.builder();
+    }
+    let settings = settings.clone();
+    check_scene(&stage.name, &settings)?;
+    let world = stage.sync().world.clone();
+    let cameras = chosen(&stage, args)?;
+    let files = file_names(&args.output, &cameras);
+    for file in &files {
+        check_writable(file)?;
+    }
+
+    let mut stats = Stats {
+        scene: args.scene.scene.display().to_string(),
+        triangles: triangles(&world),
+        instances: world.objects.len() as u64,
+        width: settings.size.x,
+        height: settings.size.y,
+        spp: 0,
+        threads: rayon::current_num_threads(),
+        builder: builder_name(settings.tree.builder),
+        build_ms: build_time(&world).as_secs_f64() * 1e3,
+        render_ms: 0.0,
+        rays: RayCounts::default(),
+        mrays_per_s: 0.0,
+    };
+    for (camera, file) in cameras.iter().zip(&files) {
+        let progress = Progress::new(args.quiet, &camera.name);
+        let rendered = render(&world, &camera.camera, &settings, &|done, all| {
+            progress.show(done, all);
+        });
+        drop(progress);
+        let spp = samples_per_pixel(&world, &camera.camera, &settings);
+        write(file, &rendered, &settings)?;
+        if !args.quiet {
+            println!(
+                "{}: {}x{}, {spp} samples a pixel, {:.2} s, {:.2} million rays/s",
+                file.display(),
+                settings.size.x,
+                settings.size.y,
+                rendered.seconds,
+                mrays_per_second(rendered.rays.total(), rendered.seconds),
+            );
+        }
+        stats.spp = stats.spp.max(spp);
+        stats.render_ms += rendered.seconds * 1e3;
+        stats.rays += rendered.rays;
+    }
+    stats.mrays_per_s = mrays_per_second(stats.rays.total(), stats.render_ms / 1e3);
+    if let Some(file) = &args.stats {
+        write_stats(file, &stats)?;
+    }
+    Ok(())
+}
+
+/// Writes a picture: linear light where the format holds it, else what a screen shows.
+pub(super) fn write(
+    file: &Path,
+    rendered: &Rendered,
+    settings: &RenderSettings,
+) -> Result<(), FileError> {
+    let picture = &rendered.picture;
+    let pixels = if PictureFormat::of(file)?.is_linear() {
+        picture.pixels.iter().map(|pixel| pixel.to_array()).collect()
+    } else {
+        view_transform(picture, &settings.output)
+    };
+    write_picture(file, picture.width, picture.height, &pixels)
+}
+
+fn write_stats(file: &Path, stats: &Stats) -> Result<(), FileError> {
+    replace_file(file, |writer| {
+        serde_json::to_writer_pretty(&mut *writer, stats)?;
+        writeln!(writer)
+    })
+}
+
+/// The cameras that the command line asks for.
+fn chosen(stage: &Stage, args: &Render) -> Result<Vec<TracedCamera>, Failure> {
+    let cameras = &stage.cameras().0;
+    let Some(first) = cameras.first() else {
+        return Err(Failure::Scene(format!(
+            "{}: has no camera to render from; add a SceneCamera",
+            stage.name
+        )));
+    };
+    if args.all_cameras {
+        return Ok(cameras.clone());
+    }
+    if args.camera.is_empty() {
+        return Ok(vec![first.clone()]);
+    }
+    let find = |name: &String| {
+        let camera = cameras.iter().find(|camera| camera.name == *name);
+        camera.cloned().ok_or_else(|| {
+            let known: Vec<&str> = cameras.iter().map(|camera| camera.name.as_str()).collect();
+            Failure::Scene(format!(
+                "{}: has no camera `{name}`; it has {}",
+                stage.name,
+                known.join(", ")
+            ))
+        })
+    };
+    args.camera.iter().map(find).collect()
+}
+
+/// One camera writes the file itself, several write `out-NAME.png`. Names are made fit for files;
+/// where two become the same, the later ones carry their number too.
+fn file_names(output: &Path, cameras: &[TracedCamera]) -> Vec<PathBuf> {
+    if cameras.len() == 1 {
+        return vec![output.to_path_buf()];
+    }
+    let part = |part: Option<&std::ffi::OsStr>| {
+        part.map_or_else(String::new, |part| part.to_string_lossy().into_owned())
+    };
+    let (stem, extension) = (part(output.file_stem()), part(output.extension()));
+    let mut files: Vec<PathBuf> = Vec::with_capacity(cameras.len());
+    for camera in cameras {
+        let name: String = camera
+            .name
+            .chars()
+            .map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' })
+            .collect();
+        let mut file = output.with_file_name(format!("{stem}-{name}.{extension}"));
+        if files.contains(&file) {
+            let id = camera.id.0;
+            file = output.with_file_name(format!("{stem}-{name}-{id}.{extension}"));
+        }
+        files.push(file);
+    }
+    files
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::SceneId;
+    use crate::trace::Camera;
+    use bevy::math::Vec3;
+
+    fn camera(id: u64, name: &str) -> TracedCamera {
+        TracedCamera {
+            id: SceneId(id),
+            name: name.into(),
+            camera: Camera::looking_at(Vec3::Z, Vec3::ZERO, Vec3::Y, 1.0),
+        }
+    }
+
+    #[test]
+    fn several_cameras_write_files_of_their_own_in_the_same_folder() {
+        let cameras = [
+            camera(1, "front"),
+            camera(2, "a/b c"),
+            camera(3, "front"),
+        ];
+        let files = file_names(Path::new("dir/out.png"), &cameras);
+        let files: Vec<&str> = files.iter().map(|file| file.to_str().unwrap()).collect();
+        assert_eq!(
+            files,
+            ["dir/out-front.png", "dir/out-a_b_c.png", "dir/out-front-3.png"]
+        );
+        assert_eq!(
+            file_names(Path::new("out.png"), &cameras[..1]),
+            [PathBuf::from("out.png")]
+        );
+    }
+}

@@ -1,0 +1,152 @@
+//! The flags that change render settings, for every command that renders or builds trees.
+
+use super::Failure;
+use super::set::{Assignment, parse_size};
+use crate::scene::{Builder, RenderSettings, SETTINGS, setting_problems};
+use bevy::math::UVec2;
+use clap::{Args, ValueEnum};
+use std::fmt::Write;
+
+/// Settings that replace those of the scene.
+#[derive(Args)]
+pub(super) struct SettingArgs {
+    /// Size of the picture in pixels
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    pub size: Option<UVec2>,
+    /// Least samples of each pixel
+    #[arg(long, value_name = "N")]
+    pub spp: Option<u32>,
+    /// Chooses the random numbers
+    #[arg(long, value_name = "N")]
+    pub seed: Option<u32>,
+    /// Any setting of the list below, by its path; may be given several times
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<Assignment>,
+    /// Threads to work on (default: all of the machine's)
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub threads: Option<u32>,
+}
+
+/// The builders as the command line names them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum BuilderArg {
+    /// No tree: every ray tests every triangle
+    None,
+    /// Half of the triangles on either side
+    Median,
+    /// Binned surface area heuristic
+    Sah,
+    /// obvhs: clustering with reinsertion
+    Ploc,
+}
+
+impl BuilderArg {
+    pub const ALL: [Self; 4] = [Self::None, Self::Median, Self::Sah, Self::Ploc];
+
+    /// The setting's value.
+    pub fn builder(self) -> Builder {
+        match self {
+            Self::None => Builder::None,
+            Self::Median => Builder::Median,
+            Self::Sah => Builder::Sah,
+            Self::Ploc => Builder::Ploc,
+        }
+    }
+}
+
+/// A builder as tables and statistics name it.
+pub(super) fn builder_name(builder: Builder) -> &'static str {
+    match builder {
+        Builder::None => "none",
+        Builder::Median => "median",
+        Builder::Sah => "sah",
+        Builder::Ploc => "ploc",
+    }
+}
+
+impl SettingArgs {
+    /// Checks the flags against the defaults, before a scene is opened for nothing.
+    pub fn check(&self) -> Result<(), Failure> {
+        self.apply(&mut RenderSettings::default())
+    }
+
+    /// Writes the flags into a scene's settings: first each `--set` in its order, then the flags
+    /// of their own. Values out of range are an error.
+    pub fn apply(&self, settings: &mut RenderSettings) -> Result<(), Failure> {
+        let before = setting_problems(settings);
+        for assignment in &self.set {
+            assignment.apply(settings)?;
+        }
+        if let Some(size) = self.size {
+            settings.size = size;
+        }
+        if let Some(spp) = self.spp {
+            settings.spp = spp;
+        }
+        if let Some(seed) = self.seed {
+            settings.seed = seed;
+        }
+        // What the scene itself has wrong is not the command line's fault.
+        match setting_problems(settings)
+            .into_iter()
+            .find(|problem| !before.contains(problem))
+        {
+            Some(problem) => Err(Failure::Usage(problem.to_string())),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Refuses settings of a scene that nothing can be rendered with.
+pub(super) fn check_scene(name: &str, settings: &RenderSettings) -> Result<(), Failure> {
+    match setting_problems(settings).first() {
+        Some(problem) => Err(Failure::Scene(format!("{name}: settings: {problem}"))),
+        None => Ok(()),
+    }
+}
+
+/// The list of all settings for `--help`.
+pub(super) fn list() -> String {
+    let defaults = RenderSettings::default();
+    let rows: Vec<[String; 4]> = SETTINGS
+        .iter()
+        .map(|setting| {
+            [
+                setting.path.to_owned(),
+                setting.value_text(&defaults),
+                setting.range_text(),
+                setting.says.to_owned(),
+            ]
+        })
+        .collect();
+    let width = |column: usize| rows.iter().map(|row| row[column].len()).max().unwrap_or(0);
+    let (path, default) = (width(0), width(1));
+    let mut text = String::from("Settings for --set (path, default, range):\n");
+    for row in &rows {
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "  {:path$}  {:default$}  {} ({})",
+            row[0], row[1], row[3], row[2]
+        );
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_names_every_setting_with_its_default_and_range() {
+        let list = list();
+        for setting in SETTINGS {
+            let line = list
+                .lines()
+                .find(|line| line.trim_start().starts_with(&format!("{} ", setting.path)))
+                .unwrap_or_else(|| panic!("{} is not in the list", setting.path));
+            assert!(line.contains(&setting.range_text()), "{line}");
+            assert!(line.contains(&setting.value_text(&RenderSettings::default())), "{line}");
+        }
+    }
+}

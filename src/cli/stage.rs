@@ -1,0 +1,97 @@
+//! Opening a scene for a command: the app, its notes and warnings, and the threads it runs on.
+
+use super::Failure;
+use crate::app::headless_app;
+use crate::io::{LoadProblems, OpenOptions, SceneSource, open};
+use crate::scene::RenderSettings;
+use crate::sync::{Traced, TracedCameras};
+use bevy::app::App;
+use clap::Args;
+use std::path::PathBuf;
+
+/// Which scene a command opens, and how.
+#[derive(Args)]
+pub(super) struct SceneArgs {
+    /// Scene file (.scn.ron, .obj, .gltf, .glb) or name of a built-in scene
+    pub scene: PathBuf,
+    /// Let the scene refer to files outside its own folder
+    #[arg(long)]
+    pub allow_outside: bool,
+}
+
+/// A scene that is open.
+pub(super) struct Stage {
+    pub app: App,
+    /// The scene's name.
+    pub name: String,
+    quiet: bool,
+    warned: usize,
+}
+
+impl Stage {
+    /// Opens the scene. What was left out or added is told on standard error, unless `quiet`.
+    pub fn open(args: &SceneArgs, quiet: bool) -> Result<Self, Failure> {
+        let mut app = headless_app();
+        let options = OpenOptions {
+            allow_outside: args.allow_outside,
+            ..OpenOptions::default()
+        };
+        let opened = open(app.world_mut(), &SceneSource::named(&args.scene), options)?;
+        if !quiet {
+            for note in &opened.notes {
+                eprintln!("note: {}: {note}", opened.name);
+            }
+            for problem in &app.world().resource::<LoadProblems>().problems {
+                eprintln!("warning: {}: {}: {}", opened.name, problem.what, problem.error);
+            }
+        }
+        Ok(Self {
+            app,
+            name: opened.name,
+            quiet,
+            warned: 0,
+        })
+    }
+
+    /// The scene's settings; what is written to them counts from the next [`Self::sync`] on.
+    pub fn settings(&mut self) -> &mut RenderSettings {
+        self.app
+            .world_mut()
+            .resource_mut::<RenderSettings>()
+            .into_inner()
+    }
+
+    /// Brings the tracer's world up to date, and warns of what it had to leave out.
+    pub fn sync(&mut self) -> &Traced {
+        self.app.update();
+        let traced = self.app.world().resource::<Traced>();
+        if !self.quiet {
+            // The same scene is synced again for the next builder; it is warned of once.
+            for problem in traced.problems.iter().skip(self.warned) {
+                eprintln!("warning: {}: {problem}", self.name);
+            }
+        }
+        self.warned = self.warned.max(traced.problems.len());
+        traced
+    }
+
+    /// The cameras of the last sync.
+    pub fn cameras(&self) -> &TracedCameras {
+        self.app.world().resource::<TracedCameras>()
+    }
+}
+
+/// Runs `work` on that many threads, or on as many as the machine has.
+pub(super) fn with_threads<R: Send>(
+    threads: Option<u32>,
+    work: impl FnOnce() -> Result<R, Failure> + Send,
+) -> Result<R, Failure> {
+    // The largest task is not deep, but the parsers of files were written for main threads.
+    const STACK_BYTES: usize = 8 << 20;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads.unwrap_or(0) as usize)
+        .stack_size(STACK_BYTES)
+        .build()
+        .map_err(|error| Failure::System(format!("threads could not be started: {error}")))?;
+    pool.install(work)
+}

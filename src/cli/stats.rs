@@ -1,0 +1,61 @@
+//! `--stats`: what a rendering took, as one JSON object.
+
+use crate::trace::{RayCounts, World};
+use bevy::platform::collections::HashSet;
+use serde::Serialize;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// What a rendering took. With several cameras rays and times are those of all pictures together.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Stats {
+    /// The scene as the command line named it.
+    pub scene: String,
+    /// Of all objects: a mesh that two objects share counts twice.
+    pub triangles: u64,
+    /// Objects that are traced.
+    pub instances: u64,
+    pub width: u32,
+    pub height: u32,
+    /// Samples of each pixel.
+    pub spp: u32,
+    pub threads: usize,
+    pub builder: &'static str,
+    /// Milliseconds of tree building: every mesh and the tree over them, added up.
+    pub build_ms: f64,
+    /// Milliseconds of rendering, wall clock.
+    pub render_ms: f64,
+    pub rays: RayCounts,
+    /// Million rays of every kind a second.
+    pub mrays_per_s: f64,
+}
+
+/// Triangles of all objects.
+pub(super) fn triangles(world: &World) -> u64 {
+    world
+        .objects
+        .iter()
+        .map(|object| object.mesh.tree.triangles().len() as u64)
+        .sum()
+}
+
+/// Time spent on the trees of a world, each counted once.
+pub(super) fn build_time(world: &World) -> Duration {
+    let mut seen = HashSet::new();
+    let meshes: Duration = world
+        .objects
+        .iter()
+        .filter(|object| seen.insert(Arc::as_ptr(&object.mesh.tree)))
+        .map(|object| object.mesh.tree.build_time())
+        .sum();
+    meshes + world.aggregate.build_time()
+}
+
+/// Million rays a second.
+pub(super) fn mrays_per_second(rays: u64, seconds: f64) -> f64 {
+    if seconds > 0.0 {
+        rays as f64 / seconds / 1e6
+    } else {
+        0.0
+    }
+}

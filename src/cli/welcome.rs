@@ -1,0 +1,69 @@
+//! `glassbox` without a command: until there is a window, it says what it can do and shows it.
+
+use super::Failure;
+use super::render::{Render, run as render};
+use super::settings::SettingArgs;
+use super::stage::SceneArgs;
+use crate::io::builtin::DEFAULT;
+use std::path::{Path, PathBuf};
+
+pub(super) fn run(scene: Option<PathBuf>) -> Result<(), Failure> {
+    println!(
+        "Glassbox {}: a scene editor whose ray tracer you can see into.\n\
+         There is no window yet; these commands work without one:\n\
+         \x20 glassbox render SCENE -o OUT   a scene to a picture (.png, .jpg, .exr, .hdr)\n\
+         \x20 glassbox scenes                the built-in scenes\n\
+         \x20 glassbox bvh SCENE             statistics of its trees, builder by builder\n\
+         \x20 glassbox bench SCENE           rendering times, builder by builder\n\
+         \x20 glassbox convert IN OUT        .scn.ron, .obj and .glb from one to the other\n\
+         Each explains itself with --help.",
+        env!("CARGO_PKG_VERSION")
+    );
+    let scene = scene.unwrap_or_else(|| PathBuf::from(DEFAULT));
+    let output = picture_name(&scene);
+    render(Render {
+        scene: SceneArgs {
+            scene,
+            allow_outside: false,
+        },
+        output,
+        settings: SettingArgs {
+            size: None,
+            spp: None,
+            seed: None,
+            set: Vec::new(),
+            threads: None,
+        },
+        camera: Vec::new(),
+        all_cameras: false,
+        builder: None,
+        stats: None,
+        quiet: false,
+    })
+}
+
+/// `dir/room.scn.ron` and the built-in `room` become `room.png` in the working folder.
+fn picture_name(scene: &Path) -> PathBuf {
+    let name = scene
+        .file_name()
+        .map_or_else(|| "scene".into(), |name| name.to_string_lossy());
+    let stem = name.split('.').find(|part| !part.is_empty());
+    PathBuf::from(format!("{}.png", stem.unwrap_or("scene")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_picture_is_called_like_the_scene() {
+        for (scene, picture) in [
+            ("cornell-box", "cornell-box.png"),
+            ("a/b/room.scn.ron", "room.png"),
+            ("../x.obj", "x.png"),
+            ("..", "scene.png"),
+        ] {
+            assert_eq!(picture_name(Path::new(scene)), Path::new(picture));
+        }
+    }
+}
