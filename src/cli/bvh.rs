@@ -137,8 +137,17 @@ fn corners(world: &World) -> Vec<[Vec3; 3]> {
 fn table(rows: &[Row]) -> String {
     let mut lines = vec![
         [
-            "builder", "triangles", "levels", "nodes", "leaves", "largest leaf", "SAH cost", "EPO",
-            "bytes", "bytes/triangle", "build ms",
+            "builder",
+            "triangles",
+            "levels",
+            "nodes",
+            "leaves",
+            "largest leaf",
+            "SAH cost",
+            "EPO",
+            "bytes",
+            "bytes/triangle",
+            "build ms",
         ]
         .map(String::from),
     ];
@@ -158,7 +167,13 @@ fn table(rows: &[Row]) -> String {
         ]
     }));
     let widths: Vec<usize> = (0..lines[0].len())
-        .map(|column| lines.iter().map(|line| line[column].len()).max().unwrap_or(0))
+        .map(|column| {
+            lines
+                .iter()
+                .map(|line| line[column].len())
+                .max()
+                .unwrap_or(0)
+        })
         .collect();
     let mut text = String::new();
     for line in &lines {

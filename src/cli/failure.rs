@@ -49,7 +49,10 @@ impl Failure {
 /// What clap says about wrong arguments, without the usage that follows.
 fn one_line(text: &str) -> String {
     let said = text.split("\n\nUsage:").next().unwrap_or(text);
-    let said = said.split("\n\nFor more information").next().unwrap_or(said);
+    let said = said
+        .split("\n\nFor more information")
+        .next()
+        .unwrap_or(said);
     let said = said.trim_start_matches("error:");
     format!("{}; see --help", joined(said).trim_end_matches('.'))
 }

@@ -10,7 +10,8 @@ impl Progress {
             return Self(None);
         }
         let bar = ProgressBar::new(1);
-        if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} % {eta:>4}") {
+        if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} % {eta:>4}")
+        {
             bar.set_style(style);
         }
         bar.set_message(what.to_owned());

@@ -119,7 +119,11 @@ pub(super) fn write(
 ) -> Result<(), FileError> {
     let picture = &rendered.picture;
     let pixels = if PictureFormat::of(file)?.is_linear() {
-        picture.pixels.iter().map(|pixel| pixel.to_array()).collect()
+        picture
+            .pixels
+            .iter()
+            .map(|pixel| pixel.to_array())
+            .collect()
     } else {
         view_transform(picture, &settings.output)
     };
@@ -177,7 +181,13 @@ fn file_names(output: &Path, cameras: &[TracedCamera]) -> Vec<PathBuf> {
         let name: String = camera
             .name
             .chars()
-            .map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' })
+            .map(|c| {
+                if c.is_alphanumeric() || "-_.".contains(c) {
+                    c
+                } else {
+                    '_'
+                }
+            })
             .collect();
         let mut file = output.with_file_name(format!("{stem}-{name}.{extension}"));
         if files.contains(&file) {
@@ -206,16 +216,16 @@ mod tests {
 
     #[test]
     fn several_cameras_write_files_of_their_own_in_the_same_folder() {
-        let cameras = [
-            camera(1, "front"),
-            camera(2, "a/b c"),
-            camera(3, "front"),
-        ];
+        let cameras = [camera(1, "front"), camera(2, "a/b c"), camera(3, "front")];
         let files = file_names(Path::new("dir/out.png"), &cameras);
         let files: Vec<&str> = files.iter().map(|file| file.to_str().unwrap()).collect();
         assert_eq!(
             files,
-            ["dir/out-front.png", "dir/out-a_b_c.png", "dir/out-front-3.png"]
+            [
+                "dir/out-front.png",
+                "dir/out-a_b_c.png",
+                "dir/out-front-3.png"
+            ]
         );
         assert_eq!(
             file_names(Path::new("out.png"), &cameras[..1]),

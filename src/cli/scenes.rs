@@ -12,7 +12,11 @@ use bevy::mesh::{Mesh, Mesh3d};
 
 pub(super) fn run() -> Result<(), Failure> {
     let mut app = headless_app();
-    let width = SCENES.iter().map(|scene| scene.name.len()).max().unwrap_or(0);
+    let width = SCENES
+        .iter()
+        .map(|scene| scene.name.len())
+        .max()
+        .unwrap_or(0);
     for scene in SCENES {
         open(
             app.world_mut(),

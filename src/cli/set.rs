@@ -159,7 +159,11 @@ mod tests {
             };
             let settings = set(&format!("{}={other}", setting.path)).unwrap();
             let value = setting.value_text(&settings);
-            assert!(value.eq_ignore_ascii_case(&other), "{}: {value}", setting.path);
+            assert!(
+                value.eq_ignore_ascii_case(&other),
+                "{}: {value}",
+                setting.path
+            );
         }
     }
 
@@ -175,7 +179,10 @@ mod tests {
             ("shadows=false", "features.shadows"),
             ("max_dept=3", "max_depth"),
             ("features.shadow=true", "features.shadows"),
-            ("features=true", "choose one of its settings: shading, mirrors"),
+            (
+                "features=true",
+                "choose one of its settings: shading, mirrors",
+            ),
             ("spp=many", "a whole number"),
             ("spp=-1", "a whole number"),
             ("features.shadows=1", "true or false"),

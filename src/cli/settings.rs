@@ -146,7 +146,10 @@ mod tests {
                 .find(|line| line.trim_start().starts_with(&format!("{} ", setting.path)))
                 .unwrap_or_else(|| panic!("{} is not in the list", setting.path));
             assert!(line.contains(&setting.range_text()), "{line}");
-            assert!(line.contains(&setting.value_text(&RenderSettings::default())), "{line}");
+            assert!(
+                line.contains(&setting.value_text(&RenderSettings::default())),
+                "{line}"
+            );
         }
     }
 }

@@ -42,7 +42,10 @@ impl Stage {
                 eprintln!("note: {}: {note}", opened.name);
             }
             for problem in &app.world().resource::<LoadProblems>().problems {
-                eprintln!("warning: {}: {}: {}", opened.name, problem.what, problem.error);
+                eprintln!(
+                    "warning: {}: {}: {}",
+                    opened.name, problem.what, problem.error
+                );
             }
         }
         Ok(Self {

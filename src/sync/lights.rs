@@ -29,24 +29,18 @@ type LampQuery<'w, 's, L> = Query<
     ),
 >;
 
+type Edited<L> = Or<(
+    Changed<L>,
+    Changed<GlobalTransform>,
+    Changed<InheritedVisibility>,
+    Changed<SceneId>,
+)>;
+
 /// The lamps of one kind, and whether any of them changed or went.
 #[derive(SystemParam)]
 pub(super) struct Lamps<'w, 's, L: Component> {
     lamps: LampQuery<'w, 's, L>,
-    edited: Query<
-        'w,
-        's,
-        (),
-        (
-            With<L>,
-            Or<(
-                Changed<L>,
-                Changed<GlobalTransform>,
-                Changed<InheritedVisibility>,
-                Changed<SceneId>,
-            )>,
-        ),
-    >,
+    edited: Query<'w, 's, (), (With<L>, Edited<L>)>,
     gone: RemovedComponents<'w, 's, L>,
 }
 

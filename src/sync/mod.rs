@@ -26,6 +26,11 @@
 //! Visibility is Bevy's `InheritedVisibility`: an app needs its `VisibilityPlugin` (which is in
 //! `CameraPlugin` and so in `DefaultPlugins`; `headless_app` adds it).
 
+#![expect(
+    clippy::too_many_arguments,
+    reason = "a system's parameters are the list of what it reads"
+)]
+
 mod cameras;
 mod environment;
 mod ids;
