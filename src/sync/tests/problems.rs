@@ -54,7 +54,6 @@ fn a_mesh_that_cannot_be_traced_is_named_and_returns_when_it_is_repaired() {
 
     let mut meshes = app.world_mut().resource_mut::<Assets<Mesh>>();
     *meshes.get_mut(&handle).unwrap() = fan(4);
-    drop(meshes);
     app.update();
     assert!(problems(&app).is_empty());
     assert_eq!(world(&app).objects.len(), 2);

@@ -151,7 +151,6 @@ fn editing_a_mesh_rebuilds_its_tree_and_no_other() {
     let before = world(&small.app);
     let mut meshes = small.app.world_mut().resource_mut::<Assets<Mesh>>();
     *meshes.get_mut(&small.meshes[0]).unwrap() = fan(7);
-    drop(meshes);
     let changes = frame(&mut small.app);
     let after = world(&small.app);
     assert!(changes.meshes && changes.top_level && !changes.materials && !changes.lights);
@@ -362,7 +361,6 @@ fn a_picture_is_shared_by_materials_and_environment_and_follows_its_asset() {
 
     let mut images = small.app.world_mut().resource_mut::<Assets<Image>>();
     *images.get_mut(&picture).unwrap() = image(77);
-    drop(images);
     let changes = frame(&mut small.app);
     assert!(changes.textures && changes.environment && !changes.materials && !changes.objects);
     assert_eq!(
