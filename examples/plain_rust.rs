@@ -39,6 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         origin: floor,
         direction: light - floor,
         t_max: 1.0,
+        time: 0.0,
     };
     let dark = aggregate.occluded(&shadow);
     println!("behind the triangle the light is hidden: {dark}");

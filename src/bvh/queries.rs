@@ -178,7 +178,7 @@ impl Aggregate {
                     |first, count, mut limit, visitor| {
                         for &number in &places[first as usize..(first + count) as usize] {
                             let instance = &self.instances()[number as usize];
-                            if let Some(object) = instance.to_object_ray(world) {
+                            if let Some(object) = instance.to_object_ray(world, ray.time) {
                                 limit = instance.mesh.walk(
                                     &object,
                                     &mut stacks.mesh,
@@ -211,7 +211,7 @@ impl Aggregate {
                         for &(number, place) in &places[first as usize..(first + count) as usize] {
                             let instance = &self.instances()[number as usize];
                             if last.is_none_or(|(of, ..)| of != number) {
-                                let Some(object) = instance.to_object_ray(world) else {
+                                let Some(object) = instance.to_object_ray(world, ray.time) else {
                                     continue;
                                 };
                                 last = Some((

@@ -11,15 +11,18 @@ pub struct Ray {
     pub direction: Vec3,
     /// Hits lie in `0 < t < t_max`; may be infinite. NaN makes the ray a miss.
     pub t_max: f32,
+    /// When it is shot, in [0, 1]: moving instances stand where they are then.
+    pub time: f32,
 }
 
 impl Ray {
-    /// A ray without an end.
+    /// A ray without an end, at time 0.
     pub fn new(origin: Vec3, direction: Vec3) -> Self {
         Self {
             origin,
             direction,
             t_max: f32::INFINITY,
+            time: 0.0,
         }
     }
 

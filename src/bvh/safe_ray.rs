@@ -15,6 +15,8 @@ pub(crate) struct SafeRay {
     pub(crate) world: ObjectRay,
     /// Where it ends, in its own `t`.
     pub(crate) end: f32,
+    /// When it is shot.
+    pub(crate) time: f32,
     scale: f32,
     t_max: f32,
 }
@@ -23,8 +25,8 @@ pub(crate) struct SafeRay {
 const ORDINARY: f32 = SMALLEST_DIRECTION * (1u64 << 30) as f32;
 
 impl SafeRay {
-    /// `None` is a miss: something is not finite, the origin is beyond [`REACH`], the direction is zero, or the ray ends
-    /// before it starts.
+    /// `None` is a miss: something is not finite, the origin is beyond [`REACH`], the direction is zero, the ray ends
+    /// before it starts, or its time is not in [0, 1].
     #[inline(always)]
     pub(crate) fn new(ray: &Ray) -> Option<Self> {
         // -0.0 becomes +0.0, so that both mean the same.
@@ -37,10 +39,12 @@ impl SafeRay {
         let sane = origin.is_finite()
             && direction.is_finite()
             && origin.abs().max_element() <= REACH
-            && ray.t_max > 0.0;
+            && ray.t_max > 0.0
+            && (0.0..=1.0).contains(&ray.time);
         sane.then(|| Self {
             world: ObjectRay::new(origin, direction),
             end: ray.t_max / scale,
+            time: ray.time,
             scale,
             t_max: ray.t_max,
         })

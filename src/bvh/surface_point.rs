@@ -45,18 +45,18 @@ impl SurfacePoint {
 const U: f32 = f32::EPSILON / 2.0;
 
 impl Instance {
-    /// The point of a hit on this instance.
+    /// The point of a hit on this instance by a ray of `time`.
     ///
     /// # The error
     /// The sum of three weighted corners rounds by at most 7u Σ b|v| (Pharr, Jakob, Humphreys, "Physically Based
     /// Rendering", 4th ed., 6.8.5); carried into the world that is multiplied by |L|, and the transform adds
-    /// 4u (|L||p| + |T|). A new ray from there is rounded twice more: on its way into object space, by 6u κ |p - T|
+    /// 4u (|L||p| + |T|), T where the instance stands at that time, reached by another rounding of its way. A new ray from there is rounded twice more: on its way into object space, by 6u κ |p - T|
     /// (see [`super::instance`]), and where the triangle test sums t from corners relative to the ray's origin, by
     /// 8u Σ b|v - p|.
     ///
     /// # Panics
     /// When `hit` is not a hit on this instance's mesh.
-    pub fn surface_point(&self, hit: &Hit) -> SurfacePoint {
+    pub fn surface_point(&self, hit: &Hit, time: f32) -> SurfacePoint {
         let corners = self.mesh.triangles().corners(hit.triangle);
         let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
         let weighted =
@@ -75,10 +75,11 @@ impl Instance {
         }
         let transform = self.world_from_object();
         let linear = transform.matrix3.abs();
-        let translation = Vec3::from(transform.translation);
-        let position = self.to_world_point(point);
+        let way = self.velocity() * time;
+        let translation = Vec3::from(transform.translation) + way;
+        let position = self.to_world_point(point) + way;
         let carried = linear * error
-            + 4.0 * U * (linear * point.abs() + translation.abs())
+            + 4.0 * U * (linear * point.abs() + translation.abs() + 2.0 * way.abs())
             + Vec3::splat(
                 6.0 * U * self.condition() * (position - translation).abs().max_element(),
             );
@@ -146,7 +147,7 @@ mod tests {
                 u,
                 v,
             };
-            let point = instance.surface_point(&hit);
+            let point = instance.surface_point(&hit, 0.0);
             let (u, v) = (f64::from(u), f64::from(v));
             let [a, b, c] = [0, 1, 2].map(|i: usize| corners[i].as_dvec3());
             let object = a * (1.0 - u - v) + b * u + c * v;

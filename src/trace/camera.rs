@@ -155,6 +155,7 @@ impl Camera {
             origin,
             direction,
             t_max: f32::INFINITY,
+            time,
         }
     }
 

@@ -128,7 +128,9 @@ impl Batch<'_> {
             sample: path.sample,
             value,
         });
-        workspace.shadow_rays.push(shadow_ray(surface, &point));
+        workspace
+            .shadow_rays
+            .push(shadow_ray(surface, &point, path.time));
     }
 
     /// Traces all shadow rays of the batch and adds what arrives.
@@ -162,7 +164,7 @@ impl Batch<'_> {
             };
             let Some(hit) = hit else { return transmittance };
             // The finest level: a shadow ray's own width is not known.
-            let surface = Surface::at(self.world, self.settings, ray.direction, 0.0, &hit);
+            let surface = Surface::at(self.world, self.settings, ray, 0.0, &hit);
             let d = surface.opacity;
             transmittance *= (1.0 - d) * Vec3::ONE.lerp(surface.diffuse, d);
             if transmittance == Vec3::ZERO {
@@ -174,13 +176,14 @@ impl Batch<'_> {
 }
 
 /// From a surface to a light point, ending just before it.
-fn shadow_ray(surface: &Surface, point: &LightPoint) -> Ray {
+fn shadow_ray(surface: &Surface, point: &LightPoint, time: f32) -> Ray {
     let origin = surface.spawn(point.direction);
     if point.distance == f32::INFINITY {
         return Ray {
             origin,
             direction: point.direction,
             t_max: f32::INFINITY,
+            time,
         };
     }
     // From the moved origin to the light itself, so that the ray still ends there.
@@ -189,6 +192,7 @@ fn shadow_ray(surface: &Surface, point: &LightPoint) -> Ray {
         origin,
         direction: to_light,
         t_max: SHORT_OF_THE_LIGHT,
+        time,
     }
 }
 

@@ -61,6 +61,8 @@ pub(super) struct Path {
     pub direction: Vec3,
     pub throughput: Vec3,
     pub cone: Cone,
+    /// In the shutter's interval.
+    pub time: f32,
     /// Index into the batch.
     pub sample: u32,
     /// Names this path among those of its sample, for its random numbers: 0 from the camera on.
@@ -142,12 +144,14 @@ impl Batch<'_> {
     fn start(&mut self, camera: &Camera, workspace: &mut Workspace) {
         workspace.paths.clear();
         let cone = Cone::of_pixel(camera, self.settings.size);
+        let moves = self.settings.features.motion
+            && (camera.optics.velocity != Vec3::ZERO || self.world.needs.motion_samples > 0);
         for (i, sample) in self.samples.iter().enumerate() {
             let (sampler, index) = self.sampler(i as u32);
-            let time = if camera.optics.velocity == Vec3::ZERO {
-                camera.optics.shutter[0]
-            } else {
+            let time = if moves {
                 camera.time(sampler.block(index, Purpose::Time, 0)[0])
+            } else {
+                0.0
             };
             let ray = camera.sample_ray(
                 sample.pixel,
@@ -162,6 +166,7 @@ impl Batch<'_> {
                 direction: ray.direction,
                 throughput: Vec3::ONE,
                 cone,
+                time,
                 sample: i as u32,
                 name: 0,
                 bounces: 0,
@@ -183,6 +188,7 @@ impl Batch<'_> {
                 origin: path.origin,
                 direction: path.direction,
                 t_max: f32::INFINITY,
+                time: path.time,
             }));
         if workspace.paths.iter().all(|path| path.after.is_none()) {
             aggregate.closest_hits(&workspace.rays, &mut workspace.hits);
@@ -205,12 +211,13 @@ impl Batch<'_> {
         // Taken out, so that the paths can be read while the rest is written; no array is lost.
         let paths = std::mem::take(&mut workspace.paths);
         let hits = std::mem::take(&mut workspace.hits);
-        for (path, hit) in paths.iter().zip(&hits) {
+        let rays = std::mem::take(&mut workspace.rays);
+        for ((path, ray), hit) in paths.iter().zip(&rays).zip(&hits) {
             if let Some(light) = self.visible_light(path, hit.as_ref()) {
                 self.add(path.sample, path.throughput * light);
             } else if let Some(hit) = hit {
                 let width = path.cone.width_at(hit.t);
-                let surface = Surface::at(self.world, self.settings, path.direction, width, hit);
+                let surface = Surface::at(self.world, self.settings, ray, width, hit);
                 self.shade_surface(path, hit, &surface, workspace);
             } else {
                 self.add(
@@ -221,6 +228,7 @@ impl Batch<'_> {
         }
         workspace.paths = paths;
         workspace.hits = hits;
+        workspace.rays = rays;
     }
 
     fn shade_surface(

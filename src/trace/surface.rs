@@ -1,6 +1,6 @@
 use super::World;
 use super::footprint::texture_footprint;
-use crate::bvh::Hit;
+use crate::bvh::{Hit, Ray};
 use crate::scene::{Lighting, RenderSettings, TextureFilter};
 use glam::{Vec2, Vec3};
 
@@ -30,19 +30,13 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// What the ray along `direction`, `width` metres wide at the hit, found at `hit`.
-    pub fn at(
-        world: &World,
-        settings: &RenderSettings,
-        direction: Vec3,
-        width: f32,
-        hit: &Hit,
-    ) -> Self {
+    /// What `ray`, `width` metres wide at the hit, found at `hit`.
+    pub fn at(world: &World, settings: &RenderSettings, ray: &Ray, width: f32, hit: &Hit) -> Self {
         let instance = &world.aggregate.instances()[hit.instance as usize];
         let object = &world.objects[hit.instance as usize];
         let material = &world.materials[object.material as usize];
-        let point = instance.surface_point(hit);
-        let to_viewer = -direction.normalize();
+        let point = instance.surface_point(hit, ray.time);
+        let to_viewer = -ray.direction.normalize();
 
         let mut normal = point.normal;
         let mesh = &object.mesh;

@@ -46,7 +46,7 @@ fn the_circle_of_confusion_has_the_diameter_of_the_thin_lens_formula() {
         };
         let settings = RenderSettings {
             size,
-            spp: 1024,
+            spp: 64,
             ..RenderSettings::default()
         };
         let picture = render(&spot(d, half), &camera, &settings, &|_, _| {}).picture;

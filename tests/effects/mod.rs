@@ -2,4 +2,5 @@
 
 mod gloss;
 mod lens;
+mod motion;
 mod transparency;

@@ -193,6 +193,7 @@ fn rays_that_are_not_numbers_miss() {
             origin: three(),
             direction: three(),
             t_max: random.of(&odd),
+            time: random.of(&odd),
         };
         let hit = aggregate.closest_hit(&ray);
         assert!(same(hit, brute(&aggregate, &ray)), "{ray:?}");

@@ -33,7 +33,7 @@ pub(super) fn brute(aggregate: &Aggregate, ray: &Ray) -> Option<Hit> {
             origin,
             direction,
             slab,
-        }) = instance.to_object_ray(&safe.world)
+        }) = instance.to_object_ray(&safe.world, ray.time)
         else {
             continue;
         };

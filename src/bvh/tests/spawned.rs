@@ -34,7 +34,7 @@ fn self_hits(
         let Some(hit) = aggregate.closest_hit(&Ray::new(origin, target - origin)) else {
             continue;
         };
-        let surface = aggregate.instances()[hit.instance as usize].surface_point(&hit);
+        let surface = aggregate.instances()[hit.instance as usize].surface_point(&hit, 0.0);
         for side in [surface.normal, -surface.normal] {
             let direction = leaving(side, random);
             let next = aggregate.closest_hit(&Ray::new(surface.leave(direction), direction));
@@ -102,7 +102,7 @@ fn rays_that_leave_the_inside_of_a_closed_convex_mesh_stay_inside() {
                     lost += 1;
                     break;
                 };
-                let surface = scene.instances()[0].surface_point(&hit);
+                let surface = scene.instances()[0].surface_point(&hit, 0.0);
                 let inwards = if surface.normal.dot(ray.direction) < 0.0 {
                     1.0
                 } else {
@@ -129,7 +129,7 @@ fn the_normal_is_on_the_side_that_the_winding_says_mirrored_or_not() {
         for _ in 0..1_000 {
             let ray = Ray::new(Vec3::ZERO, random.direction());
             let hit = scene.closest_hit(&ray).expect("the sphere is closed");
-            let surface = scene.instances()[0].surface_point(&hit);
+            let surface = scene.instances()[0].surface_point(&hit, 0.0);
             let outwards = surface.normal.dot(ray.direction);
             assert!(
                 outwards > 0.0,
