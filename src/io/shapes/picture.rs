@@ -3,7 +3,7 @@
 use bevy::asset::RenderAssetUsages;
 use bevy::image::Image;
 use bevy::math::{DVec2, DVec3, Vec3};
-use image::{DynamicImage, Rgb, Rgba, Rgba32FImage, RgbaImage};
+use image::{DynamicImage, Rgba, Rgba32FImage, RgbaImage};
 use std::f64::consts::{PI, TAU};
 use thiserror::Error;
 
@@ -80,17 +80,18 @@ fn places(at: DVec2) -> [u8; 3] {
 fn sky() -> DynamicImage {
     let [width, height] = SKY;
     DynamicImage::ImageRgba32F(Rgba32FImage::from_fn(width, height, |x, y| {
-        let azimuth = TAU * ((f64::from(x) + 0.5) / f64::from(width) - 0.5);
-        let elevation = PI * (0.5 - (f64::from(y) + 0.5) / f64::from(height));
-        let across = elevation.cos();
-        let direction = DVec3::new(
-            azimuth.sin() * across,
-            elevation.sin(),
-            -azimuth.cos() * across,
-        );
-        let Rgb([r, g, b]) = Rgb(sky_radiance(direction).to_array());
+        let [r, g, b] = sky_radiance(direction_of(x, y)).to_array();
         Rgba([r, g, b, 1.0])
     }))
+}
+
+/// The direction in which a texel of the sky is seen.
+fn direction_of(x: u32, y: u32) -> DVec3 {
+    let [width, height] = SKY.map(f64::from);
+    let azimuth = TAU * ((f64::from(x) + 0.5) / width - 0.5);
+    let elevation = PI * (0.5 - (f64::from(y) + 0.5) / height);
+    let (up, across) = elevation.sin_cos();
+    DVec3::new(azimuth.sin() * across, up, -azimuth.cos() * across)
 }
 
 /// Radiance from a direction: a function of the direction alone, so that the map has no seam and
@@ -107,9 +108,7 @@ fn sky_radiance(direction: DVec3) -> Vec3 {
         let cover = smooth_step(0.50, 0.78, clouds(at)) * smooth_step(0.02, 0.30, up);
         color = color.lerp(DVec3::splat(1.05), 0.85 * cover);
     }
-    let towards_sun = direction
-        .dot(DVec3::new(0.55, 0.62, -0.56).normalize())
-        .max(0.0);
+    let towards_sun = direction.dot(SUN.normalize()).max(0.0);
     color += DVec3::new(1.0, 0.85, 0.62)
         * (14.0 * towards_sun.powf(3000.0)
             + 0.9 * towards_sun.powf(60.0)
@@ -201,5 +200,18 @@ mod tests {
             sky.pixels()
                 .all(|p| p.0.iter().all(|x| x.is_finite() && *x >= 0.0))
         );
+    }
+
+    #[test]
+    fn the_sun_lamps_of_scenes_come_from_where_the_sky_is_brightest() {
+        let DynamicImage::ImageRgba32F(sky) = sky() else {
+            panic!("the sky is not 32-bit");
+        };
+        let brightest = sky
+            .enumerate_pixels()
+            .max_by(|a, b| a.2[0].total_cmp(&b.2[0]))
+            .map(|(x, y, _)| direction_of(x, y));
+        let angle = brightest.unwrap().angle_between(SUN).to_degrees();
+        assert!(angle < 0.5, "{angle} degrees apart");
     }
 }
