@@ -174,6 +174,72 @@ fn builders_and_levels_agree_on_rays_that_graze_edges_of_instances() {
     assert!(hits > 2_000, "only {hits} hits");
 }
 
+#[test]
+fn builders_and_levels_agree_on_rays_that_touch_the_outermost_corner_of_a_far_instance() {
+    // The corner that decides a face of the instance's world box, and rays within that face: only the pads of the
+    // world's rays and boxes keep these hits. Without the first, rays from afar lose some; without the second, rays
+    // from near the origin at what is far away.
+    let mut random = Random::new(5);
+    let places: Vec<Affine3A> = (0..24)
+        .map(|_| {
+            let turn = Quat::from_axis_angle(random.direction(), random.between(0.0, 6.0));
+            let scale = Vec3::new(1.0, random.between(0.1, 1.0), random.between(0.1, 1.0));
+            let far = random.cube() * random.of(&[10.0, 1e3, 1e5]);
+            let far = random.of(&[far, far * Vec3::X]);
+            Affine3A::from_scale_rotation_translation(scale, turn, far)
+        })
+        .collect();
+    let corners: Vec<Vec3> = cube().positions().to_vec();
+    let rays: Vec<Ray> = (0..6_000)
+        .map(|_| {
+            let place = random.of(&places);
+            let axis = random.below(3);
+            let sign = random.of(&[-1.0, 1.0]);
+            let outermost = corners
+                .iter()
+                .map(|&corner| place.transform_point3(corner))
+                .max_by(|a, b| (a[axis] * sign).total_cmp(&(b[axis] * sign)))
+                .expect("a cube has corners");
+            let distance = random.of(&[2.0, 100.0, 1e5]);
+            let mut origin = outermost - random.direction() * distance;
+            if random.unit() < 0.5 {
+                origin = random.cube();
+            }
+            let mut direction = outermost - origin;
+            direction[axis] = 0.0;
+            origin[axis] = match random.below(3) {
+                0 => outermost[axis],
+                1 => outermost[axis].next_up(),
+                _ => outermost[axis].next_down(),
+            };
+            Ray::new(origin, direction)
+        })
+        .collect();
+    let hits = assert_identical("outermost corners", &[(cube(), places)], &rays);
+    assert!(hits > 1_000, "only {hits} hits");
+}
+
+#[test]
+fn builders_and_levels_agree_on_rays_almost_in_the_planes_of_triangles() {
+    // Seen edge on, a triangle's plane is crossed anywhere: only the clamp to its box keeps `t` near the triangle, and
+    // so where no box above it is passed over.
+    let mut random = Random::new(6);
+    let mesh = scatter(80, 0.3, 61);
+    let rays: Vec<Ray> = (0..20_000)
+        .map(|_| {
+            let [a, b, c] = mesh.corners(random.below(80) as u32);
+            let mut within = || {
+                let (u, v) = (random.between(-3.0, 3.0), random.between(-3.0, 3.0));
+                a + (b - a) * u + (c - a) * v
+            };
+            let (from, to) = (within(), within());
+            Ray::new(from, to - from)
+        })
+        .collect();
+    let hits = assert_identical("in planes", &[(mesh, vec![Affine3A::IDENTITY])], &rays);
+    assert!(hits > 3_000, "only {hits} hits");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
