@@ -1,6 +1,7 @@
 //! Tests of the whole stack. A module a subject; tests of one file stand in that file.
 
 mod analytic;
+mod bad_input;
 mod convergence;
 mod effects;
 mod files;

@@ -11,6 +11,8 @@ pub struct Limits {
     pub pixels: u64,
     /// Entities of one file.
     pub entities: u64,
+    /// Ancestors of an entity. Bevy removes and places children by recursion.
+    pub depth: u64,
     /// Bytes of one line of a text file.
     pub line_bytes: usize,
 }
@@ -28,6 +30,7 @@ impl Default for Limits {
             triangles: 1 << 31,
             pixels: 1 << 28,
             entities: 1 << 24,
+            depth: 256,
             line_bytes: 1 << 20,
         }
     }

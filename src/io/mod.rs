@@ -16,6 +16,7 @@
 
 pub mod builtin;
 mod error;
+mod exported;
 mod folder;
 mod frame;
 mod gltf;

@@ -1,4 +1,6 @@
 //! Scenes and models through files and back.
 
-mod app;
+pub mod app;
+mod gltf;
+mod models;
 mod round_trip;

@@ -1,4 +1,5 @@
 use super::app::{app, opened, triangles, write};
+use super::models::objects;
 use bevy::asset::Assets;
 use bevy::camera::visibility::Visibility;
 use bevy::color::LinearRgba;
@@ -233,24 +234,6 @@ fn obj_folder() -> tempfile::TempDir {
     write(folder.path(), "box.mtl", MTL);
     write(folder.path(), "box.obj", OBJ);
     folder
-}
-
-/// Name, material and triangles of every object, sorted.
-fn objects(world: &mut World) -> Vec<(String, Phong, Vec<[[f32; 3]; 3]>)> {
-    let mut query = world.query::<(Entity, &Name, Option<&UsesMaterial>, &Phong, &Mesh3d)>();
-    let all: Vec<_> = query
-        .iter(world)
-        .map(|(e, name, shared, own, _)| (e, name.to_string(), shared.copied(), own.clone()))
-        .collect();
-    let mut objects: Vec<_> = all
-        .into_iter()
-        .map(|(entity, name, shared, own)| {
-            let shared = shared.and_then(|UsesMaterial(m)| world.get::<Phong>(m).cloned());
-            (name, shared.unwrap_or(own), triangles(world, entity))
-        })
-        .collect();
-    objects.sort_by(|a, b| a.0.cmp(&b.0));
-    objects
 }
 
 #[test]

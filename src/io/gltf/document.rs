@@ -18,9 +18,10 @@ impl Document {
     /// Reads a `.gltf` or `.glb` file and the buffers that it refers to.
     pub fn read(file: &Path, folder: &Folder, limits: &Limits) -> Result<Self, FileError> {
         let bytes = super::super::read_bytes(file, limits.file_bytes)?;
-        let gltf::Gltf { document, blob } =
-            gltf::Gltf::from_slice(&bytes).map_err(|error| parse_error(file, error))?;
+        let gltf::Gltf { document, blob } = gltf::Gltf::from_slice_without_validation(&bytes)
+            .map_err(|error| parse_error(file, error))?;
         drop(bytes);
+        validate(&document).map_err(|error| parse_error(file, error))?;
         let mut document = Self {
             file: file.to_path_buf(),
             folder: folder.clone(),
@@ -94,21 +95,19 @@ impl Document {
             };
             return Err(FileError::new(&self.file, problem));
         }
-        let lights = self.gltf.lights().map_or(0, Iterator::count);
-        for (index, node) in json.nodes.iter().enumerate() {
-            let light = node.extensions.as_ref();
-            let light = light.and_then(|all| all.khr_lights_punctual.as_ref());
-            let Some(light) = light.map(|light| light.light.value()) else {
-                continue;
+        // `Camera::projection` takes for granted that the numbers of its type are there.
+        use gltf::json::camera::Type;
+        use gltf::json::validation::Checked;
+        for (index, camera) in json.cameras.iter().enumerate() {
+            let missing = match camera.type_ {
+                Checked::Valid(Type::Perspective) if camera.perspective.is_none() => "perspective",
+                Checked::Valid(Type::Orthographic) if camera.orthographic.is_none() => {
+                    "orthographic"
+                }
+                _ => continue,
             };
-            if light >= lights {
-                let problem = Problem::IndexOutOfRange {
-                    what: "light",
-                    index: light.to_string(),
-                    count: lights,
-                };
-                return Err(self.error(format!("node {index}"), problem));
-            }
+            let text = format!("its {missing} numbers are missing");
+            return Err(self.error(format!("camera {index}"), Problem::Malformed(text)));
         }
         Ok(())
     }
@@ -160,6 +159,32 @@ pub(super) enum Picture<'a> {
     Beside(String),
     /// A PNG or JPEG inside it.
     Inside(Cow<'a, [u8]>),
+}
+
+/// The crate's validation, which follows the index of `POSITION` before it has checked it.
+fn validate(document: &gltf::Document) -> Result<(), gltf::Error> {
+    use gltf::json::Path;
+    use gltf::json::validation::{Error, Validate};
+    let json = document.as_json();
+    let mut errors = Vec::new();
+    let primitives = json.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let mut accessors = primitives.flat_map(|primitive| primitive.attributes.values());
+    if accessors.any(|accessor| json.get(*accessor).is_none()) {
+        let path = Path::new()
+            .field("meshes")
+            .field("primitives")
+            .field("attributes");
+        errors.push((path, Error::IndexOutOfBounds));
+    } else {
+        json.validate(json, Path::new, &mut |path, error| {
+            errors.push((path(), error));
+        });
+    }
+    if errors.is_empty() {
+        Ok(())
+    } else {
+        Err(gltf::Error::Validation(errors))
+    }
 }
 
 fn parse_error(file: &Path, error: gltf::Error) -> FileError {

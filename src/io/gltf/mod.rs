@@ -7,8 +7,10 @@
 
 mod accessors;
 mod document;
+mod glb;
 mod lamps;
 mod material;
+mod primitive;
 mod read;
 mod uri;
 mod write;

@@ -1,18 +1,16 @@
 use super::super::error::{FileError, Problem};
 use super::super::folder::Folder;
-use super::super::model::{Model, Node, triangle_mesh};
+use super::super::model::{Model, Node};
 use super::super::picture::{PictureUse, decode_picture, read_picture};
-use super::accessors::{floats, indices};
 use super::document::{Document, Picture};
 use super::lamps::{Lamp, camera_of, lamp_of};
 use super::material::{has_alpha, phong_of};
+use super::primitive::{mesh_name, read_primitive};
 use crate::io::Limits;
 use crate::scene::{Phong, TextureSource};
 use bevy::image::Image;
-use bevy::math::{Affine2, Mat4, Quat, Vec2, Vec3};
-use bevy::mesh::Mesh;
+use bevy::math::{Mat4, Quat, Vec3};
 use bevy::transform::components::Transform;
-use gltf::mesh::Mode;
 use std::path::Path;
 
 /// Reads a glTF or GLB file: the default scene, or the first, or all nodes where there is none.
@@ -76,10 +74,6 @@ pub(crate) fn read_texture(
             decode_picture(Path::new(&name), &bytes, usage, limits)
         }
     }
-}
-
-fn mesh_name(mesh: &gltf::Mesh, primitive: &gltf::Primitive) -> String {
-    format!("Mesh{}/Primitive{}", mesh.index(), primitive.index())
 }
 
 fn material_of(
@@ -154,130 +148,6 @@ fn texture_source(document: &Document, texture: &gltf::Texture) -> Result<String
     }
 }
 
-/// A primitive's triangles; `None` for points and lines.
-fn read_primitive(
-    document: &Document,
-    primitive: &gltf::Primitive,
-    name: &str,
-    notes: &mut Vec<String>,
-) -> Result<Option<Mesh>, Problem> {
-    let mode = primitive.mode();
-    if !matches!(
-        mode,
-        Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
-    ) {
-        notes.push(format!("{name}: points and lines were left out"));
-        return Ok(None);
-    }
-    let Some(accessor) = primitive.get(&gltf::Semantic::Positions) else {
-        return Err(Problem::Malformed("it has no positions".into()));
-    };
-    let positions = floats::<3>(document, &accessor)?;
-    finite("a vertex", positions.as_flattened())?;
-    let count = positions.len();
-    let normals = match primitive.get(&gltf::Semantic::Normals) {
-        Some(accessor) => floats::<3>(document, &accessor)?,
-        None => Vec::new(),
-    };
-    finite("a normal", normals.as_flattened())?;
-    let (set, transform) = uv_set(primitive);
-    let mut uvs = match primitive.get(&gltf::Semantic::TexCoords(set)) {
-        Some(accessor) => floats::<2>(document, &accessor)?,
-        None => Vec::new(),
-    };
-    finite("a texture coordinate", uvs.as_flattened())?;
-    for (what, given) in [
-        ("normals", normals.len()),
-        ("texture coordinates", uvs.len()),
-    ] {
-        if given != 0 && given != count {
-            return Err(Problem::Malformed(format!(
-                "{given} {what} for {count} vertices"
-            )));
-        }
-    }
-    if let Some(transform) = transform {
-        for uv in &mut uvs {
-            *uv = transform.transform_point2(Vec2::from(*uv)).into();
-        }
-    }
-    let corners = match primitive.indices() {
-        Some(accessor) => indices(document, &accessor)?,
-        None => (0..u32::try_from(count).unwrap_or(u32::MAX)).collect(),
-    };
-    if let Some(index) = corners.iter().find(|&&index| index as usize >= count) {
-        return Err(Problem::IndexOutOfRange {
-            what: "vertex",
-            index: index.to_string(),
-            count,
-        });
-    }
-    let corners = triangles_of(mode, corners);
-    let triangles = corners.len() as u64 / 3;
-    if triangles == 0 {
-        notes.push(format!("{name}: has no triangles"));
-        return Ok(None);
-    }
-    if triangles > document.limits.triangles {
-        return Err(Problem::TooMany {
-            what: "triangles",
-            count: triangles,
-            limit: document.limits.triangles,
-        });
-    }
-    if primitive.get(&gltf::Semantic::Colors(0)).is_some() {
-        notes.push(format!("{name}: its vertex colours were left out"));
-    }
-    Ok(Some(triangle_mesh(positions, normals, uvs, corners)))
-}
-
-/// Which set of texture coordinates the base colour's picture uses, and how it moves them.
-fn uv_set(primitive: &gltf::Primitive) -> (u32, Option<Affine2>) {
-    let material = primitive.material();
-    let Some(info) = material.pbr_metallic_roughness().base_color_texture() else {
-        return (0, None);
-    };
-    let Some(transform) = info.texture_transform() else {
-        return (info.tex_coord(), None);
-    };
-    // KHR_texture_transform turns counter-clockwise as seen in a picture whose v points down.
-    let affine = Affine2::from_scale_angle_translation(
-        transform.scale().into(),
-        -transform.rotation(),
-        transform.offset().into(),
-    );
-    (
-        transform.tex_coord().unwrap_or(info.tex_coord()),
-        Some(affine),
-    )
-}
-
-fn finite(what: &str, values: &[f32]) -> Result<(), Problem> {
-    match values.iter().all(|value| value.is_finite()) {
-        true => Ok(()),
-        false => Err(Problem::NotFinite { what: what.into() }),
-    }
-}
-
-/// Corners of separate triangles. A strip turns every second one around (glTF 2.0, 3.7.2.1).
-fn triangles_of(mode: Mode, mut corners: Vec<u32>) -> Vec<u32> {
-    match mode {
-        Mode::TriangleStrip => (2..corners.len())
-            .flat_map(|i| match i % 2 {
-                0 => [corners[i - 2], corners[i - 1], corners[i]],
-                _ => [corners[i - 1], corners[i - 2], corners[i]],
-            })
-            .collect(),
-        Mode::TriangleFan => (2..corners.len())
-            .flat_map(|i| [corners[0], corners[i - 1], corners[i]])
-            .collect(),
-        _ => {
-            corners.truncate(corners.len() / 3 * 3);
-            corners
-        }
-    }
-}
-
 fn read_nodes(document: &Document, model: &mut Model) -> Result<(), FileError> {
     let gltf = &document.gltf;
     let scene = gltf.default_scene().or_else(|| gltf.scenes().next());
@@ -292,8 +162,20 @@ fn read_nodes(document: &Document, model: &mut Model) -> Result<(), FileError> {
     };
     let mut seen = vec![false; gltf.nodes().count()];
     // A stack, not recursion: a file can nest deeper than a thread's stack reaches.
-    let mut to_visit: Vec<_> = roots.into_iter().rev().map(|node| (node, None)).collect();
-    while let Some((node, parent)) = to_visit.pop() {
+    let mut to_visit: Vec<_> = roots
+        .into_iter()
+        .rev()
+        .map(|node| (node, None, 0))
+        .collect();
+    while let Some((node, parent, depth)) = to_visit.pop() {
+        if depth > document.limits.depth {
+            let problem = Problem::TooMany {
+                what: "ancestors",
+                count: depth,
+                limit: document.limits.depth,
+            };
+            return Err(document.error(format!("node {}", node.index()), problem));
+        }
         if std::mem::replace(&mut seen[node.index()], true) {
             let text = "it is reached twice; glTF wants a tree".to_owned();
             let part = format!("node {}", node.index());
@@ -301,7 +183,12 @@ fn read_nodes(document: &Document, model: &mut Model) -> Result<(), FileError> {
         }
         let place = push_node(document, &node, parent, model);
         let children: Vec<_> = node.children().collect();
-        to_visit.extend(children.into_iter().rev().map(|child| (child, Some(place))));
+        to_visit.extend(
+            children
+                .into_iter()
+                .rev()
+                .map(|child| (child, Some(place), depth + 1)),
+        );
     }
     Ok(())
 }

@@ -1,10 +1,262 @@
-use super::super::error::{FileError, Problem};
-use bevy::prelude::World;
+use super::super::error::FileError;
+use super::super::exported::{Exported, Material, gather, pixels_of};
+use super::super::model::MeshParts;
+use super::super::picture::encode_png;
+use super::super::replace::replace_file;
+use super::super::sources::split_fragment;
+use super::glb::Bytes;
+use super::lamps::{camera_json, directional_json, point_json};
+use super::material::material_json;
+use crate::scene::{DirectionalLamp, PointLamp, SceneCamera};
+use bevy::asset::{AssetId, Assets};
+use bevy::ecs::hierarchy::ChildOf;
+use bevy::ecs::name::Name;
+use bevy::image::Image;
+use bevy::mesh::Mesh;
+use bevy::prelude::{Entity, World};
+use bevy::transform::components::Transform;
+use image::DynamicImage;
+use serde_json::{Map, Value, json};
+use std::collections::HashMap;
 use std::path::Path;
 
-pub(crate) fn write_glb(_: &mut World, file: &Path) -> Result<Vec<String>, FileError> {
-    Err(FileError::new(
-        file,
-        Problem::Malformed("GLB is not written yet".into()),
-    ))
+/// Writes the scene's hierarchy, meshes, materials, pictures, point and directional lights and
+/// cameras into one GLB. Returns what could not be said.
+pub(crate) fn write_glb(world: &mut World, file: &Path) -> Result<Vec<String>, FileError> {
+    super::super::check_writable(file)?;
+    let exported = gather(world);
+    let mut glb = Glb {
+        world,
+        bytes: Bytes::default(),
+        lists: Map::new(),
+        meshes: HashMap::new(),
+        textures: HashMap::new(),
+        notes: exported.notes.clone(),
+    };
+    for material in &exported.materials {
+        let json = glb.material(material);
+        glb.push("materials", json);
+    }
+    glb.nodes(&exported);
+    let (root, bytes, notes) = glb.finish();
+    replace_file(file, |out| bytes.write(&root, out))?;
+    Ok(notes)
+}
+
+/// A glTF document while it grows.
+struct Glb<'a> {
+    world: &'a World,
+    bytes: Bytes,
+    /// The top-level arrays by their names.
+    lists: Map<String, Value>,
+    /// Primitives that are written: their attributes and indices, without a material.
+    meshes: HashMap<AssetId<Mesh>, Value>,
+    textures: HashMap<AssetId<Image>, usize>,
+    notes: Vec<String>,
+}
+
+impl Glb<'_> {
+    /// Adds to a top-level array and returns the index.
+    fn push(&mut self, list: &str, value: Value) -> usize {
+        let list = self.lists.entry(list).or_insert_with(|| json!([]));
+        match list.as_array_mut() {
+            Some(array) => {
+                array.push(value);
+                array.len() - 1
+            }
+            None => 0,
+        }
+    }
+
+    fn material(&mut self, material: &Material) -> Value {
+        let phong = &material.phong;
+        let mut json = material_json(&material.name, phong);
+        if let (Some(source), Some(loaded)) = (&phong.diffuse_map, &material.maps.diffuse) {
+            match self.texture(loaded.id()) {
+                Some(texture) => {
+                    let pbr = &mut json["pbrMetallicRoughness"];
+                    pbr["baseColorTexture"] = json!({ "index": texture });
+                    pbr["baseColorFactor"] = json!([1.0, 1.0, 1.0, phong.opacity]);
+                }
+                None => self.notes.push(format!(
+                    "the picture `{}` cannot be embedded and was left out",
+                    source.path
+                )),
+            }
+        }
+        if let Some(source) = &phong.opacity_map {
+            let diffuse = phong
+                .diffuse_map
+                .as_ref()
+                .map(|diffuse| diffuse.path.as_str());
+            if !is_alpha_of(&source.path, diffuse) {
+                json["alphaMode"] = json!(if phong.opacity < 1.0 {
+                    "BLEND"
+                } else {
+                    "OPAQUE"
+                });
+                self.notes.push(format!(
+                    "material `{}`: its opacity picture was left out",
+                    material.name
+                ));
+            }
+        }
+        json
+    }
+
+    /// Embeds a loaded picture as a PNG; `None` where it does not hold 8-bit colours.
+    fn texture(&mut self, image: AssetId<Image>) -> Option<usize> {
+        if let Some(&texture) = self.textures.get(&image) {
+            return Some(texture);
+        }
+        let pixels = pixels_of(self.world, image)?;
+        if !matches!(pixels, DynamicImage::ImageRgba8(_)) {
+            return None;
+        }
+        let view = self.bytes.push(&encode_png(&pixels).ok()?);
+        let image_json = json!({ "bufferView": view, "mimeType": "image/png" });
+        let source = self.push("images", image_json);
+        let texture = self.push("textures", json!({ "source": source }));
+        self.textures.insert(image, texture);
+        Some(texture)
+    }
+
+    fn nodes(&mut self, exported: &Exported) {
+        let index_of: HashMap<Entity, usize> = exported.entities.iter().copied().zip(0..).collect();
+        let mut children: HashMap<Entity, Vec<usize>> = HashMap::new();
+        let mut roots = Vec::new();
+        for (index, &entity) in exported.entities.iter().enumerate() {
+            match self.world.get::<ChildOf>(entity) {
+                Some(&ChildOf(parent)) if index_of.contains_key(&parent) => {
+                    children.entry(parent).or_default().push(index);
+                }
+                _ => roots.push(index),
+            }
+        }
+        let objects: HashMap<Entity, _> = exported.objects.iter().map(|o| (o.entity, o)).collect();
+        let mut meshes: HashMap<(AssetId<Mesh>, usize), Option<usize>> = HashMap::new();
+        for &entity in &exported.entities {
+            let mut node = self.node(entity);
+            if let Some(children) = children.get(&entity) {
+                node["children"] = json!(children);
+            }
+            if let Some(object) = objects.get(&entity) {
+                let mesh = *meshes
+                    .entry((object.mesh, object.material))
+                    .or_insert_with(|| self.mesh(object.mesh, object.material, &object.name));
+                if let Some(mesh) = mesh {
+                    node["mesh"] = json!(mesh);
+                }
+            }
+            self.push("nodes", node);
+        }
+        self.push("scenes", json!({ "nodes": roots }));
+    }
+
+    /// A node with its place, light and camera.
+    fn node(&mut self, entity: Entity) -> Value {
+        let world = self.world;
+        let mut node = json!({});
+        if let Some(name) = world.get::<Name>(entity) {
+            node["name"] = json!(name.as_str());
+        }
+        if let Some(transform) = world.get::<Transform>(entity)
+            && *transform != Transform::IDENTITY
+        {
+            node["translation"] = json!(transform.translation.to_array());
+            node["rotation"] = json!(transform.rotation.to_array());
+            node["scale"] = json!(transform.scale.to_array());
+        }
+        if let Some(camera) = world.get::<SceneCamera>(entity) {
+            let camera = self.push("cameras", camera_json(camera));
+            node["camera"] = json!(camera);
+        }
+        let point = world.get::<PointLamp>(entity).map(point_json);
+        let directional = world.get::<DirectionalLamp>(entity).map(directional_json);
+        if point.is_some() && directional.is_some() {
+            let text = "one entity has two lights: its directional one was left out";
+            self.notes.push(text.into());
+        }
+        if let Some(light) = point.or(directional) {
+            let light = self.push("lights", light);
+            node["extensions"] = json!({ "KHR_lights_punctual": { "light": light } });
+        }
+        node
+    }
+
+    fn mesh(&mut self, id: AssetId<Mesh>, material: usize, name: &str) -> Option<usize> {
+        if !self.meshes.contains_key(&id) {
+            let world = self.world;
+            let meshes = world.get_resource::<Assets<Mesh>>();
+            let parts = meshes
+                .and_then(|meshes| meshes.get(id))
+                .and_then(MeshParts::of);
+            let Some(parts) = parts.filter(|parts| parts.triangles().next().is_some()) else {
+                let text = format!("`{name}`: its mesh is no indexed triangle list");
+                self.notes.push(text);
+                return None;
+            };
+            let mut attributes = json!({ "POSITION": self.bytes.push_vectors(parts.positions) });
+            if !parts.normals.is_empty() {
+                attributes["NORMAL"] = json!(self.bytes.push_vectors(parts.normals));
+            }
+            if !parts.uvs.is_empty() {
+                attributes["TEXCOORD_0"] = json!(self.bytes.push_vectors(parts.uvs));
+            }
+            // Fits: they were 32 bits wide.
+            let corners = parts.triangles().flatten().map(|corner| corner as u32);
+            let indices = self.bytes.push_indices(corners);
+            let primitive = json!({ "attributes": attributes, "indices": indices });
+            self.meshes.insert(id, primitive);
+        }
+        let mut primitive = self.meshes.get(&id).cloned()?;
+        primitive["material"] = json!(material);
+        Some(self.push("meshes", json!({ "name": name, "primitives": [primitive] })))
+    }
+
+    fn finish(mut self) -> (Value, Bytes, Vec<String>) {
+        let mut root = json!({
+            "asset": {
+                "version": "2.0",
+                "generator": concat!("Glassbox ", env!("CARGO_PKG_VERSION")),
+            },
+            "scene": 0,
+        });
+        let mut used = Vec::new();
+        if let Some(lights) = self.lists.remove("lights") {
+            root["extensions"] = json!({ "KHR_lights_punctual": { "lights": lights } });
+            used.push("KHR_lights_punctual");
+        }
+        let glows = |material: &Value| material.get("extensions").is_some();
+        let materials = self.lists.get("materials").and_then(Value::as_array);
+        if materials.is_some_and(|materials| materials.iter().any(glows)) {
+            used.push("KHR_materials_emissive_strength");
+        }
+        if !used.is_empty() {
+            root["extensionsUsed"] = json!(used);
+        }
+        for (name, list) in self.lists {
+            root[name] = list;
+        }
+        if self.bytes.len() > 0 {
+            root["bufferViews"] = json!(self.bytes.views);
+            root["buffers"] = json!([{ "byteLength": self.bytes.len() }]);
+        }
+        if !self.bytes.accessors.is_empty() {
+            root["accessors"] = json!(self.bytes.accessors);
+        }
+        (root, self.bytes, self.notes)
+    }
+}
+
+/// Whether a source is the alpha channel of another: then the base colour's picture carries it.
+fn is_alpha_of(source: &str, other: Option<&str>) -> bool {
+    let Some(other) = other else {
+        return false;
+    };
+    let ((file, part), (other_file, other_part)) = (split_fragment(source), split_fragment(other));
+    let part = part
+        .strip_suffix("alpha")
+        .map(|part| part.trim_end_matches('.'));
+    file == other_file && part == Some(other_part)
 }

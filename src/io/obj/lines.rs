@@ -90,6 +90,9 @@ impl<'a, R: BufRead> Lines<'a, R> {
                 break;
             }
         }
+        if self.current.last().is_some_and(|&last| last != b'\n') {
+            self.current.push(b'\n');
+        }
         if std::str::from_utf8(&self.current).is_err() {
             // Old exporters wrote names and comments in other encodings.
             self.current = String::from_utf8_lossy(&self.current).into_owned().into();

@@ -6,6 +6,7 @@ mod lines;
 mod mtl;
 mod read;
 mod write;
+mod write_mtl;
 
 pub(crate) use read::read_obj;
 pub(crate) use write::write_obj;

@@ -5,6 +5,7 @@ mod read;
 mod write;
 
 pub(crate) use read::{PictureUse, decode_picture, read_picture};
+pub(crate) use write::encode_png;
 pub use write::write_picture;
 
 use super::Limits;

@@ -101,6 +101,9 @@ fn failure(name: &Path, error: image::ImageError) -> FileError {
             Problem::Truncated("the picture is incomplete".into())
         }
         E::IoError(error) => Problem::Unreadable(one_line(&error.to_string())),
+        E::Limits(_) => Problem::Malformed(
+            "asks for more memory than the largest picture allowed; scale the picture down".into(),
+        ),
         other => Problem::Malformed(format!(
             "is not a picture that can be decoded: {}",
             one_line(&other.to_string())

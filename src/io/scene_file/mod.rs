@@ -9,7 +9,7 @@ mod read;
 mod write;
 
 pub(crate) use read::{SceneFile, read_scene};
-pub(crate) use write::write_scene;
+pub(crate) use write::{Rebase, write_scene};
 
 use crate::scene::{
     DirectionalLamp, Environment, Lens, MeshSource, Motion, ParallelogramLamp, Phong, PointLamp,

@@ -9,8 +9,8 @@ use bevy::ecs::hierarchy::ChildOf;
 use bevy::image::Image;
 use bevy::prelude::{Entity, World};
 use bevy::reflect::PartialReflect;
-use bevy::world_serialization::DynamicWorld;
 use bevy::world_serialization::serde::WorldDeserializer;
+use bevy::world_serialization::{DynamicEntity, DynamicWorld};
 use serde::de::{DeserializeSeed, IgnoredAny, MapAccess, Visitor};
 use std::any::TypeId;
 use std::cell::Cell;
@@ -101,37 +101,38 @@ impl SceneFile {
             let problem = Problem::Malformed("two entities have the same label".into());
             return Err(FileError::new(file, problem));
         }
-        self.check_no_cycle(file)
+        self.check_ancestors(file, limits)
     }
 
     /// An entity among its own ancestors would hang whatever walks up.
-    fn check_no_cycle(&self, file: &Path) -> Result<(), FileError> {
-        let parents: EntityHashMap<Entity> = self
-            .content
-            .entities
-            .iter()
-            .filter_map(|e| {
-                let mut components = e.components.iter();
-                let parent = components.find_map(|c| c.try_downcast_ref::<ChildOf>())?;
-                Some((e.entity, parent.0))
-            })
-            .collect();
-        let mut safe = BTreeSet::new();
+    fn check_ancestors(&self, file: &Path, limits: &Limits) -> Result<(), FileError> {
+        let parent_of = |e: &DynamicEntity| {
+            let mut components = e.components.iter();
+            let parent = components.find_map(|c| c.try_downcast_ref::<ChildOf>())?;
+            Some((e.entity, parent.0))
+        };
+        let parents: EntityHashMap<Entity> =
+            self.content.entities.iter().filter_map(parent_of).collect();
         for &start in parents.keys() {
-            let mut path = BTreeSet::new();
             let mut at = start;
+            let mut depth = 0;
             while let Some(&parent) = parents.get(&at) {
-                if safe.contains(&at) {
-                    break;
-                }
-                if !path.insert(at) {
-                    let problem = Problem::Malformed("is among its own ancestors".into());
-                    let place = part(&format!("entity {}", at.to_bits()));
-                    return Err(FileError::at(file, place, problem));
-                }
                 at = parent;
+                depth += 1;
+                let problem = if at == start {
+                    Problem::Malformed("is among its own ancestors".into())
+                } else if depth > limits.depth {
+                    Problem::TooMany {
+                        what: "ancestors or more",
+                        count: depth,
+                        limit: limits.depth,
+                    }
+                } else {
+                    continue;
+                };
+                let place = part(&format!("entity {}", start.to_bits()));
+                return Err(FileError::at(file, place, problem));
             }
-            safe.append(&mut path);
         }
         Ok(())
     }

@@ -1,0 +1,191 @@
+//! What a model file can hold of the open scene, gathered for its writers.
+
+use super::place::is_hidden;
+use super::scene_file::scene_entities;
+use crate::scene::{
+    DirectionalLamp, Environment, Lens, Motion, ParallelogramLamp, Phong, PhongMaps, PointLamp,
+    SceneCamera, SceneId, SegmentLamp, UsesMaterial,
+};
+use bevy::asset::{AssetId, Assets};
+use bevy::ecs::name::Name;
+use bevy::image::Image;
+use bevy::mesh::{Mesh, Mesh3d};
+use bevy::prelude::{Component, Entity, World};
+use image::{DynamicImage, ImageBuffer};
+use std::collections::{BTreeSet, HashMap};
+
+/// Objects and materials of the scene, in the order of their `SceneId`.
+#[derive(Default)]
+pub(crate) struct Exported {
+    /// Every entity of the scene that is not just a material.
+    pub entities: Vec<Entity>,
+    /// What is shown: its entity, mesh and material.
+    pub objects: Vec<Object>,
+    /// Materials that objects use, with names that no other has.
+    pub materials: Vec<Material>,
+    /// What no model file can say, a line each.
+    pub notes: Vec<String>,
+}
+
+/// Something with triangles.
+pub(crate) struct Object {
+    pub entity: Entity,
+    /// No other object has it.
+    pub name: String,
+    pub mesh: AssetId<Mesh>,
+    /// Index into the materials.
+    pub material: usize,
+}
+
+/// A material and its loaded pictures.
+pub(crate) struct Material {
+    pub name: String,
+    pub phong: Phong,
+    pub maps: PhongMaps,
+}
+
+/// Gathers the scene. Hidden objects are left out: a model file would show them.
+pub(crate) fn gather(world: &mut World) -> Exported {
+    let mut entities = scene_entities(world);
+    entities.sort_by_key(|&e| world.get::<SceneId>(e).copied().unwrap_or_default());
+    let world = &*world;
+    let mut out = Exported::default();
+    let mut names = Names::default();
+    let mut material_names = Names::default();
+    let mut materials: HashMap<Entity, usize> = HashMap::new();
+    let mut hidden = 0;
+    for &entity in &entities {
+        let Some(Mesh3d(handle)) = world.get::<Mesh3d>(entity) else {
+            continue;
+        };
+        if is_hidden(world, entity) {
+            hidden += 1;
+            continue;
+        }
+        let shared = world.get::<UsesMaterial>(entity).map(|shared| shared.0);
+        let owner = shared
+            .filter(|&material| world.get::<Phong>(material).is_some())
+            .unwrap_or(entity);
+        let material = *materials.entry(owner).or_insert_with(|| {
+            out.materials.push(Material {
+                name: material_names.unique(world, owner, "material"),
+                phong: world.get::<Phong>(owner).cloned().unwrap_or_default(),
+                maps: world.get::<PhongMaps>(owner).cloned().unwrap_or_default(),
+            });
+            out.materials.len() - 1
+        });
+        out.objects.push(Object {
+            entity,
+            name: names.unique(world, entity, "object"),
+            mesh: handle.id(),
+            material,
+        });
+    }
+    let mut note = |count: usize, what: &str| {
+        if count > 0 {
+            out.notes.push(format!("{count} {what}"));
+        }
+    };
+    note(hidden, "hidden objects were left out");
+    note(
+        count::<SegmentLamp>(world, &entities),
+        "segment lights were left out",
+    );
+    note(
+        count::<ParallelogramLamp>(world, &entities),
+        "parallelogram lights were left out",
+    );
+    note(count::<Motion>(world, &entities), "motions were left out");
+    note(count::<Lens>(world, &entities), "lenses were left out");
+    if world.get_resource::<Environment>() != Some(&Environment::default()) {
+        out.notes.push("the environment was left out".into());
+    }
+    out.entities = entities
+        .into_iter()
+        .filter(|&entity| !is_only_a_material(world, entity))
+        .collect();
+    out
+}
+
+impl Exported {
+    /// Notes for a format without lights and cameras.
+    pub fn note_lights_and_cameras(&mut self, world: &World) {
+        let lights = count::<PointLamp>(world, &self.entities)
+            + count::<DirectionalLamp>(world, &self.entities);
+        let cameras = count::<SceneCamera>(world, &self.entities);
+        for (count, what) in [
+            (lights, "point and directional lights"),
+            (cameras, "cameras"),
+        ] {
+            if count > 0 {
+                self.notes.push(format!("{count} {what} were left out"));
+            }
+        }
+    }
+}
+
+fn count<T: Component>(world: &World, entities: &[Entity]) -> usize {
+    entities
+        .iter()
+        .filter(|&&e| world.get::<T>(e).is_some())
+        .count()
+}
+
+fn is_only_a_material(world: &World, entity: Entity) -> bool {
+    let has_place = world
+        .get::<bevy::transform::components::Transform>(entity)
+        .is_some();
+    world.get::<Phong>(entity).is_some() && !has_place
+}
+
+/// Hands out names that differ.
+#[derive(Default)]
+struct Names(BTreeSet<String>);
+
+impl Names {
+    fn unique(&mut self, world: &World, entity: Entity, kind: &str) -> String {
+        let id = world.get::<SceneId>(entity).map_or(0, |id| id.0);
+        let name = match world.get::<Name>(entity) {
+            Some(name) => one_line(name.as_str()),
+            None => format!("{kind} {id}"),
+        };
+        let numbered = (2_u32..).map(|n| format!("{name}#{n}"));
+        let free = std::iter::once(name.clone())
+            .chain(numbered)
+            .find(|name| !self.0.contains(name))
+            .unwrap_or(name);
+        self.0.insert(free.clone());
+        free
+    }
+}
+
+/// A name as text formats can hold it: one line, nothing at its ends that would be trimmed.
+fn one_line(name: &str) -> String {
+    let line: String = name
+        .chars()
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect();
+    match line.trim() {
+        "" => "unnamed".to_owned(),
+        trimmed => trimmed.to_owned(),
+    }
+}
+
+/// A loaded picture as pixels: 8-bit RGBA, or RGBA in `f32`. `None` for other formats.
+pub(crate) fn pixels_of(world: &World, image: AssetId<Image>) -> Option<DynamicImage> {
+    let image = world.get_resource::<Assets<Image>>()?.get(image)?;
+    let (width, height) = (image.width(), image.height());
+    let data = image.data.as_ref()?;
+    let pixels = width as usize * height as usize;
+    if pixels > 0 && data.len() == pixels * 4 {
+        let buffer = ImageBuffer::from_raw(width, height, data.clone())?;
+        Some(DynamicImage::ImageRgba8(buffer))
+    } else if pixels > 0 && data.len() == pixels * 16 {
+        let values = data.as_chunks().0.iter();
+        let values = values.map(|&bytes| f32::from_le_bytes(bytes)).collect();
+        let buffer = ImageBuffer::from_raw(width, height, values)?;
+        Some(DynamicImage::ImageRgba32F(buffer))
+    } else {
+        None
+    }
+}

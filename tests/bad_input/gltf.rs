@@ -1,0 +1,370 @@
+use super::{refused, refused_with, says};
+use crate::files::app::{opened, write};
+use glassbox::io::OpenOptions;
+use serde_json::{Value, json};
+use std::path::PathBuf;
+use tempfile::TempDir;
+
+/// One triangle: 36 bytes of positions, then 6 of indices, as a document.
+fn triangle() -> Value {
+    json!({
+        "asset": { "version": "2.0" },
+        "scene": 0,
+        "scenes": [{ "nodes": [0] }],
+        "nodes": [{ "mesh": 0 }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1 }] }],
+        "accessors": [
+            { "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+              "min": [0.0, 0.0, 0.0], "max": [1.0, 1.0, 0.0] },
+            { "bufferView": 1, "componentType": 5123, "count": 3, "type": "SCALAR" },
+        ],
+        "bufferViews": [
+            { "buffer": 0, "byteOffset": 0, "byteLength": 36 },
+            { "buffer": 0, "byteOffset": 36, "byteLength": 6 },
+        ],
+        "buffers": [{ "byteLength": 42, "uri": "a.bin" }],
+    })
+}
+
+fn bytes(corners: [u16; 3]) -> Vec<u8> {
+    let positions = [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    let positions = positions.iter().flat_map(|v| v.to_le_bytes());
+    positions
+        .chain(corners.iter().flat_map(|v| v.to_le_bytes()))
+        .collect()
+}
+
+fn folder_with(document: &Value) -> (TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "a.bin", bytes([0, 1, 2]));
+    let file = write(folder.path(), "a.gltf", document.to_string());
+    (folder, file)
+}
+
+/// The triangle after a change.
+fn changed(change: impl FnOnce(&mut Value)) -> (TempDir, PathBuf) {
+    let mut document = triangle();
+    change(&mut document);
+    folder_with(&document)
+}
+
+#[test]
+fn the_document_that_the_others_damage_opens() {
+    let (_folder, file) = changed(|_| {});
+    let (mut app, _) = opened(&file);
+    let world = app.world_mut();
+    let meshes = world.query::<&bevy::mesh::Mesh3d>().iter(world).count();
+    assert_eq!(meshes, 1);
+}
+
+#[test]
+fn a_missing_buffer() {
+    let (folder, file) = changed(|_| {});
+    std::fs::remove_file(folder.path().join("a.bin")).unwrap();
+    says(
+        &refused(&file),
+        &["a.gltf: buffer 0", "`a.bin` does not exist"],
+    );
+}
+
+#[test]
+fn a_buffer_that_is_shorter_than_it_claims() {
+    let (folder, file) = changed(|_| {});
+    write(folder.path(), "a.bin", [0_u8; 41]);
+    says(&refused(&file), &["a.gltf: buffer 0", "41 of 42 bytes"]);
+}
+
+#[test]
+fn a_buffer_outside_the_folder() {
+    let (folder, _) = changed(|_| {});
+    let mut document = triangle();
+    document["buffers"][0]["uri"] = json!("../%61.bin");
+    let file = write(folder.path(), "inside/a.gltf", document.to_string());
+    says(
+        &refused(&file),
+        &["a.gltf: buffer 0", "../a.bin", "--allow-outside"],
+    );
+    let options = OpenOptions {
+        allow_outside: true,
+        ..OpenOptions::default()
+    };
+    let mut app = crate::files::app::app();
+    let source = glassbox::io::SceneSource::File(file);
+    glassbox::io::open(app.world_mut(), &source, options).unwrap_or_else(|e| panic!("{e}"));
+}
+
+#[test]
+fn a_picture_outside_the_folder() {
+    let (_folder, file) = changed(|d| {
+        d["images"] = json!([{ "uri": "/etc/a.png" }]);
+        d["textures"] = json!([{ "source": 0 }]);
+        d["materials"] =
+            json!([{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }]);
+    });
+    says(
+        &refused(&file),
+        &["a.gltf: texture 0", "/etc/a.png", "--allow-outside"],
+    );
+}
+
+#[test]
+fn a_missing_picture() {
+    let (_folder, file) = changed(|d| {
+        d["images"] = json!([{ "uri": "wood%20grain.png" }]);
+        d["textures"] = json!([{ "source": 0 }]);
+        d["materials"] =
+            json!([{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }]);
+    });
+    says(
+        &refused(&file),
+        &["a.gltf: texture 0", "`wood grain.png` does not exist"],
+    );
+}
+
+#[test]
+fn a_picture_that_is_nowhere() {
+    let (_folder, file) = changed(|d| {
+        d["images"] = json!([{}]);
+        d["textures"] = json!([{ "source": 0 }]);
+        d["materials"] =
+            json!([{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }]);
+    });
+    says(&refused(&file), &["a.gltf: image 0"]);
+}
+
+#[test]
+fn an_accessor_that_claims_2_to_the_40_vertices() {
+    let (_folder, file) = changed(|d| d["accessors"][0]["count"] = json!(1_u64 << 40));
+    says(
+        &refused(&file),
+        &["a.gltf: Mesh0/Primitive0", "1099511627776", "limit"],
+    );
+}
+
+#[test]
+fn an_accessor_that_claims_more_than_its_bytes() {
+    let (_folder, file) = changed(|d| d["accessors"][0]["count"] = json!(4));
+    says(
+        &refused(&file),
+        &["a.gltf: Mesh0/Primitive0", "4 values", "36 bytes"],
+    );
+}
+
+#[test]
+fn an_accessor_with_no_bytes_that_claims_many() {
+    let (_folder, file) = changed(|d| {
+        let accessor = &mut d["accessors"][0];
+        accessor.as_object_mut().unwrap().remove("bufferView");
+        accessor["count"] = json!(1_u64 << 30);
+        accessor["sparse"] = json!({
+            "count": 1,
+            "indices": { "bufferView": 1, "componentType": 5123 },
+            "values": { "bufferView": 0 },
+        });
+    });
+    says(
+        &refused(&file),
+        &["a.gltf: Mesh0/Primitive0", "no bytes stand behind"],
+    );
+}
+
+#[test]
+fn an_accessor_without_values() {
+    let (_folder, file) = changed(|d| d["accessors"][0]["count"] = json!(0));
+    says(&refused(&file), &["a.gltf"]);
+}
+
+#[test]
+fn an_accessor_whose_stride_is_smaller_than_its_values() {
+    let (_folder, file) = changed(|d| d["bufferViews"][0]["byteStride"] = json!(4));
+    says(&refused(&file), &["a.gltf: Mesh0/Primitive0"]);
+}
+
+#[test]
+fn an_accessor_of_the_wrong_type() {
+    let (_folder, file) = changed(|d| {
+        d["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(1);
+    });
+    says(&refused(&file), &["a.gltf"]);
+    let (_folder, file) = changed(|d| d["meshes"][0]["primitives"][0]["indices"] = json!(0));
+    says(
+        &refused(&file),
+        &["a.gltf: Mesh0/Primitive0", "accessor 0", "does not fit"],
+    );
+}
+
+#[test]
+fn a_buffer_view_that_leaves_its_buffer() {
+    let (_folder, file) = changed(|d| d["bufferViews"][0]["byteOffset"] = json!(u64::MAX / 2));
+    says(
+        &refused(&file),
+        &["a.gltf: Mesh0/Primitive0", "buffer view 0"],
+    );
+}
+
+#[test]
+fn an_index_that_names_no_vertex() {
+    let (folder, file) = changed(|_| {});
+    write(folder.path(), "a.bin", bytes([0, 1, 3]));
+    says(
+        &refused(&file),
+        &["a.gltf: Mesh0/Primitive0", "vertex 3", "there are 3"],
+    );
+}
+
+#[test]
+fn a_vertex_that_is_not_a_number() {
+    let (folder, file) = changed(|_| {});
+    let mut bytes = bytes([0, 1, 2]);
+    bytes[..4].copy_from_slice(&f32::NAN.to_le_bytes());
+    write(folder.path(), "a.bin", bytes);
+    says(
+        &refused(&file),
+        &["a.gltf: Mesh0/Primitive0", "vertex", "not a finite number"],
+    );
+}
+
+#[test]
+fn an_index_of_the_document_that_names_nothing() {
+    for (change, what) in [
+        (
+            "meshes",
+            json!([{ "primitives": [{ "attributes": { "POSITION": 9 } }] }]),
+        ),
+        ("nodes", json!([{ "mesh": 7 }])),
+        ("scenes", json!([{ "nodes": [4] }])),
+    ] {
+        let (_folder, file) = changed(|d| d[change] = what);
+        says(&refused(&file), &["a.gltf"]);
+    }
+}
+
+#[test]
+fn a_light_that_does_not_exist() {
+    let (_folder, file) = changed(|d| {
+        d["extensionsUsed"] = json!(["KHR_lights_punctual"]);
+        d["nodes"][0]["extensions"] = json!({ "KHR_lights_punctual": { "light": 3 } });
+    });
+    says(&refused(&file), &["a.gltf", "nodes[0]", "light"]);
+}
+
+#[test]
+fn a_camera_without_the_numbers_of_its_type() {
+    let (_folder, file) = changed(|d| {
+        let perspective = json!({ "yfov": 1.0, "znear": 0.1 });
+        d["cameras"] = json!([{ "type": "orthographic", "perspective": perspective }]);
+        d["nodes"][0]["camera"] = json!(0);
+    });
+    says(&refused(&file), &["a.gltf: camera 0", "orthographic"]);
+}
+
+#[test]
+fn a_spot_without_a_cone() {
+    let (_folder, file) = changed(|d| {
+        d["extensionsUsed"] = json!(["KHR_lights_punctual"]);
+        d["extensions"] = json!({ "KHR_lights_punctual": { "lights": [{ "type": "spot" }] } });
+        d["nodes"][0]["extensions"] = json!({ "KHR_lights_punctual": { "light": 0 } });
+    });
+    says(&refused(&file), &["a.gltf", "lights[0].spot"]);
+}
+
+#[test]
+fn nodes_in_a_circle() {
+    let (_folder, file) = changed(|d| {
+        d["nodes"] = json!([{ "children": [1] }, { "children": [0], "mesh": 0 }]);
+    });
+    says(&refused(&file), &["a.gltf: node 0", "tree"]);
+}
+
+#[test]
+fn nodes_nested_a_hundred_thousand_deep() {
+    let (_folder, file) = changed(|d| {
+        let mut nodes: Vec<Value> = (1..100_000).map(|i| json!({ "children": [i] })).collect();
+        nodes.push(json!({ "mesh": 0 }));
+        d["nodes"] = json!(nodes);
+    });
+    says(
+        &refused(&file),
+        &["a.gltf: node 257", "257 ancestors", "limit is 256"],
+    );
+}
+
+#[test]
+fn a_required_extension_that_is_not_supported() {
+    let (_folder, file) = changed(|d| {
+        d["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
+        d["extensionsUsed"] = json!(["KHR_draco_mesh_compression"]);
+    });
+    says(
+        &refused(&file),
+        &["a.gltf", "KHR_draco_mesh_compression", "not supported"],
+    );
+}
+
+#[test]
+fn another_version_of_gltf() {
+    let (_folder, file) = changed(|d| d["asset"]["version"] = json!("1.0"));
+    says(&refused(&file), &["a.gltf", "glTF 1.0"]);
+}
+
+#[test]
+fn a_document_that_is_not_json() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = write(folder.path(), "a.gltf", "{\n  \"asset\": ]\n}");
+    says(&refused(&file), &["a.gltf:2:"]);
+    let file = write(folder.path(), "b.gltf", "{ \"asset\": {");
+    says(&refused(&file), &["b.gltf", "ends too early"]);
+}
+
+#[test]
+fn a_glb_that_ends_too_early() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_keep, file) = changed(|_| {});
+    let (mut app, _) = opened(&file);
+    let glb = folder.path().join("a.glb");
+    glassbox::io::save(app.world_mut(), &glb).unwrap();
+    let whole = std::fs::read(&glb).unwrap();
+    for length in [3, 11, 19, 40, whole.len() / 2, whole.len() - 1] {
+        std::fs::write(&glb, &whole[..length]).unwrap();
+        says(&refused(&glb), &["a.glb"]);
+    }
+}
+
+#[test]
+fn a_glb_with_any_byte_of_its_head_changed_does_not_panic() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_keep, file) = changed(|_| {});
+    let (mut source, _) = opened(&file);
+    let glb = folder.path().join("a.glb");
+    glassbox::io::save(source.world_mut(), &glb).unwrap();
+    let whole = std::fs::read(&glb).unwrap();
+    let mut app = crate::files::app::app();
+    let mut refused = 0;
+    for at in 0..whole.len() {
+        let mut damaged = whole.clone();
+        damaged[at] ^= 0x15;
+        std::fs::write(&glb, &damaged).unwrap();
+        let source = glassbox::io::SceneSource::File(glb.clone());
+        let result = glassbox::io::open(app.world_mut(), &source, OpenOptions::default());
+        refused += usize::from(result.is_err());
+    }
+    // Most of a small file is structure; what is left are coordinates and names.
+    assert!(
+        refused > whole.len() / 4,
+        "{refused} of {} were refused",
+        whole.len()
+    );
+}
+
+#[test]
+fn more_nodes_than_the_limit() {
+    let (_folder, file) = changed(|d| {
+        d["nodes"] = json!([{ "mesh": 0 }, {}, {}]);
+    });
+    let mut options = OpenOptions::default();
+    options.limits.entities = 2;
+    says(
+        &refused_with(&file, options),
+        &["a.gltf", "3 nodes", "limit is 2"],
+    );
+}

@@ -1,0 +1,53 @@
+//! What is wrong with a file ends in one line that names the file, the place and what would help,
+//! and in nothing else: no panic, no half-written output, the open scene untouched.
+
+mod gltf;
+mod limits;
+mod models;
+mod output;
+mod pictures;
+mod scenes;
+
+use crate::files::app::app;
+use bevy::prelude::World;
+use glassbox::io::{FileError, OpenOptions, SceneSource, open};
+use glassbox::scene::{PointLamp, SceneId};
+use std::path::Path;
+
+/// Opens a file that must be refused, checks that the scene which was open is still there, and
+/// returns the error.
+pub fn refused(file: &Path) -> FileError {
+    refused_with(file, OpenOptions::default())
+}
+
+/// The same with options.
+pub fn refused_with(file: &Path, options: OpenOptions) -> FileError {
+    let mut app = app();
+    let world = app.world_mut();
+    world.spawn((SceneId(17), PointLamp::default()));
+    let before = ids(world);
+    let result = open(world, &SceneSource::named(file), options);
+    let error = match result {
+        Err(error) => error,
+        Ok(opened) => panic!("{} was opened: {opened:?}", file.display()),
+    };
+    assert_eq!(ids(world), before, "the open scene was touched");
+    error
+}
+
+fn ids(world: &mut World) -> Vec<u64> {
+    world
+        .query::<&SceneId>()
+        .iter(world)
+        .map(|id| id.0)
+        .collect()
+}
+
+/// One line, and in it each of these.
+pub fn says(error: &FileError, parts: &[&str]) {
+    let line = error.to_string();
+    assert_eq!(line.lines().count(), 1, "{line}");
+    for part in parts {
+        assert!(line.contains(part), "`{part}` is not in: {line}");
+    }
+}

@@ -1,0 +1,87 @@
+use super::{refused, says};
+use crate::files::app::write;
+use std::path::PathBuf;
+use tempfile::TempDir;
+
+/// A folder with an OBJ whose material has this picture.
+fn textured(name: &str, bytes: &[u8]) -> (TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), name, bytes);
+    write(folder.path(), "a.mtl", format!("newmtl a\nmap_Kd {name}\n"));
+    let text = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
+    let file = write(folder.path(), "a.obj", text);
+    (folder, file)
+}
+
+/// A PNG's signature and header for a picture of this size, and nothing after it.
+fn png_header(width: u32, height: u32) -> Vec<u8> {
+    let mut header = b"IHDR".to_vec();
+    header.extend(width.to_be_bytes());
+    header.extend(height.to_be_bytes());
+    header.extend([8, 2, 0, 0, 0]);
+    let mut bytes = b"\x89PNG\r\n\x1a\n\0\0\0\r".to_vec();
+    bytes.extend(&header);
+    bytes.extend(crc32(&header).to_be_bytes());
+    // The reader looks for the next chunk before it says how large the picture is.
+    bytes.extend([0, 0, 0, 0]);
+    bytes.extend(b"IDAT");
+    bytes.extend(crc32(b"IDAT").to_be_bytes());
+    bytes
+}
+
+fn crc32(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(!0, |crc, &byte| {
+        (0..8).fold(crc ^ u32::from(byte), |crc, _| {
+            crc >> 1 ^ (0xedb8_8320 & (crc & 1).wrapping_neg())
+        })
+    })
+}
+
+#[test]
+fn a_picture_that_claims_2_to_the_31_pixels() {
+    let (_folder, file) = textured("a.png", &png_header(1 << 16, 1 << 15));
+    says(
+        &refused(&file),
+        &["a.png", "65536x32768", "scale the picture down"],
+    );
+    let (_folder, file) = textured("a.png", &png_header(0x7fff_ffff, 1));
+    says(&refused(&file), &["a.png", "scale the picture down"]);
+}
+
+#[test]
+fn a_radiance_picture_that_claims_2_to_the_31_pixels() {
+    let head = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32768 +X 65536\n";
+    let (_folder, file) = textured("a.hdr", head);
+    says(&refused(&file), &["a.hdr", "65536x32768", "limit"]);
+}
+
+#[test]
+fn a_picture_that_ends_too_early() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["a.png", "a.jpg", "a.exr", "a.hdr"] {
+        let whole = folder.path().join(name);
+        let pixels: Vec<_> = (0..4096).map(|i| [(i % 64) as f32 / 64.0; 3]).collect();
+        glassbox::io::write_picture(&whole, 64, 64, &pixels).unwrap();
+        let bytes = std::fs::read(&whole).unwrap();
+        // A JPEG may lose its last rows without a word; not its head.
+        let half = if name == "a.jpg" {
+            100
+        } else {
+            bytes.len() / 2
+        };
+        let (_folder, file) = textured(name, &bytes[..half]);
+        says(&refused(&file), &[name]);
+    }
+}
+
+#[test]
+fn a_picture_with_another_ones_extension() {
+    let (_folder, file) = textured("a.exr", b"\x89PNG\r\n\x1a\n");
+    says(&refused(&file), &["a.exr"]);
+}
+
+#[test]
+fn an_empty_picture() {
+    let (_folder, file) = textured("a.png", b"");
+    says(&refused(&file), &["a.png"]);
+}

@@ -1,0 +1,271 @@
+//! glTF as other programs write it.
+
+use super::app::{opened, triangles, write};
+use super::models::objects;
+use bevy::color::LinearRgba;
+use bevy::ecs::name::Name;
+use bevy::image::Image;
+use bevy::math::Vec3;
+use bevy::mesh::{Mesh, Mesh3d, VertexAttributeValues};
+use bevy::prelude::{App, Assets, Entity, GlobalTransform, World};
+use glassbox::scene::*;
+use serde_json::{Value, json};
+
+/// Five vertices of a strip, texture coordinates, and indices of two triangles.
+const POSITIONS: [[f32; 3]; 5] = [
+    [0.0, 0.0, 0.0],
+    [1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [1.0, 1.0, 0.0],
+    [0.0, 2.0, 0.0],
+];
+
+fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::new();
+    for chunk in bytes.chunks(3) {
+        let mut bits = 0_u32;
+        for i in 0..3 {
+            bits = bits << 8 | u32::from(chunk.get(i).copied().unwrap_or(0));
+        }
+        for i in 0..4 {
+            let digit = DIGITS[(bits >> (18 - 6 * i) & 63) as usize] as char;
+            text.push(if i <= chunk.len() { digit } else { '=' });
+        }
+    }
+    text
+}
+
+/// A mesh of the five vertices whose primitive is `primitive`, under one node, after a change.
+fn document(primitive: Value, change: impl FnOnce(&mut Value)) -> (App, Vec<String>) {
+    let mut bytes: Vec<u8> = POSITIONS
+        .iter()
+        .flatten()
+        .flat_map(|v| v.to_le_bytes())
+        .collect();
+    // Normalised 16-bit texture coordinates: (0, 0), (1, 0), … as the positions' x and half of y.
+    for [x, y, _] in POSITIONS {
+        bytes.extend(((x * 65_535.0) as u16).to_le_bytes());
+        bytes.extend(((0.5 * y * 65_535.0) as u16).to_le_bytes());
+    }
+    bytes.extend([0_u8, 1, 2, 2, 1, 3]);
+    let uri = format!("data:application/octet-stream;base64,{}", base64(&bytes));
+    let mut document = json!({
+        "asset": { "version": "2.0" },
+        "nodes": [{ "name": "node", "mesh": 0 }],
+        "scenes": [{ "nodes": [0] }],
+        "meshes": [{ "primitives": [primitive] }],
+        "buffers": [{ "byteLength": bytes.len(), "uri": uri }],
+        "bufferViews": [
+            { "buffer": 0, "byteLength": 60 },
+            { "buffer": 0, "byteOffset": 60, "byteLength": 20 },
+            { "buffer": 0, "byteOffset": 80, "byteLength": 6 },
+        ],
+        "accessors": [
+            { "bufferView": 0, "componentType": 5126, "count": 5, "type": "VEC3",
+              "min": [0.0, 0.0, 0.0], "max": [1.0, 2.0, 0.0] },
+            { "bufferView": 1, "componentType": 5123, "normalized": true, "count": 5, "type": "VEC2" },
+            { "bufferView": 2, "componentType": 5121, "count": 6, "type": "SCALAR" },
+        ],
+    });
+    change(&mut document);
+    let folder = tempfile::tempdir().unwrap();
+    glassbox::io::write_picture(&folder.path().join("a b.png"), 1, 1, &[[0.5; 3]]).unwrap();
+    let file = write(folder.path(), "a.gltf", document.to_string());
+    let (app, opened) = opened(&file);
+    (app, opened.notes)
+}
+
+fn plain() -> Value {
+    json!({ "attributes": { "POSITION": 0, "TEXCOORD_0": 1 }, "indices": 2 })
+}
+
+fn corners(app: &mut App) -> Vec<[Vec3; 3]> {
+    let all = objects(app.world_mut());
+    all[0].2.iter().map(|t| t.map(Vec3::from)).collect()
+}
+
+fn normal([a, b, c]: [Vec3; 3]) -> Vec3 {
+    (b - a).cross(c - a)
+}
+
+#[test]
+fn strips_and_fans_become_triangles_that_face_the_same_way() {
+    let (mut app, _) = document(plain(), |_| {});
+    assert_eq!(corners(&mut app).len(), 2);
+    for (mode, count) in [(5, 3), (6, 3)] {
+        let primitive = json!({ "attributes": { "POSITION": 0 }, "mode": mode });
+        let (mut app, _) = document(primitive, |_| {});
+        let corners = corners(&mut app);
+        assert_eq!(corners.len(), count, "mode {mode}");
+        if mode == 5 {
+            let facing = corners.iter().filter(|&&triangle| normal(triangle).z > 0.0);
+            assert_eq!(facing.count(), 3, "{corners:?}");
+        }
+    }
+}
+
+#[test]
+fn a_sparse_accessor_replaces_what_it_names() {
+    let (mut app, _) = document(plain(), |d| {
+        // Vertex 2 becomes vertex 0's values; the index is the third byte of the indices.
+        d["accessors"][0]["sparse"] = json!({
+            "count": 1,
+            "indices": { "bufferView": 2, "byteOffset": 2, "componentType": 5121 },
+            "values": { "bufferView": 0, "byteOffset": 48 },
+        });
+    });
+    let first = corners(&mut app)[0];
+    assert_eq!(first[2], Vec3::from(POSITIONS[4]));
+}
+
+#[test]
+fn texture_coordinates_take_the_transform_of_the_base_colors_picture() {
+    let (mut app, _) = document(plain(), |d| {
+        let transform = json!({ "offset": [0.25, 0.0], "scale": [2.0, 4.0] });
+        d["images"] = json!([{ "uri": "a%20b.png" }]);
+        d["textures"] = json!([{ "source": 0 }]);
+        d["extensionsUsed"] = json!(["KHR_texture_transform"]);
+        d["materials"] = json!([{ "pbrMetallicRoughness": { "baseColorTexture": {
+            "index": 0, "extensions": { "KHR_texture_transform": transform },
+        } } }]);
+        d["meshes"][0]["primitives"][0]["material"] = json!(0);
+    });
+    let world = app.world_mut();
+    let handle = world
+        .query::<&Mesh3d>()
+        .iter(world)
+        .next()
+        .unwrap()
+        .0
+        .clone();
+    let mesh = world.resource::<Assets<Mesh>>().get(&handle).unwrap();
+    let Some(VertexAttributeValues::Float32x2(uvs)) = mesh.attribute(Mesh::ATTRIBUTE_UV_0) else {
+        panic!("no texture coordinates");
+    };
+    // Half of 65,535 is truncated to 32,767.
+    let half = 32_767.0 / 65_535.0;
+    assert_eq!(uvs[3], [2.25, 4.0 * half]);
+    let maps = world
+        .query::<&PhongMaps>()
+        .iter(world)
+        .next()
+        .cloned()
+        .unwrap();
+    let images = world.resource::<Assets<Image>>();
+    assert!(
+        maps.diffuse
+            .is_some_and(|handle| images.get(&handle).is_some())
+    );
+}
+
+#[test]
+fn metal_and_roughness_become_phong_by_the_rule() {
+    let material = |metal: f32, rough: f32| {
+        let (mut app, _) = document(plain(), |d| {
+            d["materials"] = json!([{ "pbrMetallicRoughness": {
+                "baseColorFactor": [0.5, 0.25, 1.0, 0.5],
+                "metallicFactor": metal, "roughnessFactor": rough,
+            } }]);
+            d["meshes"][0]["primitives"][0]["material"] = json!(0);
+        });
+        objects(app.world_mut())[0].1.clone()
+    };
+    let base = LinearRgba::rgb(0.5, 0.25, 1.0);
+    let mirror = material(1.0, 0.0);
+    assert_eq!((mirror.diffuse, mirror.specular), (LinearRgba::BLACK, base));
+    assert_eq!(mirror.shininess, 10_000.0);
+    assert_eq!(
+        mirror.opacity, 1.0,
+        "alpha counts only where it is asked for"
+    );
+    let chalk = material(0.0, 1.0);
+    assert_eq!((chalk.diffuse, chalk.specular), (base, LinearRgba::BLACK));
+    assert_eq!(chalk.shininess, 1.0);
+    let plastic = material(0.0, 0.5);
+    assert!(
+        (plastic.specular.red - 0.01).abs() < 1e-6,
+        "{:?}",
+        plastic.specular
+    );
+    assert!(
+        (plastic.shininess - 30.0).abs() < 1e-4,
+        "{}",
+        plastic.shininess
+    );
+}
+
+#[test]
+fn lights_are_measured_in_watts_and_cameras_look_the_same_way() {
+    let (mut app, notes) = document(plain(), |d| {
+        d["extensionsUsed"] = json!(["KHR_lights_punctual"]);
+        d["extensions"] = json!({ "KHR_lights_punctual": { "lights": [
+            { "type": "point", "intensity": 1366.0, "color": [1.0, 0.5, 0.0] },
+            { "type": "directional", "intensity": 683.0 },
+        ] } });
+        d["cameras"] = json!([
+            { "type": "perspective", "perspective": { "yfov": 0.5, "znear": 0.1 } },
+            { "type": "orthographic", "orthographic": { "xmag": 1.0, "ymag": 3.0, "znear": 0.0, "zfar": 9.0 } },
+        ]);
+        d["nodes"] = json!([
+            { "mesh": 0, "children": [1, 2], "camera": 0, "translation": [1.0, 2.0, 3.0] },
+            { "camera": 1, "extensions": { "KHR_lights_punctual": { "light": 0 } } },
+            { "matrix": [0.0, 2.0, 0.0, 0.0, -2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.0, 0.0, 5.0, 0.0, 0.0, 1.0],
+              "extensions": { "KHR_lights_punctual": { "light": 1 } } },
+        ]);
+    });
+    assert!(notes.is_empty(), "a camera and lights are there: {notes:?}");
+    let world = app.world_mut();
+    let point = world
+        .query::<&PointLamp>()
+        .iter(world)
+        .next()
+        .cloned()
+        .unwrap();
+    assert_eq!(
+        (point.intensity, point.color),
+        (2.0, LinearRgba::rgb(1.0, 0.5, 0.0))
+    );
+    let sun = world
+        .query::<&DirectionalLamp>()
+        .iter(world)
+        .next()
+        .cloned()
+        .unwrap();
+    assert_eq!(sun.intensity, 1.0);
+    let mut cameras = world.query::<&SceneCamera>();
+    let mut heights: Vec<_> = cameras.iter(world).map(|c| c.projection).collect();
+    heights.sort_by_key(|projection| matches!(projection, Projection::Orthographic { .. }));
+    let expected = [
+        Projection::Perspective { fov_y: 0.5 },
+        Projection::Orthographic { height: 6.0 },
+    ];
+    assert_eq!(heights, expected);
+    let sun = place(world, "node 2");
+    let back = sun.transform_point3(Vec3::X);
+    assert!(back.abs_diff_eq(Vec3::new(6.0, 4.0, 3.0), 1e-5), "{back}");
+    let object = world.query_filtered::<Entity, bevy::prelude::With<Mesh3d>>();
+    let object = { object }.iter(world).next().unwrap();
+    assert_eq!(triangles(world, object).len(), 2);
+}
+
+/// From an entity's space to the world's, by its ancestors' transforms.
+fn place(world: &mut World, name: &str) -> bevy::math::Affine3A {
+    use bevy::ecs::hierarchy::ChildOf;
+    use bevy::transform::components::Transform;
+    let mut query = world.query::<(Entity, &Name)>();
+    let mut at = query
+        .iter(world)
+        .find(|(_, other)| other.as_str() == name)
+        .unwrap()
+        .0;
+    let mut place = GlobalTransform::IDENTITY.affine();
+    loop {
+        let local = world.get::<Transform>(at).copied().unwrap_or_default();
+        place = local.compute_affine() * place;
+        match world.get::<ChildOf>(at) {
+            Some(child) => at = child.0,
+            None => return place,
+        }
+    }
+}
