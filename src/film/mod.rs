@@ -4,23 +4,50 @@
 //! are exact, so they do not depend on the order in which samples arrive: the same picture for any
 //! number of threads, any order of tiles, any pause, any merge.
 //!
-//! Nothing here traces a ray but [`render`](render()), which hands tiles of samples to
+//! A render adds samples pass by pass: each pass doubles them, so that what has been rendered is a
+//! picture at any time, and so that each pass tells by how much the picture still moves, from which
+//! [`ErrorEstimate`] follows. A pass goes tile by tile. [`render()`] does it at once, [`Progressive`]
+//! on a thread of its own.
+//!
+//! Nothing here traces a ray but those two, which hand batches of samples to
 //! [`trace::radiance`](crate::trace::radiance()).
 
+mod adaptive;
 mod agx;
 mod bloom;
+mod control;
+mod engine;
+mod error;
 mod gaussian;
 mod picture;
+mod preview;
+mod progressive;
+mod queue;
 mod render;
+mod sample_chunk;
+mod status;
 mod sum;
+#[cfg(test)]
+mod test_scene;
+mod tile_state;
 mod tiles;
 mod view_transform;
 
 pub use agx::agx;
 pub use bloom::{BloomError, bloom_layer, bloom_threshold, check_bloom, with_bloom};
+pub use error::{ErrorEstimate, RELATIVE_FLOOR};
 pub use gaussian::{MAX_SIGMA, blurred, kernel};
 pub use picture::Picture;
-pub use render::{Rendered, render};
+pub use progressive::{Progressive, Snapshot};
+pub use render::{Rendered, render, render_samples};
+pub use status::{Ending, State, Status, TrendPoint};
 pub use sum::Sum;
 pub use tiles::{Film, TILE};
 pub use view_transform::{develop, view_transform};
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// What a mutex guards, even where another thread has panicked: a bug there is reported there.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

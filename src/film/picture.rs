@@ -21,6 +21,11 @@ impl Picture {
         }
     }
 
+    /// Columns and rows.
+    pub fn size(&self) -> UVec2 {
+        UVec2::new(self.width, self.height)
+    }
+
     /// The pixel in column x of row y.
     pub fn pixel(&self, x: u32, y: u32) -> Vec3 {
         self.pixels[y as usize * self.width as usize + x as usize]

@@ -1,14 +1,9 @@
-use super::tiles::{FilmPixel, Tile};
-use super::{Film, Picture, TILE};
+use super::engine::{Engine, Mode};
+use super::sample_chunk::Subject;
+use super::{Ending, Film, Picture, Status};
 use crate::scene::RenderSettings;
-use crate::trace::{Camera, RayCounts, SampleId, Workspace, World, radiance, samples_per_pixel};
-use glam::Vec3;
-use rayon::prelude::*;
-use std::cell::RefCell;
+use crate::trace::{Camera, RayCounts, World, samples_per_pixel};
 use std::ops::Range;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
 
 /// A finished picture, and what it took.
 #[derive(Clone, Debug)]
@@ -19,10 +14,16 @@ pub struct Rendered {
     pub rays: RayCounts,
     /// Wall-clock time.
     pub seconds: f64,
+    /// The sums behind the picture.
+    pub film: Film,
+    /// Why it ended.
+    pub ending: Ending,
+    /// Its last numbers.
+    pub status: Status,
 }
 
 /// Renders every pixel with as many samples as the scene and its settings ask for
-/// ([`samples_per_pixel`]), on the current rayon pool.
+/// ([`samples_per_pixel`]), or fewer where `settings.sampling` says so, on the current rayon pool.
 ///
 /// `progress` is told, from any thread, how many samples of how many are done.
 pub fn render(
@@ -31,110 +32,45 @@ pub fn render(
     settings: &RenderSettings,
     progress: &(dyn Fn(u64, u64) + Sync),
 ) -> Rendered {
-    let start = Instant::now();
-    let mut film = Film::new(settings.size);
-    let rays = add_samples(
-        &mut film,
-        world,
-        camera,
-        settings,
-        0..u64::from(samples_per_pixel(world, camera, settings)),
-        progress,
-    );
-    Rendered {
-        picture: film.picture(),
-        rays,
-        seconds: start.elapsed().as_secs_f64(),
-    }
-}
-
-/// Samples of one batch: enough that the trees get long lists of rays, few enough to stay in cache.
-const BATCH: usize = 1024;
-
-/// What a thread keeps from tile to tile, so that none allocates.
-#[derive(Default)]
-struct Scratch {
-    samples: Vec<SampleId>,
-    values: Vec<Vec3>,
-    workspace: Workspace,
-}
-
-thread_local! {
-    static SCRATCH: RefCell<Scratch> = RefCell::default();
-}
-
-/// Adds the samples with these indices to every pixel of the film.
-fn add_samples(
-    film: &mut Film,
-    world: &World,
-    camera: &Camera,
-    settings: &RenderSettings,
-    indices: Range<u64>,
-    progress: &(dyn Fn(u64, u64) + Sync),
-) -> RayCounts {
-    let size = film.size();
-    let all = u64::from(size.x) * u64::from(size.y) * (indices.end - indices.start);
-    let done = AtomicU64::new(0);
-    let counts = Mutex::new(RayCounts::default());
-    let tiles: Vec<_> = film.tiles_mut().collect();
-    tiles.into_par_iter().for_each(|(tile, pixels)| {
-        let rays = SCRATCH.with_borrow_mut(|scratch| {
-            sample_tile(
-                tile,
-                pixels,
-                world,
-                camera,
-                settings,
-                indices.clone(),
-                scratch,
-            )
-        });
-        if let Ok(mut counts) = counts.lock() {
-            *counts += rays;
-        }
-        let samples = u64::from(tile.extent.element_product()) * (indices.end - indices.start);
-        progress(done.fetch_add(samples, Ordering::Relaxed) + samples, all);
-    });
-    counts.into_inner().unwrap_or_default()
-}
-
-fn sample_tile(
-    tile: Tile,
-    pixels: &mut [FilmPixel],
-    world: &World,
-    camera: &Camera,
-    settings: &RenderSettings,
-    indices: Range<u64>,
-    scratch: &mut Scratch,
-) -> RayCounts {
-    let mut counts = RayCounts::default();
-    let at_once = (BATCH / (TILE * TILE) as usize).max(1) as u64;
-    let mut first = indices.start;
-    while first < indices.end {
-        let chunk = first..(first + at_once).min(indices.end);
-        first = chunk.end;
-        scratch.samples.clear();
-        for index in chunk.clone() {
-            scratch
-                .samples
-                .extend(tile.pixels().map(|(pixel, _)| SampleId { pixel, index }));
-        }
-        scratch.values.resize(scratch.samples.len(), Vec3::ZERO);
-        counts += radiance(
-            world,
-            camera,
-            settings,
-            &scratch.samples,
-            &mut scratch.values,
-            &mut scratch.workspace,
+    let spp = u64::from(samples_per_pixel(world, camera, settings));
+    let pixels = u64::from(settings.size.x) * u64::from(settings.size.y);
+    render_samples(world, camera, settings, 0..spp, &|status| {
+        progress(
+            (status.samples * pixels as f64).round() as u64,
+            pixels * spp,
         );
-        let mut values = scratch.values.iter();
-        for _ in chunk {
-            for ((_, place), value) in tile.pixels().zip(values.by_ref()) {
-                pixels[place].sum.add(*value);
-                pixels[place].count += 1;
-            }
-        }
+    })
+}
+
+/// Renders the samples with these indices of every pixel, or fewer where `settings.sampling` says so,
+/// on the current rayon pool. `progress` is called from any thread.
+pub fn render_samples(
+    world: &World,
+    camera: &Camera,
+    settings: &RenderSettings,
+    samples: Range<u64>,
+    progress: &(dyn Fn(&Status) + Sync),
+) -> Rendered {
+    let subject = Subject {
+        world: world.clone(),
+        camera: camera.clone(),
+        settings: settings.clone(),
+    };
+    let engine = Engine::new(
+        subject,
+        Mode {
+            watched: false,
+            samples,
+        },
+    );
+    let ending = engine.run(&|engine| progress(&engine.status()));
+    let status = engine.status();
+    Rendered {
+        picture: engine.picture(),
+        rays: status.rays,
+        seconds: status.seconds,
+        film: engine.film(),
+        ending,
+        status,
     }
-    counts
 }

@@ -9,6 +9,8 @@ use glam::Vec3;
 pub struct Sum([i128; 3]);
 
 const FRACTION_BITS: u32 = 64;
+/// What a fixed-point step is worth.
+const UNIT: f64 = 1.0 / (1u128 << FRACTION_BITS) as f64;
 const LARGEST: f32 = (1u64 << 40) as f32;
 
 impl Sum {
@@ -26,12 +28,19 @@ impl Sum {
         }
     }
 
+    /// Half the difference between the means of `other` and of this sum, each over `count` values:
+    /// how far the mean of both together is from this one's. In f64, from exact sums.
+    pub fn half_difference(&self, other: &Self, count: u32) -> [f64; 3] {
+        let unit = UNIT / (2.0 * f64::from(count.max(1)));
+        std::array::from_fn(|i| (other.0[i] - self.0[i]) as f64 * unit)
+    }
+
     /// The mean over `count` values; zero where there are none.
     pub fn mean(&self, count: u32) -> Vec3 {
         if count == 0 {
             return Vec3::ZERO;
         }
-        let unit = (2.0_f64).powi(-(FRACTION_BITS as i32)) / f64::from(count);
+        let unit = UNIT / f64::from(count);
         let [r, g, b] = self.0.map(|sum| (sum as f64 * unit) as f32);
         Vec3::new(r, g, b)
     }

@@ -1,5 +1,5 @@
 use super::{Picture, Sum};
-use glam::{UVec2, Vec3};
+use glam::{UVec2, Vec2, Vec3};
 
 /// Edge of a square tile in pixels: 256 pixels of one sample each fill a batch, and the arrays of a
 /// batch stay within a core's second-level cache.
@@ -14,17 +14,19 @@ pub struct Film {
 }
 
 /// One pixel: what arrived, and how many samples it took.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct FilmPixel {
     pub sum: Sum,
     pub count: u32,
+    /// How far the mean moved when its samples doubled, the last time first: squared, averaged over
+    /// the channels. They fill what the sum's alignment leaves.
+    pub moved: [f32; 3],
 }
 
 impl Film {
     /// An empty film of `size` pixels.
     pub fn new(size: UVec2) -> Self {
-        let tiles = size.map(|n| n.div_ceil(TILE));
-        let pixels = tiles.x as usize * tiles.y as usize * (TILE * TILE) as usize;
+        let pixels = TileGrid::new(size).count() as usize * (TILE * TILE) as usize;
         Self {
             size,
             pixels: vec![FilmPixel::default(); pixels],
@@ -36,19 +38,9 @@ impl Film {
         self.size
     }
 
-    /// The tiles, each with its pixels' memory.
-    pub(super) fn tiles_mut(&mut self) -> impl Iterator<Item = (Tile, &mut [FilmPixel])> {
-        let size = self.size;
-        let columns = size.x.div_ceil(TILE).max(1);
-        self.pixels
-            .chunks_exact_mut((TILE * TILE) as usize)
-            .enumerate()
-            .map(move |(i, pixels)| {
-                let i = i as u32;
-                let origin = UVec2::new(i % columns, i / columns) * TILE;
-                let extent = (size - origin).min(UVec2::splat(TILE));
-                (Tile { origin, extent }, pixels)
-            })
+    /// The film whose tiles' pixels are given, in the grid's order.
+    pub(super) fn from_tiles(size: UVec2, pixels: Vec<FilmPixel>) -> Self {
+        Self { size, pixels }
     }
 
     /// The mean of every pixel's samples.
@@ -70,10 +62,58 @@ impl Film {
         pixel.sum.mean(pixel.count)
     }
 
+    /// Adds the samples of another film of the same size. False, and nothing done, for another size.
+    pub fn merge(&mut self, other: &Self) -> bool {
+        if self.size != other.size {
+            return false;
+        }
+        for (pixel, other) in self.pixels.iter_mut().zip(&other.pixels) {
+            pixel.sum.merge(&other.sum);
+            pixel.count += other.count;
+            pixel.moved = [0.0; 3];
+        }
+        true
+    }
+
+    /// How many samples a pixel has.
+    pub fn count(&self, x: u32, y: u32) -> u32 {
+        self.pixels[self.place(x, y)].count
+    }
+
     fn place(&self, x: u32, y: u32) -> usize {
         let columns = self.size.x.div_ceil(TILE) as usize;
         let tile = (y / TILE) as usize * columns + (x / TILE) as usize;
         tile * (TILE * TILE) as usize + ((y % TILE) * TILE + x % TILE) as usize
+    }
+}
+
+/// How a picture is cut into tiles: row by row from the top left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct TileGrid {
+    pub size: UVec2,
+}
+
+impl TileGrid {
+    pub fn new(size: UVec2) -> Self {
+        Self { size }
+    }
+
+    fn columns(&self) -> u32 {
+        self.size.x.div_ceil(TILE).max(1)
+    }
+
+    pub fn count(&self) -> u32 {
+        self.columns() * self.size.y.div_ceil(TILE)
+    }
+
+    pub fn tile(&self, i: u32) -> Tile {
+        let origin = UVec2::new(i % self.columns(), i / self.columns()) * TILE;
+        let extent = (self.size - origin).min(UVec2::splat(TILE));
+        Tile { origin, extent }
+    }
+
+    pub fn tiles(self) -> impl Iterator<Item = Tile> {
+        (0..self.count()).map(move |i| self.tile(i))
     }
 }
 
@@ -87,6 +127,11 @@ pub(super) struct Tile {
 }
 
 impl Tile {
+    /// Its middle, in pixels.
+    pub fn center(self) -> Vec2 {
+        self.origin.as_vec2() + 0.5 * self.extent.as_vec2()
+    }
+
     /// Its pixels, each with its place in the tile's memory.
     pub fn pixels(self) -> impl Iterator<Item = (UVec2, usize)> {
         (0..self.extent.y).flat_map(move |y| {
@@ -103,15 +148,18 @@ mod tests {
     #[test]
     fn tiles_cover_every_pixel_once_whatever_the_size() {
         for size in [UVec2::new(1, 1), UVec2::new(16, 16), UVec2::new(37, 18)] {
-            let mut film = Film::new(size);
-            for (tile, pixels) in film.tiles_mut() {
+            let mut pixels = Vec::new();
+            for tile in TileGrid::new(size).tiles() {
+                let start = pixels.len();
+                pixels.resize(start + (TILE * TILE) as usize, FilmPixel::default());
                 for (at, place) in tile.pixels() {
-                    pixels[place]
-                        .sum
-                        .add(Vec3::new(at.x as f32, at.y as f32, 1.0));
-                    pixels[place].count += 1;
+                    let pixel = &mut pixels[start + place];
+                    pixel.sum.add(Vec3::new(at.x as f32, at.y as f32, 1.0));
+                    pixel.count += 1;
                 }
             }
+            let film = Film::from_tiles(size, pixels);
+            assert_eq!(film.pixels.len(), Film::new(size).pixels.len());
             let picture = film.picture();
             for y in 0..size.y {
                 for x in 0..size.x {

@@ -33,7 +33,7 @@ pub use mesh_source::{MeshSource, Shape};
 pub use setting_table::{SETTINGS, Setting, SettingProblem, SettingRange, setting_problems};
 pub use settings::{
     Bloom, Builder, Environment, EnvironmentMap, Features, Levels, Lighting, Output, PixelSampling,
-    Preset, RenderSettings, Sequence, TextureFilter, TreeSettings, ViewTransform,
+    Preset, RenderSettings, Sampling, Sequence, TextureFilter, TreeSettings, ViewTransform,
 };
 
 use bevy::app::{App, Plugin};

@@ -58,6 +58,8 @@ pub struct RenderSettings {
     pub seed: u32,
     /// Where the random numbers come from.
     pub sequence: Sequence,
+    /// When to stop, and which pixels get more samples.
+    pub sampling: Sampling,
     /// Where in the pixel samples lie.
     pub pixel: PixelSampling,
     /// What a light's colour means.
@@ -86,6 +88,7 @@ impl Default for RenderSettings {
             jitter: 1,
             seed: 0,
             sequence: Sequence::default(),
+            sampling: Sampling::default(),
             pixel: PixelSampling::default(),
             lighting: Lighting::default(),
             max_depth: 6,
@@ -108,6 +111,31 @@ pub enum Sequence {
     Sobol,
     /// Independent random numbers, to compare with.
     Independent,
+}
+
+/// When a render stops before it has `spp` samples of each pixel, and in which order they come.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Default, Clone, PartialEq, Debug)]
+pub struct Sampling {
+    /// With an error or a time to stop at: samples go first where they lower the error most. Without,
+    /// every pixel gets the same.
+    pub adaptive: bool,
+    /// Stops when the estimated relative error of the picture has fallen to this, 0 to 1000: 0.01 is
+    /// one percent; 0 does not stop.
+    pub error: f32,
+    /// Stops after this many seconds of tracing, 0 to 10^7, but not before each pixel has a sample;
+    /// 0 does not stop.
+    pub time: f32,
+}
+
+impl Default for Sampling {
+    fn default() -> Self {
+        Self {
+            adaptive: true,
+            error: 0.0,
+            time: 0.0,
+        }
+    }
 }
 
 /// Where in the pixel samples lie.

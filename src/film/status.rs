@@ -1,0 +1,171 @@
+//! What a render says about itself.
+
+use super::error::ErrorEstimate;
+use crate::scene::Sampling;
+use crate::trace::RayCounts;
+
+/// What a render is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// Tracing.
+    Running,
+    /// Waiting to be resumed.
+    Paused,
+    /// It will not go on.
+    Ended(Ending),
+}
+
+/// Why a render ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// It has all the samples that were asked for.
+    Samples,
+    /// The estimated error fell to the one asked for.
+    Error,
+    /// The time was up.
+    Time,
+    /// It was cancelled.
+    Cancelled,
+}
+
+/// A render's numbers at one moment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Status {
+    /// What it is doing.
+    pub state: State,
+    /// Samples of a pixel so far, on average.
+    pub samples: f64,
+    /// Samples of each pixel after which it ends at the latest.
+    pub samples_wanted: f64,
+    /// Rays traced so far.
+    pub rays: RayCounts,
+    /// How long it has been tracing, pauses not counted.
+    pub seconds: f64,
+    /// The estimated error after every pass so far.
+    pub trend: Vec<TrendPoint>,
+    /// Until the first of its rules ends it; `None` where nothing is known yet.
+    pub seconds_left: Option<f64>,
+}
+
+/// The estimated error after one pass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrendPoint {
+    /// Samples of a pixel, on average.
+    pub samples: f64,
+    /// Seconds of tracing.
+    pub seconds: f64,
+    /// How far from the converged picture.
+    pub error: ErrorEstimate,
+}
+
+impl Status {
+    /// Millions of rays a second, all threads together.
+    pub fn mrays_per_s(&self) -> f64 {
+        if self.seconds > 0.0 {
+            self.rays.total() as f64 / self.seconds * 1e-6
+        } else {
+            0.0
+        }
+    }
+
+    /// The estimate after the last pass.
+    pub fn error(&self) -> Option<ErrorEstimate> {
+        self.trend.last().map(|point| point.error)
+    }
+
+    /// The exponent s of the relative error's decline, error ~ seconds^-s, over the last passes;
+    /// plain random sampling has 0.5. `None` before there are two passes, or where nothing declines.
+    pub fn decline(&self) -> Option<f64> {
+        let last = self.trend.last()?;
+        // Two doublings: one alone is too noisy, and older ones say little of what comes.
+        let before = self
+            .trend
+            .iter()
+            .rev()
+            .find(|p| 4.0 * p.seconds <= last.seconds);
+        let before = before.or(self.trend.first())?;
+        let time = (last.seconds / before.seconds).ln();
+        let error = (before.error.relative() / last.error.relative()).ln();
+        let slope = error / time;
+        (time > 0.0 && slope.is_finite() && slope > 0.0).then_some(slope)
+    }
+}
+
+/// Seconds until the first of the rules will have ended the render, if it goes on as it did.
+pub(super) fn seconds_left(status: &Status, rules: &Sampling) -> Option<f64> {
+    if matches!(status.state, State::Ended(_)) {
+        return Some(0.0);
+    }
+    let by_samples = (status.samples > 0.0)
+        .then(|| status.seconds * (status.samples_wanted / status.samples - 1.0));
+    let by_time = (rules.time > 0.0).then(|| f64::from(rules.time) - status.seconds);
+    let by_error = status
+        .trend
+        .last()
+        .zip(status.decline())
+        .and_then(|(last, slope)| {
+            let factor = last.error.relative() / f64::from(rules.error);
+            let end = last.seconds * factor.powf(1.0 / slope);
+            (rules.error > 0.0).then_some(end - status.seconds)
+        });
+    [by_samples, by_time, by_error]
+        .into_iter()
+        .flatten()
+        .filter(|seconds| seconds.is_finite())
+        .map(|seconds| seconds.max(0.0))
+        .reduce(f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn status() -> Status {
+        let point = |seconds: f64| TrendPoint {
+            samples: 10.0 * seconds,
+            seconds,
+            error: ErrorEstimate {
+                rmse: 1.0,
+                // An error of 0.1 · seconds^-0.75.
+                relative_mse: 0.01 * seconds.powf(-1.5),
+            },
+        };
+        Status {
+            state: State::Running,
+            samples: 80.0,
+            samples_wanted: 1000.0,
+            rays: RayCounts {
+                camera: 16_000_000,
+                ..RayCounts::default()
+            },
+            seconds: 8.0,
+            trend: [1.0, 2.0, 4.0, 8.0].map(point).to_vec(),
+            seconds_left: None,
+        }
+    }
+
+    #[test]
+    fn the_first_rule_to_end_it_says_how_long_it_takes() {
+        let status = status();
+        assert_eq!(status.mrays_per_s(), 2.0);
+        let decline = status.decline().unwrap();
+        assert!((decline - 0.75).abs() < 1e-9, "{decline}");
+        let left = |error, time| {
+            let rules = Sampling {
+                error,
+                time,
+                ..Sampling::default()
+            };
+            seconds_left(&status, &rules).unwrap()
+        };
+        assert!((left(0.0, 0.0) - 92.0).abs() < 1e-9);
+        assert_eq!(left(0.0, 20.0), 12.0);
+        // 0.1 · s^-0.75 = 0.0125 at s = 16.
+        assert!(
+            (left(0.0125, 20.0) - 8.0).abs() < 1e-4,
+            "{}",
+            left(0.0125, 20.0)
+        );
+        assert_eq!(left(0.5, 20.0), 0.0);
+    }
+}
