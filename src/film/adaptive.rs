@@ -6,6 +6,7 @@ use std::ops::Range;
 
 /// Half of the pixels of a tile.
 #[derive(Clone, Copy, Debug)]
+#[expect(dead_code, reason = "read by the choice that follows")]
 pub(super) struct Cell {
     pub tile: u32,
     pub half: usize,

@@ -63,6 +63,21 @@ pub const SETTINGS: &[Setting] = {
             "n of n x n jittered samples of each pixel",
         ),
         row("seed", Integer(0, u32::MAX), "chooses the random numbers"),
+        row(
+            "sampling.adaptive",
+            Switch,
+            "samples go where the error is; used with an error or a time to stop at",
+        ),
+        row(
+            "sampling.error",
+            Number(0.0, 1000.0),
+            "relative error to stop at; 0: none",
+        ),
+        row(
+            "sampling.time",
+            Number(0.0, 1e7),
+            "seconds to stop after; 0: none",
+        ),
         row("pixel", Choice, "where in the pixel samples lie"),
         row("lighting", Choice, "what a light's colour means"),
         row("max_depth", Integer(0, 50), "mirror bounces"),
