@@ -124,6 +124,8 @@ pub enum Problem {
         value: String,
         range: &'static str,
     },
+    #[error("RenderSettings: {0}")]
+    Setting(crate::scene::SettingProblem),
     #[error("material `{name}` is in none of the MTL files named above this line")]
     UnknownMaterial { name: String },
     #[error("holds no triangles")]

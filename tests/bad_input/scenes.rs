@@ -168,13 +168,14 @@ fn numbers_outside_their_ranges() {
 #[test]
 fn render_settings_that_cannot_be_rendered() {
     for (settings, what) in [
-        ("size: (0, 0)", "size.x is 0"),
-        ("size: (65536, 65536)", "2^28"),
-        ("size: (2147483648, 1)", "size.x is 2147483648"),
+        ("size: (0, 0)", "size is 0x0"),
+        ("size: (65536, 65536)", "together"),
+        ("size: (2147483648, 1)", "size is 2147483648x1"),
         ("spp: 0", "spp is 0"),
         ("spp: 2147483648", "spp is 2147483648"),
         ("max_depth: 51", "max_depth is 51"),
         ("tree: (bins: 1)", "bins is 1"),
+        ("jitter: 17", "jitter is 17"),
     ] {
         let (_folder, file) = scene_of(&format!(
             "(resources: {{{VERSION} \"glassbox::scene::RenderSettings\": ({settings})}}, entities: {{}})"

@@ -4,7 +4,7 @@
 use super::super::error::Problem;
 use crate::scene::{
     Cone, DirectionalLamp, Environment, Lens, Motion, ParallelogramLamp, Phong, PointLamp,
-    Projection, RenderSettings, SceneCamera, SegmentLamp,
+    Projection, RenderSettings, SceneCamera, SegmentLamp, setting_problems,
 };
 use bevy::reflect::{PartialReflect, ReflectRef};
 use std::f32::consts::{FRAC_PI_2, PI};
@@ -56,35 +56,10 @@ pub(super) fn check_value(value: &dyn PartialReflect) -> Checked {
 }
 
 fn settings(s: &RenderSettings) -> Checked {
-    const SIDE: &str = "1 to 65536";
-    within("RenderSettings.size.x", s.size.x, 1, 65_536, SIDE)?;
-    within("RenderSettings.size.y", s.size.y, 1, 65_536, SIDE)?;
-    let pixels = u64::from(s.size.x) * u64::from(s.size.y);
-    within(
-        "RenderSettings.size in pixels",
-        pixels,
-        1,
-        1 << 28,
-        "at most 2^28",
-    )?;
-    within("RenderSettings.spp", s.spp, 1, 1 << 20, "1 to 2^20")?;
-    within("RenderSettings.max_depth", s.max_depth, 0, 50, "0 to 50")?;
-    let tree = &s.tree;
-    within(
-        "RenderSettings.tree.max_depth",
-        tree.max_depth,
-        1,
-        64,
-        "1 to 64",
-    )?;
-    within(
-        "RenderSettings.tree.max_leaf_size",
-        tree.max_leaf_size,
-        1,
-        255,
-        "1 to 255",
-    )?;
-    within("RenderSettings.tree.bins", tree.bins, 2, 64, "2 to 64")
+    match setting_problems(s).into_iter().next() {
+        Some(problem) => Err(Problem::Setting(problem)),
+        None => Ok(()),
+    }
 }
 
 fn phong(p: &Phong) -> Checked {
