@@ -4,4 +4,5 @@ mod analytic;
 mod bad_input;
 mod convergence;
 mod effects;
+mod cli;
 mod files;

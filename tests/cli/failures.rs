@@ -1,0 +1,119 @@
+//! What goes wrong ends with one line on standard error, the right exit code, and no file.
+
+use super::{files, glassbox, texts};
+use std::path::Path;
+
+/// Runs the program, expects this exit code and one line that holds every part.
+fn fails(folder: &Path, arguments: &[&str], code: i32, parts: &[&str]) {
+    let before = files(folder);
+    let output = glassbox(folder, arguments);
+    let (out, err) = texts(&output);
+    let what = format!("{arguments:?}\nstdout: {out}\nstderr: {err}");
+    assert_eq!(output.status.code(), Some(code), "{what}");
+    assert_eq!(err.lines().count(), 1, "{what}");
+    assert!(err.starts_with("error: "), "{what}");
+    assert!(!err.contains("panicked"), "{what}");
+    for part in parts {
+        assert!(err.contains(part), "`{part}` is missing\n{what}");
+    }
+    assert_eq!(files(folder), before, "{what}");
+}
+
+#[test]
+fn a_wrong_command_line_ends_with_code_2_and_says_what_would_be_right() {
+    let folder = tempfile::tempdir().unwrap();
+    let render = |more: &[&str], parts: &[&str]| {
+        let arguments = [&["render", "triangle", "-o", "a.png"], more].concat();
+        fails(folder.path(), &arguments, 2, parts);
+    };
+    fails(folder.path(), &["render"], 2, &["<SCENE>", "--output"]);
+    fails(folder.path(), &["render", "triangle"], 2, &["--output"]);
+    fails(folder.path(), &["--no-such-flag"], 2, &["--no-such-flag"]);
+    fails(folder.path(), &["convert", "triangle"], 2, &["<OUTPUT>"]);
+    fails(folder.path(), &["bvh", "triangle", "--builder", "quick"], 2, &["quick", "ploc"]);
+    fails(folder.path(), &["bench", "triangle", "--runs", "0"], 2, &["--runs", "1..=1000"]);
+    render(&["--size", "0x0"], &["size is 0x0", "each 1 to 65536"]);
+    render(&["--size", "70000x1"], &["size is 70000x1", "each 1 to 65536"]);
+    // 2^31 pixels.
+    render(&["--size", "65536x32768"], &["size", "at most 268435456"]);
+    render(&["--size", "99999999999x1"], &["--size", "800x600"]);
+    render(&["--size", "800"], &["--size", "800x600"]);
+    render(&["--spp", "0"], &["spp is 0", "1 to 1048576"]);
+    render(&["--spp", "2147483648"], &["spp is 2147483648", "1 to 1048576"]);
+    render(&["--spp", "-1"], &["-1"]);
+    render(&["--threads", "0"], &["--threads", "1..=1024"]);
+    render(&["--set", "max_depth=51"], &["max_depth is 51", "0 to 50"]);
+    render(&["--set", "max_depth=2147483648"], &["max_depth", "0 to 50"]);
+    render(&["--set", "shadow=false"], &["shadow", "features.shadows"]);
+    render(&["--set", "features.shadows=maybe"], &["features.shadows=maybe", "true or false"]);
+    render(&["--set", "spp"], &["--set", "key=value"]);
+    render(&["--set", "output.exposure=NaN"], &["output.exposure is NaN", "-64 to 64"]);
+    render(&["--camera", "a", "--all-cameras"], &["--camera", "--all-cameras"]);
+}
+
+#[test]
+fn what_is_not_there_or_cannot_be_written_ends_with_code_1_and_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    std::fs::create_dir(path.join("folder")).unwrap();
+    std::fs::write(path.join("empty.obj"), "").unwrap();
+    std::fs::write(path.join("scene.xyz"), "x").unwrap();
+    for (arguments, parts) in [
+        (&["render", "no-such-scene", "-o", "a.png"][..], &["no-such-scene", "cornell-box"][..]),
+        (&["render", "no-such.obj", "-o", "a.png"], &["no-such.obj"]),
+        (&["render", "empty.obj", "-o", "a.png"], &["empty.obj"]),
+        (&["render", "scene.xyz", "-o", "a.png"], &["scene.xyz"]),
+        (&["render", "folder", "-o", "a.png"], &["folder"]),
+        (&["render", "triangle", "-o", "a.bmp"], &["a.bmp", ".png"]),
+        (&["render", "triangle", "-o", "a"], &["a", ".png"]),
+        (&["render", "triangle", "-o", "missing/a.png"], &["missing/a.png", "folder"]),
+        (&["render", "triangle", "-o", "folder"], &["folder"]),
+        (
+            &["render", "triangle", "-o", "a.png", "--stats", "missing/a.json"],
+            &["missing/a.json", "folder"],
+        ),
+        (
+            &["render", "triangle", "-o", "a.png", "--camera", "nobody"],
+            &["triangle", "nobody", "it has "],
+        ),
+        (&["convert", "triangle", "a.fbx"], &["a.fbx", ".glb"]),
+        (&["convert", "no-such.glb", "a.obj"], &["no-such.glb"]),
+        (&["convert", "triangle", "missing/a.obj"], &["missing/a.obj"]),
+        (&["bvh", "no-such.obj"], &["no-such.obj"]),
+        (&["bench", "no-such.obj"], &["no-such.obj"]),
+        (&["no-such.obj"], &["no-such.obj"]),
+    ] {
+        fails(path, arguments, 1, parts);
+    }
+}
+
+#[test]
+fn a_scene_file_with_a_setting_out_of_range_is_refused_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    super::succeeds(folder.path(), &["convert", "triangle", "a.scn.ron"]);
+    let path = folder.path().join("a.scn.ron");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let broken = text.replacen("max_depth: ", "max_depth: 9", 1);
+    assert_ne!(text, broken, "the scene file names no max_depth");
+    std::fs::write(&path, broken).unwrap();
+    fails(
+        folder.path(),
+        &["render", "a.scn.ron", "-o", "a.png"],
+        1,
+        &["a.scn.ron", "max_depth", "0 to 50"],
+    );
+}
+
+#[test]
+fn a_file_that_is_there_stays_as_it_was_when_rendering_fails() {
+    let folder = tempfile::tempdir().unwrap();
+    let picture = folder.path().join("a.png");
+    std::fs::write(&picture, "precious").unwrap();
+    fails(
+        folder.path(),
+        &["render", "no-such.obj", "-o", "a.png"],
+        1,
+        &["no-such.obj"],
+    );
+    assert_eq!(std::fs::read(&picture).unwrap(), b"precious");
+}

@@ -1,0 +1,45 @@
+//! The program itself, run as people run it: exit codes, what is printed where, and which files
+//! are there afterwards.
+
+mod failures;
+mod pictures;
+mod statistics;
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// Runs the program in a folder.
+fn glassbox(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_glassbox"))
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .expect("the program did not start")
+}
+
+/// Runs the program and expects it to succeed; what it printed.
+fn succeeds(folder: &Path, arguments: &[&str]) -> String {
+    let output = glassbox(folder, arguments);
+    let (out, err) = texts(&output);
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{arguments:?}\nstdout: {out}\nstderr: {err}"
+    );
+    out
+}
+
+fn texts(output: &Output) -> (String, String) {
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    (text(&output.stdout), text(&output.stderr))
+}
+
+/// Names of the files in a folder, sorted.
+fn files(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}

@@ -1,0 +1,143 @@
+//! Pictures that `glassbox render` writes.
+
+use super::{files, glassbox, succeeds, texts};
+use std::path::Path;
+
+const SMALL: [&str; 4] = ["--size", "40x30", "--spp", "4"];
+
+fn render(folder: &Path, scene: &str, output: &str, more: &[&str]) -> String {
+    let arguments = [&["render", scene, "-o", output][..], &SMALL, more].concat();
+    succeeds(folder, &arguments)
+}
+
+fn bytes(folder: &Path, name: &str) -> Vec<u8> {
+    std::fs::read(folder.join(name)).unwrap()
+}
+
+#[test]
+fn a_picture_has_the_size_that_was_asked_for_and_shows_something() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = render(folder.path(), "cornell-box", "a.png", &[]);
+    assert!(said.starts_with("a.png: 40x30, 4 samples a pixel"), "{said}");
+    let picture = image::open(folder.path().join("a.png")).unwrap().into_rgb8();
+    assert_eq!(picture.dimensions(), (40, 30));
+    let lit = picture.pixels().filter(|pixel| pixel.0 != [0; 3]).count();
+    assert!(lit > 600, "only {lit} of 1200 pixels are not black");
+    assert_eq!(files(folder.path()), ["a.png"]);
+}
+
+#[test]
+fn the_same_scene_gives_the_same_picture_for_1_2_and_7_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    for scene in ["cornell-box-parallelogram-light", "spheres"] {
+        let render = |threads: &str| {
+            // Linear 32-bit values: nothing hides behind rounding to 8 bits.
+            render(folder.path(), scene, "a.exr", &["--threads", threads]);
+            bytes(folder.path(), "a.exr")
+        };
+        let one = render("1");
+        assert!(one == render("2"), "{scene}: 2 threads give another picture");
+        assert!(one == render("7"), "{scene}: 7 threads give another picture");
+    }
+}
+
+#[test]
+fn the_seed_changes_the_picture_and_the_builder_does_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let render = |more: &[&str]| {
+        render(folder.path(), "cornell-box-parallelogram-light", "a.exr", more);
+        bytes(folder.path(), "a.exr")
+    };
+    let plain = render(&[]);
+    assert!(plain == render(&["--seed", "0"]), "the default seed is not 0");
+    assert!(plain != render(&["--seed", "1"]), "another seed gives the same picture");
+    for builder in ["none", "median", "sah", "ploc"] {
+        assert!(plain == render(&["--builder", builder]), "{builder} gives another picture");
+    }
+    let one_level = render(&["--set", "tree.levels=One", "--builder", "sah"]);
+    assert!(plain == one_level, "one level gives another picture");
+}
+
+#[test]
+fn settings_reach_the_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let mean = |more: &[&str]| {
+        render(folder.path(), "cornell-box", "a.png", more);
+        let picture = image::open(folder.path().join("a.png")).unwrap().into_rgb8();
+        let sum: u64 = picture.as_raw().iter().map(|&v| u64::from(v)).sum();
+        sum as f64 / picture.as_raw().len() as f64
+    };
+    let plain = mean(&[]);
+    let bright = mean(&["--set", "output.exposure=2"]);
+    let unshadowed = mean(&["--set", "features.shadows=false"]);
+    assert!(bright > plain * 1.1, "{plain} with 0 stops, {bright} with 2");
+    assert!(unshadowed > plain * 1.02, "{plain} with shadows, {unshadowed} without");
+    // A flag of its own wins over --set.
+    let said = render(folder.path(), "cornell-box", "b.png", &["--set", "spp=9"]);
+    assert!(said.contains("4 samples"), "{said}");
+}
+
+#[test]
+fn every_camera_writes_a_picture_of_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    render(folder.path(), "showcase", "a.png", &["--all-cameras"]);
+    let all = files(folder.path());
+    assert_eq!(all.len(), 2, "{all:?}");
+    assert!(all.iter().all(|name| name.starts_with("a-") && name.ends_with(".png")), "{all:?}");
+    let name = all[1].trim_start_matches("a-").trim_end_matches(".png");
+    render(folder.path(), "showcase", "one.png", &["--camera", name]);
+    let (one, same) = (bytes(folder.path(), "one.png"), bytes(folder.path(), &all[1]));
+    assert!(one == same, "the same camera gives another picture by itself");
+    assert!(one != bytes(folder.path(), &all[0]), "both cameras see the same");
+}
+
+#[test]
+fn every_picture_format_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["a.png", "a.jpg", "a.jpeg", "a.exr", "a.hdr"] {
+        render(folder.path(), "triangle", name, &[]);
+        let picture = image::open(folder.path().join(name)).unwrap();
+        assert_eq!((picture.width(), picture.height()), (40, 30), "{name}");
+    }
+}
+
+#[test]
+fn a_converted_scene_gives_the_same_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    for scene in ["cornell-box", "textured-cube"] {
+        render(folder.path(), scene, "built-in.exr", &[]);
+        succeeds(folder.path(), &["convert", scene, "saved.scn.ron"]);
+        render(folder.path(), "saved.scn.ron", "saved.exr", &[]);
+        let same = bytes(folder.path(), "built-in.exr") == bytes(folder.path(), "saved.exr");
+        assert!(same, "{scene}: saved and opened again it gives another picture");
+    }
+}
+
+#[test]
+fn a_model_without_camera_and_light_is_framed_and_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    std::fs::write(folder.path().join("a.obj"), triangle).unwrap();
+    let arguments = [&["render", "a.obj", "-o", "a.png"][..], &SMALL].concat();
+    let output = glassbox(folder.path(), &arguments);
+    let (_, err) = texts(&output);
+    assert_eq!(output.status.code(), Some(0), "{err}");
+    assert!(err.contains("note: ") && err.contains("camera") && err.contains("light"), "{err}");
+    let picture = image::open(folder.path().join("a.png")).unwrap().into_rgb8();
+    let first = picture.get_pixel(0, 0);
+    assert!(picture.pixels().any(|pixel| pixel != first), "the picture is of one colour");
+
+    let arguments = [&arguments[..], &["--quiet"]].concat();
+    let (out, err) = texts(&glassbox(folder.path(), &arguments));
+    assert_eq!((out.as_str(), err.as_str()), ("", ""));
+}
+
+#[test]
+fn without_a_command_it_says_what_it_can_do_and_renders_the_default_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = succeeds(folder.path(), &[]);
+    for part in ["render", "scenes", "bvh", "convert", "bench", "cornell-box.png"] {
+        assert!(said.contains(part), "`{part}` is missing: {said}");
+    }
+    assert_eq!(files(folder.path()), ["cornell-box.png"]);
+}
