@@ -2,7 +2,7 @@
 
 mod analytic;
 mod bad_input;
+mod cli;
 mod convergence;
 mod effects;
-mod cli;
 mod files;

@@ -106,7 +106,7 @@ fn measure(args: &Bench) -> Result<String, Failure> {
         samples_per_pixel(&column.world, &camera.camera, &settings)
     });
     let mut text = format!(
-        "**{}**: {}x{}, {spp} samples a pixel, {} threads, {} renderings with each builder, taking turns\n\n",
+        "**{}**: {}x{}, {spp} spp, {} threads, {} renderings a builder, taking turns\n\n",
         stage.name,
         settings.size.x,
         settings.size.y,

@@ -54,7 +54,8 @@ fn one_line(text: &str) -> String {
         .next()
         .unwrap_or(said);
     let said = said.trim_start_matches("error:");
-    format!("{}; see --help", joined(said).trim_end_matches('.'))
+    let paragraphs: Vec<String> = said.split("\n\n").map(joined).collect();
+    format!("{}; see --help", paragraphs.join("; "))
 }
 
 /// A name from a file may hold a line break; the message stays one line.
@@ -73,6 +74,12 @@ mod tests {
         assert_eq!(
             one_line(text),
             "the following required arguments were not provided: <SCENE>; see --help"
+        );
+        let text =
+            "error: unexpected argument '-x' found\n\n  tip: use '-- -x'\n\nUsage: glassbox\n";
+        assert_eq!(
+            one_line(text),
+            "unexpected argument '-x' found; tip: use '-- -x'; see --help"
         );
     }
 }

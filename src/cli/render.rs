@@ -92,7 +92,7 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
         write(file, &rendered, &settings)?;
         if !args.quiet {
             println!(
-                "{}: {}x{}, {spp} samples a pixel, {:.2} s, {:.2} million rays/s",
+                "{}: {}x{}, {spp} spp, {:.2} s, {:.2} million rays/s",
                 file.display(),
                 settings.size.x,
                 settings.size.y,

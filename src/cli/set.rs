@@ -103,12 +103,22 @@ fn unknown(key: &str) -> String {
     let distance = |setting: &&Setting| {
         edit_distance(key, setting.path).min(edit_distance(key, last(setting.path)))
     };
-    let mut near: Vec<&Setting> = SETTINGS.iter().collect();
-    near.sort_by_key(distance);
-    let names: Vec<&str> = near.iter().take(3).map(|setting| setting.path).collect();
+    let mut near: Vec<(usize, &str)> = SETTINGS
+        .iter()
+        .map(|setting| (distance(&setting), setting.path))
+        .collect();
+    near.sort_by_key(|(distance, _)| *distance);
+    // The nearest in any case, two more where they are mistakes of a few letters.
+    let close = |i: usize, distance: usize| i == 0 || (i < 3 && distance <= key.len() / 3);
+    let names: Vec<&str> = near
+        .iter()
+        .enumerate()
+        .filter(|(i, (distance, _))| close(*i, *distance))
+        .map(|(_, (_, path))| *path)
+        .collect();
     format!(
-        "--set {key}: no such setting; the nearest are {} (all: glassbox render --help)",
-        names.join(", ")
+        "--set {key}: no such setting; did you mean {}? (all: glassbox render --help)",
+        names.join(" or ")
     )
 }
 

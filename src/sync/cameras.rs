@@ -1,11 +1,10 @@
 use super::problem::Fault;
-use super::reading::{Reader, Switched};
+use super::reading::{Motions, Reader, Switched};
 use super::traced::Draft;
-use crate::scene::{Lens, Motion, Projection, RenderSettings, SceneCamera, SceneId};
+use crate::scene::{Lens, Projection, RenderSettings, SceneCamera, SceneId};
 use crate::trace::{Camera, Optics};
 use bevy::ecs::change_detection::DetectChanges;
 use bevy::ecs::entity::Entity;
-use bevy::ecs::hierarchy::ChildOf;
 use bevy::ecs::lifecycle::RemovedComponents;
 use bevy::ecs::name::Name;
 use bevy::ecs::query::{Changed, Or, With};
@@ -35,9 +34,7 @@ type Edited = (
     Or<(
         Changed<SceneCamera>,
         Changed<Lens>,
-        Changed<Motion>,
         Changed<GlobalTransform>,
-        Changed<ChildOf>,
         Changed<Name>,
         Changed<SceneId>,
     )>,
@@ -47,36 +44,30 @@ type CameraQuery<'w, 's> = Query<
     'w,
     's,
     (
+        Entity,
         &'static SceneId,
         &'static SceneCamera,
         &'static GlobalTransform,
         Option<&'static Lens>,
-        Option<&'static Motion>,
-        Option<&'static ChildOf>,
         Option<&'static Name>,
     ),
 >;
 
 /// Makes the cameras again where one changed, moved, appeared or went.
 pub(super) fn sync_cameras(
-    edited: Query<Entity, Edited>,
+    edited: Query<(), Edited>,
     mut no_camera: RemovedComponents<SceneCamera>,
     mut no_lens: RemovedComponents<Lens>,
-    mut no_motion: RemovedComponents<Motion>,
-    mut no_parent: RemovedComponents<ChildOf>,
     mut switched: Switched,
     settings: Res<RenderSettings>,
     cameras: CameraQuery,
-    parents: Query<&GlobalTransform>,
+    mut motions: Motions,
     mut traced: ResMut<TracedCameras>,
     draft: ResMut<Draft>,
 ) {
     // Not `||`: every reader has to be emptied.
-    let gone = no_camera.read().count()
-        + no_lens.read().count()
-        + no_motion.read().count()
-        + no_parent.read().count();
-    let switched = switched.any();
+    let gone = no_camera.read().count() + no_lens.read().count();
+    let switched = switched.any() | motions.changed();
     if gone == 0 && !switched && edited.is_empty() && !settings.is_changed() {
         return;
     }
@@ -84,9 +75,9 @@ pub(super) fn sync_cameras(
     draft.problems.cameras.clear();
     draft.reread = true;
     let mut sorted: Vec<_> = cameras.iter().collect();
-    sorted.sort_unstable_by_key(|(id, ..)| **id);
+    sorted.sort_unstable_by_key(|(_, id, ..)| **id);
     let mut list = Vec::with_capacity(sorted.len());
-    for (&id, camera, transform, lens, motion, parent, name) in sorted {
+    for (entity, &id, camera, transform, lens, name) in sorted {
         let mut reader = Reader {
             kind: "camera",
             id,
@@ -94,24 +85,16 @@ pub(super) fn sync_cameras(
             problems: &mut draft.problems.cameras,
         };
         let lens = lens.filter(|_| settings.features.lens);
-        let motion = motion.filter(|_| settings.features.motion);
-        // A velocity is in the parent's space.
-        let velocity = motion.map_or(Vec3::ZERO, |motion| {
-            let parent = parent.and_then(|parent| parents.get(parent.parent()).ok());
-            parent.map_or(motion.velocity, |parent| {
-                parent.affine().transform_vector3(motion.velocity)
-            })
-        });
+        let motion = motions.of(entity);
+        let velocity = motion.map_or(Vec3::ZERO, |(velocity, _)| velocity);
         let Some(mut camera) = read_camera(camera, transform, lens, velocity, &mut reader) else {
             continue;
         };
         if let Some(lens) = lens {
             camera.optics.lens_samples = reader.samples(lens.samples);
         }
-        if let Some(motion) = motion
-            && velocity != Vec3::ZERO
-        {
-            camera.optics.motion_samples = reader.samples(motion.samples);
+        if let Some((_, samples)) = motion {
+            camera.optics.motion_samples = reader.samples(samples);
         }
         list.push(TracedCamera {
             id,

@@ -1,6 +1,6 @@
 use super::meshes::TracedMeshes;
 use super::problem::Fault;
-use super::reading::{Reader, Switched};
+use super::reading::{Motions, Reader, Switched};
 use super::traced::Draft;
 use crate::bvh::{Aggregate, BuildOptions, Instance};
 use crate::scene::SceneId;
@@ -12,7 +12,7 @@ use bevy::ecs::name::Name;
 use bevy::ecs::query::{Changed, Or, With};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Query, Res, ResMut};
-use bevy::math::Affine3A;
+use bevy::math::{Affine3A, Vec3};
 use bevy::mesh::Mesh3d;
 use bevy::transform::components::GlobalTransform;
 use std::sync::Arc;
@@ -29,17 +29,25 @@ pub(super) struct Row {
     pub id: SceneId,
     pub entity: Entity,
     pub mesh: Arc<trace::Mesh>,
+    /// Samples that its motion asks for; 0 where it stands still.
+    pub motion_samples: u32,
     transform: Affine3A,
+    velocity: Vec3,
 }
 
 impl Row {
     /// True where the tree over the objects would come out the same.
     fn same(&self, other: &Self) -> bool {
+        // Bits, because -0 and 0 may round differently on the way.
+        let bits = |row: &Self| {
+            let velocity = row.velocity.to_array().map(f32::to_bits);
+            (row.transform.to_cols_array().map(f32::to_bits), velocity)
+        };
         self.id == other.id
             && self.entity == other.entity
+            && self.motion_samples == other.motion_samples
             && Arc::ptr_eq(&self.mesh, &other.mesh)
-            && self.transform.to_cols_array().map(f32::to_bits)
-                == other.transform.to_cols_array().map(f32::to_bits)
+            && bits(self) == bits(other)
     }
 }
 
@@ -74,6 +82,7 @@ pub(super) fn sync_instances(
     mut no_visibility: RemovedComponents<InheritedVisibility>,
     mut no_id: RemovedComponents<SceneId>,
     mut switched: Switched,
+    mut motions: Motions,
     objects: ObjectQuery,
     meshes: Res<TracedMeshes>,
     mut known: ResMut<TracedInstances>,
@@ -84,7 +93,7 @@ pub(super) fn sync_instances(
         + no_transform.read().count()
         + no_visibility.read().count()
         + no_id.read().count();
-    let switched = switched.any();
+    let switched = switched.any() | motions.changed();
     let options_changed = known.options != *meshes.options();
     if gone == 0 && !switched && !options_changed && moved.is_empty() && !draft.changes.meshes {
         return;
@@ -120,7 +129,10 @@ pub(super) fn sync_instances(
             reader.note(Fault::TrianglesLeftOut { count: left_out });
         }
         let transform = transform.affine();
-        match Instance::new(mesh.tree.clone(), &transform) {
+        let motion = motions.of(entity);
+        let velocity = motion.map_or(Vec3::ZERO, |(velocity, _)| velocity);
+        let instance = Instance::new(mesh.tree.clone(), &transform);
+        match instance.and_then(|instance| instance.moving(velocity)) {
             Ok(instance) => instances.push(instance),
             Err(fault) => {
                 reader.note(Fault::Transform(fault));
@@ -131,7 +143,9 @@ pub(super) fn sync_instances(
             id,
             entity,
             mesh: mesh.clone(),
+            motion_samples: motion.map_or(0, |(_, samples)| reader.samples(samples)),
             transform,
+            velocity,
         });
     }
     let same = rows.len() == known.rows.len()

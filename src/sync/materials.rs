@@ -117,8 +117,7 @@ pub(super) fn sync_materials(
             material: user
                 .and_then(|entity| places.get(&entity).copied())
                 .unwrap_or(default_place),
-            // Trees do not move yet, so more samples would show nothing.
-            motion_samples: 0,
+            motion_samples: row.motion_samples,
             mesh: row.mesh.clone(),
         })
         .collect();

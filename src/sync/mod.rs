@@ -7,7 +7,7 @@
 //! |---|---|---|
 //! | `assign_scene_ids` | entities without a `SceneId`, or with one that another has | their numbers |
 //! | `sync_meshes` | `Mesh` assets that an object uses | that mesh's triangles and tree |
-//! | `sync_instances` | which mesh stands where and is visible | the tree over the objects |
+//! | `sync_instances` | which mesh stands where, how it moves, and whether it is visible | the tree over the objects |
 //! | `sync_textures` | `Image` assets that a material or the environment uses | that texture |
 //! | `sync_materials` | `Phong`, `PhongMaps`, `UsesMaterial` | materials, and which object has which |
 //! | `sync_lights` | the four lamps | lights |

@@ -30,25 +30,53 @@ fn a_wrong_command_line_ends_with_code_2_and_says_what_would_be_right() {
     fails(folder.path(), &["render", "triangle"], 2, &["--output"]);
     fails(folder.path(), &["--no-such-flag"], 2, &["--no-such-flag"]);
     fails(folder.path(), &["convert", "triangle"], 2, &["<OUTPUT>"]);
-    fails(folder.path(), &["bvh", "triangle", "--builder", "quick"], 2, &["quick", "ploc"]);
-    fails(folder.path(), &["bench", "triangle", "--runs", "0"], 2, &["--runs", "1..=1000"]);
+    fails(
+        folder.path(),
+        &["bvh", "triangle", "--builder", "quick"],
+        2,
+        &["quick", "ploc"],
+    );
+    fails(
+        folder.path(),
+        &["bench", "triangle", "--runs", "0"],
+        2,
+        &["--runs", "1..=1000"],
+    );
     render(&["--size", "0x0"], &["size is 0x0", "each 1 to 65536"]);
-    render(&["--size", "70000x1"], &["size is 70000x1", "each 1 to 65536"]);
+    render(
+        &["--size", "70000x1"],
+        &["size is 70000x1", "each 1 to 65536"],
+    );
     // 2^31 pixels.
     render(&["--size", "65536x32768"], &["size", "at most 268435456"]);
     render(&["--size", "99999999999x1"], &["--size", "800x600"]);
     render(&["--size", "800"], &["--size", "800x600"]);
     render(&["--spp", "0"], &["spp is 0", "1 to 1048576"]);
-    render(&["--spp", "2147483648"], &["spp is 2147483648", "1 to 1048576"]);
+    render(
+        &["--spp", "2147483648"],
+        &["spp is 2147483648", "1 to 1048576"],
+    );
     render(&["--spp", "-1"], &["-1"]);
     render(&["--threads", "0"], &["--threads", "1..=1024"]);
     render(&["--set", "max_depth=51"], &["max_depth is 51", "0 to 50"]);
-    render(&["--set", "max_depth=2147483648"], &["max_depth", "0 to 50"]);
+    render(
+        &["--set", "max_depth=2147483648"],
+        &["max_depth", "0 to 50"],
+    );
     render(&["--set", "shadow=false"], &["shadow", "features.shadows"]);
-    render(&["--set", "features.shadows=maybe"], &["features.shadows=maybe", "true or false"]);
+    render(
+        &["--set", "features.shadows=maybe"],
+        &["features.shadows=maybe", "true or false"],
+    );
     render(&["--set", "spp"], &["--set", "key=value"]);
-    render(&["--set", "output.exposure=NaN"], &["output.exposure is NaN", "-64 to 64"]);
-    render(&["--camera", "a", "--all-cameras"], &["--camera", "--all-cameras"]);
+    render(
+        &["--set", "output.exposure=NaN"],
+        &["output.exposure is NaN", "-64 to 64"],
+    );
+    render(
+        &["--camera", "a", "--all-cameras"],
+        &["--camera", "--all-cameras"],
+    );
 }
 
 #[test]
@@ -59,17 +87,30 @@ fn what_is_not_there_or_cannot_be_written_ends_with_code_1_and_is_named() {
     std::fs::write(path.join("empty.obj"), "").unwrap();
     std::fs::write(path.join("scene.xyz"), "x").unwrap();
     for (arguments, parts) in [
-        (&["render", "no-such-scene", "-o", "a.png"][..], &["no-such-scene", "cornell-box"][..]),
+        (
+            &["render", "no-such-scene", "-o", "a.png"][..],
+            &["no-such-scene", "cornell-box"][..],
+        ),
         (&["render", "no-such.obj", "-o", "a.png"], &["no-such.obj"]),
         (&["render", "empty.obj", "-o", "a.png"], &["empty.obj"]),
         (&["render", "scene.xyz", "-o", "a.png"], &["scene.xyz"]),
         (&["render", "folder", "-o", "a.png"], &["folder"]),
         (&["render", "triangle", "-o", "a.bmp"], &["a.bmp", ".png"]),
         (&["render", "triangle", "-o", "a"], &["a", ".png"]),
-        (&["render", "triangle", "-o", "missing/a.png"], &["missing/a.png", "folder"]),
+        (
+            &["render", "triangle", "-o", "missing/a.png"],
+            &["missing/a.png", "folder"],
+        ),
         (&["render", "triangle", "-o", "folder"], &["folder"]),
         (
-            &["render", "triangle", "-o", "a.png", "--stats", "missing/a.json"],
+            &[
+                "render",
+                "triangle",
+                "-o",
+                "a.png",
+                "--stats",
+                "missing/a.json",
+            ],
             &["missing/a.json", "folder"],
         ),
         (
@@ -78,7 +119,10 @@ fn what_is_not_there_or_cannot_be_written_ends_with_code_1_and_is_named() {
         ),
         (&["convert", "triangle", "a.fbx"], &["a.fbx", ".glb"]),
         (&["convert", "no-such.glb", "a.obj"], &["no-such.glb"]),
-        (&["convert", "triangle", "missing/a.obj"], &["missing/a.obj"]),
+        (
+            &["convert", "triangle", "missing/a.obj"],
+            &["missing/a.obj"],
+        ),
         (&["bvh", "no-such.obj"], &["no-such.obj"]),
         (&["bench", "no-such.obj"], &["no-such.obj"]),
         (&["no-such.obj"], &["no-such.obj"]),

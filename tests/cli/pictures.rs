@@ -18,8 +18,10 @@ fn bytes(folder: &Path, name: &str) -> Vec<u8> {
 fn a_picture_has_the_size_that_was_asked_for_and_shows_something() {
     let folder = tempfile::tempdir().unwrap();
     let said = render(folder.path(), "cornell-box", "a.png", &[]);
-    assert!(said.starts_with("a.png: 40x30, 4 samples a pixel"), "{said}");
-    let picture = image::open(folder.path().join("a.png")).unwrap().into_rgb8();
+    assert!(said.starts_with("a.png: 40x30, 4 spp"), "{said}");
+    let picture = image::open(folder.path().join("a.png"))
+        .unwrap()
+        .into_rgb8();
     assert_eq!(picture.dimensions(), (40, 30));
     let lit = picture.pixels().filter(|pixel| pixel.0 != [0; 3]).count();
     assert!(lit > 600, "only {lit} of 1200 pixels are not black");
@@ -36,8 +38,14 @@ fn the_same_scene_gives_the_same_picture_for_1_2_and_7_threads() {
             bytes(folder.path(), "a.exr")
         };
         let one = render("1");
-        assert!(one == render("2"), "{scene}: 2 threads give another picture");
-        assert!(one == render("7"), "{scene}: 7 threads give another picture");
+        assert!(
+            one == render("2"),
+            "{scene}: 2 threads give another picture"
+        );
+        assert!(
+            one == render("7"),
+            "{scene}: 7 threads give another picture"
+        );
     }
 }
 
@@ -45,14 +53,28 @@ fn the_same_scene_gives_the_same_picture_for_1_2_and_7_threads() {
 fn the_seed_changes_the_picture_and_the_builder_does_not() {
     let folder = tempfile::tempdir().unwrap();
     let render = |more: &[&str]| {
-        render(folder.path(), "cornell-box-parallelogram-light", "a.exr", more);
+        render(
+            folder.path(),
+            "cornell-box-parallelogram-light",
+            "a.exr",
+            more,
+        );
         bytes(folder.path(), "a.exr")
     };
     let plain = render(&[]);
-    assert!(plain == render(&["--seed", "0"]), "the default seed is not 0");
-    assert!(plain != render(&["--seed", "1"]), "another seed gives the same picture");
+    assert!(
+        plain == render(&["--seed", "0"]),
+        "the default seed is not 0"
+    );
+    assert!(
+        plain != render(&["--seed", "1"]),
+        "another seed gives the same picture"
+    );
     for builder in ["none", "median", "sah", "ploc"] {
-        assert!(plain == render(&["--builder", builder]), "{builder} gives another picture");
+        assert!(
+            plain == render(&["--builder", builder]),
+            "{builder} gives another picture"
+        );
     }
     let one_level = render(&["--set", "tree.levels=One", "--builder", "sah"]);
     assert!(plain == one_level, "one level gives another picture");
@@ -63,18 +85,26 @@ fn settings_reach_the_picture() {
     let folder = tempfile::tempdir().unwrap();
     let mean = |more: &[&str]| {
         render(folder.path(), "cornell-box", "a.png", more);
-        let picture = image::open(folder.path().join("a.png")).unwrap().into_rgb8();
+        let picture = image::open(folder.path().join("a.png"))
+            .unwrap()
+            .into_rgb8();
         let sum: u64 = picture.as_raw().iter().map(|&v| u64::from(v)).sum();
         sum as f64 / picture.as_raw().len() as f64
     };
     let plain = mean(&[]);
     let bright = mean(&["--set", "output.exposure=2"]);
     let unshadowed = mean(&["--set", "features.shadows=false"]);
-    assert!(bright > plain * 1.1, "{plain} with 0 stops, {bright} with 2");
-    assert!(unshadowed > plain * 1.02, "{plain} with shadows, {unshadowed} without");
+    assert!(
+        bright > plain * 1.1,
+        "{plain} with 0 stops, {bright} with 2"
+    );
+    assert!(
+        unshadowed > plain * 1.02,
+        "{plain} with shadows, {unshadowed} without"
+    );
     // A flag of its own wins over --set.
     let said = render(folder.path(), "cornell-box", "b.png", &["--set", "spp=9"]);
-    assert!(said.contains("4 samples"), "{said}");
+    assert!(said.contains(" 4 spp,"), "{said}");
 }
 
 #[test]
@@ -83,12 +113,25 @@ fn every_camera_writes_a_picture_of_its_own() {
     render(folder.path(), "showcase", "a.png", &["--all-cameras"]);
     let all = files(folder.path());
     assert_eq!(all.len(), 2, "{all:?}");
-    assert!(all.iter().all(|name| name.starts_with("a-") && name.ends_with(".png")), "{all:?}");
+    assert!(
+        all.iter()
+            .all(|name| name.starts_with("a-") && name.ends_with(".png")),
+        "{all:?}"
+    );
     let name = all[1].trim_start_matches("a-").trim_end_matches(".png");
     render(folder.path(), "showcase", "one.png", &["--camera", name]);
-    let (one, same) = (bytes(folder.path(), "one.png"), bytes(folder.path(), &all[1]));
-    assert!(one == same, "the same camera gives another picture by itself");
-    assert!(one != bytes(folder.path(), &all[0]), "both cameras see the same");
+    let (one, same) = (
+        bytes(folder.path(), "one.png"),
+        bytes(folder.path(), &all[1]),
+    );
+    assert!(
+        one == same,
+        "the same camera gives another picture by itself"
+    );
+    assert!(
+        one != bytes(folder.path(), &all[0]),
+        "both cameras see the same"
+    );
 }
 
 #[test]
@@ -109,7 +152,10 @@ fn a_converted_scene_gives_the_same_picture() {
         succeeds(folder.path(), &["convert", scene, "saved.scn.ron"]);
         render(folder.path(), "saved.scn.ron", "saved.exr", &[]);
         let same = bytes(folder.path(), "built-in.exr") == bytes(folder.path(), "saved.exr");
-        assert!(same, "{scene}: saved and opened again it gives another picture");
+        assert!(
+            same,
+            "{scene}: saved and opened again it gives another picture"
+        );
     }
 }
 
@@ -122,10 +168,18 @@ fn a_model_without_camera_and_light_is_framed_and_says_so() {
     let output = glassbox(folder.path(), &arguments);
     let (_, err) = texts(&output);
     assert_eq!(output.status.code(), Some(0), "{err}");
-    assert!(err.contains("note: ") && err.contains("camera") && err.contains("light"), "{err}");
-    let picture = image::open(folder.path().join("a.png")).unwrap().into_rgb8();
+    assert!(
+        err.contains("note: ") && err.contains("camera") && err.contains("light"),
+        "{err}"
+    );
+    let picture = image::open(folder.path().join("a.png"))
+        .unwrap()
+        .into_rgb8();
     let first = picture.get_pixel(0, 0);
-    assert!(picture.pixels().any(|pixel| pixel != first), "the picture is of one colour");
+    assert!(
+        picture.pixels().any(|pixel| pixel != first),
+        "the picture is of one colour"
+    );
 
     let arguments = [&arguments[..], &["--quiet"]].concat();
     let (out, err) = texts(&glassbox(folder.path(), &arguments));
@@ -136,7 +190,14 @@ fn a_model_without_camera_and_light_is_framed_and_says_so() {
 fn without_a_command_it_says_what_it_can_do_and_renders_the_default_scene() {
     let folder = tempfile::tempdir().unwrap();
     let said = succeeds(folder.path(), &[]);
-    for part in ["render", "scenes", "bvh", "convert", "bench", "cornell-box.png"] {
+    for part in [
+        "render",
+        "scenes",
+        "bvh",
+        "convert",
+        "bench",
+        "cornell-box.png",
+    ] {
         assert!(said.contains(part), "`{part}` is missing: {said}");
     }
     assert_eq!(files(folder.path()), ["cornell-box.png"]);

@@ -7,7 +7,8 @@ use serde_json::Value;
 #[test]
 fn stats_hold_exactly_the_documented_keys_and_add_up() {
     let folder = tempfile::tempdir().unwrap();
-    let arguments = "render cornell-box -o a.png --size 20x10 --spp 4 --threads 2 --builder sah --stats a.json";
+    let arguments =
+        "render cornell-box -o a.png --size 20x10 --spp 4 --threads 2 --builder sah --stats a.json";
     succeeds(folder.path(), &arguments.split(' ').collect::<Vec<_>>());
     let text = std::fs::read_to_string(folder.path().join("a.json")).unwrap();
     let stats: Value = serde_json::from_str(&text).unwrap();
@@ -18,7 +19,10 @@ fn stats_hold_exactly_the_documented_keys_and_add_up() {
     };
     let wanted = "build_ms builder height instances mrays_per_s rays render_ms scene spp threads triangles width";
     assert_eq!(keys(&stats).join(" "), wanted);
-    assert_eq!(keys(&stats["rays"]).join(" "), "camera mirror shadow transmission");
+    assert_eq!(
+        keys(&stats["rays"]).join(" "),
+        "camera mirror shadow transmission"
+    );
     assert_eq!(stats["scene"], "cornell-box");
     assert_eq!(stats["builder"], "sah");
     for (key, value) in [("width", 20), ("height", 10), ("spp", 4), ("threads", 2)] {
@@ -26,34 +30,69 @@ fn stats_hold_exactly_the_documented_keys_and_add_up() {
     }
     assert_eq!(stats["rays"]["camera"], 20 * 10 * 4);
     for ray in ["mirror", "shadow"] {
-        assert!(stats["rays"][ray].as_u64().unwrap() > 0, "no {ray} rays: {text}");
+        assert!(
+            stats["rays"][ray].as_u64().unwrap() > 0,
+            "no {ray} rays: {text}"
+        );
     }
     assert!(stats["triangles"].as_u64().unwrap() >= 32, "{text}");
     assert!(stats["instances"].as_u64().unwrap() >= 7, "{text}");
     let number = |value: &Value| value.as_f64().unwrap();
-    let rays: f64 = stats["rays"].as_object().unwrap().values().map(number).sum();
+    let rays: f64 = stats["rays"]
+        .as_object()
+        .unwrap()
+        .values()
+        .map(number)
+        .sum();
     let rate = rays / number(&stats["render_ms"]) / 1e3;
     let said = number(&stats["mrays_per_s"]);
-    assert!((rate - said).abs() < 1e-6 * rate, "{rate} computed, {said} said");
+    assert!(
+        (rate - said).abs() < 1e-6 * rate,
+        "{rate} computed, {said} said"
+    );
 }
 
 #[test]
 fn bvh_prints_a_line_per_builder_and_the_same_numbers_as_json() {
     let folder = tempfile::tempdir().unwrap();
     let table = succeeds(folder.path(), &["bvh", "head"]);
-    let lines: Vec<Vec<&str>> = table.lines().map(|line| line.split_whitespace().collect()).collect();
+    let lines: Vec<Vec<&str>> = table
+        .lines()
+        .map(|line| line.split_whitespace().collect())
+        .collect();
     let builders: Vec<&str> = lines.iter().map(|line| line[0]).collect();
-    assert_eq!(builders, ["builder", "none", "median", "sah", "ploc"], "{table}");
+    assert_eq!(
+        builders,
+        ["builder", "none", "median", "sah", "ploc"],
+        "{table}"
+    );
 
-    let json: Value = serde_json::from_str(&succeeds(folder.path(), &["bvh", "head", "--json"])).unwrap();
+    let json: Value =
+        serde_json::from_str(&succeeds(folder.path(), &["bvh", "head", "--json"])).unwrap();
     let rows = json.as_array().unwrap();
     for (line, row) in lines[1..].iter().zip(rows) {
         assert_eq!(line[0], row["builder"].as_str().unwrap());
-        for (column, key) in [(1, "triangles"), (2, "levels"), (3, "nodes"), (4, "leaves"), (5, "largest_leaf")] {
+        for (column, key) in [
+            (1, "triangles"),
+            (2, "levels"),
+            (3, "nodes"),
+            (4, "leaves"),
+            (5, "largest_leaf"),
+        ] {
             assert_eq!(line[column], row[key].to_string(), "{key} of {}", line[0]);
         }
-        let leaves: u64 = row["leaf_sizes"].as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).sum();
-        assert_eq!(leaves, row["leaves"].as_u64().unwrap(), "leaves in the histogram of {}", line[0]);
+        let leaves: u64 = row["leaf_sizes"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|n| n.as_u64().unwrap())
+            .sum();
+        assert_eq!(
+            leaves,
+            row["leaves"].as_u64().unwrap(),
+            "leaves in the histogram of {}",
+            line[0]
+        );
         assert!(row["bytes_per_triangle"].as_f64().unwrap() > 0.0);
     }
     let value = |i: usize, key: &str| rows[i][key].as_f64().unwrap();
@@ -68,7 +107,16 @@ fn bvh_prints_a_line_per_builder_and_the_same_numbers_as_json() {
 #[test]
 fn bench_prints_a_markdown_table_with_a_column_per_builder() {
     let folder = tempfile::tempdir().unwrap();
-    let arguments = ["bench", "cornell-box", "--size", "20x20", "--spp", "1", "--runs", "2"];
+    let arguments = [
+        "bench",
+        "cornell-box",
+        "--size",
+        "20x20",
+        "--spp",
+        "1",
+        "--runs",
+        "2",
+    ];
     let text = succeeds(folder.path(), &arguments);
     let rows: Vec<Vec<&str>> = text
         .lines()
@@ -77,9 +125,16 @@ fn bench_prints_a_markdown_table_with_a_column_per_builder() {
         .collect();
     assert_eq!(rows[0], ["", "none", "median", "SAH", "PLOC"], "{text}");
     assert!(rows.iter().all(|row| row.len() == 5), "{text}");
-    let find = |name: &str| rows.iter().find(|row| row[0] == name).unwrap_or_else(|| panic!("no {name}: {text}"));
+    let find = |name: &str| {
+        rows.iter()
+            .find(|row| row[0] == name)
+            .unwrap_or_else(|| panic!("no {name}: {text}"))
+    };
     let times = |name: &str| -> Vec<f64> {
-        find(name)[1..].iter().map(|cell| cell.trim_end_matches(" ms").parse().unwrap()).collect()
+        find(name)[1..]
+            .iter()
+            .map(|cell| cell.trim_end_matches(" ms").parse().unwrap())
+            .collect()
     };
     let (least, median, most) = (
         times("Time to render, least"),
@@ -93,9 +148,14 @@ fn bench_prints_a_markdown_table_with_a_column_per_builder() {
     find("BVH levels");
     find("Max triangles per leaf");
 
-    let knot = ["bench", "knot", "--size", "4x4", "--spp", "1", "--runs", "1"];
+    let knot = [
+        "bench", "knot", "--size", "4x4", "--spp", "1", "--runs", "1",
+    ];
     let text = succeeds(folder.path(), &knot);
-    assert!(text.contains("|  | median | SAH | PLOC |") && text.contains("--with-none"), "{text}");
+    assert!(
+        text.contains("|  | median | SAH | PLOC |") && text.contains("--with-none"),
+        "{text}"
+    );
 }
 
 #[test]
@@ -106,7 +166,10 @@ fn scenes_are_listed_one_a_line() {
     assert_eq!(text.lines().count(), scenes.len());
     for (line, scene) in text.lines().zip(scenes) {
         assert!(line.starts_with(scene.name), "{line}");
-        assert!(line.contains(" triangles ") && line.contains(" light"), "{line}");
+        assert!(
+            line.contains(" triangles ") && line.contains(" light"),
+            "{line}"
+        );
         assert!(line.ends_with(scene.sentence), "{line}");
     }
 }
@@ -119,13 +182,22 @@ fn help_lists_every_setting_and_the_version_is_the_packages() {
         assert!(help.contains(setting.path), "{} is missing", setting.path);
     }
     let version = succeeds(folder.path(), &["--version"]);
-    assert_eq!(version.trim(), format!("glassbox {}", env!("CARGO_PKG_VERSION")));
+    assert_eq!(
+        version.trim(),
+        format!("glassbox {}", env!("CARGO_PKG_VERSION"))
+    );
 }
 
 #[test]
 fn nothing_is_drawn_over_itself_where_the_output_is_no_terminal() {
     let folder = tempfile::tempdir().unwrap();
-    let output = glassbox(folder.path(), &["render", "triangle", "-o", "a.png", "--size", "9x9"]);
+    let output = glassbox(
+        folder.path(),
+        &["render", "triangle", "-o", "a.png", "--size", "9x9"],
+    );
     let (out, err) = texts(&output);
-    assert!(!out.contains(['\r', '\x1b']) && err.is_empty(), "stdout: {out:?}\nstderr: {err:?}");
+    assert!(
+        !out.contains(['\r', '\x1b']) && err.is_empty(),
+        "stdout: {out:?}\nstderr: {err:?}"
+    );
 }

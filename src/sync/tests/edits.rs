@@ -4,8 +4,8 @@
 use super::*;
 use crate::bvh::Ray;
 use crate::scene::{
-    Builder, DirectionalLamp, Environment, Levels, ParallelogramLamp, PhongMaps, RenderSettings,
-    SceneId, SegmentLamp, UsesMaterial,
+    Builder, DirectionalLamp, Environment, Levels, Motion, ParallelogramLamp, PhongMaps,
+    RenderSettings, SceneId, SegmentLamp, UsesMaterial,
 };
 use crate::sync::TracedCameras;
 use bevy::camera::visibility::Visibility;
@@ -194,6 +194,7 @@ impl Edited {
         settings.tree.builder = builder;
         settings.tree.levels = levels;
         settings.features.environment = environment;
+        settings.features.motion = !environment;
         world.resource_mut::<Environment>().background = background;
     }
 
@@ -201,7 +202,7 @@ impl Edited {
         let image = self.images[self.dice.below(self.images.len())].clone();
         let mesh = self.meshes[self.dice.below(self.meshes.len())].clone();
         let target = self.any();
-        match self.dice.below(20) {
+        match self.dice.below(21) {
             0 | 1 => self.spawn_object(),
             2 => self.spawn_other(),
             3 => {
@@ -252,6 +253,20 @@ impl Edited {
             }
             17 => self.switch(),
             18 => self.edit_mesh(),
+            19 => {
+                if let Some(entity) = target {
+                    let velocity = self.dice.vector();
+                    let mut entity = self.app.world_mut().entity_mut(entity);
+                    if entity.contains::<Motion>() {
+                        entity.remove::<Motion>();
+                    } else {
+                        entity.insert(Motion {
+                            velocity,
+                            samples: 3,
+                        });
+                    }
+                }
+            }
             _ => self.edit_settings(),
         }
     }
@@ -288,6 +303,7 @@ impl Edited {
             copy::<SegmentLamp>(old, entity, world, twin);
             copy::<ParallelogramLamp>(old, entity, world, twin);
             copy::<SceneCamera>(old, entity, world, twin);
+            copy::<Motion>(old, entity, world, twin);
             if old.get::<Disabled>(entity).is_some() {
                 world.entity_mut(twin).insert(Disabled);
             }
@@ -346,9 +362,11 @@ fn describe(world: &trace::World) -> Vec<String> {
     for (object, instance) in world.objects.iter().zip(world.aggregate.instances()) {
         let triangles = object.mesh.tree.triangles();
         lines.push(format!(
-            "object {} material {} at {:?} {:?} {:?} {:?} {:?}",
+            "object {} material {} moving {:?} {} at {:?} {:?} {:?} {:?} {:?}",
             object.id,
             object.material,
+            instance.velocity(),
+            object.motion_samples,
             instance.world_from_object(),
             triangles.positions(),
             triangles.indices(),
@@ -382,7 +400,8 @@ fn assert_same(edited: &App, fresh: &App, dice: &mut Dice, edits: usize) -> usiz
     assert_eq!(cameras(edited), cameras(fresh), "after {edits} edits");
     let mut hits = 0;
     for _ in 0..1_000 {
-        let ray = Ray::new(dice.vector() * 8.0, dice.vector());
+        let mut ray = Ray::new(dice.vector() * 8.0, dice.vector());
+        ray.time = dice.number().abs();
         let hit = a.aggregate.closest_hit(&ray);
         assert_eq!(
             hit,

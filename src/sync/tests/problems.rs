@@ -177,10 +177,15 @@ fn lens_and_motion_count_only_where_the_settings_switch_them_on() {
     };
     assert_eq!(optics(&small.app).aperture_radius, 0.5);
     assert_eq!(optics(&small.app).velocity, Vec3::X);
+    let velocity = |app: &App| world(app).aggregate.instances()[0].velocity();
+    assert_eq!(velocity(&small.app), Vec3::X);
+    assert_eq!(world(&small.app).objects[0].motion_samples, 1);
     let mut settings = small.app.world_mut().resource_mut::<RenderSettings>();
     settings.features.lens = false;
     settings.features.motion = false;
-    assert!(frame(&mut small.app).cameras);
+    let changes = frame(&mut small.app);
+    assert!(changes.cameras && changes.top_level && changes.objects);
+    assert_eq!(velocity(&small.app), Vec3::ZERO);
     assert_eq!(optics(&small.app).aperture_radius, 0.0);
     assert_eq!(optics(&small.app).velocity, Vec3::ZERO);
 }
