@@ -1,6 +1,7 @@
 //! `glassbox bench`: the original report's performance test, for every builder.
 
 use super::Failure;
+use super::output::say;
 use super::progress::Progress;
 use super::settings::{BuilderArg, SettingArgs, check_scene};
 use super::stage::{SceneArgs, Stage, with_threads};
@@ -43,8 +44,7 @@ struct Column {
 pub(super) fn run(args: Bench) -> Result<(), Failure> {
     args.settings.check()?;
     let text = with_threads(args.settings.threads, || measure(&args))?;
-    print!("{text}");
-    Ok(())
+    say(text.trim_end())
 }
 
 fn measure(args: &Bench) -> Result<String, Failure> {

@@ -1,6 +1,7 @@
 //! `glassbox bvh`: what each builder makes of a scene.
 
 use super::Failure;
+use super::output::say;
 use super::settings::{BuilderArg, builder_name};
 use super::stage::{SceneArgs, Stage, with_threads};
 use super::stats::{build_time, triangles};
@@ -52,11 +53,10 @@ pub(super) fn run(args: Bvh) -> Result<(), Failure> {
     if args.json {
         let text = serde_json::to_string_pretty(&rows)
             .map_err(|error| Failure::System(error.to_string()))?;
-        println!("{text}");
+        say(text)
     } else {
-        print!("{}", table(&rows));
+        say(table(&rows).trim_end())
     }
-    Ok(())
 }
 
 /// One tree over all triangles, whatever the scene's own setting is, so that one row can say it all.

@@ -1,6 +1,7 @@
 //! `glassbox convert`: a scene in another format.
 
 use super::Failure;
+use super::output::{say, tell};
 use super::stage::{SceneArgs, Stage};
 use crate::io::{check_writable, save};
 use clap::Args;
@@ -23,9 +24,9 @@ pub(super) fn run(args: Convert) -> Result<(), Failure> {
     let notes = save(stage.app.world_mut(), &args.output)?;
     if !args.quiet {
         for note in notes {
-            eprintln!("note: {}: {note}", args.output.display());
+            tell("note", format_args!("{}: {note}", args.output.display()));
         }
-        println!("{}", args.output.display());
+        say(args.output.display())?;
     }
     Ok(())
 }

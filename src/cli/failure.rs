@@ -1,4 +1,6 @@
+use super::output::{one_line, tell};
 use crate::io::FileError;
+use std::io;
 use std::process::ExitCode;
 
 /// Why a command ends without a result.
@@ -19,48 +21,47 @@ pub enum Failure {
     /// The operating system refused something that is no file.
     #[error("{0}")]
     System(String),
+    /// Standard output could not be written to.
+    #[error("standard output: {0}")]
+    Output(io::Error),
 }
 
 impl Failure {
     /// Prints the failure in one line and gives the program's exit code.
     pub(super) fn report(self) -> ExitCode {
         match self {
+            // Help and version. A reader that closed the pipe has read enough.
             Self::Arguments(error) if !error.use_stderr() => {
-                // Help and version. A reader that closed the pipe has read enough.
                 let _ = error.print();
                 ExitCode::SUCCESS
             }
+            Self::Output(error) if error.kind() == io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
             Self::Arguments(error) => {
-                eprintln!("error: {}", one_line(&error.render().to_string()));
+                tell("error", without_usage(&error.render().to_string()));
                 ExitCode::from(2)
             }
             Self::Usage(text) => {
-                eprintln!("error: {}", joined(&text));
+                tell("error", text);
                 ExitCode::from(2)
             }
             other => {
-                eprintln!("error: {}", joined(&other.to_string()));
+                tell("error", other);
                 ExitCode::FAILURE
             }
         }
     }
 }
 
-/// What clap says about wrong arguments, without the usage that follows.
-fn one_line(text: &str) -> String {
+/// What clap says about wrong arguments, in one line and without the usage that follows.
+fn without_usage(text: &str) -> String {
     let said = text.split("\n\nUsage:").next().unwrap_or(text);
     let said = said
         .split("\n\nFor more information")
         .next()
         .unwrap_or(said);
     let said = said.trim_start_matches("error:");
-    let paragraphs: Vec<String> = said.split("\n\n").map(joined).collect();
+    let paragraphs: Vec<String> = said.split("\n\n").map(one_line).collect();
     format!("{}; see --help", paragraphs.join("; "))
-}
-
-/// A name from a file may hold a line break; the message stays one line.
-fn joined(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]
@@ -72,13 +73,12 @@ mod tests {
         let text = "error: the following required arguments were not provided:\n  <SCENE>\n\n\
                     Usage: glassbox render <SCENE>\n\nFor more information, try '--help'.\n";
         assert_eq!(
-            one_line(text),
+            without_usage(text),
             "the following required arguments were not provided: <SCENE>; see --help"
         );
-        let text =
-            "error: unexpected argument '-x' found\n\n  tip: use '-- -x'\n\nUsage: glassbox\n";
+        let text = "error: unexpected argument '-x' found\n\n  tip: use '-- -x'\n\nUsage: a\n";
         assert_eq!(
-            one_line(text),
+            without_usage(text),
             "unexpected argument '-x' found; tip: use '-- -x'; see --help"
         );
     }

@@ -8,6 +8,7 @@ mod bench;
 mod bvh;
 mod convert;
 mod failure;
+mod output;
 mod progress;
 mod render;
 mod scenes;

@@ -1,6 +1,7 @@
 //! `glassbox render`: a scene to picture files.
 
 use super::Failure;
+use super::output::say;
 use super::progress::Progress;
 use super::settings::{BuilderArg, SettingArgs, builder_name, check_scene, list};
 use super::stage::{SceneArgs, Stage, with_threads};
@@ -91,14 +92,14 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
         let spp = samples_per_pixel(&world, &camera.camera, &settings);
         write(file, &rendered, &settings)?;
         if !args.quiet {
-            println!(
+            say(format_args!(
                 "{}: {}x{}, {spp} spp, {:.2} s, {:.2} million rays/s",
                 file.display(),
                 settings.size.x,
                 settings.size.y,
                 rendered.seconds,
                 mrays_per_second(rendered.rays.total(), rendered.seconds),
-            );
+            ))?;
         }
         stats.spp = stats.spp.max(spp);
         stats.render_ms += rendered.seconds * 1e3;

@@ -1,6 +1,7 @@
 //! `glassbox scenes`: what the program brings along.
 
 use super::Failure;
+use super::output::say;
 use crate::app::headless_app;
 use crate::io::builtin::SCENES;
 use crate::io::{OpenOptions, SceneSource, open};
@@ -26,7 +27,9 @@ pub(super) fn run() -> Result<(), Failure> {
         let (triangles, lights) = (triangles(app.world_mut()), lights(app.world_mut()));
         let (name, sentence) = (scene.name, scene.sentence);
         let plural = if lights == 1 { " " } else { "s" };
-        println!("{name:width$}  {triangles:>6} triangles  {lights} light{plural}  {sentence}");
+        say(format_args!(
+            "{name:width$}  {triangles:>6} triangles  {lights} light{plural}  {sentence}"
+        ))?;
     }
     Ok(())
 }

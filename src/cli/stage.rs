@@ -1,6 +1,7 @@
 //! Opening a scene for a command: the app, its notes and warnings, and the threads it runs on.
 
 use super::Failure;
+use super::output::tell;
 use crate::app::headless_app;
 use crate::io::{LoadProblems, OpenOptions, SceneSource, open};
 use crate::scene::RenderSettings;
@@ -39,13 +40,11 @@ impl Stage {
         let opened = open(app.world_mut(), &SceneSource::named(&args.scene), options)?;
         if !quiet {
             for note in &opened.notes {
-                eprintln!("note: {}: {note}", opened.name);
+                tell("note", format_args!("{}: {note}", opened.name));
             }
             for problem in &app.world().resource::<LoadProblems>().problems {
-                eprintln!(
-                    "warning: {}: {}: {}",
-                    opened.name, problem.what, problem.error
-                );
+                let (what, error) = (problem.what, &problem.error);
+                tell("warning", format_args!("{}: {what}: {error}", opened.name));
             }
         }
         Ok(Self {
@@ -71,7 +70,7 @@ impl Stage {
         if !self.quiet {
             // The same scene is synced again for the next builder; it is warned of once.
             for problem in traced.problems.iter().skip(self.warned) {
-                eprintln!("warning: {}: {problem}", self.name);
+                tell("warning", format_args!("{}: {problem}", self.name));
             }
         }
         self.warned = self.warned.max(traced.problems.len());

@@ -1,6 +1,7 @@
 //! `glassbox` without a command: until there is a window, it says what it can do and shows it.
 
 use super::Failure;
+use super::output::say;
 use super::render::{Render, run as render};
 use super::settings::SettingArgs;
 use super::stage::SceneArgs;
@@ -8,7 +9,7 @@ use crate::io::builtin::DEFAULT;
 use std::path::{Path, PathBuf};
 
 pub(super) fn run(scene: Option<PathBuf>) -> Result<(), Failure> {
-    println!(
+    say(format_args!(
         "Glassbox {}: a scene editor whose ray tracer you can see into.\n\
          There is no window yet; these commands work without one:\n\
          \x20 glassbox render SCENE -o OUT   a scene to a picture (.png, .jpg, .exr, .hdr)\n\
@@ -18,7 +19,7 @@ pub(super) fn run(scene: Option<PathBuf>) -> Result<(), Failure> {
          \x20 glassbox convert IN OUT        .scn.ron, .obj and .glb from one to the other\n\
          Each explains itself with --help.",
         env!("CARGO_PKG_VERSION")
-    );
+    ))?;
     let scene = scene.unwrap_or_else(|| PathBuf::from(DEFAULT));
     let output = picture_name(&scene);
     render(Render {

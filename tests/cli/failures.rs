@@ -161,3 +161,36 @@ fn a_file_that_is_there_stays_as_it_was_when_rendering_fails() {
     );
     assert_eq!(std::fs::read(&picture).unwrap(), b"precious");
 }
+
+#[test]
+fn a_reader_that_closes_the_pipe_is_no_error_and_a_full_disk_is_one() {
+    use std::process::{Command, Stdio};
+    let run = |stdout: Stdio, close: bool| {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_glassbox"))
+            .arg("scenes")
+            .stdout(stdout)
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        if close {
+            drop(child.stdout.take());
+        }
+        let output = child.wait_with_output().unwrap();
+        let (_, err) = texts(&output);
+        (output.status.code(), err)
+    };
+    assert_eq!(run(Stdio::piped(), true), (Some(0), String::new()));
+    #[cfg(target_os = "linux")]
+    {
+        let full = std::fs::File::options()
+            .write(true)
+            .open("/dev/full")
+            .unwrap();
+        let (code, err) = run(full.into(), false);
+        assert_eq!(code, Some(1), "{err}");
+        assert!(
+            err.starts_with("error: standard output: ") && err.lines().count() == 1,
+            "{err}"
+        );
+    }
+}

@@ -3,6 +3,7 @@
 
 use super::*;
 use crate::bvh::Ray;
+use crate::film;
 use crate::scene::{
     Builder, DirectionalLamp, Environment, Levels, Motion, ParallelogramLamp, PhongMaps,
     RenderSettings, SceneId, SegmentLamp, UsesMaterial,
@@ -12,7 +13,7 @@ use bevy::camera::visibility::Visibility;
 use bevy::ecs::component::{Component, Mutable};
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::hierarchy::{ChildOf, Children};
-use bevy::math::{Quat, Vec3};
+use bevy::math::{Quat, UVec2, Vec3};
 use bevy::platform::collections::HashMap;
 
 /// SplitMix64 (Steele, Lea, Flood 2014).
@@ -398,6 +399,20 @@ fn assert_same(edited: &App, fresh: &App, dice: &mut Dice, edits: usize) -> usiz
     assert_eq!(problems(edited), problems(fresh), "after {edits} edits");
     let cameras = |app: &App| app.world().resource::<TracedCameras>().0.clone();
     assert_eq!(cameras(edited), cameras(fresh), "after {edits} edits");
+    let settings = RenderSettings {
+        size: UVec2::splat(16),
+        spp: 2,
+        ..edited.world().resource::<RenderSettings>().clone()
+    };
+    for camera in cameras(edited) {
+        let render = |world| film::render(world, &camera.camera, &settings, &|_, _| {}).picture;
+        assert_eq!(
+            render(&a),
+            render(&b),
+            "after {edits} edits, {}",
+            camera.name
+        );
+    }
     let mut hits = 0;
     for _ in 0..1_000 {
         let mut ray = Ray::new(dice.vector() * 8.0, dice.vector());

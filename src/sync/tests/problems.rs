@@ -165,11 +165,10 @@ fn lens_and_motion_count_only_where_the_settings_switch_them_on() {
         velocity: Vec3::X,
         samples: 1,
     };
-    small
-        .app
-        .world_mut()
-        .entity_mut(small.camera)
-        .insert((lens, motion));
+    for entity in [small.camera, small.objects[0]] {
+        let components = (lens.clone(), motion.clone());
+        small.app.world_mut().entity_mut(entity).insert(components);
+    }
     small.app.update();
     let optics = |app: &App| {
         let cameras = app.world().resource::<crate::sync::TracedCameras>();
