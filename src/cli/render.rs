@@ -6,11 +6,11 @@ use super::progress::Progress;
 use super::settings::{BuilderArg, SettingArgs, builder_name, check_scene, list};
 use super::stage::{SceneArgs, Stage, with_threads};
 use super::stats::{Stats, build_time, mrays_per_second, triangles};
-use crate::film::{Rendered, render, view_transform};
+use crate::film::{Rendered, develop, render};
 use crate::io::{FileError, PictureFormat, check_writable, replace_file, write_picture};
 use crate::scene::RenderSettings;
 use crate::sync::TracedCamera;
-use crate::trace::{RayCounts, samples_per_pixel};
+use crate::trace::RayCounts;
 use clap::Args;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,8 @@ use std::path::{Path, PathBuf};
 pub(super) struct Render {
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// Picture file: .png, .jpg, .exr or .hdr; with several cameras OUT-CAMERA.png and so on
+    /// Picture file: .png or .jpg as a screen shows it, .exr or .hdr as linear light, before bloom,
+    /// exposure and view transform; with several cameras OUT-CAMERA.png and so on
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
     #[command(flatten)]
@@ -89,7 +90,8 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
             progress.show(done, all);
         });
         drop(progress);
-        let spp = samples_per_pixel(&world, &camera.camera, &settings);
+        // Fewer than asked for where an error or a time ended it.
+        let spp = rendered.status.samples.round() as u32;
         write(file, &rendered, &settings)?;
         if !args.quiet {
             say(format_args!(
@@ -126,7 +128,7 @@ pub(super) fn write(
             .map(|pixel| pixel.to_array())
             .collect()
     } else {
-        view_transform(picture, &settings.output)
+        develop(picture, &settings.output)
     };
     write_picture(file, picture.width, picture.height, &pixels)
 }

@@ -63,6 +63,7 @@ pub const SETTINGS: &[Setting] = {
             "n of n x n jittered samples of each pixel",
         ),
         row("seed", Integer(0, u32::MAX), "chooses the random numbers"),
+        row("sequence", Choice, "where the random numbers come from"),
         row(
             "sampling.adaptive",
             Switch,
@@ -154,6 +155,26 @@ pub const SETTINGS: &[Setting] = {
             "tree.preset",
             Choice,
             "how much time Ploc takes for a better tree",
+        ),
+        row(
+            "output.bloom.enabled",
+            Switch,
+            "bright places spill light over their surroundings",
+        ),
+        row(
+            "output.bloom.threshold",
+            Number(0.0, 1.0),
+            "linear value above which a pixel is bright",
+        ),
+        row(
+            "output.bloom.intensity",
+            Number(0.0, 1.0),
+            "part of the bright light that is added",
+        ),
+        row(
+            "output.bloom.sigma",
+            Number(0.0, 1000.0),
+            "width of the blur in pixels",
         ),
         row("output.exposure", Number(-64.0, 64.0), "in stops"),
         row(
