@@ -6,3 +6,4 @@ mod cli;
 mod convergence;
 mod effects;
 mod files;
+mod hard_cases;

@@ -36,7 +36,7 @@ impl Batch<'_> {
         if weight == Vec3::ZERO {
             return;
         }
-        let at = surface.position;
+        let at = surface.point.position;
         for light in &lights.points {
             self.gather_point(path, surface, light.point(at, lighting), weight, workspace);
         }
@@ -177,7 +177,7 @@ impl Batch<'_> {
 
 /// From a surface to a light point, ending just before it.
 fn shadow_ray(surface: &Surface, point: &LightPoint, time: f32) -> Ray {
-    let origin = surface.spawn(point.direction);
+    let origin = surface.point.leave(point.direction);
     if point.distance == f32::INFINITY {
         return Ray {
             origin,
@@ -187,7 +187,7 @@ fn shadow_ray(surface: &Surface, point: &LightPoint, time: f32) -> Ray {
         };
     }
     // From the moved origin to the light itself, so that the ray still ends there.
-    let to_light = surface.position + point.distance * point.direction - origin;
+    let to_light = surface.point.position + point.distance * point.direction - origin;
     Ray {
         origin,
         direction: to_light,

@@ -75,7 +75,7 @@ impl Batch<'_> {
                 mirrored
             };
             workspace.next.push(Path {
-                origin: surface.spawn(direction),
+                origin: surface.point.leave(direction),
                 direction,
                 throughput: throughput / count as f32,
                 cone: path
@@ -132,7 +132,7 @@ impl Batch<'_> {
             let direction = offset_direction(straight, -surface.geometric_normal, radius, u)
                 .unwrap_or(straight);
             workspace.next.push(Path {
-                origin: surface.spawn(direction),
+                origin: surface.point.leave(direction),
                 direction,
                 throughput: throughput / count as f32,
                 cone: path.cone.reflected(hit.t, 1.0 / surface.shininess),

@@ -1,16 +1,14 @@
 use super::World;
 use super::footprint::texture_footprint;
-use crate::bvh::{Hit, Ray};
+use crate::bvh::{Hit, Ray, SurfacePoint};
 use crate::scene::{Lighting, RenderSettings, TextureFilter};
 use glam::{Vec2, Vec3};
 
 /// A place on a surface, with everything that shading reads.
 #[derive(Clone, Debug)]
 pub struct Surface {
-    /// World space; within `error` of the exact point in each coordinate.
-    pub position: Vec3,
-    /// Bound of the rounding error of `position`.
-    pub error: Vec3,
+    /// Where it is, how far that may be off, and the triangle's own normal.
+    pub point: SurfacePoint,
     /// Unit normal of the triangle, turned to the viewer.
     pub geometric_normal: Vec3,
     /// Unit normal for shading: Physical turns it to the viewer's side, Classic takes it as given.
@@ -94,8 +92,7 @@ impl Surface {
             opacity = 1.0;
         }
         Self {
-            position: point.position,
-            error: point.error,
+            point,
             geometric_normal,
             normal,
             to_viewer,
@@ -110,8 +107,11 @@ impl Surface {
     /// A matt grey surface at `position`, seen from its normal's side; exact. For the probe and for tests.
     pub fn flat(position: Vec3, normal: Vec3, to_viewer: Vec3) -> Self {
         Self {
-            position,
-            error: Vec3::ZERO,
+            point: SurfacePoint {
+                position,
+                error: Vec3::ZERO,
+                normal,
+            },
             geometric_normal: normal,
             normal,
             to_viewer,
@@ -121,30 +121,6 @@ impl Surface {
             opacity: 1.0,
             emission: Vec3::ZERO,
         }
-    }
-
-    /// Where a ray along `direction` starts, so that it does not meet this surface again: moved
-    /// along the geometric normal, to the side that the ray leaves by, out of the box in which the
-    /// exact point lies (Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 6.8.6).
-    pub fn spawn(&self, direction: Vec3) -> Vec3 {
-        let n = self.geometric_normal;
-        let side = if direction.dot(n) < 0.0 { -1.0 } else { 1.0 };
-        let offset = side * n.abs().dot(self.error) * n;
-        let away = |p: f32, d: f32| {
-            let moved = p + d;
-            if d > 0.0 {
-                moved.next_up()
-            } else if d < 0.0 {
-                moved.next_down()
-            } else {
-                moved
-            }
-        };
-        Vec3::new(
-            away(self.position.x, offset.x),
-            away(self.position.y, offset.y),
-            away(self.position.z, offset.z),
-        )
     }
 
     /// The direction of a mirror's ray. Where a smooth normal would send it into the surface, it is
