@@ -23,7 +23,10 @@ const CEILING: f32 = 548.8;
 const DROP: f32 = 0.5;
 
 /// Name, paint, glow and corners in the published order, which goes counter-clockwise as seen from inside.
-const WALLS: [(&str, [f32; 3], f32, [[f32; 3]; 4]); 5] = [
+type Wall = (&'static str, [f32; 3], f32, [[f32; 3]; 4]);
+
+/// The walls as published.
+const WALLS: [Wall; 5] = [
     (
         "Floor",
         WHITE,
