@@ -10,7 +10,8 @@
 //! on a thread of its own.
 //!
 //! Nothing here traces a ray but those two, which hand batches of samples to
-//! [`trace::radiance`](crate::trace::radiance()).
+//! [`trace::radiance`](crate::trace::radiance()), and [`FirstHits::trace`]. Bloom, exposure, view
+//! transforms and [`views`] read what was traced.
 
 mod adaptive;
 mod agx;
@@ -18,6 +19,7 @@ mod bloom;
 mod control;
 mod engine;
 mod error;
+mod first_hits;
 mod gaussian;
 mod picture;
 mod preview;
@@ -32,10 +34,12 @@ mod test_scene;
 mod tile_state;
 mod tiles;
 mod view_transform;
+pub mod views;
 
 pub use agx::agx;
 pub use bloom::{BloomError, bloom_layer, bloom_threshold, check_bloom, with_bloom};
 pub use error::{ErrorEstimate, RELATIVE_FLOOR};
+pub use first_hits::FirstHits;
 pub use gaussian::{MAX_SIGMA, blurred, kernel};
 pub use picture::Picture;
 pub use progressive::{Progressive, Snapshot};

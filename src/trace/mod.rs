@@ -14,6 +14,7 @@ pub mod camera;
 mod direct;
 mod disc;
 mod environment;
+mod first_hit;
 mod footprint;
 pub mod lights;
 mod material;
@@ -30,6 +31,7 @@ mod world;
 
 pub use camera::{Camera, Optics};
 pub use environment::Environment;
+pub use first_hit::{FirstHit, central_hits, central_ray, first_hits};
 pub use footprint::Cone;
 pub use lights::{
     DirectionalLight, LightPoint, Lights, ParallelogramLight, PointLight, SegmentLight, SpotCone,

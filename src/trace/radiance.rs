@@ -15,6 +15,34 @@ pub struct SampleId {
     pub index: u64,
 }
 
+impl SampleId {
+    /// The random numbers of the sample's pixel.
+    pub(super) fn sampler(self, settings: &RenderSettings) -> Sampler {
+        let UVec2 { x, y } = self.pixel;
+        Sampler::new(x, y, settings.seed, settings.sequence)
+    }
+}
+
+/// The camera's ray of a sample: through its place in the pixel, from its place on the lens, at its
+/// shutter time where anything moves.
+pub(super) fn sample_ray(
+    world: &World,
+    camera: &Camera,
+    settings: &RenderSettings,
+    sample: SampleId,
+) -> Ray {
+    let SampleId { pixel, index } = sample;
+    let sampler = sample.sampler(settings);
+    let moves = settings.features.motion
+        && (camera.optics.velocity != Vec3::ZERO || world.needs.motion_samples > 0);
+    let time = if moves {
+        camera.time(sampler.block(index, Purpose::Time, 0)[0])
+    } else {
+        0.0
+    };
+    camera.sample_ray(pixel, settings.size, index, sampler, settings.pixel, time)
+}
+
 /// Rays traced, by what they were for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 #[expect(missing_docs, reason = "the names say it all")]
@@ -134,39 +162,22 @@ pub(super) struct Batch<'a> {
 impl Batch<'_> {
     /// The random numbers of a sample of the batch, and its index in its pixel.
     pub(super) fn sampler(&self, sample: u32) -> (Sampler, u64) {
-        let SampleId { pixel, index } = self.samples[sample as usize];
-        let settings = self.settings;
-        let sampler = Sampler::new(pixel.x, pixel.y, settings.seed, settings.sequence);
-        (sampler, index)
+        let sample = self.samples[sample as usize];
+        (sample.sampler(self.settings), sample.index)
     }
 
     /// One path per sample, at the camera.
     fn start(&mut self, camera: &Camera, workspace: &mut Workspace) {
         workspace.paths.clear();
         let cone = Cone::of_pixel(camera, self.settings.size);
-        let moves = self.settings.features.motion
-            && (camera.optics.velocity != Vec3::ZERO || self.world.needs.motion_samples > 0);
-        for (i, sample) in self.samples.iter().enumerate() {
-            let (sampler, index) = self.sampler(i as u32);
-            let time = if moves {
-                camera.time(sampler.block(index, Purpose::Time, 0)[0])
-            } else {
-                0.0
-            };
-            let ray = camera.sample_ray(
-                sample.pixel,
-                self.settings.size,
-                index,
-                sampler,
-                self.settings.pixel,
-                time,
-            );
+        for (i, &sample) in self.samples.iter().enumerate() {
+            let ray = sample_ray(self.world, camera, self.settings, sample);
             workspace.paths.push(Path {
                 origin: ray.origin,
                 direction: ray.direction,
                 throughput: Vec3::ONE,
                 cone,
-                time,
+                time: ray.time,
                 sample: i as u32,
                 name: 0,
                 bounces: 0,

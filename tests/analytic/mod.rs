@@ -2,6 +2,7 @@
 
 mod irradiance;
 mod mirrors;
+mod views;
 
 use glam::{UVec2, Vec3};
 use glassbox::bvh::{Aggregate, BuildOptions, Instance, MeshTree, Triangles};

@@ -1,0 +1,112 @@
+//! What camera rays meet first, and what finding it cost: no shading, no further ray.
+
+use super::radiance::sample_ray;
+use super::{Camera, Cone, SampleId, Surface, World};
+use crate::bvh::{Counters, Ray};
+use crate::scene::{PixelSampling, RenderSettings, SceneId};
+use glam::{UVec2, Vec2, Vec3};
+
+/// What one camera ray meets first. Surfaces only: lights have none, and a surface counts however
+/// transparent it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FirstHit {
+    /// kd, texture included; black for a miss.
+    pub albedo: Vec3,
+    /// Unit normal for shading, in world space; zero for a miss.
+    pub normal: Vec3,
+    /// Metres from the ray's start; infinite for a miss.
+    pub depth: f32,
+    /// The object; `None` for a miss.
+    pub object: Option<SceneId>,
+    /// What the traversal of this single ray cost, whatever kernel the picture was traced with.
+    pub cost: Counters,
+}
+
+impl FirstHit {
+    /// A ray that meets nothing, at no cost.
+    pub const MISS: Self = Self {
+        albedo: Vec3::ZERO,
+        normal: Vec3::ZERO,
+        depth: f32::INFINITY,
+        object: None,
+        cost: Counters {
+            boxes: 0,
+            nodes: 0,
+            triangles: 0,
+        },
+    };
+}
+
+/// What the camera rays of samples meet: the very rays that [`radiance`](super::radiance()) begins
+/// with, lens, shutter and place in the pixel included. `hits[i]` becomes that of `samples[i]`.
+///
+/// # Panics
+/// If there is not exactly one hit for each sample.
+pub fn first_hits(
+    world: &World,
+    camera: &Camera,
+    settings: &RenderSettings,
+    samples: &[SampleId],
+    hits: &mut [FirstHit],
+) {
+    assert_eq!(samples.len(), hits.len(), "one hit for each sample");
+    let cone = Cone::of_pixel(camera, settings.size);
+    for (hit, &sample) in hits.iter_mut().zip(samples) {
+        let ray = sample_ray(world, camera, settings, sample);
+        *hit = first_hit(world, settings, cone, &ray);
+    }
+}
+
+/// What the central rays of pixels meet. `hits[i]` becomes that of `pixels[i]`.
+///
+/// # Panics
+/// If there is not exactly one hit for each pixel.
+pub fn central_hits(
+    world: &World,
+    camera: &Camera,
+    settings: &RenderSettings,
+    pixels: &[UVec2],
+    hits: &mut [FirstHit],
+) {
+    assert_eq!(pixels.len(), hits.len(), "one hit for each pixel");
+    let cone = Cone::of_pixel(camera, settings.size);
+    for (hit, &pixel) in hits.iter_mut().zip(pixels) {
+        *hit = first_hit(world, settings, cone, &central_ray(camera, settings, pixel));
+    }
+}
+
+/// The ray through the middle of a pixel (through its corner where all samples lie there) and the
+/// middle of the lens, when the shutter opens (with motion off: at t = 0).
+pub fn central_ray(camera: &Camera, settings: &RenderSettings, pixel: UVec2) -> Ray {
+    let place = match settings.pixel {
+        PixelSampling::Area | PixelSampling::Center => Vec2::splat(0.5),
+        PixelSampling::Corner => Vec2::new(0.0, 1.0),
+    };
+    let middle_of_lens = [0.5; 2];
+    let time = if settings.features.motion {
+        camera.optics.shutter[0]
+    } else {
+        0.0
+    };
+    camera.ray(pixel.as_vec2() + place, settings.size, middle_of_lens, time)
+}
+
+fn first_hit(world: &World, settings: &RenderSettings, cone: Cone, ray: &Ray) -> FirstHit {
+    let mut cost = Counters::default();
+    let Some(hit) = world.aggregate.closest_hit_with(ray, &mut cost) else {
+        return FirstHit {
+            cost,
+            ..FirstHit::MISS
+        };
+    };
+    let depth = hit.t * ray.direction.length();
+    let width = cone.width_at(depth);
+    let surface = Surface::at(world, settings, ray, width, &hit);
+    FirstHit {
+        albedo: surface.diffuse,
+        normal: surface.normal,
+        depth,
+        object: Some(SceneId(world.objects[hit.instance as usize].id)),
+        cost,
+    }
+}
