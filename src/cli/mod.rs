@@ -16,6 +16,7 @@ mod set;
 mod settings;
 mod stage;
 mod stats;
+mod view;
 mod welcome;
 
 pub use failure::Failure;

@@ -6,7 +6,9 @@ use super::progress::Progress;
 use super::settings::{BuilderArg, SettingArgs, builder_name, check_scene, list};
 use super::stage::{SceneArgs, Stage, with_threads};
 use super::stats::{Stats, build_time, mrays_per_second, triangles};
-use crate::film::{Rendered, develop, render};
+use super::view::ViewArgs;
+use crate::film::views::View;
+use crate::film::{FirstHits, Rendered, develop, render};
 use crate::io::{FileError, PictureFormat, check_writable, replace_file, write_picture};
 use crate::scene::RenderSettings;
 use crate::sync::TracedCamera;
@@ -14,6 +16,7 @@ use crate::trace::RayCounts;
 use clap::Args;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 #[derive(Args)]
 #[command(after_help = list())]
@@ -26,6 +29,8 @@ pub(super) struct Render {
     pub output: PathBuf,
     #[command(flatten)]
     pub settings: SettingArgs,
+    #[command(flatten)]
+    pub view: ViewArgs,
     /// Camera to render from, by its name; may be given several times (default: the first)
     #[arg(long, value_name = "NAME", conflicts_with = "all_cameras")]
     pub camera: Vec<String>,
@@ -46,6 +51,7 @@ pub(super) struct Render {
 pub(super) fn run(args: Render) -> Result<(), Failure> {
     args.settings.check()?;
     PictureFormat::of(&args.output)?;
+    args.view.check(&args.output)?;
     if let Some(file) = &args.stats {
         check_writable(file)?;
     }
@@ -85,6 +91,14 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
         mrays_per_s: 0.0,
     };
     for (camera, file) in cameras.iter().zip(&files) {
+        if args.view.is_of_first_hits() {
+            let start = Instant::now();
+            let hits = FirstHits::trace(&world, &camera.camera, &settings);
+            stats.render_ms += start.elapsed().as_secs_f64() * 1e3;
+            stats.rays.camera += hits.rays;
+            args.view.write_first_hits(file, &hits, &settings.output)?;
+            continue;
+        }
         let progress = Progress::new(args.quiet, &camera.name);
         let rendered = render(&world, &camera.camera, &settings, &|done, all| {
             progress.show(done, all);
@@ -92,7 +106,12 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
         drop(progress);
         // Fewer than asked for where an error or a time ended it.
         let spp = rendered.status.samples.round() as u32;
-        write(file, &rendered, &settings)?;
+        if args.view.view == View::Shaded {
+            write(file, &rendered, &settings)?;
+        } else {
+            args.view
+                .write_rendered(file, &rendered, &settings.output)?;
+        }
         if !args.quiet {
             say(format_args!(
                 "{}: {}x{}, {spp} spp, {:.2} s, {:.2} million rays/s",

@@ -4,40 +4,10 @@
 //! nothing is written into what is being read. The rule at the border: [`blurred`].
 
 use super::Picture;
-use super::gaussian::{MAX_SIGMA, blurred};
+use super::gaussian::blurred;
 use crate::scene::Bloom;
 use glam::Vec3;
 use rayon::prelude::*;
-
-/// A setting of [`Bloom`] that means nothing.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("bloom {setting} is {value}: give a number from 0 to {largest}")]
-pub struct BloomError {
-    /// The field's name.
-    pub setting: &'static str,
-    /// What it was.
-    pub value: f32,
-    /// The end of its range.
-    pub largest: f32,
-}
-
-/// Says what is wrong with the settings, if anything is.
-pub fn check_bloom(bloom: &Bloom) -> Result<(), BloomError> {
-    for (setting, value, largest) in [
-        ("threshold", bloom.threshold, 1.0),
-        ("intensity", bloom.intensity, 1.0),
-        ("sigma", bloom.sigma, MAX_SIGMA),
-    ] {
-        if !(0.0..=largest).contains(&value) {
-            return Err(BloomError {
-                setting,
-                value,
-                largest,
-            });
-        }
-    }
-    Ok(())
-}
 
 /// The pixels whose largest component exceeds the threshold, as they are; the rest is black.
 ///
@@ -144,36 +114,5 @@ mod tests {
             ..BLOOM
         };
         assert_eq!(with_bloom(&picture, &high), picture);
-    }
-
-    #[test]
-    fn settings_out_of_range_are_named() {
-        assert_eq!(check_bloom(&Bloom::default()), Ok(()));
-        for (bloom, named) in [
-            (
-                Bloom {
-                    threshold: f32::NAN,
-                    ..BLOOM
-                },
-                "threshold",
-            ),
-            (
-                Bloom {
-                    intensity: -0.1,
-                    ..BLOOM
-                },
-                "intensity",
-            ),
-            (
-                Bloom {
-                    sigma: 2000.0,
-                    ..BLOOM
-                },
-                "sigma",
-            ),
-        ] {
-            let message = check_bloom(&bloom).unwrap_err().to_string();
-            assert!(message.contains(named), "{message}");
-        }
     }
 }

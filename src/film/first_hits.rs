@@ -23,6 +23,8 @@ pub struct FirstHits {
     pub normals: Vec<Vec3>,
     /// The part of the pixel's samples that meet anything, in [0, 1].
     pub coverage: Vec<f32>,
+    /// Camera rays that were traced for all this.
+    pub rays: u64,
 }
 
 impl FirstHits {
@@ -45,6 +47,7 @@ impl FirstHits {
             albedo: Vec::new(),
             normals: Vec::new(),
             coverage: Vec::new(),
+            rays: u64::from(width) * u64::from(height) * u64::from(samples + 1),
         };
         for row in rows {
             all.centers.extend(row.centers);

@@ -21,6 +21,7 @@ mod engine;
 mod error;
 mod first_hits;
 mod gaussian;
+mod per_pixel;
 mod picture;
 mod preview;
 mod progressive;
@@ -37,7 +38,7 @@ mod view_transform;
 pub mod views;
 
 pub use agx::agx;
-pub use bloom::{BloomError, bloom_layer, bloom_threshold, check_bloom, with_bloom};
+pub use bloom::{bloom_layer, bloom_threshold, with_bloom};
 pub use error::{ErrorEstimate, RELATIVE_FLOOR};
 pub use first_hits::FirstHits;
 pub use gaussian::{MAX_SIGMA, blurred, kernel};

@@ -80,6 +80,10 @@ impl Film {
         self.pixels[self.place(x, y)].count
     }
 
+    pub(super) fn pixel(&self, x: u32, y: u32) -> &FilmPixel {
+        &self.pixels[self.place(x, y)]
+    }
+
     fn place(&self, x: u32, y: u32) -> usize {
         let columns = self.size.x.div_ceil(TILE) as usize;
         let tile = (y / TILE) as usize * columns + (x / TILE) as usize;

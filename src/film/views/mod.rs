@@ -123,6 +123,14 @@ impl View {
             Self::Error => Source::Errors,
         }
     }
+
+    /// Whether it shows one number a pixel, on a scale.
+    pub fn is_heatmap(self) -> bool {
+        matches!(
+            self,
+            Self::Depth | Self::Nodes | Self::Triangles | Self::Samples | Self::Error
+        )
+    }
 }
 
 impl fmt::Display for View {
