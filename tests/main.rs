@@ -7,3 +7,4 @@ mod convergence;
 mod effects;
 mod files;
 mod hard_cases;
+mod trees;
