@@ -51,7 +51,7 @@ impl Instance {
     /// The sum of three weighted corners rounds by at most 7u Σ b|v| (Pharr, Jakob, Humphreys, "Physically Based
     /// Rendering", 4th ed., 6.8.5); carried into the world that is multiplied by |L|, and the transform adds
     /// 4u (|L||p| + |T|), T where the instance stands at that time, reached by another rounding of its way. A new ray from there is rounded twice more: on its way into object space, by 6u κ |p - T|
-    /// (see [`super::instance`]), and where the triangle test sums t from corners relative to the ray's origin, by
+    /// (see `bvh/instance.rs`), and where the triangle test sums t from corners relative to the ray's origin, by
     /// 8u Σ b|v - p|.
     ///
     /// # Panics

@@ -86,7 +86,7 @@ pub struct ParallelogramLight {
     pub corner: Vec3,
     /// The two edges that leave it.
     pub edges: [Vec3; 2],
-    /// Linear RGB at corner, corner + edges[0], corner + edges[1] and opposite, W/(sr·m²).
+    /// Linear RGB at `corner`, `corner + edges[0]`, `corner + edges[1]` and opposite, W/(sr·m²).
     pub colors: [Vec3; 4],
     /// Whether the side that `edges[0] × edges[1]` points away from shines too.
     pub two_sided: bool,
