@@ -64,23 +64,141 @@ impl Moves {
     }
 }
 
+/// What the moves of some pixels say about their error.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Expected {
+    /// Sum over the pixels of the expected squared error.
+    pub absolute: f64,
+    /// The same, each divided by the pixel's squared value + [`RELATIVE_FLOOR`].
+    pub relative: f64,
+    /// What the relative one is multiplied by when the samples double.
+    pub ratio: f64,
+}
+
+/// What independent samples have for r.
+const INDEPENDENT: f64 = 0.5;
+/// How much of r comes from the pixels' own moves; the rest is [`INDEPENDENT`]'s. Few pixels make most
+/// of a picture's error, so a measured r is noisy, and e² reacts strongly to it.
+const MEASURED: f64 = 0.5;
+/// A measured r is taken for at most this: beyond, r/(1-r) only tells of noise.
+const LARGEST_RATIO: f64 = 0.7;
+/// The sequence's length; after it another begins, independent of the first.
+const SEQUENCE: u32 = 1 << 16;
+
+impl Moves {
+    /// The error of these pixels as they are now. `None` with less than two samples of each.
+    pub fn expected(&self) -> Option<Expected> {
+        if self.count < 2 {
+            return None;
+        }
+        // What has come since the last doubling is taken for independent of what was there.
+        let since = f64::from(1 << self.count.ilog2()) / f64::from(self.count);
+        let doublings = self.count.ilog2();
+        let [absolute, relative] = [self.absolute, self.relative].map(|moves| {
+            let ratio = ratio(moves, doublings);
+            (ratio / (1.0 - ratio) * moves[0] * since, ratio)
+        });
+        Some(Expected {
+            absolute: absolute.0,
+            relative: relative.0,
+            ratio: relative.1,
+        })
+    }
+}
+
+/// r, from the moves at the last of so many doublings.
+fn ratio(moves: [f64; 3], doublings: u32) -> f64 {
+    if 1 << doublings > SEQUENCE {
+        return INDEPENDENT;
+    }
+    // Over two doublings where there are three moves: a net's points fill squares at every other
+    // power of two only, so that r goes up and down from one to the next.
+    let measured = match doublings {
+        0 | 1 => INDEPENDENT,
+        2 => moves[0] / moves[1],
+        _ => (moves[0] / moves[2]).sqrt(),
+    };
+    // Not a number where nothing moved.
+    let measured = if measured.is_nan() {
+        INDEPENDENT
+    } else {
+        measured.min(LARGEST_RATIO)
+    };
+    INDEPENDENT + MEASURED * (measured - INDEPENDENT)
+}
+
 impl ErrorEstimate {
-    /// Of pixels that lie in several groups.
+    /// Of pixels that lie in several groups; `None` where one of them has less than two samples.
     pub(super) fn of(groups: impl Iterator<Item = Moves>) -> Option<Self> {
-        let mut sum = Self::default();
-        let mut pixels = 0;
-        for moves in groups {
-            if moves.count < 2 && moves.pixels > 0 {
-                return None;
-            }
-            sum.rmse += moves.absolute[0];
-            sum.relative_mse += moves.relative[0];
+        let (mut absolute, mut relative, mut pixels) = (0.0, 0.0, 0);
+        for moves in groups.filter(|moves| moves.pixels > 0) {
+            let expected = moves.expected()?;
+            absolute += expected.absolute;
+            relative += expected.relative;
             pixels += moves.pixels;
         }
         let pixels = f64::from(pixels.max(1));
         Some(Self {
-            rmse: (sum.rmse / pixels).sqrt(),
-            relative_mse: sum.relative_mse / pixels,
+            rmse: (absolute / pixels).sqrt(),
+            relative_mse: relative / pixels,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn moves(squares: [f64; 3], count: u32) -> Moves {
+        Moves {
+            absolute: squares,
+            relative: squares.map(|square| 4.0 * square),
+            count,
+            pixels: 10,
+        }
+    }
+
+    #[test]
+    fn independent_samples_err_as_much_as_their_mean_moved() {
+        // Halves with squared error 1/n each: the mean of 2n moved by 1/(2n), and errs by 1/(2n).
+        let estimate = moves([1.0, 2.0, 4.0], 64).expected().unwrap();
+        assert!((estimate.absolute - 1.0).abs() < 1e-12 && (estimate.relative - 4.0).abs() < 1e-12);
+        assert_eq!(estimate.ratio, 0.5);
+    }
+
+    #[test]
+    fn what_falls_faster_errs_less_than_it_moved() {
+        let fast = moves([1.0, 4.0, 16.0], 64).expected().unwrap();
+        assert!(
+            fast.absolute < 0.7 && fast.absolute > 1.0 / 3.0,
+            "{}",
+            fast.absolute
+        );
+        let standing = moves([1.0, 1.0, 1.0], 64).expected().unwrap();
+        assert!(
+            standing.absolute > 1.0 && standing.absolute < 2.0,
+            "{}",
+            standing.absolute
+        );
+    }
+
+    #[test]
+    fn nothing_that_moved_errs_by_nothing_and_one_sample_says_nothing() {
+        assert_eq!(moves([0.0; 3], 64).expected().unwrap().absolute, 0.0);
+        assert!(
+            moves([1.0, 0.0, 0.0], 8)
+                .expected()
+                .unwrap()
+                .absolute
+                .is_finite()
+        );
+        assert_eq!(moves([0.0; 3], 1).expected(), None);
+        assert_eq!(ErrorEstimate::of([moves([0.0; 3], 1)].into_iter()), None);
+    }
+
+    #[test]
+    fn samples_after_the_last_doubling_count_as_independent_ones() {
+        let at = |count| moves([1.0, 2.0, 4.0], count).expected().unwrap().absolute;
+        assert!((at(64) / at(80) - 1.25).abs() < 1e-12);
     }
 }
