@@ -1,5 +1,5 @@
 use super::output::{one_line, tell};
-use crate::io::FileError;
+use crate::io::{FileError, MergeError};
 use std::io;
 use std::process::ExitCode;
 
@@ -15,6 +15,9 @@ pub enum Failure {
     /// A file could not be read or written.
     #[error("{0}")]
     File(#[from] FileError),
+    /// Parts of a picture do not add up.
+    #[error("{0}")]
+    Parts(#[from] MergeError),
     /// The scene does not hold what the command needs.
     #[error("{0}")]
     Scene(String),

@@ -8,6 +8,7 @@ mod bench;
 mod bvh;
 mod convert;
 mod failure;
+mod merge;
 mod output;
 mod progress;
 mod render;
@@ -16,6 +17,7 @@ mod set;
 mod settings;
 mod stage;
 mod stats;
+mod stop;
 mod view;
 mod welcome;
 
@@ -40,6 +42,8 @@ struct Cli {
 enum Command {
     /// Render a scene to picture files
     Render(render::Render),
+    /// Add up parts of a picture that `render --samples A..B` wrote
+    Merge(merge::Merge),
     /// Build a scene's tree with each builder and print its statistics
     Bvh(bvh::Bvh),
     /// List the built-in scenes: name, triangles, lights, and what they show
@@ -63,6 +67,7 @@ fn execute(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
     match command {
         None => welcome::run(scene),
         Some(Command::Render(render)) => render::run(render),
+        Some(Command::Merge(merge)) => merge::run(merge),
         Some(Command::Bvh(bvh)) => bvh::run(bvh),
         Some(Command::Scenes) => scenes::run(),
         Some(Command::Convert(convert)) => convert::run(convert),

@@ -1,3 +1,4 @@
+use crate::film::Status;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 
@@ -10,7 +11,7 @@ impl Progress {
             return Self(None);
         }
         let bar = ProgressBar::new(1);
-        if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} % {eta:>4}")
+        if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} % {prefix}")
         {
             bar.set_style(style);
         }
@@ -25,6 +26,35 @@ impl Progress {
             bar.set_position(done);
         }
     }
+
+    /// Shows samples, rays a second, error and time left of a rendering.
+    pub fn show_status(&self, status: &Status) {
+        if let Some(bar) = &self.0 {
+            let left = status.seconds_left.unwrap_or(f64::INFINITY);
+            let part = status.seconds / (status.seconds + left);
+            bar.set_length(PARTS);
+            bar.set_position((part * PARTS as f64) as u64);
+            bar.set_prefix(status_text(status));
+        }
+    }
+}
+
+/// Steps of a bar that shows a share of time.
+const PARTS: u64 = 1000;
+
+fn status_text(status: &Status) -> String {
+    let mut text = format!(
+        "{:.0} spp, {:.2} Mrays/s",
+        status.samples,
+        status.mrays_per_s()
+    );
+    if let Some(error) = status.error() {
+        text += &format!(", error {:.2} %", 100.0 * error.relative());
+    }
+    if let Some(left) = status.seconds_left {
+        text += &format!(", {left:.0} s left");
+    }
+    text
 }
 
 impl Drop for Progress {
@@ -32,5 +62,43 @@ impl Drop for Progress {
         if let Some(bar) = &self.0 {
             bar.finish_and_clear();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::{ErrorEstimate, State, TrendPoint};
+    use crate::trace::RayCounts;
+
+    #[test]
+    fn a_rendering_shows_samples_speed_error_and_what_is_left() {
+        let error = ErrorEstimate {
+            rmse: 0.1,
+            relative_mse: 1e-4,
+        };
+        let mut status = Status {
+            state: State::Running,
+            samples: 32.0,
+            samples_wanted: 64.0,
+            rays: RayCounts {
+                camera: 8_000_000,
+                ..RayCounts::default()
+            },
+            seconds: 2.0,
+            trend: vec![TrendPoint {
+                samples: 32.0,
+                seconds: 2.0,
+                error,
+            }],
+            seconds_left: Some(2.0),
+        };
+        assert_eq!(
+            status_text(&status),
+            "32 spp, 4.00 Mrays/s, error 1.00 %, 2 s left"
+        );
+        status.trend.clear();
+        status.seconds_left = None;
+        assert_eq!(status_text(&status), "32 spp, 4.00 Mrays/s");
     }
 }

@@ -1,18 +1,22 @@
 //! `glassbox render`: a scene to picture files.
 
 use super::Failure;
+use super::merge::output_text;
 use super::output::say;
 use super::progress::Progress;
 use super::settings::{BuilderArg, SettingArgs, builder_name, check_scene, list};
 use super::stage::{SceneArgs, Stage, with_threads};
 use super::stats::{Stats, build_time, mrays_per_second, triangles};
+use super::stop::{SampleRange, StopArgs};
 use super::view::ViewArgs;
 use crate::film::views::View;
-use crate::film::{FirstHits, Rendered, develop, render};
-use crate::io::{FileError, PictureFormat, check_writable, replace_file, write_picture};
+use crate::film::{FirstHits, Picture, develop, render_samples};
+use crate::io::{
+    FileError, Part, PictureFormat, check_writable, replace_file, write_part, write_picture,
+};
 use crate::scene::RenderSettings;
 use crate::sync::TracedCamera;
-use crate::trace::RayCounts;
+use crate::trace::{RayCounts, digest, samples_per_pixel};
 use clap::Args;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -29,6 +33,8 @@ pub(super) struct Render {
     pub output: PathBuf,
     #[command(flatten)]
     pub settings: SettingArgs,
+    #[command(flatten)]
+    pub stop: StopArgs,
     #[command(flatten)]
     pub view: ViewArgs,
     /// Camera to render from, by its name; may be given several times (default: the first)
@@ -50,7 +56,20 @@ pub(super) struct Render {
 
 pub(super) fn run(args: Render) -> Result<(), Failure> {
     args.settings.check()?;
-    PictureFormat::of(&args.output)?;
+    args.stop.check()?;
+    let format = PictureFormat::of(&args.output)?;
+    if args.stop.samples.is_some() && format != PictureFormat::Exr {
+        return Err(Failure::Usage(format!(
+            "{}: --samples writes parts of pictures, and they are .exr; `glassbox merge` makes others of them",
+            args.output.display()
+        )));
+    }
+    if args.stop.samples.is_some() && args.view.view != View::Shaded {
+        return Err(Failure::Usage(format!(
+            "--samples writes parts of shaded pictures, not of the view `{}`",
+            args.view.view
+        )));
+    }
     args.view.check(&args.output)?;
     if let Some(file) = &args.stats {
         check_writable(file)?;
@@ -64,6 +83,7 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
     let mut stage = Stage::open(&args.scene, args.quiet)?;
     let settings = stage.settings();
     args.settings.apply(settings)?;
+    args.stop.apply(settings, args.settings.spp.is_some());
     if let Some(builder) = args.builder {
         settings.tree.builder = builder.builder();
     }
@@ -83,6 +103,7 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
         width: settings.size.x,
         height: settings.size.y,
         spp: 0,
+        relative_error: None,
         threads: rayon::current_num_threads(),
         builder: builder_name(settings.tree.builder),
         build_ms: build_time(&world).as_secs_f64() * 1e3,
@@ -100,21 +121,44 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
             continue;
         }
         let progress = Progress::new(args.quiet, &camera.name);
-        let rendered = render(&world, &camera.camera, &settings, &|done, all| {
-            progress.show(done, all);
-        });
+        let samples = match &args.stop.samples {
+            Some(SampleRange(samples)) => samples.clone(),
+            None => 0..samples_per_pixel(&world, &camera.camera, &settings).into(),
+        };
+        let rendered = render_samples(
+            &world,
+            &camera.camera,
+            &settings,
+            samples.clone(),
+            &|status| {
+                progress.show_status(status);
+            },
+        );
         drop(progress);
         // Fewer than asked for where an error or a time ended it.
         let spp = rendered.status.samples.round() as u32;
-        if args.view.view == View::Shaded {
-            write(file, &rendered, &settings)?;
+        if args.stop.samples.is_some() {
+            let part = Part {
+                digest: digest(&world, &camera.camera, &settings).to_string(),
+                samples: vec![samples],
+                uniform: true,
+                output: output_text(&settings),
+                film: rendered.film,
+            };
+            write_part(file, &part)?;
+        } else if args.view.view == View::Shaded {
+            write_shown(file, &rendered.picture, &settings)?;
         } else {
             args.view
                 .write_rendered(file, &rendered, &settings.output)?;
         }
         if !args.quiet {
+            let error = match rendered.status.error() {
+                Some(error) => format!(", error {:.2} %", 100.0 * error.relative()),
+                None => String::new(),
+            };
             say(format_args!(
-                "{}: {}x{}, {spp} spp, {:.2} s, {:.2} million rays/s",
+                "{}: {}x{}, {spp} spp, {:.2} s, {:.2} million rays/s{error}",
                 file.display(),
                 settings.size.x,
                 settings.size.y,
@@ -123,6 +167,11 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
             ))?;
         }
         stats.spp = stats.spp.max(spp);
+        let error = rendered.status.error().map(|error| error.relative());
+        stats.relative_error = [stats.relative_error, error]
+            .into_iter()
+            .flatten()
+            .reduce(f64::max);
         stats.render_ms += rendered.seconds * 1e3;
         stats.rays += rendered.rays;
     }
@@ -134,12 +183,11 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
 }
 
 /// Writes a picture: linear light where the format holds it, else what a screen shows.
-pub(super) fn write(
+pub(super) fn write_shown(
     file: &Path,
-    rendered: &Rendered,
+    picture: &Picture,
     settings: &RenderSettings,
 ) -> Result<(), FileError> {
-    let picture = &rendered.picture;
     let pixels = if PictureFormat::of(file)?.is_linear() {
         picture
             .pixels

@@ -19,6 +19,8 @@ pub(super) struct Stats {
     pub height: u32,
     /// Samples of each pixel.
     pub spp: u32,
+    /// The largest estimated relative error of the pictures; none with one sample.
+    pub relative_error: Option<f64>,
     pub threads: usize,
     pub builder: &'static str,
     /// Milliseconds of tree building: every mesh and the tree over them, added up.

@@ -5,6 +5,7 @@ use super::output::say;
 use super::render::{Render, run as render};
 use super::settings::SettingArgs;
 use super::stage::SceneArgs;
+use super::stop::StopArgs;
 use super::view::ViewArgs;
 use crate::io::builtin::DEFAULT;
 use std::path::{Path, PathBuf};
@@ -36,6 +37,7 @@ pub(super) fn run(scene: Option<PathBuf>) -> Result<(), Failure> {
             set: Vec::new(),
             threads: None,
         },
+        stop: StopArgs::default(),
         view: ViewArgs::default(),
         camera: Vec::new(),
         all_cameras: false,

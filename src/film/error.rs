@@ -75,13 +75,12 @@ pub(super) struct Expected {
     pub ratio: f64,
 }
 
-/// What independent samples have for r.
+/// What independent samples have for r; no sequence has more, and what is measured beyond is chance.
 const INDEPENDENT: f64 = 0.5;
-/// How much of r comes from the pixels' own moves; the rest is [`INDEPENDENT`]'s. Few pixels make most
-/// of a picture's error, so a measured r is noisy, and e² reacts strongly to it.
+/// How much of r is measured; the rest is [`INDEPENDENT`], on the safe side. Few pixels make most of a
+/// picture's error, so a measured r is noisy, and e² reacts strongly to it. With a half the estimated
+/// root of e² is 0.8 to 1.75, in the middle 1.15 times the true one over the built-in scenes.
 const MEASURED: f64 = 0.5;
-/// A measured r is taken for at most this: beyond, r/(1-r) only tells of noise.
-const LARGEST_RATIO: f64 = 0.7;
 /// The sequence's length; after it another begins, independent of the first.
 const SEQUENCE: u32 = 1 << 16;
 
@@ -118,13 +117,8 @@ fn ratio(moves: [f64; 3], doublings: u32) -> f64 {
         2 => moves[0] / moves[1],
         _ => (moves[0] / moves[2]).sqrt(),
     };
-    // Not a number where nothing moved.
-    let measured = if measured.is_nan() {
-        INDEPENDENT
-    } else {
-        measured.min(LARGEST_RATIO)
-    };
-    INDEPENDENT + MEASURED * (measured - INDEPENDENT)
+    // Not a number where nothing moved; `min` then takes the other.
+    INDEPENDENT + MEASURED * (measured.min(INDEPENDENT) - INDEPENDENT)
 }
 
 impl ErrorEstimate {
@@ -164,10 +158,13 @@ mod tests {
         let estimate = moves([1.0, 2.0, 4.0], 64).expected().unwrap();
         assert!((estimate.absolute - 1.0).abs() < 1e-12 && (estimate.relative - 4.0).abs() < 1e-12);
         assert_eq!(estimate.ratio, 0.5);
+        // Beyond the sequence's length another one begins, whatever the moves before.
+        let beyond = moves([1.0, 9.0, 81.0], 1 << 17).expected().unwrap();
+        assert_eq!((beyond.absolute, beyond.ratio), (1.0, 0.5));
     }
 
     #[test]
-    fn what_falls_faster_errs_less_than_it_moved() {
+    fn what_falls_faster_errs_less_than_it_moved_and_what_stands_no_more() {
         let fast = moves([1.0, 4.0, 16.0], 64).expected().unwrap();
         assert!(
             fast.absolute < 0.7 && fast.absolute > 1.0 / 3.0,
@@ -175,11 +172,7 @@ mod tests {
             fast.absolute
         );
         let standing = moves([1.0, 1.0, 1.0], 64).expected().unwrap();
-        assert!(
-            standing.absolute > 1.0 && standing.absolute < 2.0,
-            "{}",
-            standing.absolute
-        );
+        assert_eq!(standing.absolute, 1.0);
     }
 
     #[test]

@@ -1,8 +1,9 @@
 //! What a film knows of each pixel beside its colour.
 
 use super::error::Moves;
-use super::{ErrorEstimate, Film};
-use rayon::prelude::*;
+use super::tiles::{Tile, TileGrid};
+use super::{Film, TILE};
+use glam::UVec2;
 
 /// Edge in pixels of the square whose pixels are estimated together: the means of a single pixel
 /// moved too much by chance.
@@ -17,35 +18,61 @@ impl Film {
             .collect()
     }
 
-    /// The estimated relative error of each pixel, row by row from the top: 0.01 is one percent. That
-    /// of the 4 × 4 pixels around, by the same rule as the picture's ([`ErrorEstimate::relative`]);
-    /// NaN where a pixel has less than two samples.
+    /// The estimated relative error of each pixel, row by row from the top: 0.01 is one percent. Its
+    /// 4 × 4 pixels' part of their tile's error, so that the mean square is the picture's
+    /// ([`ErrorEstimate::relative_mse`](super::ErrorEstimate)); NaN where a pixel has less than two
+    /// samples.
     pub fn relative_errors(&self) -> Vec<f32> {
         let size = self.size();
-        let columns = size.x.div_ceil(SQUARE);
-        let squares: Vec<f32> = (0..columns * size.y.div_ceil(SQUARE))
-            .into_par_iter()
-            .map(|i| self.square_error(i % columns * SQUARE, i / columns * SQUARE))
-            .collect();
-        (0..size.y)
-            .flat_map(|y| (0..size.x).map(move |x| y / SQUARE * columns + x / SQUARE))
-            .map(|i| squares[i as usize])
-            .collect()
+        let mut errors = vec![f32::NAN; size.x as usize * size.y as usize];
+        for tile in TileGrid::new(size).tiles() {
+            let whole = [0, 1].map(|half| self.moves(tile, half));
+            for (y, x) in (0..TILE)
+                .step_by(SQUARE as usize)
+                .flat_map(|y| (0..TILE).step_by(SQUARE as usize).map(move |x| (y, x)))
+            {
+                let origin = tile.origin + UVec2::new(x, y);
+                if origin.x >= size.x || origin.y >= size.y {
+                    continue;
+                }
+                let extent = (size - origin).min(UVec2::splat(SQUARE));
+                let square = Tile { origin, extent };
+                let error = self.square_error(square, &whole);
+                for (pixel, _) in square.pixels() {
+                    errors[pixel.y as usize * size.x as usize + pixel.x as usize] = error;
+                }
+            }
+        }
+        errors
     }
 
-    /// Of the pixels from (left, top) on. Those with x + y even may have another number of samples
-    /// than the odd ones, so they are two groups.
-    fn square_error(&self, left: u32, top: u32) -> f32 {
-        let size = self.size();
-        let groups = [0, 1].map(|half| {
-            Moves::of(
-                (top..size.y.min(top + SQUARE))
-                    .flat_map(|y| (left..size.x.min(left + SQUARE)).map(move |x| (x, y)))
-                    .filter(|(x, y)| (x + y) % 2 == half)
-                    .map(|(x, y)| self.pixel(x, y)),
-            )
-        });
-        ErrorEstimate::of(groups.into_iter()).map_or(f32::NAN, |error| error.relative() as f32)
+    /// Of the square's share of what its tile's halves moved.
+    fn square_error(&self, square: Tile, whole: &[Moves; 2]) -> f32 {
+        let (mut sum, mut pixels) = (0.0, 0);
+        for (half, whole) in whole.iter().enumerate() {
+            let part = self.moves(square, half as u32);
+            if part.pixels == 0 {
+                continue;
+            }
+            let Some(expected) = whole.expected() else {
+                return f32::NAN;
+            };
+            if part.relative[0] > 0.0 {
+                sum += expected.relative * part.relative[0] / whole.relative[0];
+            }
+            pixels += part.pixels;
+        }
+        (sum / f64::from(pixels.max(1))).sqrt() as f32
+    }
+
+    /// Of the pixels with x + y even, or odd: the two may have different numbers of samples.
+    fn moves(&self, pixels: Tile, half: u32) -> Moves {
+        let places = pixels.pixels().map(|(pixel, _)| pixel);
+        Moves::of(
+            places
+                .filter(|pixel| (pixel.x + pixel.y) % 2 == half)
+                .map(|pixel| self.pixel(pixel.x, pixel.y)),
+        )
     }
 }
 
@@ -53,7 +80,6 @@ impl Film {
 mod tests {
     use super::*;
     use crate::film::{Rendered, render, test_scene};
-    use glam::UVec2;
 
     fn rendered(spp: u32) -> Rendered {
         let settings = test_scene::settings(UVec2::new(36, 28), spp);

@@ -28,6 +28,25 @@ impl Sum {
         }
     }
 
+    /// The sum as it stands in files: for each component the 128 bits of the fixed-point number, in
+    /// two's complement, 32 bits a word, the lowest first.
+    pub fn to_words(&self) -> [[u32; 4]; 3] {
+        self.0
+            .map(|sum| std::array::from_fn(|i| (sum >> (32 * i)) as u32))
+    }
+
+    /// The sum that [`Self::to_words`] wrote.
+    pub fn from_words(words: [[u32; 4]; 3]) -> Self {
+        let sum = |words: [u32; 4]| {
+            let bits = words
+                .iter()
+                .rev()
+                .fold(0_u128, |bits, word| bits << 32 | u128::from(*word));
+            bits as i128
+        };
+        Self(words.map(sum))
+    }
+
     /// Half the difference between the means of `other` and of this sum, each over `count` values:
     /// how far the mean of both together is from this one's. In f64, from exact sums.
     pub fn half_difference(&self, other: &Self, count: u32) -> [f64; 3] {
@@ -93,6 +112,7 @@ mod tests {
             let forwards = total(&values);
             values.reverse();
             prop_assert_eq!(forwards, total(&values));
+            prop_assert_eq!(Sum::from_words(forwards.to_words()), forwards);
             let (a, b) = values.split_at(values.len() / 2);
             let mut merged = total(b);
             merged.merge(&total(a));

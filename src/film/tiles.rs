@@ -1,5 +1,3 @@
-use super::error::{ErrorEstimate, Moves};
-use super::tile_state::half_of;
 use super::{Picture, Sum};
 use glam::{UVec2, Vec2, Vec3};
 
@@ -64,6 +62,27 @@ impl Film {
         pixel.sum.mean(pixel.count)
     }
 
+    /// A film whose pixels hold these sums, row by row from the top, of `count` samples each. `None`
+    /// where there are more or fewer sums than pixels.
+    pub fn of_sums(size: UVec2, sums: &[Sum], count: u32) -> Option<Self> {
+        let columns = size.x as usize;
+        if sums.len() != columns * size.y as usize {
+            return None;
+        }
+        let mut film = Self::new(size);
+        for (i, sum) in sums.iter().enumerate() {
+            let place = film.place((i % columns) as u32, (i / columns) as u32);
+            film.pixels[place].sum = *sum;
+            film.pixels[place].count = count;
+        }
+        Some(film)
+    }
+
+    /// The sum of a pixel's samples.
+    pub fn sum(&self, x: u32, y: u32) -> &Sum {
+        &self.pixel(x, y).sum
+    }
+
     /// Adds the samples of another film of the same size. False, and nothing done, for another size.
     pub fn merge(&mut self, other: &Self) -> bool {
         if self.size != other.size {
@@ -84,25 +103,6 @@ impl Film {
 
     pub(super) fn pixel(&self, x: u32, y: u32) -> &FilmPixel {
         &self.pixels[self.place(x, y)]
-    }
-
-    /// Estimated relative error of every pixel, row by row: that of its tile, root of the mean over it;
-    /// 0 where nothing is known. What is given to adaptive sampling.
-    pub fn error_map(&self) -> Vec<f32> {
-        let mut map = vec![0.0; self.size.x as usize * self.size.y as usize];
-        let tiles = self.pixels.chunks_exact((TILE * TILE) as usize);
-        for (tile, pixels) in TileGrid::new(self.size).tiles().zip(tiles) {
-            let halves = [0, 1].map(|half| {
-                let places = tile.pixels().filter(|(_, at)| half_of(*at) == half);
-                Moves::of(places.map(|(_, at)| &pixels[at]))
-            });
-            let error = ErrorEstimate::of(halves.into_iter()).unwrap_or_default();
-            for (pixel, _) in tile.pixels() {
-                let place = pixel.y as usize * self.size.x as usize + pixel.x as usize;
-                map[place] = error.relative() as f32;
-            }
-        }
-        map
     }
 
     fn place(&self, x: u32, y: u32) -> usize {

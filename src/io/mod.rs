@@ -9,6 +9,7 @@
 //! | `.scn.ron` | everything | everything |
 //! | `.obj` with `.mtl` | meshes, materials, pictures | the same, in the world's space |
 //! | `.glb`, `.gltf` | meshes, hierarchy, materials, pictures, lights, cameras | `.glb`, the same |
+//! | `.exr` of [`write_part`] | exact sums of some samples | the same |
 //! | `.png`, `.jpg`, `.exr`, `.hdr` | pictures | pictures |
 //!
 //! Texture coordinates count from a picture's top left corner, v downwards, as Bevy and glTF do;
@@ -26,6 +27,7 @@ mod loader;
 mod model;
 mod obj;
 mod open;
+mod part;
 mod picture;
 mod place;
 mod problems;
@@ -39,6 +41,7 @@ pub use error::{FileError, Place, Problem};
 pub use folder::Folder;
 pub use limits::Limits;
 pub use open::{OpenOptions, Opened, SceneSource, open};
+pub use part::{Merge, MergeError, Part, read_part, write_part};
 pub use picture::{PictureFormat, check_size, write_picture};
 pub use problems::{LoadProblem, LoadProblems};
 pub use replace::check_writable;

@@ -11,6 +11,7 @@
 //! Formulas: the module docs of [`lights`], [`shading`] and [`camera`].
 
 pub mod camera;
+mod digest;
 mod direct;
 mod disc;
 mod environment;
@@ -30,6 +31,7 @@ mod texture;
 mod world;
 
 pub use camera::{Camera, Optics};
+pub use digest::{Digest, digest};
 pub use environment::Environment;
 pub use first_hit::{FirstHit, central_hits, central_ray, first_hits};
 pub use footprint::Cone;
