@@ -85,7 +85,7 @@ mod tests {
     fn what_a_part_keeps_of_the_output_gives_the_same_output() {
         let mut settings = RenderSettings::default();
         settings.output.exposure = -1.25;
-        settings.output.view_transform = ViewTransform::Agx;
+        settings.output.view_transform = ViewTransform::AgX;
         settings.output.bloom.intensity = 0.5;
         let mut read = RenderSettings::default();
         for word in output_text(&settings).split_whitespace() {
