@@ -1,5 +1,7 @@
 //! How fast the error falls with the number of samples, at a fixed place of a surface.
 
+mod builtin;
+
 use crate::analytic::{object, quad, world};
 use glam::{UVec2, Vec3};
 use glassbox::scene::{PixelSampling, RenderSettings, Sequence};
