@@ -15,6 +15,7 @@ pub(super) fn run(scene: Option<PathBuf>) -> Result<(), Failure> {
         "Glassbox {}: a scene editor whose ray tracer you can see into.\n\
          There is no window yet; these commands work without one:\n\
          \x20 glassbox render SCENE -o OUT   a scene to a picture (.png, .jpg, .exr, .hdr)\n\
+         \x20 glassbox merge PART… -o OUT    parts of a picture's samples to one picture\n\
          \x20 glassbox scenes                the built-in scenes\n\
          \x20 glassbox bvh SCENE             statistics of its trees, builder by builder\n\
          \x20 glassbox bench SCENE           rendering times, builder by builder\n\
