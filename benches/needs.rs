@@ -158,7 +158,9 @@ fn on_and_used(bencher: Bencher, effect: &str) {
 #[divan::bench(args = [TextureFilter::Nearest, TextureFilter::Bilinear, TextureFilter::Mipmap], sample_count = 20)]
 fn textures(bencher: Bencher, filter: TextureFilter) {
     let mut app = headless_app();
-    (builtin::find("textured-cube").expect("a built-in scene").spawn)(app.world_mut());
+    (builtin::find("textured-cube")
+        .expect("a built-in scene")
+        .spawn)(app.world_mut());
     app.update();
     let scene = Scene {
         world: World::clone(&app.world().resource::<Traced>().world),

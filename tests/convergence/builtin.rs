@@ -38,11 +38,19 @@ fn sixty_four_samples_have_at_most_two_thirds_of_the_error_of_random_numbers() {
         };
         let reference = picture(1024, 999, Sequence::Sobol);
         let rmse = |sequence| {
-            let square = |seed| picture(64, seed, sequence).rmse(&reference).unwrap().powi(2);
+            let square = |seed| {
+                picture(64, seed, sequence)
+                    .rmse(&reference)
+                    .unwrap()
+                    .powi(2)
+            };
             ((square(1) + square(2)) / 2.0).sqrt()
         };
         let (ours, random) = (rmse(Sequence::Sobol), rmse(Sequence::Independent));
-        println!("{name}: {:.3} of the error of random numbers", ours / random);
+        println!(
+            "{name}: {:.3} of the error of random numbers",
+            ours / random
+        );
         assert!(
             ours <= 0.65 * random,
             "{name}: RMSE {ours:.5} against {random:.5} of random numbers"
