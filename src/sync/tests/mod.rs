@@ -1,6 +1,8 @@
 //! Tests of the room as a whole: an app with nothing but what `SyncPlugin` needs.
 
+mod dice;
 mod edits;
+mod lights;
 mod problems;
 mod sharing;
 
