@@ -6,5 +6,6 @@ mod cli;
 mod convergence;
 mod effects;
 mod files;
+mod film;
 mod hard_cases;
 mod trees;

@@ -9,7 +9,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 /// Runs the program in a folder.
-fn glassbox(folder: &Path, arguments: &[&str]) -> Output {
+pub(crate) fn glassbox(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_glassbox"))
         .args(arguments)
         .current_dir(folder)
@@ -18,7 +18,7 @@ fn glassbox(folder: &Path, arguments: &[&str]) -> Output {
 }
 
 /// Runs the program and expects it to succeed; what it printed.
-fn succeeds(folder: &Path, arguments: &[&str]) -> String {
+pub(crate) fn succeeds(folder: &Path, arguments: &[&str]) -> String {
     let output = glassbox(folder, arguments);
     let (out, err) = texts(&output);
     assert_eq!(
@@ -29,13 +29,13 @@ fn succeeds(folder: &Path, arguments: &[&str]) -> String {
     out
 }
 
-fn texts(output: &Output) -> (String, String) {
+pub(crate) fn texts(output: &Output) -> (String, String) {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     (text(&output.stdout), text(&output.stderr))
 }
 
 /// Names of the files in a folder, sorted.
-fn files(folder: &Path) -> Vec<String> {
+pub(crate) fn files(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).unwrap();
     let mut names: Vec<String> = entries
         .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())

@@ -1,0 +1,230 @@
+//! Parts of pictures, by the program as people run it.
+
+use crate::cli::{files, glassbox, succeeds, texts};
+use std::path::Path;
+use std::process::Command;
+
+const SCENE: &str = "cornell-box-parallelogram-light";
+
+fn part(folder: &Path, samples: &str, file: &str) {
+    let what = ["render", SCENE, "--size", "48x36", "--quiet"];
+    let how = ["--samples", samples, "-o", file];
+    succeeds(folder, &[&what[..], &how].concat());
+}
+
+fn bytes(folder: &Path, file: &str) -> Vec<u8> {
+    std::fs::read(folder.join(file)).unwrap()
+}
+
+#[test]
+fn parts_merge_into_what_one_run_renders_bit_for_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    part(folder, "0..5", "a.exr");
+    part(folder, "5..12", "b.exr");
+    part(folder, "12..16", "c.exr");
+    part(folder, "0..16", "whole.exr");
+    succeeds(folder, &["merge", "c.exr", "a.exr", "-o", "ca.exr"]);
+    let said = succeeds(folder, &["merge", "ca.exr", "b.exr", "-o", "merged.exr"]);
+    assert!(said.contains("samples 0..16"), "{said}");
+    assert!(bytes(folder, "merged.exr") == bytes(folder, "whole.exr"));
+    succeeds(
+        folder,
+        &["merge", "a.exr", "b.exr", "c.exr", "-o", "merged.png"],
+    );
+    let what = ["render", SCENE, "--size", "48x36", "--spp", "16"];
+    succeeds(folder, &[&what[..], &["-o", "whole.png"]].concat());
+    assert!(bytes(folder, "merged.png") == bytes(folder, "whole.png"));
+    // Every program that reads OpenEXR sees the mean.
+    let linear = image::open(folder.join("merged.exr"))
+        .unwrap()
+        .into_rgb32f();
+    succeeds(folder, &[&what[..], &["-o", "plain.exr"]].concat());
+    let plain = image::open(folder.join("plain.exr")).unwrap().into_rgb32f();
+    assert!(linear == plain);
+}
+
+#[test]
+fn a_part_shows_as_its_scene_was_to_be_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let what = ["render", SCENE, "--size", "24x18", "--quiet"];
+    let shown = [
+        "--set",
+        "output.exposure=1.5",
+        "--set",
+        "output.view_transform=AgX",
+        "--set",
+        "output.bloom.intensity=0.5",
+    ];
+    let run = |more: &[&str]| succeeds(folder, &[&what[..], &shown, more].concat());
+    run(&["--samples", "0..4", "-o", "part.exr"]);
+    run(&["--spp", "4", "-o", "whole.png"]);
+    succeeds(folder, &["merge", "part.exr", "-o", "merged.png"]);
+    assert!(bytes(folder, "merged.png") == bytes(folder, "whole.png"));
+}
+
+#[test]
+fn what_does_not_belong_together_is_refused_in_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    part(folder, "0..2", "a.exr");
+    part(folder, "1..3", "overlapping.exr");
+    let what = [
+        "render",
+        SCENE,
+        "--size",
+        "48x36",
+        "--quiet",
+        "--samples",
+        "2..4",
+        "-o",
+    ];
+    succeeds(folder, &[&what[..], &["seed.exr", "--seed", "7"]].concat());
+    let size = [
+        "render",
+        SCENE,
+        "--size",
+        "36x48",
+        "--quiet",
+        "--samples",
+        "2..4",
+    ];
+    succeeds(folder, &[&size[..], &["-o", "size.exr"]].concat());
+    let other = [
+        "render",
+        "cornell-box",
+        "--size",
+        "48x36",
+        "--quiet",
+        "--samples",
+        "2..4",
+    ];
+    succeeds(folder, &[&other[..], &["-o", "other.exr"]].concat());
+    let plain = [
+        "render",
+        SCENE,
+        "--size",
+        "48x36",
+        "--quiet",
+        "--spp",
+        "2",
+        "-o",
+        "plain.exr",
+    ];
+    succeeds(folder, &plain);
+    std::fs::write(folder.join("text.exr"), "no picture").unwrap();
+    let before = files(folder);
+    for (file, said) in [
+        ("overlapping.exr", "samples 1..2"),
+        ("seed.exr", "another scene, camera or settings"),
+        ("size.exr", "another scene, camera or settings"),
+        ("other.exr", "another scene, camera or settings"),
+        ("plain.exr", "no part"),
+        ("text.exr", "no part"),
+        ("none.exr", "no such file"),
+    ] {
+        let output = glassbox(folder, &["merge", "a.exr", file, "-o", "out.exr"]);
+        let (_, err) = texts(&output);
+        assert_eq!(output.status.code(), Some(1), "{file}: {err}");
+        assert!(
+            err.starts_with(&format!("error: {file}: ")) && err.contains(said),
+            "{err}"
+        );
+        assert_eq!(err.lines().count(), 1, "{err}");
+        assert_eq!(files(folder), before, "{file}");
+    }
+}
+
+#[test]
+fn stop_rules_that_make_no_sense_are_refused_in_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    for (arguments, said) in [
+        (&["--error", "0"][..], "--error is 0, and must be above 0"),
+        (&["--error", "-0.1"], "--error is -0.1"),
+        (&["--error", "NaN"], "--error is NaN"),
+        (&["--time", "0"], "--time is 0, and must be above 0"),
+        (&["--time", "inf"], "--time is inf"),
+        (&["--adaptive", "maybe"], "on or off"),
+        (&["--set", "sampling.error=NaN"], "sampling.error is NaN"),
+        (&["--samples", "8..4"], "4..8"),
+        (&["--samples", "4..4"], "no sample"),
+        (&["--samples", "4"], "0..64"),
+        (&["--samples", "0..4"], ".exr"),
+        (&["--samples", "0..4", "--spp", "4"], "cannot be used with"),
+        (
+            &["--samples", "0..4", "--error", "0.1"],
+            "cannot be used with",
+        ),
+    ] {
+        let what = ["render", "triangle", "-o", "a.png"];
+        let output = glassbox(folder.path(), &[&what[..], arguments].concat());
+        let (_, err) = texts(&output);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {err}");
+        assert!(
+            err.contains(said) && err.lines().count() == 1,
+            "{arguments:?}: {err}"
+        );
+        assert_eq!(files(folder.path()), [""; 0], "{arguments:?}");
+    }
+}
+
+#[test]
+fn a_render_ends_at_the_first_of_error_time_and_samples() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let spp = |arguments: &[&str]| {
+        let what = [
+            "render", SCENE, "--size", "48x36", "-o", "a.png", "--stats", "a.json",
+        ];
+        succeeds(folder, &[&what[..], arguments].concat());
+        let stats: serde_json::Value = serde_json::from_slice(&bytes(folder, "a.json")).unwrap();
+        (
+            stats["spp"].as_u64().unwrap(),
+            stats["relative_error"].as_f64().unwrap(),
+        )
+    };
+    let (samples, error) = spp(&["--error", "0.05"]);
+    assert!(
+        error <= 0.05 && (16..4096).contains(&samples),
+        "{samples} spp, error {error}"
+    );
+    assert_eq!(spp(&["--error", "0.001", "--spp", "32"]).0, 32);
+    let (samples, _) = spp(&["--time", "0.2"]);
+    assert!((1..65_536).contains(&samples), "{samples} spp");
+    assert_eq!(spp(&["--time", "1000", "--spp", "20"]).0, 20);
+}
+
+#[test]
+fn the_recipe_for_gnu_parallel_gives_what_one_run_gives() {
+    let found = Command::new("parallel").arg("--version").output();
+    if !found
+        .is_ok_and(|output| String::from_utf8_lossy(&output.stdout).starts_with("GNU parallel"))
+    {
+        println!("SKIPPED: GNU parallel is not installed (Debian package `parallel`)");
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let glassbox = env!("CARGO_BIN_EXE_glassbox");
+    // As in README.md, with two of four jobs at a time and a small picture.
+    let recipe = format!(
+        "parallel -j2 '{glassbox} render {SCENE} --size 48x36 --quiet --threads 1 \
+         --samples {{}}..$(({{}} + 4)) -o part-{{}}.exr' ::: 0 4 8 12"
+    );
+    let status = Command::new("sh")
+        .args(["-c", &recipe])
+        .current_dir(folder.path())
+        .status()
+        .unwrap();
+    assert!(status.success(), "{recipe}: {status}");
+    let parts = files(folder.path());
+    assert_eq!(
+        parts,
+        ["part-0.exr", "part-12.exr", "part-4.exr", "part-8.exr"]
+    );
+    let mut merge = vec!["merge", "-o", "merged.exr"];
+    merge.extend(parts.iter().map(String::as_str));
+    succeeds(folder.path(), &merge);
+    part(folder.path(), "0..16", "whole.exr");
+    assert!(bytes(folder.path(), "merged.exr") == bytes(folder.path(), "whole.exr"));
+}
