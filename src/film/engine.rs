@@ -1,15 +1,14 @@
 //! A render: what it reads, what it has, and the passes that add samples until a rule ends it.
 
-use super::adaptive::{self, Cell};
 use super::control::{Control, Signal};
-use super::error::{ErrorEstimate, LEAST_SAMPLES};
+use super::error::ErrorEstimate;
 use super::preview::{Preview, first_divider, lattice, time_samples};
 use super::queue::Queue;
 use super::sample_chunk::{BatchSize, Subject, with_scratch};
 use super::status::{Ending, State, Status, TrendPoint, seconds_left};
-use super::tile_state::{Chunk, Pixels, TILE_PIXELS, TileState};
-use super::tiles::{FilmPixel, Tile, TileGrid};
-use super::{Film, Picture, TILE, lock};
+use super::tile_state::{Chunk, TILE_PIXELS, TileState};
+use super::tiles::{Tile, TileGrid};
+use super::{TILE, lock};
 use crate::trace::{RayCounts, SampleId};
 use glam::{UVec2, Vec2};
 use rayon::prelude::*;
@@ -17,12 +16,6 @@ use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Duration;
-
-/// Rays of a chunk, about: a pause throws away what the chunks under way have done so far, and at the
-/// end of a pass threads wait for each other's, so a chunk is some hundredths of a second.
-const CHUNK_RAYS: u64 = 1 << 17;
-/// Samples of each pixel with which a render begins that nobody watches.
-const UNWATCHED_START: u64 = LEAST_SAMPLES as u64;
 
 /// How a render goes about it. The samples are the same.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -35,11 +28,11 @@ pub(super) struct Mode {
 
 /// A render. Its methods may be called from any thread while one thread is in [`Self::run`].
 pub(super) struct Engine {
-    subject: Subject,
-    mode: Mode,
-    grid: TileGrid,
-    tiles: Vec<Mutex<TileState>>,
-    preview: Mutex<Option<Preview>>,
+    pub subject: Subject,
+    pub mode: Mode,
+    pub grid: TileGrid,
+    pub tiles: Vec<Mutex<TileState>>,
+    pub preview: Mutex<Option<Preview>>,
     queue: Mutex<Queue>,
     batch: BatchSize,
     pub control: Control,
@@ -67,7 +60,7 @@ impl Engine {
                 .collect(),
             preview: Mutex::default(),
             queue: Mutex::default(),
-            batch: BatchSize::new(),
+            batch: BatchSize::new(&subject),
             control: Control::new(),
             covered: AtomicBool::new(false),
             progress: Mutex::default(),
@@ -82,7 +75,7 @@ impl Engine {
         self.grid.size
     }
 
-    fn pixels(&self) -> f64 {
+    pub fn pixels(&self) -> f64 {
         self.size().as_dvec2().element_product()
     }
 
@@ -278,94 +271,6 @@ impl Engine {
         known
     }
 
-    /// The chunks of the next pass; or why there is none.
-    fn next_pass(&self, level: &mut u64) -> Result<Vec<Chunk>, Ending> {
-        let settings = &self.subject.settings;
-        let Range { start, end } = self.mode.samples;
-        if *level >= end {
-            return Err(Ending::Samples);
-        }
-        let goal = f64::from(settings.sampling.error);
-        let judged = start == 0 && *level >= u64::from(LEAST_SAMPLES);
-        let estimate = self.error().unwrap_or_default();
-        if goal > 0.0 && judged && estimate.relative() <= goal {
-            return Err(Ending::Error);
-        }
-        let has_goal = goal > 0.0 || settings.sampling.time > 0.0;
-        if settings.sampling.adaptive && has_goal && judged {
-            let cells = self.cells();
-            let chosen = adaptive::choose(&cells, end, goal * goal * self.pixels());
-            if chosen.is_empty() {
-                return Err(Ending::Samples);
-            }
-            return Ok(chosen
-                .into_iter()
-                .flat_map(|task| self.chunks(task.tile, task.pixels, task.range))
-                .collect());
-        }
-        let in_time = settings.sampling.time > 0.0;
-        let first = if self.mode.watched || in_time {
-            1
-        } else {
-            UNWATCHED_START
-        };
-        let next = match (start, *level) {
-            (0, 0) => first.min(end),
-            (0, level) => (2 * level).min(end),
-            _ => end,
-        };
-        let range = *level..next;
-        *level = next;
-        Ok((0..self.grid.count())
-            .flat_map(|tile| self.chunks(tile, Pixels::All, range.clone()))
-            .collect())
-    }
-
-    /// One pass over a tile, in pieces of about [`CHUNK_RAYS`].
-    fn chunks(&self, tile: u32, pixels: Pixels, range: Range<u64>) -> Vec<Chunk> {
-        let of = range.end - range.start;
-        let (rays, samples) = {
-            let state = lock(&self.tiles[tile as usize]);
-            (state.rays, state.samples)
-        };
-        let mut step = of;
-        if let Some(rays_a_sample) = rays.checked_div(samples) {
-            let rays = rays_a_sample.max(1) * TILE_PIXELS as u64;
-            step = (CHUNK_RAYS / rays).max(1).next_power_of_two().min(of);
-        } else if range.start > 0 {
-            // Nothing is known of its rays yet.
-            step = UNWATCHED_START.min(of);
-        }
-        (0..of.div_ceil(step))
-            .map(|i| Chunk {
-                tile,
-                pixels,
-                range: range.start + i * step..(range.start + (i + 1) * step).min(range.end),
-                of,
-            })
-            .collect()
-    }
-
-    fn cells(&self) -> Vec<Cell> {
-        let mut cells = Vec::with_capacity(2 * self.tiles.len());
-        for (tile, state) in self.tiles.iter().enumerate() {
-            let state = lock(state);
-            let rays = state.rays as f64 / state.samples.max(1) as f64;
-            for half in 0..2 {
-                if state.moves[half].pixels > 0 {
-                    cells.push(Cell {
-                        tile: tile as u32,
-                        half,
-                        own: state.moves[half],
-                        other: state.moves[1 - half],
-                        rays,
-                    });
-                }
-            }
-        }
-        cells
-    }
-
     /// How far the film is from the converged one; `None` before there is anything to compare.
     pub fn error(&self) -> Option<ErrorEstimate> {
         if self.mode.samples.start > 0 {
@@ -415,56 +320,6 @@ impl Engine {
         };
         status.seconds_left = seconds_left(&status, &self.subject.settings.sampling);
         status
-    }
-
-    /// The means so far; where a pixel has none, the nearest that the preview has.
-    pub fn picture(&self) -> Picture {
-        let mut picture = Picture::black(self.size());
-        for state in &self.tiles {
-            let state = lock(state);
-            self.draw_tile(&state, &mut picture);
-        }
-        picture
-    }
-
-    /// Draws again the tiles whose `versions` have changed since. True where any had.
-    pub fn redraw(&self, picture: &mut Picture, versions: &mut Vec<u32>) -> bool {
-        let mut changed = false;
-        versions.resize(self.tiles.len(), 0);
-        for (state, version) in self.tiles.iter().zip(versions) {
-            let state = lock(state);
-            // Version 0 may be the preview's, which changes without counting.
-            if *version != state.version || state.version == 0 {
-                self.draw_tile(&state, picture);
-                *version = state.version;
-                changed = true;
-            }
-        }
-        changed
-    }
-
-    fn draw_tile(&self, state: &TileState, picture: &mut Picture) {
-        let width = self.size().x as usize;
-        let preview = (state.version == 0).then(|| lock(&self.preview));
-        for (pixel, at) in state.tile.pixels() {
-            let FilmPixel { sum, count, .. } = &state.pixels[at];
-            let coarse = || {
-                let preview = preview.as_ref()?.as_ref()?;
-                preview.shown(pixel)
-            };
-            picture.pixels[pixel.y as usize * width + pixel.x as usize] = match count {
-                0 => coarse().unwrap_or_default(),
-                count => sum.mean(*count),
-            };
-        }
-    }
-
-    pub fn film(&self) -> Film {
-        let mut pixels = Vec::with_capacity(self.tiles.len() * TILE_PIXELS);
-        for state in &self.tiles {
-            pixels.extend_from_slice(&lock(state).pixels);
-        }
-        Film::from_tiles(self.size(), pixels)
     }
 }
 

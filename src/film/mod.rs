@@ -21,6 +21,7 @@ mod engine;
 mod error;
 mod first_hits;
 mod gaussian;
+mod passes;
 mod per_pixel;
 mod picture;
 mod preview;
@@ -28,6 +29,7 @@ mod progressive;
 mod queue;
 mod render;
 mod sample_chunk;
+mod snapshot;
 mod status;
 mod sum;
 #[cfg(test)]

@@ -4,6 +4,7 @@ use super::Sum;
 use super::tile_state::{Chunk, TILE_PIXELS};
 use super::tiles::Tile;
 use crate::scene::RenderSettings;
+use crate::trace::lights::sample_count;
 use crate::trace::{Camera, RayCounts, SampleId, Workspace, World, radiance};
 use glam::{UVec2, Vec3};
 use std::cell::RefCell;
@@ -19,21 +20,30 @@ pub(super) struct Subject {
 
 /// How many samples go into a batch. Many, so that the trees get long lists of rays; so few that
 /// they stay in a core's second-level cache and that a batch takes about 2 ms, since a render stops
-/// between batches only. What a sample costs is not known beforehand, so threads adjust it together.
-pub(super) struct BatchSize(AtomicUsize);
+/// between batches only. What a sample costs is not known beforehand, so threads adjust it together;
+/// and it differs from place to place, so there is a limit by the rays that it may take.
+pub(super) struct BatchSize {
+    now: AtomicUsize,
+    most: usize,
+}
 
-const LEAST_BATCH: usize = 4;
 const LARGEST_BATCH: usize = 1024;
+/// Some milliseconds of rays through a large scene.
+const RAYS: u64 = 8192;
 const SHORT: Duration = Duration::from_millis(1);
 const LONG: Duration = Duration::from_millis(4);
 
 impl BatchSize {
-    pub fn new() -> Self {
-        Self(AtomicUsize::new(16))
+    pub fn new(subject: &Subject) -> Self {
+        let most = RAYS / rays_of_first_hit(subject);
+        Self {
+            now: AtomicUsize::new(1),
+            most: (most as usize).clamp(1, LARGEST_BATCH),
+        }
     }
 
     pub fn get(&self) -> usize {
-        self.0.load(Ordering::Relaxed)
+        self.now.load(Ordering::Relaxed)
     }
 
     fn learn(&self, samples: usize, took: Duration) {
@@ -47,9 +57,39 @@ impl BatchSize {
         } else {
             samples
         };
-        self.0
-            .store(next.clamp(LEAST_BATCH, LARGEST_BATCH), Ordering::Relaxed);
+        self.now.store(next.clamp(1, self.most), Ordering::Relaxed);
     }
+}
+
+/// Rays that a sample sends out where it first hits something, at most.
+fn rays_of_first_hit(subject: &Subject) -> u64 {
+    let Subject {
+        world, settings, ..
+    } = subject;
+    let features = &settings.features;
+    let lights = &world.lights;
+    let count =
+        |samples, size| u64::from(sample_count(samples, size, features.scale_light_samples));
+    let mut rays = 1 + lights.points.len() as u64;
+    if features.soft_shadows {
+        for light in &lights.directionals {
+            let size = std::f32::consts::PI * light.tan_half_angle * light.tan_half_angle;
+            rays += count(light.samples, size);
+        }
+        for light in &lights.segments {
+            rays += count(light.samples, (light.ends[1] - light.ends[0]).length());
+        }
+        for light in &lights.parallelograms {
+            rays += count(light.samples, light.area_normal().length());
+        }
+    }
+    if features.glossy {
+        rays += u64::from(settings.gloss_samples);
+    }
+    if features.translucency {
+        rays += u64::from(settings.translucency_samples);
+    }
+    rays
 }
 
 /// What a thread keeps from chunk to chunk, so that none allocates.

@@ -1,0 +1,104 @@
+//! Which samples come next: the same for every pixel, or where the error is.
+
+use super::adaptive::{self, Cell};
+use super::engine::Engine;
+use super::error::LEAST_SAMPLES;
+use super::tile_state::{Chunk, Pixels, TILE_PIXELS};
+use super::{Ending, lock};
+use std::ops::Range;
+
+/// Rays of a chunk, about: a pause throws away what the chunks under way have done so far, and at the
+/// end of a pass threads wait for each other's, so a chunk is some hundredths of a second.
+const CHUNK_RAYS: u64 = 1 << 17;
+/// Samples of each pixel with which a render begins that nobody watches.
+const UNWATCHED_START: u64 = LEAST_SAMPLES as u64;
+
+impl Engine {
+    /// The chunks of the next pass; or why there is none.
+    pub fn next_pass(&self, level: &mut u64) -> Result<Vec<Chunk>, Ending> {
+        let settings = &self.subject.settings;
+        let Range { start, end } = self.mode.samples;
+        if *level >= end {
+            return Err(Ending::Samples);
+        }
+        let goal = f64::from(settings.sampling.error);
+        let judged = start == 0 && *level >= u64::from(LEAST_SAMPLES);
+        let estimate = self.error().unwrap_or_default();
+        if goal > 0.0 && judged && estimate.relative() <= goal {
+            return Err(Ending::Error);
+        }
+        let has_goal = goal > 0.0 || settings.sampling.time > 0.0;
+        if settings.sampling.adaptive && has_goal && judged {
+            let cells = self.cells();
+            let chosen = adaptive::choose(&cells, end, goal * goal * self.pixels());
+            if chosen.is_empty() {
+                return Err(Ending::Samples);
+            }
+            return Ok(chosen
+                .into_iter()
+                .flat_map(|task| self.chunks(task.tile, task.pixels, task.range))
+                .collect());
+        }
+        let in_time = settings.sampling.time > 0.0;
+        let first = if self.mode.watched || in_time {
+            1
+        } else {
+            UNWATCHED_START
+        };
+        let next = match (start, *level) {
+            (0, 0) => first.min(end),
+            (0, level) => (2 * level).min(end),
+            _ => end,
+        };
+        let range = *level..next;
+        *level = next;
+        Ok((0..self.grid.count())
+            .flat_map(|tile| self.chunks(tile, Pixels::All, range.clone()))
+            .collect())
+    }
+
+    /// One pass over a tile, in pieces of about [`CHUNK_RAYS`].
+    fn chunks(&self, tile: u32, pixels: Pixels, range: Range<u64>) -> Vec<Chunk> {
+        let of = range.end - range.start;
+        let (rays, samples) = {
+            let state = lock(&self.tiles[tile as usize]);
+            (state.rays, state.samples)
+        };
+        let mut step = of;
+        if let Some(rays_a_sample) = rays.checked_div(samples) {
+            let rays = rays_a_sample.max(1) * TILE_PIXELS as u64;
+            step = (CHUNK_RAYS / rays).max(1).next_power_of_two().min(of);
+        } else if range.start > 0 {
+            // Nothing is known of its rays yet.
+            step = UNWATCHED_START.min(of);
+        }
+        (0..of.div_ceil(step))
+            .map(|i| Chunk {
+                tile,
+                pixels,
+                range: range.start + i * step..(range.start + (i + 1) * step).min(range.end),
+                of,
+            })
+            .collect()
+    }
+
+    fn cells(&self) -> Vec<Cell> {
+        let mut cells = Vec::with_capacity(2 * self.tiles.len());
+        for (tile, state) in self.tiles.iter().enumerate() {
+            let state = lock(state);
+            let rays = state.rays as f64 / state.samples.max(1) as f64;
+            for half in 0..2 {
+                if state.moves[half].pixels > 0 {
+                    cells.push(Cell {
+                        tile: tile as u32,
+                        half,
+                        own: state.moves[half],
+                        other: state.moves[1 - half],
+                        rays,
+                    });
+                }
+            }
+        }
+        cells
+    }
+}
