@@ -3,4 +3,5 @@
 mod gloss;
 mod lens;
 mod motion;
+mod samples;
 mod transparency;
