@@ -17,7 +17,7 @@ fn stats_hold_exactly_the_documented_keys_and_add_up() {
         keys.sort();
         keys
     };
-    let wanted = "build_ms builder height instances mrays_per_s rays render_ms scene spp threads triangles width";
+    let wanted = "build_ms builder height instances mrays_per_s rays relative_error render_ms scene spp threads triangles width";
     assert_eq!(keys(&stats).join(" "), wanted);
     assert_eq!(
         keys(&stats["rays"]).join(" "),
