@@ -13,7 +13,9 @@
 //! | [`film`] | pixels: samples become a picture, the picture becomes a screen's |
 //! | [`sync`] | entities to the tracer's world: what changed, and only that |
 //! | [`io`] | scene files, OBJ, glTF, pictures, shapes, built-in scenes |
-//! | [`app`] | all of the above as one app without a window |
+//! | `view` | the traced picture in a Bevy camera, gizmos; the only room that knows Bevy's renderer |
+//! | `editor` | the window: panels, gestures, undo, files; the only room that knows egui |
+//! | [`app`] | the rooms up to `io` as one app without a window |
 //! | [`cli`] | the command line: parses, calls, prints |
 //!
 //! [`bvh`] and [`trace`] need no ECS: see `examples/plain_rust.rs`.
@@ -21,8 +23,12 @@
 pub mod app;
 pub mod bvh;
 pub mod cli;
+#[cfg(feature = "editor")]
+pub mod editor;
 pub mod film;
 pub mod io;
 pub mod scene;
 pub mod sync;
 pub mod trace;
+#[cfg(feature = "view")]
+pub mod view;

@@ -1,0 +1,26 @@
+//! The editor: a window in which the scene is edited and re-rendered at once. The only room that
+//! knows egui.
+//!
+//! Whatever a person does ends in one of two things: an [`Action`], which menus, keys, buttons and
+//! scripts send alike, or a change of a component, which panels and handles make directly.
+//! [`History`] watches the components, so every change can be undone however it was made.
+//!
+//! | module | does |
+//! |---|---|
+//! | [`action`] | what can be asked for, with names, keys and explanations in one table |
+//! | [`selection`] | which entities are meant |
+//! | [`viewport`] | the part of the window that shows the scene, and how |
+//! | `window` | the app: plugins, window, cameras |
+//! | `panels` | everything that egui draws |
+
+pub mod action;
+pub mod notice;
+mod panels;
+pub mod selection;
+pub mod viewport;
+mod window;
+
+pub use action::Action;
+pub use selection::Selection;
+pub use viewport::Viewport;
+pub use window::run;

@@ -1,0 +1,65 @@
+//! The part of the window that shows the scene, and how it shows it.
+
+use bevy::ecs::component::Component;
+use bevy::ecs::resource::Resource;
+use bevy::math::{Rect, Vec2};
+use serde::{Deserialize, Serialize};
+
+/// The camera that the editor looks at the scene with. It is no entity of the scene.
+#[derive(Component, Default)]
+pub struct EditorCamera;
+
+/// Which of the pictures is shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Show {
+    /// Bevy's renderer.
+    Raster,
+    /// The tracer.
+    #[default]
+    Traced,
+    /// Both, side by side.
+    Split,
+}
+
+/// Where the scene is shown.
+#[derive(Resource, Clone, Debug)]
+pub struct Viewport {
+    /// In logical pixels of the window, from its top left.
+    pub rect: Rect,
+    /// Which of the pictures is shown.
+    pub show: Show,
+    /// Where the split view is divided, as a part of the width.
+    pub divider: f32,
+    /// Whether the pointer is over the scene: not over a panel, a menu or a popup.
+    pub hovered: bool,
+    /// Whether keys are meant for the scene: nothing is being typed into.
+    pub takes_keys: bool,
+}
+
+impl Default for Viewport {
+    fn default() -> Self {
+        Self {
+            rect: Rect::default(),
+            show: Show::default(),
+            divider: 0.5,
+            hovered: false,
+            takes_keys: true,
+        }
+    }
+}
+
+impl Viewport {
+    /// From a place in the window to one in the viewport, (0, 0) at its top left, (1, 1) opposite.
+    pub fn place(&self, in_window: Vec2) -> Vec2 {
+        (in_window - self.rect.min) / self.rect.size().max(Vec2::ONE)
+    }
+
+    /// What [`TracedView::divider`](crate::view::TracedView::divider) has to be.
+    pub fn traced_from(&self) -> f32 {
+        match self.show {
+            Show::Raster => 1.0,
+            Show::Traced => 0.0,
+            Show::Split => self.divider.clamp(0.0, 1.0),
+        }
+    }
+}

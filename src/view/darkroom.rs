@@ -1,0 +1,293 @@
+//! Where the film is developed: on a thread of its own, so that no frame waits for a picture.
+//!
+//! A print is made as soon as the film shows anything, and then as often as it is worth it: every
+//! 50 ms at first, up to twice a second for a render that has been going on for long, as the gain
+//! of each pass becomes smaller (Cycles' render scheduler does the same).
+
+use super::screen::ndc;
+use crate::film::views::{Scale, Source, Sources, View, show};
+use crate::film::{FirstHits, Progressive, Snapshot, State};
+use crate::scene::{Output, Projection, RenderSettings};
+use crate::trace::{self, FirstHit, central_hits};
+use bevy::math::{UVec2, Vec3};
+use rayon::ThreadPool;
+use std::io;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// How long the film is looked at between two prints, at the least and at the most.
+const INTERVAL: [Duration; 2] = [Duration::from_millis(50), Duration::from_millis(500)];
+/// How long until it is looked at again while there is no picture yet.
+const FIRST: Duration = Duration::from_millis(2);
+/// Pixels of the depth that gizmos are hidden by, at most: it is traced besides the picture.
+const MOST_DEPTHS: f32 = 120_000.0;
+/// Samples a pixel of those views that are made of first hits.
+const VIEW_SAMPLES: u32 = 4;
+
+/// How prints are made.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Order {
+    pub output: Output,
+    pub view: View,
+    pub range: Option<[f32; 2]>,
+}
+
+/// A picture for the screen.
+pub(super) struct Print {
+    pub size: UVec2,
+    /// RGBA.
+    pub bytes: Vec<u8>,
+    /// Metres along the view axis, with the size of their own; only with the first print.
+    pub depths: Option<(UVec2, Vec<f32>)>,
+    pub scale: Option<Scale>,
+    /// Which render it is of: the address of its [`Progressive`].
+    pub of: usize,
+}
+
+/// World, camera and settings of a render.
+pub(super) type Subject = (Arc<trace::World>, trace::Camera, RenderSettings);
+
+enum Task {
+    Develop(Arc<Progressive>, Box<Subject>, Box<Order>),
+    /// Ends a render that was cancelled, which may take a moment.
+    Retire(Arc<Progressive>),
+}
+
+/// The thread, and the newest print that nobody has taken yet.
+pub(super) struct Darkroom {
+    tasks: Sender<Task>,
+    newest: Arc<Mutex<Option<Print>>>,
+}
+
+impl Darkroom {
+    /// An error where the system has no more threads.
+    pub fn open() -> io::Result<Self> {
+        let (tasks, inbox) = channel();
+        let newest = Arc::new(Mutex::new(None));
+        // Its own: the tracer's threads are busy for a whole pass.
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(1)
+            .thread_name(|_| "darkroom".into())
+            .build()
+            .map_err(io::Error::other)?;
+        let shelf = newest.clone();
+        thread::Builder::new()
+            .name("develop".into())
+            .spawn(move || Developer::new(shelf).work(&inbox, &pool))?;
+        Ok(Self { tasks, newest })
+    }
+
+    /// From now on prints of this render are made, in this way.
+    pub fn develop(&self, render: &Arc<Progressive>, subject: &Subject, order: Order) {
+        let task = Task::Develop(render.clone(), Box::new(subject.clone()), Box::new(order));
+        // It fails only where the thread is gone, and then nothing shows prints any more.
+        let _ = self.tasks.send(task);
+    }
+
+    /// Ends a cancelled render without making the caller wait.
+    pub fn retire(&self, render: Arc<Progressive>) {
+        let _ = self.tasks.send(Task::Retire(render));
+    }
+
+    /// The newest print, once.
+    pub fn take(&self) -> Option<Print> {
+        self.newest
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .take()
+    }
+}
+
+/// What is being developed.
+struct Job {
+    render: Arc<Progressive>,
+    subject: Box<Subject>,
+    order: Box<Order>,
+    snapshot: Snapshot,
+    first_hits: Option<FirstHits>,
+    depths_sent: bool,
+    ended: bool,
+    next: Instant,
+    started: Instant,
+}
+
+struct Developer {
+    newest: Arc<Mutex<Option<Print>>>,
+    job: Option<Job>,
+}
+
+impl Developer {
+    fn new(newest: Arc<Mutex<Option<Print>>>) -> Self {
+        Self { newest, job: None }
+    }
+
+    /// Until the darkroom is closed.
+    fn work(mut self, inbox: &Receiver<Task>, pool: &ThreadPool) {
+        loop {
+            let wait = self.job.as_ref().map_or(Duration::from_secs(3600), |job| {
+                if job.ended {
+                    Duration::from_secs(3600)
+                } else {
+                    job.next.saturating_duration_since(Instant::now())
+                }
+            });
+            match inbox.recv_timeout(wait) {
+                Ok(task) => {
+                    self.take_on(task);
+                    // Only the newest of what has gathered matters.
+                    while let Ok(task) = inbox.try_recv() {
+                        self.take_on(task);
+                    }
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return,
+            }
+            if let Some(job) = self.job.as_mut()
+                && Instant::now() >= job.next
+                && !job.ended
+                && let Some(print) = pool.install(|| job.print())
+            {
+                *self.newest.lock().unwrap_or_else(PoisonError::into_inner) = Some(print);
+            }
+        }
+    }
+
+    fn take_on(&mut self, task: Task) {
+        match task {
+            Task::Retire(render) => {
+                if self
+                    .job
+                    .as_ref()
+                    .is_some_and(|job| Arc::ptr_eq(&job.render, &render))
+                {
+                    self.job = None;
+                }
+            }
+            Task::Develop(render, subject, order) => {
+                let now = Instant::now();
+                let same = self
+                    .job
+                    .as_mut()
+                    .filter(|job| Arc::ptr_eq(&job.render, &render));
+                if let Some(job) = same {
+                    job.order = order;
+                    job.ended = false;
+                    job.snapshot = job.render.snapshot();
+                    job.next = now;
+                } else {
+                    self.job = Some(Job {
+                        snapshot: render.snapshot(),
+                        render,
+                        subject,
+                        order,
+                        first_hits: None,
+                        depths_sent: false,
+                        ended: false,
+                        next: now,
+                        started: now,
+                    });
+                }
+            }
+        }
+    }
+}
+
+impl Job {
+    /// A print where there is anything new.
+    fn print(&mut self) -> Option<Print> {
+        let status = self.render.status();
+        let ended = matches!(status.state, State::Ended(_));
+        let changed = self.render.refresh(&mut self.snapshot);
+        let begun = status.rays.total() > 0;
+        if !begun {
+            self.next = Instant::now() + FIRST;
+            return None;
+        }
+        self.ended = ended;
+        let age = self.started.elapsed();
+        self.next = Instant::now() + (age / 10).clamp(INTERVAL[0], INTERVAL[1]);
+        if !changed && self.depths_sent && !ended && self.order.view == View::Shaded {
+            return None;
+        }
+        let (shown, scale) = self.shown()?;
+        let depths = (!self.depths_sent).then(|| self.depths());
+        self.depths_sent = true;
+        Some(Print {
+            size: self.subject.2.size,
+            bytes: shown,
+            depths,
+            scale,
+            of: Arc::as_ptr(&self.render) as usize,
+        })
+    }
+
+    fn shown(&mut self) -> Option<(Vec<u8>, Option<Scale>)> {
+        let (world, camera, settings) = &*self.subject;
+        let source = self.order.view.source();
+        let film = matches!(source, Source::Samples | Source::Errors).then(|| self.render.film());
+        if source == Source::FirstHits && self.first_hits.is_none() {
+            let few = RenderSettings {
+                spp: VIEW_SAMPLES,
+                jitter: 1,
+                ..settings.clone()
+            };
+            self.first_hits = Some(FirstHits::trace(world, camera, &few));
+        }
+        let counts = film.as_ref().map(|film| film.counts());
+        let errors = film.as_ref().map(|film| film.relative_errors());
+        let sources = Sources {
+            picture: Some(&self.snapshot.picture),
+            first_hits: self.first_hits.as_ref(),
+            samples: counts.as_deref().map(|counts| (settings.size, counts)),
+            errors: errors.as_deref().map(|errors| (settings.size, errors)),
+        };
+        let shown = show(
+            self.order.view,
+            &sources,
+            &self.order.output,
+            self.order.range,
+        )
+        .ok()?;
+        let byte = |x: f32| (x * 255.0 + 0.5) as u8;
+        let bytes = shown
+            .pixels
+            .iter()
+            .flat_map(|&[r, g, b]| [byte(r), byte(g), byte(b), 255])
+            .collect();
+        Some((bytes, shown.scale))
+    }
+
+    /// Of the central rays of a picture that is small enough to be traced besides.
+    fn depths(&self) -> (UVec2, Vec<f32>) {
+        let (world, camera, settings) = &*self.subject;
+        let pixels = settings.size.as_vec2().element_product();
+        let scale = (MOST_DEPTHS / pixels).sqrt().min(1.0);
+        let size = (settings.size.as_vec2() * scale).as_uvec2().max(UVec2::ONE);
+        let settings = RenderSettings {
+            size,
+            ..settings.clone()
+        };
+        let places: Vec<UVec2> = (0..size.y)
+            .flat_map(|y| (0..size.x).map(move |x| UVec2::new(x, y)))
+            .collect();
+        let mut hits = vec![FirstHit::MISS; places.len()];
+        central_hits(world, camera, &settings, &places, &mut hits);
+        let along_axis = |place: UVec2| match camera.projection {
+            Projection::Orthographic { .. } => 1.0,
+            Projection::Perspective { fov_y } => {
+                let ndc = ndc(place.x, place.y, size.x, size.y);
+                let tan = (0.5 * fov_y).tan();
+                let aspect = size.x as f32 / size.y as f32;
+                Vec3::new(ndc.x * tan * aspect, ndc.y * tan, 1.0).length_recip()
+            }
+        };
+        let depths = places
+            .iter()
+            .zip(&hits)
+            .map(|(&place, hit)| (hit.depth * along_axis(place)).min(1e30))
+            .collect();
+        (size, depths)
+    }
+}
