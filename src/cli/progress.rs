@@ -92,6 +92,7 @@ mod tests {
                 error,
             }],
             seconds_left: Some(2.0),
+            divider: Some(1),
         };
         assert_eq!(
             status_text(&status),

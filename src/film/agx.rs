@@ -35,15 +35,26 @@ const OUTSET: Mat3 = Mat3::from_cols_array(&[
 
 /// Stops around 1.0 that the curve covers: middle grey, 0.18, lies 10 above the lowest and 6.5
 /// below the highest.
-const STOPS: [f32; 2] = [-12.473_93, 4.026_069];
+pub(super) const STOPS: [f32; 2] = [-12.473_93, 4.026_069];
 
 /// A linear colour as a screen shows it, encoded, in [0, 1]. Negative components and NaN count as 0.
 pub fn agx(linear: Vec3) -> Vec3 {
+    agx_by(linear, curve)
+}
+
+/// The same, with [`curve`] as it is given.
+#[inline(always)]
+pub(super) fn agx_by(linear: Vec3, curve: impl Fn(f32) -> f32) -> Vec3 {
     let inset = INSET * linear.map(|x| if x > 0.0 { x.min(f32::MAX / 4.0) } else { 0.0 });
-    let [low, high] = STOPS;
-    let curved = inset.map(|x| contrast((x.log2().clamp(low, high) - low) / (high - low)));
     // The fit's black is -0.0023: below what a screen shows.
-    (OUTSET * curved).clamp(Vec3::ZERO, Vec3::ONE)
+    (OUTSET * inset.map(curve)).clamp(Vec3::ZERO, Vec3::ONE)
+}
+
+/// What becomes of a channel's light between inset and outset: its logarithm, spread over the stops,
+/// then the contrast.
+pub(super) fn curve(light: f32) -> f32 {
+    let [low, high] = STOPS;
+    contrast((light.log2().clamp(low, high) - low) / (high - low))
 }
 
 /// AgX's base contrast for x in [0, 1]: Wrensch's polynomial of 6th order, mean squared error 3.7e-6.

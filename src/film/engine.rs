@@ -2,19 +2,20 @@
 
 use super::control::{Control, Signal};
 use super::error::ErrorEstimate;
-use super::preview::{Preview, first_divider, lattice, time_samples};
+use super::lock;
+use super::preview::Preview;
 use super::queue::Queue;
 use super::sample_chunk::{BatchSize, Subject, with_scratch};
 use super::status::{Ending, State, Status, TrendPoint, seconds_left};
-use super::tile_state::{Chunk, TILE_PIXELS, TileState};
+use super::tile_state::{Chunk, TileState};
 use super::tiles::{Tile, TileGrid};
-use super::{TILE, lock};
-use crate::trace::{RayCounts, SampleId};
+use crate::trace::RayCounts;
+use bevy::math::URect;
 use glam::{UVec2, Vec2};
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
+use std::sync::{Condvar, Mutex, PoisonError};
 use std::time::Duration;
 
 /// How a render goes about it. The samples are the same.
@@ -24,6 +25,8 @@ pub(super) struct Mode {
     pub watched: bool,
     /// Which samples of each pixel.
     pub samples: Range<u64>,
+    /// Only the tiles that this touches, in pixels.
+    pub region: Option<URect>,
 }
 
 /// A render. Its methods may be called from any thread while one thread is in [`Self::run`].
@@ -32,14 +35,20 @@ pub(super) struct Engine {
     pub mode: Mode,
     pub grid: TileGrid,
     pub tiles: Vec<Mutex<TileState>>,
+    /// Those that are rendered, and the rectangle that they make.
+    pub rendered: Vec<u32>,
+    pub area: Tile,
     pub preview: Mutex<Option<Preview>>,
-    queue: Mutex<Queue>,
-    batch: BatchSize,
+    pub(super) queue: Mutex<Queue>,
+    pub(super) batch: BatchSize,
     pub control: Control,
-    /// Every pixel has a sample, so that the time limit may end the render.
-    covered: AtomicBool,
+    /// The picture is complete at every such pixel of every such row; 0 before the first picture.
+    divider: AtomicU32,
     progress: Mutex<Progress>,
+    ended: Condvar,
     done: AtomicU64,
+    /// Tells this render from all others of the process.
+    pub number: u64,
 }
 
 /// What the threads report.
@@ -52,7 +61,9 @@ struct Progress {
 
 impl Engine {
     pub fn new(subject: Subject, mode: Mode) -> Self {
+        static COUNT: AtomicU64 = AtomicU64::new(0);
         let grid = TileGrid::new(subject.settings.size);
+        let (rendered, area) = grid.within(mode.region);
         Self {
             tiles: grid
                 .tiles()
@@ -62,9 +73,13 @@ impl Engine {
             queue: Mutex::default(),
             batch: BatchSize::new(&subject),
             control: Control::new(),
-            covered: AtomicBool::new(false),
+            divider: AtomicU32::new(0),
             progress: Mutex::default(),
+            ended: Condvar::new(),
             done: AtomicU64::new(0),
+            number: COUNT.fetch_add(1, Ordering::Relaxed) + 1,
+            rendered,
+            area,
             subject,
             mode,
             grid,
@@ -75,8 +90,9 @@ impl Engine {
         self.grid.size
     }
 
+    /// How many pixels are rendered.
     pub fn pixels(&self) -> f64 {
-        self.size().as_dvec2().element_product()
+        self.area.extent.as_dvec2().element_product()
     }
 
     pub fn set_focus(&self, focus: Vec2) {
@@ -87,9 +103,26 @@ impl Engine {
     pub fn run(&self, told: &(dyn Fn(&Self) + Sync)) -> Ending {
         self.control.start_watch();
         let ending = self.run_passes(told);
-        self.control.stop_watch();
-        lock(&self.progress).ending = Some(ending);
+        self.end(ending);
         ending
+    }
+
+    /// The render has ended. What was said first counts.
+    pub fn end(&self, ending: Ending) {
+        self.control.stop_watch();
+        lock(&self.progress).ending.get_or_insert(ending);
+        self.ended.notify_all();
+    }
+
+    /// Waits until the render has ended, and says why.
+    pub fn wait(&self) -> Ending {
+        let mut progress = lock(&self.progress);
+        loop {
+            if let Some(ending) = progress.ending {
+                return ending;
+            }
+            progress = (self.ended.wait(progress)).unwrap_or_else(PoisonError::into_inner);
+        }
     }
 
     fn run_passes(&self, told: &(dyn Fn(&Self) + Sync)) -> Ending {
@@ -111,7 +144,7 @@ impl Engine {
             if let Some(ending) = self.run_queue(told) {
                 return ending;
             }
-            self.covered.store(true, Ordering::Relaxed);
+            self.set_divider(1);
             *lock(&self.preview) = None;
             self.note_error();
             told(self);
@@ -145,19 +178,19 @@ impl Engine {
     }
 
     /// Whether work has to stop, for good or for a while.
-    fn must_stop(&self) -> bool {
+    pub(super) fn must_stop(&self) -> bool {
         self.control.signal() != Signal::Go || self.time_is_up()
     }
 
     fn time_is_up(&self) -> bool {
         let limit = self.subject.settings.sampling.time;
         limit > 0.0
-            && self.covered.load(Ordering::Relaxed)
+            && self.divider.load(Ordering::Relaxed) == 1
             && self.control.elapsed() >= Duration::try_from_secs_f32(limit).unwrap_or(Duration::MAX)
     }
 
     /// Waits out a pause; says what ends the render.
-    fn interrupted(&self) -> Option<Ending> {
+    pub(super) fn interrupted(&self) -> Option<Ending> {
         if self.control.signal() == Signal::Pause {
             self.control.stop_watch();
             self.control.wait_while_paused();
@@ -168,64 +201,6 @@ impl Engine {
             _ if self.time_is_up() => Some(Ending::Time),
             _ => None,
         }
-    }
-
-    /// The coarse pictures, as far as they come before the one of full resolution.
-    fn start_coarse(&self) -> Option<Ending> {
-        let size = self.size();
-        let focus = lock(&self.queue).focus();
-        let mut preview = Preview::new(size);
-        let (seconds, rays) = time_samples(&self.subject, &mut preview, focus, &self.batch);
-        let coarsest = first_divider(size, seconds / rayon::current_num_threads() as f64);
-        lock(&self.progress).rays += rays;
-        *lock(&self.preview) = Some(preview);
-        let mut divider = coarsest;
-        while divider > 1 {
-            let mut squares = lattice_squares(size, divider);
-            while !squares.is_empty() {
-                // Those that were not done when a pause came are tried again; what they had is kept.
-                squares = squares
-                    .into_par_iter()
-                    .with_max_len(1)
-                    .filter(|square| !self.preview_square(*square, divider))
-                    .collect();
-                if let Some(ending) = self.interrupted() {
-                    return Some(ending);
-                }
-            }
-            divider /= 2;
-        }
-        None
-    }
-
-    /// Evaluates what is not known yet of a square of the lattice. False where it had to stop.
-    fn preview_square(&self, square: UVec2, divider: u32) -> bool {
-        let pixels: Vec<_> = {
-            let preview = lock(&self.preview);
-            lattice(self.size(), square, TILE, divider)
-                .filter(|pixel| preview.as_ref().is_some_and(|p| p.get(*pixel).is_none()))
-                .collect()
-        };
-        let mut rest = &pixels[..];
-        while !rest.is_empty() {
-            if self.must_stop() {
-                return false;
-            }
-            let (some, others) = rest.split_at(self.batch.get().min(rest.len()));
-            rest = others;
-            let rays = with_scratch(|scratch| {
-                let ids = some.iter().map(|&pixel| SampleId { pixel, index: 0 });
-                let rays = scratch.evaluate(&self.subject, ids, &self.batch);
-                if let Some(preview) = lock(&self.preview).as_mut() {
-                    for (pixel, value) in some.iter().zip(scratch.values()) {
-                        preview.set(*pixel, *value);
-                    }
-                }
-                rays
-            });
-            lock(&self.progress).rays += rays;
-        }
-        true
     }
 
     /// Does a chunk. False where it had to stop: then nothing of it counts.
@@ -253,22 +228,9 @@ impl Engine {
                 pixels * (chunk.range.end - chunk.range.start),
                 Ordering::Relaxed,
             );
-            lock(&self.progress).rays += rays;
+            self.note_rays(rays);
             true
         })
-    }
-
-    /// First samples of the tile's pixels that the preview has.
-    fn known(&self, tile: Tile) -> Vec<Option<glam::Vec3>> {
-        let preview = lock(&self.preview);
-        let Some(preview) = preview.as_ref() else {
-            return Vec::new();
-        };
-        let mut known = vec![None; TILE_PIXELS];
-        for (pixel, at) in tile.pixels() {
-            known[at] = preview.get(pixel);
-        }
-        known
     }
 
     /// How far the film is from the converged one; `None` before there is anything to compare.
@@ -296,9 +258,13 @@ impl Engine {
         self.done.load(Ordering::Relaxed) as f64 / pixels.max(1.0)
     }
 
-    /// Why it ended, once it has.
-    pub fn ending(&self) -> Option<Ending> {
-        lock(&self.progress).ending
+    /// The picture is complete at every such pixel of every such row.
+    pub(super) fn set_divider(&self, divider: u32) {
+        self.divider.store(divider, Ordering::Relaxed);
+    }
+
+    pub(super) fn note_rays(&self, rays: RayCounts) {
+        lock(&self.progress).rays += rays;
     }
 
     pub fn status(&self) -> Status {
@@ -317,15 +283,9 @@ impl Engine {
             seconds,
             trend: progress.trend,
             seconds_left: None,
+            divider: Some(self.divider.load(Ordering::Relaxed)).filter(|divider| *divider > 0),
         };
         status.seconds_left = seconds_left(&status, &self.subject.settings.sampling);
         status
     }
-}
-
-fn lattice_squares(size: UVec2, divider: u32) -> Vec<UVec2> {
-    let count = size.map(|n| n.div_ceil(divider).div_ceil(TILE));
-    (0..count.y)
-        .flat_map(|y| (0..count.x).map(move |x| UVec2::new(x, y)))
-        .collect()
 }

@@ -10,13 +10,16 @@
 //! on a thread of its own.
 //!
 //! Nothing here traces a ray but those two, which hand batches of samples to
-//! [`trace::radiance`](crate::trace::radiance()), and [`FirstHits::trace`]. Bloom, exposure, view
-//! transforms and [`views`] read what was traced.
+//! [`trace::radiance`](crate::trace::radiance()), [`FirstHits::trace`] and [`depths()`]. Bloom,
+//! exposure, view transforms and [`views`] read what was traced.
 
 mod adaptive;
 mod agx;
 mod bloom;
+mod coarse;
 mod control;
+mod depth;
+mod eight_bits;
 mod engine;
 mod error;
 mod first_hits;
@@ -41,12 +44,15 @@ pub mod views;
 
 pub use agx::agx;
 pub use bloom::{bloom_layer, bloom_threshold, with_bloom};
+pub use depth::depths;
+pub use eight_bits::develop_rgba8;
 pub use error::{ErrorEstimate, RELATIVE_FLOOR};
 pub use first_hits::FirstHits;
 pub use gaussian::{MAX_SIGMA, blurred, kernel};
 pub use picture::Picture;
-pub use progressive::{Progressive, Snapshot};
+pub use progressive::Progressive;
 pub use render::{Rendered, render, render_samples};
+pub use snapshot::Snapshot;
 pub use status::{Ending, State, Status, TrendPoint};
 pub use sum::Sum;
 pub use tiles::{Film, TILE};

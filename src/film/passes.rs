@@ -52,8 +52,8 @@ impl Engine {
         };
         let range = *level..next;
         *level = next;
-        Ok((0..self.grid.count())
-            .flat_map(|tile| self.chunks(tile, Pixels::All, range.clone()))
+        Ok((self.rendered.iter())
+            .flat_map(|&tile| self.chunks(tile, Pixels::All, range.clone()))
             .collect())
     }
 
@@ -83,14 +83,14 @@ impl Engine {
     }
 
     fn cells(&self) -> Vec<Cell> {
-        let mut cells = Vec::with_capacity(2 * self.tiles.len());
-        for (tile, state) in self.tiles.iter().enumerate() {
-            let state = lock(state);
+        let mut cells = Vec::with_capacity(2 * self.rendered.len());
+        for &tile in &self.rendered {
+            let state = lock(&self.tiles[tile as usize]);
             let rays = state.rays as f64 / state.samples.max(1) as f64;
             for half in 0..2 {
                 if state.moves[half].pixels > 0 {
                     cells.push(Cell {
-                        tile: tile as u32,
+                        tile,
                         half,
                         own: state.moves[half],
                         other: state.moves[1 - half],

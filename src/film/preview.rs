@@ -3,12 +3,14 @@
 //! that the film will want, so a coarse start costs no ray.
 
 use super::sample_chunk::{BatchSize, Subject, with_scratch};
+use super::tiles::Tile;
 use crate::trace::{RayCounts, SampleId};
 use glam::{UVec2, Vec2, Vec3};
 use std::time::{Duration, Instant};
 
-/// The first picture should be there after this long, in seconds.
-const FIRST_PICTURE: f64 = 1.0 / 30.0;
+/// Tracing the first picture should take this long, in seconds: two frames of a screen, 33 ms, have
+/// to hold besides what is done before and after it.
+const FIRST_PICTURE: f64 = 0.010;
 /// The coarsest picture, as long as its long side keeps `LEAST_SIDE` pixels.
 const COARSEST: u32 = 32;
 const LEAST_SIDE: u32 = 64;
@@ -19,39 +21,66 @@ const LONG_ENOUGH: Duration = Duration::from_millis(4);
 
 /// Sample 0 of the pixels where it is known.
 pub(super) struct Preview {
-    size: UVec2,
-    values: Vec<Option<Vec3>>,
+    area: Tile,
+    // Two arrays that begin as zeros, which the system hands out without writing them first.
+    values: Vec<[f32; 3]>,
+    known: Vec<u8>,
+    /// The finest lattice that has begun.
+    divider: u32,
+    /// Counts how often it has changed.
+    pub version: u32,
 }
 
 impl Preview {
-    pub fn new(size: UVec2) -> Self {
+    /// Of the pixels of this rectangle.
+    pub fn new(area: Tile) -> Self {
+        let pixels = area.extent.x as usize * area.extent.y as usize;
         Self {
-            size,
-            values: vec![None; size.x as usize * size.y as usize],
+            area,
+            values: vec![[0.0; 3]; pixels],
+            known: vec![0; pixels],
+            divider: COARSEST,
+            version: 0,
         }
     }
 
     fn place(&self, pixel: UVec2) -> usize {
-        pixel.y as usize * self.size.x as usize + pixel.x as usize
+        let UVec2 { x, y } = pixel - self.area.origin;
+        y as usize * self.area.extent.x as usize + x as usize
     }
 
     pub fn get(&self, pixel: UVec2) -> Option<Vec3> {
-        self.values[self.place(pixel)]
-    }
-
-    pub fn set(&mut self, pixel: UVec2, value: Vec3) {
         let place = self.place(pixel);
-        self.values[place] = Some(value);
+        (self.known[place] != 0).then(|| self.values[place].into())
     }
 
-    /// What the pixel shows: its own sample 0, or the nearest on the finest lattice that has one there.
+    /// What comes from now on is of this lattice.
+    pub fn begin(&mut self, divider: u32) {
+        self.divider = divider;
+    }
+
+    /// Takes the values of pixels.
+    pub fn take(&mut self, pixels: &[UVec2], values: &[Vec3]) {
+        for (pixel, value) in pixels.iter().zip(values) {
+            let place = self.place(*pixel);
+            self.values[place] = value.to_array();
+            self.known[place] = 1;
+        }
+        self.version = self.version.wrapping_add(1);
+    }
+
+    /// What the pixel shows: the nearest on the finest lattice that has one there.
     pub fn shown(&self, pixel: UVec2) -> Option<Vec3> {
-        let mut divider = 1;
+        let place = pixel - self.area.origin;
+        let mut divider = self.divider;
         while divider <= COARSEST {
-            let nearest = (pixel + divider / 2) / divider * divider;
-            let last = (self.size - 1) / divider * divider;
-            if let Some(value) = self.get(nearest.min(last)) {
-                return Some(value);
+            // The divider is a power of two.
+            let on_lattice = |n: UVec2| n & UVec2::splat(!(divider - 1));
+            let nearest = on_lattice(place + divider / 2);
+            let last = on_lattice(self.area.extent - 1);
+            let value = self.get(self.area.origin + nearest.min(last));
+            if value.is_some() {
+                return value;
             }
             divider *= 2;
         }
@@ -85,18 +114,26 @@ pub(super) fn first_divider(size: UVec2, seconds: f64) -> u32 {
     divider
 }
 
-/// The pixels of the lattice of `divider` in a square of `side · divider` pixels.
+/// The pixels of the area's lattice of `divider` in a square of `side · divider` pixels.
 pub(super) fn lattice(
-    size: UVec2,
+    area: Tile,
     square: UVec2,
     side: u32,
     divider: u32,
 ) -> impl Iterator<Item = UVec2> {
     let origin = square * side;
-    let count = (size.map(|n| n.div_ceil(divider)) - origin).min(UVec2::splat(side));
+    let count = (area.extent.map(|n| n.div_ceil(divider)) - origin).min(UVec2::splat(side));
     (0..count.y)
         .flat_map(move |y| (0..count.x).map(move |x| origin + UVec2::new(x, y)))
-        .map(move |at| at * divider)
+        .map(move |at| area.origin + at * divider)
+}
+
+/// The squares of 16 × 16 pixels of a lattice over an area of this size.
+pub(super) fn lattice_squares(size: UVec2, divider: u32) -> Vec<UVec2> {
+    let count = size.map(|n| n.div_ceil(divider).div_ceil(super::TILE));
+    (0..count.y)
+        .flat_map(|y| (0..count.x).map(move |x| UVec2::new(x, y)))
+        .collect()
 }
 
 /// Seconds that a sample takes on one thread, from some of the coarsest lattice's near `focus`,
@@ -107,9 +144,9 @@ pub(super) fn time_samples(
     focus: Vec2,
     batch: &BatchSize,
 ) -> (f64, RayCounts) {
-    let size = preview.size;
-    let divider = coarsest_divider(size);
-    let mut pixels: Vec<_> = lattice(size, UVec2::ZERO, u32::MAX, divider).collect();
+    let area = preview.area;
+    let divider = coarsest_divider(area.extent);
+    let mut pixels: Vec<_> = lattice(area, UVec2::ZERO, u32::MAX, divider).collect();
     pixels.sort_by_key(|pixel| pixel.as_vec2().distance_squared(focus).to_bits());
     let start = Instant::now();
     let mut rays = RayCounts::default();
@@ -118,9 +155,7 @@ pub(super) fn time_samples(
         for some in pixels[..pixels.len().min(TIMED)].chunks(BATCH) {
             let ids = some.iter().map(|&pixel| SampleId { pixel, index: 0 });
             rays += scratch.evaluate(subject, ids, batch);
-            for (pixel, value) in some.iter().zip(scratch.values()) {
-                preview.set(*pixel, *value);
-            }
+            preview.take(some, scratch.values());
             timed += some.len();
             if start.elapsed() > LONG_ENOUGH {
                 break;
@@ -135,19 +170,30 @@ mod tests {
     use super::*;
     use std::collections::HashSet;
 
+    fn area(x: u32, y: u32, width: u32, height: u32) -> Tile {
+        Tile {
+            origin: UVec2::new(x, y),
+            extent: UVec2::new(width, height),
+        }
+    }
+
     #[test]
     fn a_lattices_squares_hold_each_of_its_pixels_once_and_finer_ones_hold_the_coarser() {
-        for size in [UVec2::new(130, 70), UVec2::new(1, 1), UVec2::new(64, 3)] {
+        for area in [
+            area(0, 0, 130, 70),
+            area(0, 0, 1, 1),
+            area(0, 0, 64, 3),
+            area(16, 48, 33, 70),
+        ] {
+            let size = area.extent;
             let mut coarser = HashSet::new();
             for divider in [8, 4, 2, 1] {
                 let mut pixels = HashSet::new();
-                let squares = size.map(|n| n.div_ceil(divider).div_ceil(16));
-                for y in 0..squares.y {
-                    for x in 0..squares.x {
-                        for pixel in lattice(size, UVec2::new(x, y), 16, divider) {
-                            assert!(pixel.x < size.x && pixel.y < size.y);
-                            assert!(pixels.insert(pixel), "{pixel} twice");
-                        }
+                for square in lattice_squares(size, divider) {
+                    for pixel in lattice(area, square, 16, divider) {
+                        assert!(pixel.cmpge(area.origin).all(), "{pixel}");
+                        assert!(pixel.cmplt(area.origin + size).all(), "{pixel}");
+                        assert!(pixels.insert(pixel), "{pixel} twice");
                     }
                 }
                 assert!(coarser.is_subset(&pixels), "{size} / {divider}");
@@ -160,27 +206,38 @@ mod tests {
 
     #[test]
     fn a_pixel_shows_the_nearest_that_is_known() {
-        let size = UVec2::new(70, 40);
-        let mut preview = Preview::new(size);
-        assert_eq!(preview.shown(UVec2::new(3, 3)), None);
-        for pixel in lattice(size, UVec2::ZERO, 100, 8) {
-            preview.set(pixel, pixel.as_vec2().extend(0.0));
+        for origin in [UVec2::ZERO, UVec2::new(32, 16)] {
+            let area = area(origin.x, origin.y, 70, 40);
+            let mut preview = Preview::new(area);
+            assert_eq!(preview.shown(origin + 3), None);
+            let value = |pixel: UVec2| pixel.as_vec2().extend(0.0);
+            for divider in [16, 8] {
+                preview.begin(divider);
+                for pixel in lattice(area, UVec2::ZERO, 100, divider) {
+                    preview.take(&[pixel], &[value(pixel)]);
+                }
+            }
+            for (pixel, shown) in [((3, 3), (0, 0)), ((4, 11), (8, 8)), ((69, 39), (64, 32))] {
+                let shown = value(origin + UVec2::from(shown));
+                let pixel = origin + UVec2::from(pixel);
+                assert_eq!(preview.shown(pixel), Some(shown), "{pixel:?}");
+            }
+            // A finer lattice has begun, and has only this one yet.
+            preview.begin(4);
+            preview.take(&[origin + 4], &[Vec3::ONE]);
+            assert_eq!(preview.shown(origin + 3), Some(Vec3::ONE));
+            assert_eq!(preview.shown(origin + 1), Some(value(origin)));
+            assert_eq!(preview.shown(origin + 9), Some(value(origin + 8)));
         }
-        for (pixel, shown) in [((3, 3), (0, 0)), ((4, 11), (8, 8)), ((69, 39), (64, 32))] {
-            let shown = UVec2::from(shown).as_vec2().extend(0.0);
-            assert_eq!(preview.shown(UVec2::from(pixel)), Some(shown), "{pixel:?}");
-        }
-        preview.set(UVec2::new(3, 3), Vec3::ONE);
-        assert_eq!(preview.shown(UVec2::new(3, 3)), Some(Vec3::ONE));
     }
 
     #[test]
     fn the_first_picture_is_as_fine_as_its_time_allows() {
         let size = UVec2::new(800, 800);
         assert_eq!(first_divider(size, 1e-9), 1);
-        // 640,000 samples of a microsecond take 0.64 s; a 25th of them fits, 1/16 takes 40 ms.
-        assert_eq!(first_divider(size, 1e-6), 8);
-        assert_eq!(first_divider(size, 0.4e-6), 4);
+        // 640,000 samples of a microsecond take 640 ms: 1/64 of them takes 10 ms, 1/16 takes 40 ms.
+        assert_eq!(first_divider(size, 0.99e-6), 8);
+        assert_eq!(first_divider(size, 0.24e-6), 4);
         assert_eq!(first_divider(size, 1.0), coarsest_divider(size));
         assert_eq!(coarsest_divider(size), 8);
         assert_eq!(coarsest_divider(UVec2::new(4096, 100)), 32);

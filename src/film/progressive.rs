@@ -3,38 +3,46 @@
 use super::control::Signal;
 use super::engine::{Engine, Mode};
 use super::sample_chunk::Subject;
-use super::{Ending, Film, Picture, Status};
+use super::{Ending, Film, Snapshot, Status};
 use crate::scene::RenderSettings;
 use crate::trace::{Camera, World, samples_per_pixel};
+use bevy::math::URect;
 use glam::Vec2;
 use std::io;
 use std::sync::Arc;
-use std::thread::{self, JoinHandle};
+use std::sync::mpsc::{Sender, channel};
+use std::thread;
 
 /// A render that goes on by itself, coarse to fine, while others look on.
 ///
 /// Passes double the samples of each pixel, tiles nearest the focus first. However it is paused,
 /// resumed and re-focused, its last picture is that of [`render`](super::render()) bit for bit.
-/// Dropping it cancels it.
+///
+/// Neither starting nor dropping it makes the caller wait: dropping it cancels it, and what is under
+/// way ends, and gives back its memory, by itself.
 pub struct Progressive {
+    // Dropped in this order, so that it is the worker that lets go of the film last.
     engine: Arc<Engine>,
-    worker: Option<JoinHandle<()>>,
-}
-
-/// A picture that is kept up to date: only what changed is drawn again.
-#[derive(Clone, Debug)]
-pub struct Snapshot {
-    /// Linear, scene-referred; coarse where the film has no sample yet.
-    pub picture: Picture,
-    versions: Vec<u32>,
+    _lets_worker_go: Sender<()>,
 }
 
 impl Progressive {
     /// Begins to render on rayon's global pool what [`render`](super::render()) renders, from the
     /// picture's middle outwards. The error is that of a system which has no more threads.
     pub fn start(world: World, camera: Camera, settings: RenderSettings) -> io::Result<Self> {
+        Self::start_region(world, camera, settings, None)
+    }
+
+    /// The same, of a region of the picture alone, in pixels: of the [`TILE`](super::TILE)s that it
+    /// touches. They get the samples that they have in the whole picture; status and error are theirs,
+    /// and the rest of a snapshot stays as it is.
+    pub fn start_region(
+        world: World,
+        camera: Camera,
+        settings: RenderSettings,
+        region: Option<URect>,
+    ) -> io::Result<Self> {
         let samples = 0..u64::from(samples_per_pixel(&world, &camera, &settings));
-        let middle = 0.5 * settings.size.as_vec2();
         let subject = Subject {
             world,
             camera,
@@ -43,18 +51,20 @@ impl Progressive {
         let mode = Mode {
             watched: true,
             samples,
+            region,
         };
         let engine = Arc::new(Engine::new(subject, mode));
-        engine.set_focus(middle);
-        let worker = {
-            let engine = engine.clone();
-            thread::Builder::new().name("film".into()).spawn(move || {
-                engine.run(&|_| {});
-            })?
-        };
+        engine.set_focus(engine.area.center());
+        let (lets_worker_go, told) = channel::<()>();
+        let worker = Worker(engine.clone());
+        thread::Builder::new().name("film".into()).spawn(move || {
+            worker.0.run(&|_| {});
+            // Until the other end is dropped.
+            let _ = told.recv();
+        })?;
         Ok(Self {
             engine,
-            worker: Some(worker),
+            _lets_worker_go: lets_worker_go,
         })
     }
 
@@ -85,23 +95,17 @@ impl Progressive {
 
     /// The picture as it is now.
     pub fn snapshot(&self) -> Snapshot {
-        let mut snapshot = Snapshot {
-            picture: Picture::black(self.engine.size()),
-            versions: Vec::new(),
-        };
-        self.engine
-            .redraw(&mut snapshot.picture, &mut snapshot.versions);
+        let mut snapshot = Snapshot::black(self.engine.size());
+        self.engine.redraw(&mut snapshot);
         snapshot
     }
 
-    /// Brings a snapshot of this render up to date. True where anything in it changed.
+    /// Brings a snapshot up to date, of this render or of another. True where anything in it changed.
+    ///
+    /// What this render has no picture of yet, or does not render, stays as the snapshot has it, so
+    /// that a scene being edited does not turn black in between. One of another size starts black.
     pub fn refresh(&self, snapshot: &mut Snapshot) -> bool {
-        if snapshot.picture.size() != self.engine.size() {
-            *snapshot = self.snapshot();
-            return true;
-        }
-        self.engine
-            .redraw(&mut snapshot.picture, &mut snapshot.versions)
+        self.engine.redraw(snapshot)
     }
 
     /// The film as it is now.
@@ -110,28 +114,33 @@ impl Progressive {
     }
 
     /// Waits until the render has ended by itself or by [`Self::cancel`], and says why it did.
-    pub fn wait(&mut self) -> Ending {
-        if let Some(worker) = self.worker.take() {
-            // A panic there is a bug that has been reported on its way; here it is an early end.
-            let _ = worker.join();
-        }
-        self.engine.ending().unwrap_or(Ending::Cancelled)
+    pub fn wait(&self) -> Ending {
+        self.engine.wait()
     }
 }
 
 impl Drop for Progressive {
     fn drop(&mut self) {
         self.cancel();
-        self.wait();
+    }
+}
+
+/// Has the render ended when it goes, even by a panic: that is a bug which has been reported on its
+/// way, and nobody shall wait for what does not come.
+struct Worker(Arc<Engine>);
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        self.0.end(Ending::Cancelled);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::test_scene::{camera, settings, world};
-    use super::super::{State, render, render_samples};
+    use super::super::{Picture, State, TILE, render, render_samples};
     use super::*;
-    use glam::UVec2;
+    use glam::{UVec2, Vec3};
     use std::collections::BTreeMap;
     use std::time::{Duration, Instant};
 
@@ -157,10 +166,10 @@ mod tests {
     fn the_last_picture_is_the_same_however_it_was_paused_and_refocused() {
         for spp in [1, 3, 16, 100] {
             let expected = rendered(spp);
-            let mut quiet = start(spp);
+            let quiet = start(spp);
             assert_eq!(quiet.wait(), Ending::Samples);
             assert_eq!(quiet.snapshot().picture, expected, "{spp} spp at one go");
-            let mut busy = start(spp);
+            let busy = start(spp);
             for i in 0..40 {
                 busy.pause();
                 busy.set_focus(Vec2::new((i * 37 % 70) as f32, (i * 11 % 45) as f32));
@@ -182,7 +191,7 @@ mod tests {
     #[test]
     fn a_cancelled_render_keeps_whole_passes_of_tiles_only() {
         let mut passes = BTreeMap::new();
-        let mut cancelled = start(1 << 12);
+        let cancelled = start(1 << 12);
         wait_for(&cancelled, |status| status.samples > 5.0);
         cancelled.cancel();
         assert_eq!(cancelled.wait(), Ending::Cancelled);
@@ -205,7 +214,7 @@ mod tests {
 
     #[test]
     fn a_paused_render_stands_still_and_its_clock_too() {
-        let mut render = start(1 << 12);
+        let render = start(1 << 12);
         wait_for(&render, |status| status.samples >= 2.0);
         render.pause();
         // What is under way ends within a batch; nothing comes after.
@@ -232,7 +241,7 @@ mod tests {
 
     #[test]
     fn a_snapshot_that_is_refreshed_equals_a_new_one() {
-        let mut render = start(64);
+        let render = start(64);
         let mut snapshot = render.snapshot();
         while render.status().state == State::Running {
             render.refresh(&mut snapshot);
@@ -241,6 +250,49 @@ mod tests {
         render.refresh(&mut snapshot);
         assert_eq!(snapshot.picture, render.snapshot().picture);
         assert_eq!(snapshot.picture, rendered(64));
+    }
+
+    #[test]
+    fn a_region_gets_the_pictures_own_samples_and_the_rest_of_a_snapshot_stays() {
+        let region = URect::new(20, 5, 40, 17);
+        let grown = URect::new(16, 0, 48, 32);
+        let render = Progressive::start_region(world(), camera(), settings(SIZE, 20), Some(region));
+        let render = render.unwrap();
+        let mut snapshot = Snapshot::black(SIZE);
+        snapshot.picture.pixels.fill(Vec3::splat(7.0));
+        assert_eq!(render.wait(), Ending::Samples);
+        assert!(render.refresh(&mut snapshot));
+        let (expected, film) = (rendered(20), render.film());
+        for y in 0..SIZE.y {
+            for x in 0..SIZE.x {
+                let inside = UVec2::new(x, y).cmpge(grown.min).all()
+                    && UVec2::new(x, y).cmplt(grown.max).all();
+                let shown = if inside {
+                    expected.pixel(x, y)
+                } else {
+                    Vec3::splat(7.0)
+                };
+                assert_eq!(snapshot.picture.pixel(x, y), shown, "{x}, {y}");
+                assert_eq!(film.count(x, y), if inside { 20 } else { 0 }, "{x}, {y}");
+            }
+        }
+        let status = render.status();
+        assert_eq!((status.samples, status.divider), (20.0, Some(1)));
+        assert_eq!(status.rays.camera, 20 * u64::from(2 * 2 * TILE * TILE));
+        assert!(
+            !render.refresh(&mut snapshot),
+            "a picture that stands changed"
+        );
+    }
+
+    #[test]
+    fn a_region_outside_the_picture_ends_at_once() {
+        let outside = Some(URect::new(900, 0, 950, 9));
+        let render =
+            Progressive::start_region(world(), camera(), settings(SIZE, 20), outside).unwrap();
+        assert_eq!(render.wait(), Ending::Samples);
+        assert_eq!(render.status().rays.total(), 0);
+        assert_eq!(render.snapshot().picture, Picture::black(SIZE));
     }
 
     #[test]

@@ -61,6 +61,7 @@ pub fn render_samples(
         Mode {
             watched: false,
             samples,
+            region: None,
         },
     );
     let ending = engine.run(&|engine| progress(&engine.status()));

@@ -45,6 +45,9 @@ pub struct Status {
     pub trend: Vec<TrendPoint>,
     /// Until the first of its rules ends it; `None` where nothing is known yet.
     pub seconds_left: Option<f64>,
+    /// How coarse the picture is: at least every n-th pixel of every n-th row has a sample, n a power
+    /// of two; 1 is the full resolution. `None` before the first picture.
+    pub divider: Option<u32>,
 }
 
 /// The estimated error after one pass.
@@ -139,6 +142,7 @@ mod tests {
                 ..RayCounts::default()
             },
             seconds: 8.0,
+            divider: Some(1),
             trend: [1.0, 2.0, 4.0, 8.0].map(point).to_vec(),
             seconds_left: None,
         }

@@ -67,6 +67,7 @@ impl Chunk {
 /// A tile of the film while it is rendered.
 pub(super) struct TileState {
     pub tile: Tile,
+    /// `TILE_PIXELS`, or none before the first pass: a render begins without waiting for memory.
     pub pixels: Box<[FilmPixel]>,
     pending: Option<Box<Pending>>,
     /// How far the means moved, for each half of the pixels.
@@ -89,7 +90,7 @@ impl TileState {
     pub fn new(tile: Tile) -> Self {
         Self {
             tile,
-            pixels: vec![FilmPixel::default(); TILE_PIXELS].into(),
+            pixels: Box::default(),
             pending: None,
             moves: [Moves::default(); 2],
             rays: 0,
@@ -150,6 +151,9 @@ impl TileState {
 
     /// Adds `count` samples to every pixel, whose sums are given.
     fn commit(&mut self, pixels: Pixels, sums: &[Sum], count: u64) {
+        if self.pixels.is_empty() {
+            self.pixels = vec![FilmPixel::default(); TILE_PIXELS].into();
+        }
         let doubles = |pixel: &FilmPixel| u64::from(pixel.count) == count;
         for (_, at) in self.tile.pixels().filter(|(_, at)| pixels.has(*at)) {
             let pixel = &mut self.pixels[at];

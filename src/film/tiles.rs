@@ -1,4 +1,5 @@
 use super::{Picture, Sum};
+use bevy::math::URect;
 use glam::{UVec2, Vec2, Vec3};
 
 /// Edge of a square tile in pixels: 256 pixels of one sample each fill a batch, and the arrays of a
@@ -140,6 +141,28 @@ impl TileGrid {
     pub fn tiles(self) -> impl Iterator<Item = Tile> {
         (0..self.count()).map(move |i| self.tile(i))
     }
+
+    /// The tiles that a region touches, and the rectangle that they make; all of them without one.
+    pub fn within(self, region: Option<URect>) -> (Vec<u32>, Tile) {
+        let (min, max) = match region {
+            Some(region) => (region.min.min(self.size), region.max.min(self.size)),
+            None => (UVec2::ZERO, self.size),
+        };
+        let (first, end) = (min / TILE, max.map(|n| n.div_ceil(TILE)));
+        if min.cmpge(max).any() {
+            let nothing = Tile {
+                origin: UVec2::ZERO,
+                extent: UVec2::ZERO,
+            };
+            return (Vec::new(), nothing);
+        }
+        let tiles = (first.y..end.y)
+            .flat_map(|y| (first.x..end.x).map(move |x| y * self.columns() + x))
+            .collect();
+        let origin = first * TILE;
+        let extent = (end * TILE).min(self.size) - origin;
+        (tiles, Tile { origin, extent })
+    }
 }
 
 /// A rectangle of pixels.
@@ -193,5 +216,24 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_region_is_grown_to_the_tiles_that_it_touches_and_cut_at_the_pictures_border() {
+        let grid = TileGrid::new(UVec2::new(70, 45));
+        let of = |a: [u32; 2], b: [u32; 2]| {
+            let (tiles, area) = grid.within(Some(URect {
+                min: a.into(),
+                max: b.into(),
+            }));
+            (tiles, area.origin.to_array(), area.extent.to_array())
+        };
+        assert_eq!(of([17, 3], [33, 16]), (vec![1, 2], [16, 0], [32, 16]));
+        assert_eq!(of([60, 40], [900, 900]), (vec![13, 14], [48, 32], [22, 13]));
+        assert_eq!(of([20, 20], [20, 30]), (vec![], [0, 0], [0, 0]));
+        assert_eq!(of([70, 0], [90, 9]), (vec![], [0, 0], [0, 0]));
+        let (tiles, area) = grid.within(None);
+        assert_eq!(tiles, (0..grid.count()).collect::<Vec<_>>());
+        assert_eq!((area.origin, area.extent), (UVec2::ZERO, grid.size));
     }
 }

@@ -1,0 +1,86 @@
+//! How a render begins that someone looks at: with coarse pictures, each finer than the one before.
+
+use super::engine::Engine;
+use super::preview::{Preview, first_divider, lattice, lattice_squares, time_samples};
+use super::sample_chunk::with_scratch;
+use super::tile_state::TILE_PIXELS;
+use super::tiles::Tile;
+use super::{Ending, TILE, lock};
+use crate::trace::SampleId;
+use glam::{UVec2, Vec3};
+use rayon::prelude::*;
+
+impl Engine {
+    /// The coarse pictures, as far as they come before the one of full resolution.
+    pub fn start_coarse(&self) -> Option<Ending> {
+        let area = self.area;
+        let focus = lock(&self.queue).focus();
+        let mut preview = Preview::new(area);
+        let (seconds, rays) = time_samples(&self.subject, &mut preview, focus, &self.batch);
+        let coarsest = first_divider(area.extent, seconds / rayon::current_num_threads() as f64);
+        self.note_rays(rays);
+        *lock(&self.preview) = Some(preview);
+        let mut divider = coarsest;
+        while divider > 1 {
+            if let Some(preview) = lock(&self.preview).as_mut() {
+                preview.begin(divider);
+            }
+            let mut squares = lattice_squares(area.extent, divider);
+            while !squares.is_empty() {
+                // Those that were not done when a pause came are tried again; what they had is kept.
+                squares = squares
+                    .into_par_iter()
+                    .with_max_len(1)
+                    .filter(|square| !self.preview_square(*square, divider))
+                    .collect();
+                if let Some(ending) = self.interrupted() {
+                    return Some(ending);
+                }
+            }
+            self.set_divider(divider);
+            divider /= 2;
+        }
+        None
+    }
+
+    /// Evaluates what is not known yet of a square of the lattice. False where it had to stop.
+    fn preview_square(&self, square: UVec2, divider: u32) -> bool {
+        let pixels: Vec<_> = {
+            let preview = lock(&self.preview);
+            lattice(self.area, square, TILE, divider)
+                .filter(|pixel| preview.as_ref().is_some_and(|p| p.get(*pixel).is_none()))
+                .collect()
+        };
+        let mut rest = &pixels[..];
+        while !rest.is_empty() {
+            if self.must_stop() {
+                return false;
+            }
+            let (some, others) = rest.split_at(self.batch.get().min(rest.len()));
+            rest = others;
+            let rays = with_scratch(|scratch| {
+                let ids = some.iter().map(|&pixel| SampleId { pixel, index: 0 });
+                let rays = scratch.evaluate(&self.subject, ids, &self.batch);
+                if let Some(preview) = lock(&self.preview).as_mut() {
+                    preview.take(some, scratch.values());
+                }
+                rays
+            });
+            self.note_rays(rays);
+        }
+        true
+    }
+
+    /// First samples of the tile's pixels that the preview has.
+    pub fn known(&self, tile: Tile) -> Vec<Option<Vec3>> {
+        let preview = lock(&self.preview);
+        let Some(preview) = preview.as_ref() else {
+            return Vec::new();
+        };
+        let mut known = vec![None; TILE_PIXELS];
+        for (pixel, at) in tile.pixels() {
+            known[at] = preview.get(pixel);
+        }
+        known
+    }
+}
