@@ -2,7 +2,7 @@
 
 use crate::io::IoPlugin;
 use crate::scene::ScenePlugin;
-use crate::sync::SyncPlugin;
+use crate::sync::{SyncPlugin, TreeBuilding};
 use bevy::app::{App, TaskPoolPlugin};
 use bevy::asset::{AssetApp, AssetPlugin};
 use bevy::camera::visibility::VisibilityPlugin;
@@ -15,7 +15,8 @@ use bevy::transform::TransformPlugin;
 ///
 /// Spawn entities or [`open`](crate::io::open) a scene, call `update` once, and read
 /// [`Traced`](crate::sync::Traced) and [`TracedCameras`](crate::sync::TracedCameras).
-/// Systems run on the calling thread, so that trees are built in the rayon pool it belongs to.
+/// Systems run on the calling thread, and trees are built there and then
+/// ([`TreeBuilding::AtOnce`]), in the rayon pool it belongs to.
 pub fn headless_app() -> App {
     let mut app = App::new();
     app.add_plugins((
@@ -27,7 +28,8 @@ pub fn headless_app() -> App {
         VisibilityPlugin,
     ))
     .init_asset::<Image>()
-    .add_plugins((ScenePlugin, IoPlugin, SyncPlugin));
+    .add_plugins((ScenePlugin, IoPlugin, SyncPlugin))
+    .insert_resource(TreeBuilding::AtOnce);
     app.finish();
     app.cleanup();
     let mut schedules = app.world_mut().resource_mut::<Schedules>();

@@ -24,6 +24,13 @@ pub(super) struct TracedInstances {
     options: BuildOptions,
 }
 
+impl TracedInstances {
+    fn of(&self, id: SceneId, entity: Entity) -> Option<&Row> {
+        let place = self.rows.binary_search_by_key(&id, |row| row.id).ok()?;
+        Some(&self.rows[place]).filter(|row| row.entity == entity)
+    }
+}
+
 /// One object as the top level sees it.
 pub(super) struct Row {
     pub id: SceneId,
@@ -118,11 +125,16 @@ pub(super) fn sync_instances(
             problems: &mut draft.problems.instances,
         };
         let mesh = match meshes.get(mesh.id()) {
-            Ok(mesh) => mesh,
-            Err(fault) => {
+            Some(Ok(mesh)) => mesh,
+            Some(Err(fault)) => {
                 reader.note(Fault::Mesh(fault));
                 continue;
             }
+            // Its tree is being built.
+            None => match known.of(id, entity) {
+                Some(before) => &before.mesh,
+                None => continue,
+            },
         };
         let left_out = mesh.tree.triangles().left_out();
         if left_out > 0 {

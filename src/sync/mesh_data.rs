@@ -29,36 +29,61 @@ pub enum MeshFault {
 
 /// The mesh with its tree. An empty mesh is one without triangles, not a fault.
 pub(super) fn trace_mesh(mesh: &Mesh, options: &BuildOptions) -> Result<trace::Mesh, MeshFault> {
-    let positions: Vec<Vec3> = match mesh.try_attribute(Mesh::ATTRIBUTE_POSITION) {
-        Ok(VertexAttributeValues::Float32x3(values)) => {
-            values.iter().copied().map(Vec3::from).collect()
-        }
-        Ok(_) | Err(MeshAccessError::NotFound) => return Err(MeshFault::NoPositions),
-        Err(MeshAccessError::ExtractedToRenderWorld) => return Err(MeshFault::Extracted),
-    };
-    let count = positions.len();
-    let indices = triangle_indices(mesh, count)?;
-    let triangles =
-        Triangles::new(positions, indices).map_err(|error| MeshFault::Broken(error.to_string()))?;
+    MeshCopy::of(mesh)?.build(options)
+}
 
-    // Attributes that do not fit the positions are no use: shading then takes the flat normal.
-    let normals = match mesh.try_attribute(Mesh::ATTRIBUTE_NORMAL) {
-        Ok(VertexAttributeValues::Float32x3(values)) if values.len() == count => {
-            values.iter().copied().map(Vec3::from).collect()
-        }
-        _ => Vec::new(),
-    };
-    let uvs = match mesh.try_attribute(Mesh::ATTRIBUTE_UV_0) {
-        Ok(VertexAttributeValues::Float32x2(values)) if values.len() == count => {
-            values.iter().copied().map(Vec2::from).collect()
-        }
-        _ => Vec::new(),
-    };
-    Ok(trace::Mesh {
-        tree: Arc::new(MeshTree::build(triangles, options)),
-        normals,
-        uvs,
-    })
+/// What the tracer needs of a Bevy mesh, so that its tree can be built while the asset is edited.
+pub(super) struct MeshCopy {
+    positions: Vec<Vec3>,
+    indices: Vec<[u32; 3]>,
+    normals: Vec<Vec3>,
+    uvs: Vec<Vec2>,
+}
+
+impl MeshCopy {
+    /// Of this mesh, as it is now.
+    pub fn of(mesh: &Mesh) -> Result<Self, MeshFault> {
+        let positions: Vec<Vec3> = match mesh.try_attribute(Mesh::ATTRIBUTE_POSITION) {
+            Ok(VertexAttributeValues::Float32x3(values)) => {
+                values.iter().copied().map(Vec3::from).collect()
+            }
+            Ok(_) | Err(MeshAccessError::NotFound) => return Err(MeshFault::NoPositions),
+            Err(MeshAccessError::ExtractedToRenderWorld) => return Err(MeshFault::Extracted),
+        };
+        let count = positions.len();
+        let indices = triangle_indices(mesh, count)?;
+
+        // Attributes that do not fit the positions are no use: shading then takes the flat normal.
+        let normals = match mesh.try_attribute(Mesh::ATTRIBUTE_NORMAL) {
+            Ok(VertexAttributeValues::Float32x3(values)) if values.len() == count => {
+                values.iter().copied().map(Vec3::from).collect()
+            }
+            _ => Vec::new(),
+        };
+        let uvs = match mesh.try_attribute(Mesh::ATTRIBUTE_UV_0) {
+            Ok(VertexAttributeValues::Float32x2(values)) if values.len() == count => {
+                values.iter().copied().map(Vec2::from).collect()
+            }
+            _ => Vec::new(),
+        };
+        Ok(Self {
+            positions,
+            indices,
+            normals,
+            uvs,
+        })
+    }
+
+    /// The mesh with its tree.
+    pub fn build(self, options: &BuildOptions) -> Result<trace::Mesh, MeshFault> {
+        let triangles = Triangles::new(self.positions, self.indices)
+            .map_err(|error| MeshFault::Broken(error.to_string()))?;
+        Ok(trace::Mesh {
+            tree: Arc::new(MeshTree::build(triangles, options)),
+            normals: self.normals,
+            uvs: self.uvs,
+        })
+    }
 }
 
 /// Three indices a triangle. A list's surplus indices are no triangle, as in Bevy; every other

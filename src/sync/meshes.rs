@@ -1,5 +1,6 @@
-use super::mesh_data::{MeshFault, trace_mesh};
+use super::mesh_data::{MeshCopy, MeshFault, trace_mesh};
 use super::traced::Draft;
+use super::tree_building::{Built, TreeBuilding, TreeThreads};
 use crate::bvh::{self, BuildOptions, Builder, Levels};
 use crate::scene::{self, RenderSettings};
 use crate::trace;
@@ -14,26 +15,78 @@ use bevy::platform::collections::{HashMap, HashSet};
 use rayon::prelude::*;
 use std::sync::Arc;
 
+/// The mesh of an asset with its tree, or why it has none.
+pub(super) type MeshResult = Result<Arc<trace::Mesh>, MeshFault>;
+
 /// The meshes that objects use, each with its tree; shared by all objects that use it.
 #[derive(Resource, Default)]
 pub(super) struct TracedMeshes {
-    by_asset: HashMap<AssetId<Mesh>, Result<Arc<trace::Mesh>, MeshFault>>,
+    /// What is traced, all of it built with `options`.
+    shown: HashMap<AssetId<Mesh>, MeshResult>,
     options: BuildOptions,
+    /// How the trees shall be built. While these are not `options`, what was built with them waits in
+    /// `ready` until all of it is there: trees of one kind are shown at a time.
+    wanted: BuildOptions,
+    ready: HashMap<AssetId<Mesh>, MeshResult>,
+    /// What is being built, and whether it was edited since that began.
+    building: HashMap<AssetId<Mesh>, bool>,
+    threads: TreeThreads,
 }
 
 impl TracedMeshes {
-    /// The mesh of an asset.
-    pub fn get(&self, id: AssetId<Mesh>) -> Result<&Arc<trace::Mesh>, MeshFault> {
-        match self.by_asset.get(&id) {
-            Some(Ok(mesh)) => Ok(mesh),
-            Some(Err(fault)) => Err(fault.clone()),
-            None => Err(MeshFault::Missing),
-        }
+    /// The mesh of an asset; `None` while its first tree is being built.
+    pub fn get(&self, id: AssetId<Mesh>) -> Option<Result<&Arc<trace::Mesh>, MeshFault>> {
+        let mesh = self.shown.get(&id)?;
+        Some(mesh.as_ref().map_err(MeshFault::clone))
     }
 
     /// How all trees are built.
     pub fn options(&self) -> &BuildOptions {
         &self.options
+    }
+
+    /// What a mesh's own tree is built with.
+    fn mesh_options(&self) -> BuildOptions {
+        match self.wanted.levels {
+            // One tree over everything leaves the meshes' own unused.
+            Levels::One => BuildOptions {
+                builder: Builder::None,
+                ..self.wanted
+            },
+            Levels::Two => self.wanted,
+        }
+    }
+
+    /// Takes what the threads have built, and says what of it has to be built again.
+    fn take_built(&mut self, built: Vec<Built>, assets: &Assets<Mesh>) -> Vec<AssetId<Mesh>> {
+        let mut again = Vec::new();
+        for Built { id, options, mesh } in built {
+            let edited = self.building.remove(&id).unwrap_or_default();
+            let outdated = options != self.mesh_options();
+            if edited || outdated {
+                again.push(id);
+            }
+            // An edit follows the other in a gesture: that its beginning is seen is better than nothing.
+            if !outdated && (!edited || assets.contains(id)) {
+                self.ready.insert(id, mesh);
+            }
+        }
+        again
+    }
+
+    /// Shows what is ready, and says whether anything was.
+    fn show_ready(&mut self) -> bool {
+        if self.options != self.wanted {
+            if !self.building.is_empty() {
+                return false;
+            }
+            self.shown = std::mem::take(&mut self.ready);
+            self.options = self.wanted;
+            return true;
+        }
+        let any = !self.ready.is_empty();
+        self.shown.extend(self.ready.drain());
+        any
     }
 }
 
@@ -46,58 +99,80 @@ pub(super) fn sync_meshes(
     users: Query<&Mesh3d>,
     assets: Res<Assets<Mesh>>,
     settings: Res<RenderSettings>,
+    building: Res<TreeBuilding>,
     known: ResMut<TracedMeshes>,
     mut draft: ResMut<Draft>,
 ) {
     let known = known.into_inner();
-    let options = build_options(&settings.tree);
-    let mut stale = removed.read().count() > 0 || !changed.is_empty();
-    if options != known.options {
-        known.options = options;
-        known.by_asset.clear();
-        stale = true;
+    let at_once = *building == TreeBuilding::AtOnce;
+    let wanted = build_options(&settings.tree);
+    let rebuild = wanted != known.wanted;
+    if rebuild {
+        known.wanted = wanted;
+        known.ready.clear();
     }
-    for event in events.read() {
-        let (AssetEvent::Added { id } | AssetEvent::Modified { id } | AssetEvent::Removed { id }) =
-            event
-        else {
-            continue;
-        };
-        known.by_asset.remove(id);
-        stale = true;
-    }
-    if !stale {
-        return;
-    }
-    let used: HashSet<AssetId<Mesh>> = users.iter().map(|mesh| mesh.id()).collect();
-    known.by_asset.retain(|id, _| used.contains(id));
-    let missing: Vec<AssetId<Mesh>> = used
-        .into_iter()
-        .filter(|id| !known.by_asset.contains_key(id))
-        .collect();
-    if missing.is_empty() {
-        return;
-    }
-    // One tree over everything leaves the meshes' own unused.
-    let mesh_options = match options.levels {
-        Levels::One => BuildOptions {
-            builder: Builder::None,
-            ..options
-        },
-        Levels::Two => options,
-    };
-    let built: Vec<_> = missing
-        .into_par_iter()
-        .map(|id| {
-            let mesh = assets.get(id).ok_or(MeshFault::Missing);
-            (
-                id,
-                mesh.and_then(|mesh| trace_mesh(mesh, &mesh_options).map(Arc::new)),
-            )
+    let mut stale: HashSet<AssetId<Mesh>> = events
+        .read()
+        .filter_map(|event| match event {
+            AssetEvent::Added { id } | AssetEvent::Modified { id } | AssetEvent::Removed { id } => {
+                Some(*id)
+            }
+            _ => None,
         })
         .collect();
-    known.by_asset.extend(built);
-    draft.changes.meshes = true;
+    let built = if at_once {
+        known.threads.finish(known.building.len())
+    } else {
+        known.threads.finished()
+    };
+    let nothing = removed.read().count() == 0
+        && changed.is_empty()
+        && stale.is_empty()
+        && built.is_empty()
+        && !rebuild;
+    if nothing {
+        return;
+    }
+    stale.extend(known.take_built(built, &assets));
+    let used: HashSet<AssetId<Mesh>> = users.iter().map(|mesh| mesh.id()).collect();
+    known.shown.retain(|id, _| used.contains(id));
+    known.ready.retain(|id, _| used.contains(id));
+    let in_force = known.options == known.wanted;
+    let mut to_build = Vec::new();
+    for id in used {
+        let is_there = known.ready.contains_key(&id) || in_force && known.shown.contains_key(&id);
+        if is_there && !stale.contains(&id) {
+            continue;
+        }
+        match known.building.get_mut(&id) {
+            Some(edited) => *edited |= rebuild || stale.contains(&id),
+            None => to_build.push(id),
+        }
+    }
+    let options = known.mesh_options();
+    if at_once {
+        let built = to_build.into_par_iter().map(|id| {
+            let mesh = assets.get(id).ok_or(MeshFault::Missing);
+            let mesh = mesh.and_then(|mesh| trace_mesh(mesh, &options));
+            (id, mesh.map(Arc::new))
+        });
+        known.ready.extend(built.collect::<Vec<_>>());
+    } else {
+        for id in to_build {
+            let mesh = assets.get(id).ok_or(MeshFault::Missing);
+            match mesh.and_then(MeshCopy::of) {
+                Ok(copy) => {
+                    known.threads.build(id, copy, options);
+                    known.building.insert(id, false);
+                }
+                Err(fault) => {
+                    known.ready.insert(id, Err(fault));
+                }
+            }
+        }
+    }
+    draft.changes.meshes |= known.show_ready();
+    draft.pending = known.building.len();
 }
 
 /// The tree settings as the builders take them, moved into their ranges.

@@ -21,6 +21,9 @@
 //! those caches is carried over from frame to frame, a world after a thousand edits equals one
 //! that is made from the same entities at once.
 //!
+//! Trees of meshes are built on threads of their own, and what was there before is traced until they
+//! are done ([`TreeBuilding`]): no frame waits for them. [`finish`] does.
+//!
 //! What cannot be traced is left out, and named in [`Traced::problems`]; the rest stays intact.
 //!
 //! Visibility is Bevy's `InheritedVisibility`: an app needs its `VisibilityPlugin` (which is in
@@ -44,6 +47,7 @@ mod reading;
 mod texture_data;
 mod textures;
 mod traced;
+mod tree_building;
 
 #[cfg(test)]
 mod tests;
@@ -53,6 +57,7 @@ pub use mesh_data::MeshFault;
 pub use problem::{Fault, SyncProblem};
 pub use texture_data::TextureFault;
 pub use traced::{Changes, Traced};
+pub use tree_building::{TreeBuilding, finish};
 
 use bevy::app::{App, Plugin, PostUpdate};
 use bevy::asset::AssetEventSystems;
@@ -76,6 +81,7 @@ impl Plugin for SyncPlugin {
             .init_resource::<TracedCameras>()
             .init_resource::<traced::Draft>()
             .init_resource::<ids::IdOwners>()
+            .init_resource::<TreeBuilding>()
             .init_resource::<meshes::TracedMeshes>()
             .init_resource::<textures::TracedTextures>()
             .init_resource::<instances::TracedInstances>()

@@ -15,6 +15,9 @@ pub struct Traced {
     pub changes: Changes,
     /// What cannot be traced as it is, sorted by kind and `SceneId`.
     pub problems: Vec<SyncProblem>,
+    /// How many meshes wait for their tree: what uses them is traced with the mesh that it had before,
+    /// or not yet. See [`TreeBuilding`](super::TreeBuilding).
+    pub pending: usize,
 }
 
 /// What one frame redid.
@@ -59,6 +62,8 @@ pub(super) struct Draft {
     pub world: trace::World,
     pub changes: Changes,
     pub problems: Problems,
+    /// Meshes whose tree is being built.
+    pub pending: usize,
     /// Some part was read again, so that its problems may be others although nothing was redone.
     pub reread: bool,
 }
@@ -103,6 +108,7 @@ pub(super) fn publish_snapshot(
         draft.reread = true;
     }
     let changes = std::mem::take(&mut draft.changes);
+    traced.bypass_change_detection().pending = draft.pending;
     if !changes.any() && !draft.reread {
         traced.bypass_change_detection().changes = changes;
         return;

@@ -9,7 +9,7 @@ use crate::scene::{
     Builder, DirectionalLamp, Environment, Levels, Motion, ParallelogramLamp, PhongMaps,
     RenderSettings, SceneId, SegmentLamp, UsesMaterial,
 };
-use crate::sync::TracedCameras;
+use crate::sync::{TracedCameras, finish};
 use bevy::camera::visibility::Visibility;
 use bevy::ecs::component::{Component, Mutable};
 use bevy::ecs::entity_disabling::Disabled;
@@ -27,8 +27,9 @@ struct Edited {
 }
 
 impl Edited {
-    fn new(seed: u64) -> Self {
+    fn new(seed: u64, building: TreeBuilding) -> Self {
         let mut app = app();
+        app.insert_resource(building);
         Self {
             meshes: (3..8).map(|sides| add_mesh(&mut app, sides)).collect(),
             images: (1..4)
@@ -377,7 +378,16 @@ fn assert_same(edited: &App, fresh: &App, dice: &mut Dice, edits: usize) -> usiz
 
 #[test]
 fn a_thousand_edits_leave_the_same_world_and_hits_as_a_fresh_build() {
-    let mut edited = Edited::new(29);
+    assert_edits_add_up(29, TreeBuilding::AtOnce);
+}
+
+#[test]
+fn so_do_a_thousand_edits_while_trees_are_being_built() {
+    assert_edits_add_up(30, TreeBuilding::InBackground);
+}
+
+fn assert_edits_add_up(seed: u64, building: TreeBuilding) {
+    let mut edited = Edited::new(seed, building);
     for _ in 0..12 {
         edited.spawn_object();
         edited.spawn_other();
@@ -390,7 +400,8 @@ fn a_thousand_edits_leave_the_same_world_and_hits_as_a_fresh_build() {
             frames_with_changes += usize::from(frame(&mut edited.app).any());
         }
         if edits % 25 == 0 {
-            edited.app.update();
+            finish(&mut edited.app);
+            assert_eq!(edited.app.world().resource::<Traced>().pending, 0);
             let fresh = edited.fresh();
             hits += assert_same(&edited.app, &fresh, &mut edited.dice, edits);
         }

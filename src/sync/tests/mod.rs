@@ -1,12 +1,13 @@
 //! Tests of the room as a whole: an app with nothing but what `SyncPlugin` needs.
 
+mod background;
 mod dice;
 mod edits;
 mod lights;
 mod problems;
 mod sharing;
 
-use super::{Changes, SyncPlugin, Traced};
+use super::{Changes, SyncPlugin, Traced, TreeBuilding};
 use crate::scene::{Phong, PointLamp, SceneCamera, ScenePlugin};
 use crate::trace;
 use bevy::app::{App, TaskPoolPlugin};
@@ -32,7 +33,8 @@ fn app() -> App {
         ScenePlugin,
     ))
     .init_asset::<Image>()
-    .add_plugins(SyncPlugin);
+    .add_plugins(SyncPlugin)
+    .insert_resource(TreeBuilding::AtOnce);
     app.finish();
     app
 }

@@ -1,0 +1,135 @@
+//! Trees that are built in the background: the frame does not wait, and what was there before stays.
+//!
+//! A tree is taken at the earliest in the frame after the one that began it, so that what the tests
+//! say of that frame does not depend on the threads' speed.
+
+use super::*;
+use crate::scene::{Builder, RenderSettings};
+use crate::sync::finish;
+
+fn small() -> Small {
+    let mut small = Small::new();
+    small.app.insert_resource(TreeBuilding::InBackground);
+    small
+}
+
+fn pending(app: &App) -> usize {
+    app.world().resource::<Traced>().pending
+}
+
+fn triangles(app: &App) -> Vec<usize> {
+    let world = world(app);
+    let objects = world.objects.iter();
+    objects.map(|o| o.mesh.tree.triangles().len()).collect()
+}
+
+fn edit_mesh(small: &mut Small, mesh: usize, sides: u32) {
+    let mut meshes = small.app.world_mut().resource_mut::<Assets<Mesh>>();
+    *meshes.get_mut(&small.meshes[mesh]).unwrap() = fan(sides);
+}
+
+#[test]
+fn an_edited_mesh_is_traced_as_it_was_until_its_tree_is_there() {
+    let mut small = small();
+    let before = world(&small.app);
+    edit_mesh(&mut small, 0, 7);
+    assert_eq!(frame(&mut small.app), Changes::default());
+    assert_eq!(pending(&small.app), 1);
+    assert!(Arc::ptr_eq(&before, &world(&small.app)));
+    finish(&mut small.app);
+    let changes = small.app.world().resource::<Traced>().changes;
+    assert!(changes.meshes && changes.top_level && !changes.materials);
+    assert_eq!(pending(&small.app), 0);
+    assert_eq!(triangles(&small.app), [7, 7, 5]);
+    assert_eq!(frame(&mut small.app), Changes::default());
+}
+
+#[test]
+fn it_appears_by_itself_in_some_later_frame() {
+    let mut small = small();
+    edit_mesh(&mut small, 0, 7);
+    let mut frames = 0;
+    while triangles(&small.app) != [7, 7, 5] {
+        small.app.update();
+        frames += 1;
+        assert!(frames < 60_000, "it never appears");
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    assert_eq!(pending(&small.app), 0);
+}
+
+#[test]
+fn an_object_with_another_mesh_keeps_its_old_one_and_a_new_object_appears_with_its_mesh() {
+    let mut small = small();
+    let mesh = add_mesh(&mut small.app, 9);
+    small.edit::<Mesh3d>(small.objects[0], |mesh3d| mesh3d.0 = mesh.clone());
+    let new = small.app.world_mut().spawn(Mesh3d(mesh)).id();
+    small.app.update();
+    assert_eq!(triangles(&small.app), [3, 3, 5]);
+    assert!(problems(&small.app).is_empty());
+    // Moving it meanwhile moves what is there.
+    small.edit::<Transform>(small.objects[0], |t| t.translation.y = 4.0);
+    small.app.update();
+    let height = |world: Arc<trace::World>| {
+        let place = world.aggregate.instances()[0].world_from_object();
+        place.translation.y
+    };
+    assert_eq!(height(world(&small.app)), 4.0);
+    finish(&mut small.app);
+    assert_eq!(triangles(&small.app), [9, 3, 5, 9]);
+    assert!(small.app.world().get_entity(new).is_ok());
+}
+
+#[test]
+fn of_edits_that_follow_one_another_the_last_one_counts() {
+    let mut small = small();
+    for sides in 6..30 {
+        edit_mesh(&mut small, 0, sides);
+        small.app.update();
+        assert!(pending(&small.app) <= 1, "{} builds", pending(&small.app));
+    }
+    finish(&mut small.app);
+    assert_eq!(triangles(&small.app), [29, 29, 5]);
+}
+
+#[test]
+fn trees_of_other_settings_are_shown_all_at_once() {
+    let mut small = small();
+    let before = world(&small.app);
+    let mut settings = small.app.world_mut().resource_mut::<RenderSettings>();
+    settings.tree.builder = Builder::Sah;
+    small.app.update();
+    assert_eq!(pending(&small.app), 2);
+    assert!(Arc::ptr_eq(&before, &world(&small.app)));
+    // Meanwhile the edits of other parts are shown, with the trees as they were.
+    small.edit::<Transform>(small.objects[0], |t| t.translation.y = 4.0);
+    edit_mesh(&mut small, 1, 8);
+    small.app.update();
+    let builder = |app: &App| world(app).aggregate.options().builder;
+    if pending(&small.app) > 0 {
+        assert_eq!(builder(&small.app), crate::bvh::Builder::Ploc);
+    }
+    finish(&mut small.app);
+    assert_eq!(builder(&small.app), crate::bvh::Builder::Sah);
+    assert_eq!(triangles(&small.app), [3, 3, 8]);
+}
+
+#[test]
+fn what_cannot_be_traced_is_named_without_waiting_and_a_mesh_that_went_is_not_shown() {
+    let mut small = small();
+    let mut meshes = small.app.world_mut().resource_mut::<Assets<Mesh>>();
+    *meshes.get_mut(&small.meshes[1]).unwrap() =
+        Mesh::new(PrimitiveTopology::LineList, RenderAssetUsages::MAIN_WORLD)
+            .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, vec![[0.0; 3]; 2]);
+    small.app.update();
+    assert_eq!(problems(&small.app).len(), 1, "{:?}", problems(&small.app));
+
+    edit_mesh(&mut small, 0, 7);
+    small.app.update();
+    let mesh = small.meshes[0].clone();
+    let mut meshes = small.app.world_mut().resource_mut::<Assets<Mesh>>();
+    meshes.remove(&mesh);
+    finish(&mut small.app);
+    assert_eq!(problems(&small.app).len(), 3, "{:?}", problems(&small.app));
+    assert!(world(&small.app).objects.is_empty());
+}
