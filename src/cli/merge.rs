@@ -2,10 +2,9 @@
 
 use super::Failure;
 use super::output::{say, tell};
-use super::render::write_shown;
-use super::set::Assignment;
+use super::shown::{read_output, write_shown};
 use crate::io::{self, Limits, PictureFormat, check_writable, read_part, write_part};
-use crate::scene::{RenderSettings, SETTINGS};
+use crate::scene::RenderSettings;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -34,10 +33,7 @@ pub(super) fn run(args: Merge) -> Result<(), Failure> {
         write_part(&args.output, &part)?;
     } else {
         let mut settings = RenderSettings::default();
-        for word in part.output.split_whitespace() {
-            let assignment: Assignment = word.parse().map_err(Failure::Usage)?;
-            assignment.apply(&mut settings)?;
-        }
+        read_output(&part.output, &mut settings)?;
         write_shown(&args.output, &part.film.picture(), &settings)?;
     }
     if args.quiet {
@@ -64,36 +60,4 @@ pub(super) fn run(args: Merge) -> Result<(), Failure> {
         size.y,
         ranges.join(" and ")
     ))
-}
-
-/// How a picture is shown, as a part keeps it: every setting of `output`, `key=value`.
-pub(super) fn output_text(settings: &RenderSettings) -> String {
-    let words: Vec<String> = SETTINGS
-        .iter()
-        .filter(|setting| setting.path.starts_with("output."))
-        .map(|setting| format!("{}={}", setting.path, setting.value_text(settings)))
-        .collect();
-    words.join(" ")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene::ViewTransform;
-
-    #[test]
-    fn what_a_part_keeps_of_the_output_gives_the_same_output() {
-        let mut settings = RenderSettings::default();
-        settings.output.exposure = -1.25;
-        settings.output.view_transform = ViewTransform::AgX;
-        settings.output.bloom.intensity = 0.5;
-        let mut read = RenderSettings::default();
-        for word in output_text(&settings).split_whitespace() {
-            word.parse::<Assignment>()
-                .unwrap()
-                .apply(&mut read)
-                .unwrap();
-        }
-        assert_eq!(read, settings);
-    }
 }

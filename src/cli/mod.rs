@@ -15,6 +15,7 @@ mod render;
 mod scenes;
 mod set;
 mod settings;
+mod shown;
 mod stage;
 mod stats;
 mod stop;

@@ -1,20 +1,17 @@
 //! `glassbox render`: a scene to picture files.
 
 use super::Failure;
-use super::merge::output_text;
 use super::output::say;
 use super::progress::Progress;
 use super::settings::{BuilderArg, SettingArgs, builder_name, check_scene, list};
+use super::shown::{output_text, write_shown};
 use super::stage::{SceneArgs, Stage, with_threads};
 use super::stats::{Stats, build_time, mrays_per_second, triangles};
 use super::stop::{SampleRange, StopArgs};
 use super::view::ViewArgs;
 use crate::film::views::View;
-use crate::film::{FirstHits, Picture, develop, render_samples};
-use crate::io::{
-    FileError, Part, PictureFormat, check_writable, replace_file, write_part, write_picture,
-};
-use crate::scene::RenderSettings;
+use crate::film::{FirstHits, render_samples};
+use crate::io::{FileError, Part, PictureFormat, check_writable, replace_file, write_part};
 use crate::sync::TracedCamera;
 use crate::trace::{RayCounts, digest, samples_per_pixel};
 use clap::Args;
@@ -180,24 +177,6 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
         write_stats(file, &stats)?;
     }
     Ok(())
-}
-
-/// Writes a picture: linear light where the format holds it, else what a screen shows.
-pub(super) fn write_shown(
-    file: &Path,
-    picture: &Picture,
-    settings: &RenderSettings,
-) -> Result<(), FileError> {
-    let pixels = if PictureFormat::of(file)?.is_linear() {
-        picture
-            .pixels
-            .iter()
-            .map(|pixel| pixel.to_array())
-            .collect()
-    } else {
-        develop(picture, &settings.output)
-    };
-    write_picture(file, picture.width, picture.height, &pixels)
 }
 
 fn write_stats(file: &Path, stats: &Stats) -> Result<(), FileError> {
