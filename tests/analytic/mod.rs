@@ -8,7 +8,8 @@ use glam::{UVec2, Vec3};
 use glassbox::bvh::{Aggregate, BuildOptions, Instance, MeshTree, Triangles};
 use glassbox::scene::{PixelSampling, RenderSettings};
 use glassbox::trace::{
-    Camera, Material, Mesh, Object, RayCounts, SampleId, Workspace, World, radiance,
+    Camera, Environment, Lights, Material, Mesh, Object, ParallelogramLight, RayCounts, SampleId,
+    Workspace, World, radiance,
 };
 use std::sync::Arc;
 
@@ -92,6 +93,36 @@ pub fn world(objects: Vec<(Instance, Object)>, materials: Vec<Material>) -> Worl
         ..World::default()
     }
     .with_needs()
+}
+
+/// An object that reflects nothing, before a background of one.
+pub fn dark_before_light(object: (Instance, Object)) -> World {
+    let dark = Material {
+        diffuse: Vec3::ZERO,
+        ..Material::default()
+    };
+    let mut world = world(vec![object], vec![dark]);
+    world.environment = Environment {
+        background: Vec3::ONE,
+        ..Environment::default()
+    };
+    world
+}
+
+/// A light of 1 m², facing down from `height` above the origin, that cameras do not see.
+pub fn square_light(height: f32, samples: u32) -> Arc<Lights> {
+    Arc::new(Lights {
+        parallelograms: vec![ParallelogramLight {
+            id: 3,
+            corner: Vec3::new(-0.5, height, -0.5),
+            edges: [Vec3::X, Vec3::Z],
+            colors: [Vec3::ONE; 4],
+            two_sided: false,
+            visible: false,
+            samples,
+        }],
+        ..Lights::default()
+    })
 }
 
 /// The mean radiance of `spp` samples along the camera's central ray.

@@ -2,13 +2,10 @@
 
 mod builtin;
 
-use crate::analytic::{object, quad, world};
+use crate::analytic::{dark_before_light, object, quad, square_light, world};
 use glam::{UVec2, Vec3};
 use glassbox::scene::{PixelSampling, RenderSettings, Sequence};
-use glassbox::trace::{
-    Camera, Environment, Lights, Material, ParallelogramLight, SampleId, Workspace, World, radiance,
-};
-use std::sync::Arc;
+use glassbox::trace::{Camera, Material, SampleId, Workspace, World, radiance};
 
 /// Running means of one pixel's red channel after each of `counts` samples, for one seed.
 fn means(world: &World, camera: &Camera, settings: &RenderSettings, counts: &[u64]) -> Vec<f64> {
@@ -91,18 +88,7 @@ fn under_a_light(screen: bool) -> (World, Camera) {
         objects.push(object(2, &hidden, 0));
     }
     let mut world = world(objects, vec![Material::default()]);
-    world.lights = Arc::new(Lights {
-        parallelograms: vec![ParallelogramLight {
-            id: 3,
-            corner: Vec3::new(-0.5, 2.0, -0.5),
-            edges: [Vec3::X, Vec3::Z],
-            colors: [Vec3::ONE; 4],
-            two_sided: false,
-            visible: false,
-            samples: 1,
-        }],
-        ..Lights::default()
-    });
+    world.lights = square_light(2.0, 1);
     let camera = Camera::looking_at(
         Vec3::new(-1.2, 0.4, 0.1),
         Vec3::new(0.0, 0.0, 0.05),
@@ -156,18 +142,8 @@ fn half_plane(angle: f32, offset: f32) -> (World, Camera, f64) {
     let along = Vec3::new(angle.cos(), angle.sin(), 0.0);
     let inwards = Vec3::new(-angle.sin(), angle.cos(), 0.0);
     let corner = inwards * offset - along * 50.0;
-    let dark = Material {
-        diffuse: Vec3::ZERO,
-        ..Material::default()
-    };
-    let mut world = world(
-        vec![object(1, &quad(corner, along * 100.0, inwards * 100.0), 0)],
-        vec![dark],
-    );
-    world.environment = Environment {
-        background: Vec3::ONE,
-        ..Environment::default()
-    };
+    let plane = quad(corner, along * 100.0, inwards * 100.0);
+    let world = dark_before_light(object(1, &plane, 0));
     // The pixel sees the square [-1, 1]² of the plane z = 0.
     let camera = Camera::looking_at(Vec3::Z, Vec3::ZERO, Vec3::Y, std::f32::consts::FRAC_PI_2);
     // The bright part is where inwards · p < offset: integrate along x, exactly but for the grid.

@@ -1,4 +1,4 @@
-use crate::analytic::{object, world};
+use crate::analytic::{object, quad, world};
 use glam::{UVec2, Vec2, Vec3};
 use glassbox::film::render;
 use glassbox::scene::{PixelSampling, RenderSettings};
@@ -8,15 +8,7 @@ use glassbox::trace::{Camera, Environment, Material, Optics};
 fn spot(d: f32, half: f32) -> glassbox::trace::World {
     let z = -d;
     let corner = Vec3::new(-half, -half, z);
-    let (x, y) = (Vec3::X * 2.0 * half, Vec3::Y * 2.0 * half);
-    let corners = [
-        corner,
-        corner + x,
-        corner + x + y,
-        corner,
-        corner + x + y,
-        corner + y,
-    ];
+    let corners = quad(corner, Vec3::X * 2.0 * half, Vec3::Y * 2.0 * half);
     let bright = Material {
         diffuse: Vec3::ZERO,
         emission: Vec3::ONE,

@@ -1,28 +1,16 @@
-use crate::analytic::{Numbers, central_radiance, object, quad, world};
+use crate::analytic::{Numbers, central_radiance, dark_before_light, object, quad};
 use glam::{UVec2, Vec2, Vec3};
 use glassbox::bvh::{Aggregate, BuildOptions, Builder, Levels, Ray};
 use glassbox::film::render;
 use glassbox::scene::{Features, PixelSampling, RenderSettings};
-use glassbox::trace::{Camera, Environment, Material, World};
+use glassbox::trace::{Camera, Material, World};
 
 /// A dark square of edge 1, its left edge at x = 0, moving by `velocity`, before a background of 1.
 fn moving_square(velocity: Vec3) -> World {
     let corners = quad(Vec3::new(0.0, -0.5, 0.0), Vec3::X, Vec3::Y);
     let (instance, mut object) = object(1, &corners, 0);
     object.motion_samples = 1;
-    let dark = Material {
-        diffuse: Vec3::ZERO,
-        ..Material::default()
-    };
-    let mut world = world(
-        vec![(instance.moving(velocity).unwrap(), object)],
-        vec![dark],
-    );
-    world.environment = Environment {
-        background: Vec3::ONE,
-        ..Environment::default()
-    };
-    world
+    dark_before_light((instance.moving(velocity).unwrap(), object))
 }
 
 fn camera_at(x: f32) -> Camera {

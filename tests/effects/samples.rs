@@ -1,13 +1,10 @@
 //! What each "samples" setting does: more of them, less variance of that effect and more rays.
 
-use crate::analytic::{central_radiance, object, quad, world};
+use crate::analytic::{central_radiance, dark_before_light, object, quad, square_light, world};
 use glam::{UVec2, Vec3};
 use glassbox::film::render;
 use glassbox::scene::{PixelSampling, RenderSettings};
-use glassbox::trace::{
-    Camera, Environment, Lights, Material, ParallelogramLight, RayCounts, World,
-};
-use std::sync::Arc;
+use glassbox::trace::{Camera, Material, RayCounts, World};
 
 /// Mean squared deviation of one pixel's value over 64 seeds, and the rays of one of them.
 fn spread(world: &World, camera: &Camera, settings: &RenderSettings) -> (f64, RayCounts) {
@@ -37,19 +34,7 @@ fn once() -> RenderSettings {
 fn edge(velocity: Vec3) -> World {
     let corners = quad(Vec3::new(0.013, -5.0, 0.0), Vec3::X * 10.0, Vec3::Y * 10.0);
     let (instance, object) = object(1, &corners, 0);
-    let dark = Material {
-        diffuse: Vec3::ZERO,
-        ..Material::default()
-    };
-    let mut world = world(
-        vec![(instance.moving(velocity).unwrap(), object)],
-        vec![dark],
-    );
-    world.environment = Environment {
-        background: Vec3::ONE,
-        ..Environment::default()
-    };
-    world
+    dark_before_light((instance.moving(velocity).unwrap(), object))
 }
 
 fn ahead() -> Camera {
@@ -64,18 +49,7 @@ fn light_samples_are_shadow_rays_at_the_first_hit() {
     let mut scene = world(objects, vec![Material::default()]);
     let camera = Camera::looking_at(Vec3::new(0.0, 0.5, 0.4), Vec3::ZERO, Vec3::Y, 0.01);
     let mut run = |samples| {
-        scene.lights = Arc::new(Lights {
-            parallelograms: vec![ParallelogramLight {
-                id: 3,
-                corner: Vec3::new(-0.5, 2.0, -0.5),
-                edges: [Vec3::X, Vec3::Z],
-                colors: [Vec3::ONE; 4],
-                two_sided: false,
-                visible: false,
-                samples,
-            }],
-            ..Lights::default()
-        });
+        scene.lights = square_light(2.0, samples);
         spread(&scene, &camera, &once())
     };
     let ((few, few_rays), (many, many_rays)) = (run(1), run(16));
@@ -94,18 +68,7 @@ fn light_samples_of_one_point_make_one_stratified_set_with_the_pixels_samples() 
     let mut scene = world(vec![object(1, &floor, 0)], vec![Material::default()]);
     let camera = Camera::looking_at(Vec3::new(0.0, 0.5, 0.4), Vec3::ZERO, Vec3::Y, 0.01);
     let mut value = |spp, samples| {
-        scene.lights = Arc::new(Lights {
-            parallelograms: vec![ParallelogramLight {
-                id: 3,
-                corner: Vec3::new(-0.5, 1.0, -0.5),
-                edges: [Vec3::X, Vec3::Z],
-                colors: [Vec3::ONE; 4],
-                two_sided: false,
-                visible: false,
-                samples,
-            }],
-            ..Lights::default()
-        });
+        scene.lights = square_light(1.0, samples);
         let settings = RenderSettings { spp, ..once() };
         central_radiance(&scene, &camera, &settings).0.x
     };
