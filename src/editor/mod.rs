@@ -16,6 +16,7 @@
 pub mod action;
 pub mod notice;
 mod panels;
+pub mod preferences;
 pub mod selection;
 pub mod viewport;
 mod window;

@@ -40,6 +40,11 @@ impl Notices {
         });
     }
 
+    /// Nothing was said, or all of it was closed.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// What is to be shown now.
     pub fn shown(&mut self) -> &[Notice] {
         self.0

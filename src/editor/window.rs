@@ -19,7 +19,6 @@ use bevy::render::view::Msaa;
 use bevy::transform::TransformSystems;
 use bevy::window::{PrimaryWindow, Window, WindowPlugin};
 use bevy_egui::{EguiGlobalSettings, EguiStartupSet, PrimaryEguiContext};
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// The layer that holds the editor's user interface.

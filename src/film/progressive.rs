@@ -7,7 +7,7 @@ use super::{Ending, Film, Snapshot, Status};
 use crate::scene::RenderSettings;
 use crate::trace::{Camera, World, samples_per_pixel};
 use bevy::math::URect;
-use glam::Vec2;
+use glam::{UVec2, Vec2};
 use std::io;
 use std::sync::Arc;
 use std::sync::mpsc::{Sender, channel};
@@ -113,6 +113,15 @@ impl Progressive {
         self.engine.film()
     }
 
+    /// Samples of one pixel so far, and its estimated relative error, NaN where it is not known;
+    /// `None` outside the picture. Cheap: for what is under a pointer.
+    pub fn pixel(&self, pixel: UVec2) -> Option<(u32, f32)> {
+        let (film, place) = self.engine.tile_film(pixel)?;
+        let errors = film.relative_errors();
+        let error = errors[(place.y * film.size().x + place.x) as usize];
+        Some((film.count(place.x, place.y), error))
+    }
+
     /// Waits until the render has ended by itself or by [`Self::cancel`], and says why it did.
     pub fn wait(&self) -> Ending {
         self.engine.wait()
@@ -140,7 +149,7 @@ mod tests {
     use super::super::test_scene::{camera, settings, world};
     use super::super::{Picture, State, TILE, render, render_samples};
     use super::*;
-    use glam::{UVec2, Vec3};
+    use glam::Vec3;
     use std::collections::BTreeMap;
     use std::time::{Duration, Instant};
 
@@ -283,6 +292,19 @@ mod tests {
             !render.refresh(&mut snapshot),
             "a picture that stands changed"
         );
+    }
+
+    #[test]
+    fn a_pixel_has_the_samples_and_the_error_that_the_whole_film_says() {
+        let render = start(16);
+        render.wait();
+        let (film, errors) = (render.film(), render.film().relative_errors());
+        for pixel in [UVec2::ZERO, UVec2::new(33, 20), UVec2::new(69, 44)] {
+            let (samples, error) = render.pixel(pixel).unwrap();
+            assert_eq!(samples, film.count(pixel.x, pixel.y));
+            assert_eq!(error, errors[(pixel.y * SIZE.x + pixel.x) as usize]);
+        }
+        assert_eq!(render.pixel(SIZE), None);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use super::engine::Engine;
 use super::preview::Preview;
 use super::tile_state::{TILE_PIXELS, TileState};
 use super::tiles::FilmPixel;
-use super::{Film, Picture, lock};
+use super::{Film, Picture, TILE, lock};
 use glam::UVec2;
 
 /// A picture that is kept up to date: only what changed is drawn again.
@@ -82,6 +82,21 @@ impl Engine {
             pixels.resize(end, FilmPixel::default());
         }
         Film::from_tiles(self.size(), pixels)
+    }
+
+    /// The film of the one tile that a pixel lies in, and the pixel's place there.
+    pub fn tile_film(&self, pixel: UVec2) -> Option<(Film, UVec2)> {
+        if pixel.cmpge(self.size()).any() {
+            return None;
+        }
+        let columns = self.size().x.div_ceil(TILE);
+        let tile = (pixel.y / TILE) * columns + pixel.x / TILE;
+        let state = lock(self.tiles.get(tile as usize)?);
+        let mut pixels = state.pixels.to_vec();
+        // A tile that no pass has reached has none.
+        pixels.resize(TILE_PIXELS, FilmPixel::default());
+        let film = Film::from_tiles(state.tile.extent, pixels);
+        Some((film, pixel - state.tile.origin))
     }
 }
 

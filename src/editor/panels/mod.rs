@@ -1,48 +1,170 @@
 //! Everything that egui draws: menu and toolbar above, hierarchy left, inspector right, status
-//! below, and the scene in the middle, which egui leaves free.
+//! below, and the scene in the middle, which egui leaves free but for what lies over the picture.
+//!
+//! A panel is a function `xyz_ui(ui, world, panels)` in a file of its own. It reads the world,
+//! works on copies, and writes back only what a person changed: a component that is only looked at
+//! must not count as changed, or the traced picture would start over in every frame.
+//!
+//! | module | draws |
+//! |---|---|
+//! | [`menu_bar`], [`toolbar`] | what is above; its entries are those of the table of actions |
+//! | [`hierarchy`] | the list of entities, from the [`outline`] |
+//! | [`inspector`] | the tabs Object, Render, Debug and BVH |
+//! | [`status`] | the line below |
+//! | [`overlays`] | divider, legend, region, messages over the picture |
+//! | [`dialogs`] | what is in front of everything |
 
+mod dialogs;
+mod fields;
+mod hierarchy;
+mod inspector;
+mod menu_bar;
+mod outline;
+mod overlays;
+mod says;
+mod several;
+mod state;
+mod status;
+mod theme;
+mod toolbar;
+
+use super::preferences::{Preferences, PreferencesPlugin};
 use super::viewport::Viewport;
 use bevy::app::{App, Plugin};
 use bevy::ecs::query::With;
+use bevy::ecs::schedule::IntoScheduleConfigs;
 use bevy::ecs::world::World;
 use bevy::math::{Rect, Vec2};
 use bevy_egui::{EguiContext, EguiPlugin, EguiPrimaryContextPass, PrimaryEguiContext, egui};
+use outline::{Outline, outline_scene};
+use state::Panels;
+
+/// What is left for the picture at least, in egui's points.
+const LEAST_PICTURE: f32 = 240.0;
 
 /// Draws the panels.
 pub(super) struct PanelsPlugin;
 
 impl Plugin for PanelsPlugin {
     fn build(&self, app: &mut App) {
-        app.add_plugins(EguiPlugin::default())
-            .add_systems(EguiPrimaryContextPass, draw_panels);
+        app.add_plugins((EguiPlugin::default(), PreferencesPlugin))
+            .init_resource::<Panels>()
+            .init_resource::<Outline>()
+            .add_systems(EguiPrimaryContextPass, (outline_scene, draw).chain());
     }
 }
 
-fn draw_panels(world: &mut World) {
+fn draw(world: &mut World) {
     let mut contexts = world.query_filtered::<&mut EguiContext, With<PrimaryEguiContext>>();
     let Ok(mut context) = contexts.single_mut(world) else {
         return;
     };
     let context = context.get_mut().clone();
+    panels_ui(&context, world);
+}
+
+/// All of it, within a pass of egui.
+fn panels_ui(context: &egui::Context, world: &mut World) {
+    let preferences = world.resource::<Preferences>().clone();
+    theme::apply(context, &preferences);
+    if context.zoom_factor() != preferences.zoom {
+        context.set_zoom_factor(preferences.zoom);
+    }
     let window = egui::UiBuilder::new()
         .layer_id(egui::LayerId::background())
         .max_rect(context.viewport_rect());
     let mut ui = egui::Ui::new(context.clone(), "window".into(), window);
-    egui::Panel::top("menu").show_inside(&mut ui, |ui| {
-        ui.label("Glassbox");
+    world.resource_scope(|world, mut panels: bevy::prelude::Mut<Panels>| {
+        let panels = &mut *panels;
+        dialogs::answer_actions(world, panels);
+        let free = around_ui(&mut ui, world, panels, &preferences);
+        let over_overlay = overlays::overlays_ui(&mut ui, free, world, panels);
+        dialogs::dialogs_ui(context, world, panels);
+        note_viewport(context, free, over_overlay, world);
     });
-    egui::Panel::bottom("status").show_inside(&mut ui, |ui| {
-        ui.label("");
-    });
-    let free = ui.available_rect_before_wrap();
-    let mut viewport = world.resource_mut::<Viewport>();
-    viewport.rect = Rect {
-        min: Vec2::new(free.min.x, free.min.y),
-        max: Vec2::new(free.max.x, free.max.y),
+}
+
+/// The panels around the picture; returns what they leave free.
+fn around_ui(
+    ui: &mut egui::Ui,
+    world: &mut World,
+    panels: &mut Panels,
+    preferences: &Preferences,
+) -> egui::Rect {
+    let fill = ui.visuals().panel_fill;
+    let bar = |margin| egui::Frame::new().fill(fill).inner_margin(margin);
+    egui::Panel::top("menu")
+        .frame(bar(egui::Margin::symmetric(6, 2)))
+        .show_inside(ui, |ui| menu_bar::menu_bar_ui(ui, world, panels));
+    egui::Panel::top("toolbar")
+        .frame(bar(egui::Margin::symmetric(6, 4)))
+        .show_inside(ui, |ui| toolbar::toolbar_ui(ui, world, panels));
+    egui::Panel::bottom("status")
+        .frame(bar(egui::Margin::symmetric(8, 3)))
+        .show_inside(ui, |ui| status::status_ui(ui, world, panels));
+
+    // Narrow windows: the panels give way before the picture does.
+    let for_panels = (ui.available_width() - LEAST_PICTURE).max(0.0);
+    let mut widths = [preferences.hierarchy_width, preferences.inspector_width];
+    let side = |id: &'static str, width: f32, left: bool| {
+        let panel = if left {
+            egui::Panel::left(id)
+        } else {
+            egui::Panel::right(id)
+        };
+        panel
+            .resizable(true)
+            .default_size(width)
+            .size_range(120.0..=(0.5 * for_panels).max(120.0))
+            .frame(bar(egui::Margin::symmetric(6, 4)))
+    };
+    if preferences.show_hierarchy {
+        widths[0] = side("hierarchy", widths[0], true)
+            .show_inside(ui, |ui| hierarchy::hierarchy_ui(ui, world, panels))
+            .response
+            .rect
+            .width();
+    }
+    if preferences.show_inspector {
+        widths[1] = side("inspector", widths[1], false)
+            .show_inside(ui, |ui| inspector::inspector_ui(ui, world, panels))
+            .response
+            .rect
+            .width();
+    }
+    let known = [preferences.hierarchy_width, preferences.inspector_width];
+    // A width that a narrow window forces is not one that a person chose.
+    let dragged = ui.ctx().egui_is_using_pointer();
+    if dragged && widths != known {
+        let mut preferences = world.resource_mut::<Preferences>();
+        [preferences.hierarchy_width, preferences.inspector_width] = widths;
+    }
+    ui.available_rect_before_wrap()
+}
+
+/// Tells the rest of the editor where the picture is, and whether pointer and keys are meant for it.
+fn note_viewport(context: &egui::Context, free: egui::Rect, over_overlay: bool, world: &mut World) {
+    let zoom = context.zoom_factor();
+    let rect = Rect {
+        min: Vec2::new(free.min.x, free.min.y) * zoom,
+        max: Vec2::new(free.max.x, free.max.y) * zoom,
     };
     let pointer = context.pointer_latest_pos();
-    viewport.hovered = pointer.is_some_and(|at| free.contains(at))
-        && !context.is_pointer_over_egui()
-        && !context.egui_wants_pointer_input();
-    viewport.takes_keys = !context.egui_wants_keyboard_input();
+    let in_front = |at| {
+        context
+            .layer_id_at(at)
+            .is_some_and(|layer| layer.order != egui::Order::Background)
+    };
+    let hovered = !over_overlay
+        && pointer.is_some_and(|at| free.contains(at) && !in_front(at))
+        && !context.egui_is_using_pointer();
+    let modal = context.memory(|memory| memory.top_modal_layer().is_some());
+    let takes_keys = !modal && !context.egui_wants_keyboard_input() && !context.any_popup_open();
+    let viewport = world.resource::<Viewport>();
+    if viewport.rect != rect || viewport.hovered != hovered || viewport.takes_keys != takes_keys {
+        let mut viewport = world.resource_mut::<Viewport>();
+        viewport.rect = rect;
+        viewport.hovered = hovered;
+        viewport.takes_keys = takes_keys;
+    }
 }

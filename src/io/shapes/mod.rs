@@ -17,7 +17,7 @@ mod check;
 #[cfg(test)]
 mod tests;
 
-pub use picture::{PictureError, SUN, texture};
+pub use picture::{NAMES as PICTURES, PictureError, SUN, texture};
 
 use crate::scene::Shape;
 use bevy::math::{DVec2, DVec3};

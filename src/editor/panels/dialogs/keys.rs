@@ -1,0 +1,60 @@
+//! Every key, from the table of actions, and what the mouse does.
+
+use crate::editor::action::{ACTIONS, Keys};
+use bevy_egui::egui::{Grid, RichText, Ui};
+
+/// What is no action of the table: held keys and the mouse.
+const MOUSE: &[(&str, &str)] = &[
+    (
+        "Click",
+        "Selects what is under the pointer; with Ctrl as well as the rest",
+    ),
+    ("Drag on nothing", "Selects what is in the frame"),
+    ("Double click", "Moves the view so that the object fills it"),
+    (
+        "Middle drag, Alt+drag",
+        "Turns the view around what it looks at",
+    ),
+    ("Shift+middle drag", "Moves the view sideways"),
+    ("Wheel", "Moves towards what is under the pointer, or away"),
+    ("Right button held", "Looks around; W A S D Q E fly"),
+    (
+        "C held",
+        "Shows the kept picture in place of the traced one",
+    ),
+    ("Shift while dragging a number", "Changes it in small steps"),
+];
+
+pub(super) fn keys_ui(ui: &mut Ui) {
+    ui.label(RichText::new("Mouse and held keys").strong());
+    grid_ui(
+        ui,
+        "mouse",
+        MOUSE.iter().map(|&(key, says)| (key.to_owned(), says)),
+    );
+    ui.add_space(8.0);
+    ui.label(RichText::new("Keys").strong());
+    let rows = ACTIONS.iter().filter(|entry| !entry.keys.is_empty());
+    grid_ui(
+        ui,
+        "keys",
+        rows.map(|entry| {
+            let keys: Vec<String> = entry.keys.iter().map(Keys::text).collect();
+            (keys.join(", "), entry.says)
+        }),
+    );
+}
+
+fn grid_ui<'a>(ui: &mut Ui, id: &str, rows: impl Iterator<Item = (String, &'a str)>) {
+    Grid::new(id)
+        .num_columns(2)
+        .striped(true)
+        .spacing([18.0, 3.0])
+        .show(ui, |ui| {
+            for (key, says) in rows {
+                ui.label(RichText::new(key).monospace());
+                ui.label(says);
+                ui.end_row();
+            }
+        });
+}

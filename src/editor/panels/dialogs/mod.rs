@@ -1,0 +1,76 @@
+//! What is in front of everything else, and takes keys and clicks until it is answered.
+
+mod about;
+mod keys;
+mod preferences;
+mod scenes;
+
+use super::says::Says;
+use super::state::{Dialog, Panels};
+use crate::editor::action::Action;
+use bevy::ecs::message::Messages;
+use bevy::ecs::world::World;
+use bevy_egui::egui::{self, Id, Modal, RichText, ScrollArea, Ui};
+
+pub(super) use scenes::Gallery;
+
+/// Opens and closes what actions ask for.
+pub(super) fn answer_actions(world: &World, panels: &mut Panels) {
+    let Some(messages) = world.get_resource::<Messages<Action>>() else {
+        return;
+    };
+    for action in panels.heard.read(messages) {
+        if *action == Action::ToggleHelp {
+            panels.dialog = match panels.dialog {
+                Some(Dialog::Keys) => None,
+                _ => Some(Dialog::Keys),
+            };
+        }
+    }
+}
+
+pub(super) fn dialogs_ui(context: &egui::Context, world: &mut World, panels: &mut Panels) {
+    let Some(dialog) = panels.dialog else {
+        return;
+    };
+    let (title, width) = match dialog {
+        Dialog::Keys => ("Keys and mouse", 560.0),
+        Dialog::About => ("About Glassbox", 440.0),
+        Dialog::Preferences => ("Preferences", 380.0),
+        Dialog::Scenes => ("Built-in scenes", 700.0),
+    };
+    let stays = modal_ui(context, title, width, |ui| match dialog {
+        Dialog::Keys => keys::keys_ui(ui),
+        Dialog::About => about::about_ui(ui),
+        Dialog::Preferences => preferences::preferences_ui(ui, world),
+        Dialog::Scenes => scenes::scenes_ui(ui, world, panels),
+    });
+    if !stays && panels.dialog == Some(dialog) {
+        panels.dialog = None;
+    }
+}
+
+/// A dialog with a title and a way out; false where it was closed: by its button, by Escape, by F1
+/// again, or by a click beside it.
+fn modal_ui(context: &egui::Context, title: &str, width: f32, body: impl FnOnce(&mut Ui)) -> bool {
+    let screen = context.content_rect().size();
+    let mut stays = true;
+    let response = Modal::new(Id::new(title)).show(context, |ui| {
+        ui.set_width(width.min(screen.x - 40.0));
+        ui.horizontal(|ui| {
+            ui.label(RichText::new(title).heading());
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                if ui.button("✖").says("Closes this (Esc)").clicked() {
+                    stays = false;
+                }
+            });
+        });
+        ui.separator();
+        ScrollArea::vertical()
+            .max_height((screen.y - 140.0).max(120.0))
+            .auto_shrink([false, true])
+            .show(ui, body);
+    });
+    let f1 = context.input(|input| input.key_pressed(egui::Key::F1));
+    stays && !response.should_close() && !f1
+}

@@ -1,0 +1,243 @@
+//! The tab BVH: how the trees are built, and what the trees that are traced are like.
+
+use super::super::fields::section;
+use super::super::says::Says;
+use super::super::state::Panels;
+use super::super::status::{grouped, memory_text};
+use super::super::theme::accent;
+use super::render::settings_ui;
+use crate::bvh::{LARGEST_LEAF_BIN, TreeStats};
+use crate::scene::{Builder, RenderSettings, TreeSettings};
+use crate::sync::Traced;
+use crate::trace;
+use bevy::ecs::world::World;
+use bevy::platform::collections::HashSet;
+use bevy_egui::egui::{ComboBox, Grid, Ui};
+use egui_plot::{Bar, BarChart, Plot};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// The settings that this tab shows.
+pub(super) const SETTINGS_OF_TREES: &[&str] = &[
+    "tree.builder",
+    "tree.levels",
+    "tree.max_depth",
+    "tree.max_leaf_size",
+    "tree.bins",
+    "tree.preset",
+];
+
+/// One of the trees that are traced.
+struct Tree {
+    name: String,
+    stats: TreeStats,
+    build_time: Duration,
+    /// What its leaves hold.
+    primitives: &'static str,
+}
+
+/// The trees of a traced world, looked at once for each world.
+#[derive(Default)]
+pub(in super::super) struct Trees {
+    of: Option<Arc<trace::World>>,
+    trees: Vec<Tree>,
+    shown: usize,
+}
+
+impl Trees {
+    fn update(&mut self, world: &Arc<trace::World>) {
+        if self.of.as_ref().is_some_and(|of| Arc::ptr_eq(of, world)) {
+            return;
+        }
+        self.of = Some(world.clone());
+        let aggregate = &world.aggregate;
+        let one = aggregate.options().levels == crate::bvh::Levels::One;
+        self.trees = vec![Tree {
+            name: match one {
+                true => "All triangles".into(),
+                false => format!("Over {} objects", aggregate.instances().len()),
+            },
+            stats: aggregate.stats(),
+            build_time: aggregate.build_time(),
+            primitives: if one { "triangles" } else { "objects" },
+        }];
+        if !one {
+            let mut seen = HashSet::new();
+            let objects = world.objects.iter();
+            let mut meshes: Vec<_> = objects
+                .filter(|object| seen.insert(Arc::as_ptr(&object.mesh.tree)))
+                .collect();
+            meshes.sort_by_key(|object| std::cmp::Reverse(object.mesh.tree.traced()));
+            meshes.truncate(50);
+            self.trees.extend(meshes.into_iter().map(|object| {
+                let tree = &object.mesh.tree;
+                Tree {
+                    name: format!(
+                        "Mesh of object {}, {} triangles",
+                        object.id,
+                        grouped(tree.traced() as u64)
+                    ),
+                    stats: tree.stats(),
+                    build_time: tree.build_time(),
+                    primitives: "triangles",
+                }
+            }));
+        }
+        self.shown = self.shown.min(self.trees.len().saturating_sub(1));
+    }
+}
+
+pub(super) fn bvh_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
+    let before = world.resource::<RenderSettings>().clone();
+    let mut settings = before.clone();
+    section(ui, "Building", true, |ui| {
+        settings_ui(ui, &shown_settings(settings.tree.builder), &mut settings);
+        ui.horizontal(|ui| {
+            let says = "Two levels, PLOC: quick to trace";
+            if ui.button("Default").says(says).clicked() {
+                settings.tree = TreeSettings::default();
+            }
+            let says = "One tree, median split, at most ten levels, as in the original report";
+            if ui.button("Original").says(says).clicked() {
+                settings.tree = TreeSettings::ORIGINAL;
+            }
+        });
+    });
+    if settings != before {
+        *world.resource_mut::<RenderSettings>() = settings;
+    }
+    let traced = world.resource::<Traced>().world.clone();
+    let trees = &mut panels.trees;
+    trees.update(&traced);
+    section(ui, "Trees that are traced", true, |ui| trees_ui(ui, trees));
+}
+
+/// Those settings that the builder reads.
+fn shown_settings(builder: Builder) -> Vec<&'static str> {
+    SETTINGS_OF_TREES
+        .iter()
+        .copied()
+        .filter(|&path| match path {
+            "tree.max_depth" => matches!(builder, Builder::Median | Builder::Sah),
+            "tree.bins" => builder == Builder::Sah,
+            "tree.preset" => builder == Builder::Ploc,
+            "tree.max_leaf_size" => builder != Builder::None,
+            _ => true,
+        })
+        .collect()
+}
+
+fn trees_ui(ui: &mut Ui, trees: &mut Trees) {
+    let name = |tree: &Tree| tree.name.clone();
+    let current = trees.trees.get(trees.shown).map_or_else(String::new, name);
+    ComboBox::from_id_salt("tree")
+        .selected_text(current)
+        .width((ui.available_width() - 12.0).max(80.0))
+        .truncate()
+        .show_ui(ui, |ui| {
+            for (i, tree) in trees.trees.iter().enumerate() {
+                ui.selectable_value(&mut trees.shown, i, &tree.name);
+            }
+        })
+        .response
+        .says("Of which tree the figures are; the largest meshes are listed");
+    let Some(tree) = trees.trees.get(trees.shown) else {
+        return;
+    };
+    let stats = &tree.stats;
+    Grid::new("figures of the tree")
+        .num_columns(2)
+        .spacing([16.0, 2.0])
+        .show(ui, |ui| {
+            for (label, says, value) in [
+                (
+                    "Levels",
+                    "The depth of the deepest leaf; the root's is 0",
+                    stats.levels.to_string(),
+                ),
+                ("Nodes", "Leaves included", grouped(stats.nodes as u64)),
+                (
+                    "Leaves",
+                    "Nodes that hold triangles or objects",
+                    grouped(stats.leaves as u64),
+                ),
+                (
+                    "Largest leaf",
+                    "What it holds",
+                    format!("{} {}", stats.largest_leaf, tree.primitives),
+                ),
+                (
+                    "SAH cost",
+                    "What a random ray that meets the root pays, by areas; lower is better",
+                    format!("{:.2}", stats.sah_cost),
+                ),
+                (
+                    "Memory",
+                    "Of nodes and indices",
+                    memory_text(stats.bytes as u64),
+                ),
+                (
+                    "Built in",
+                    "Wall clock",
+                    format!("{:.2} ms", tree.build_time.as_secs_f64() * 1e3),
+                ),
+            ] {
+                ui.label(label).says(says);
+                ui.label(value).says(says);
+                ui.end_row();
+            }
+        });
+    let leaf_axis = format!("{} in a leaf", tree.primitives);
+    histogram_ui(ui, "leaf sizes", &leaf_axis, &stats.leaf_sizes, true);
+    histogram_ui(ui, "depths", "depth of a leaf", &stats.depths, false);
+}
+
+/// How many leaves have each number.
+fn histogram_ui(ui: &mut Ui, id: &str, axis: &str, counts: &[u32], is_clipped: bool) {
+    if counts.is_empty() {
+        return;
+    }
+    ui.add_space(4.0);
+    ui.weak(format!("Leaves by {axis}"));
+    let color = accent(ui);
+    let bars: Vec<Bar> = counts
+        .iter()
+        .enumerate()
+        .filter(|&(_, &count)| count > 0)
+        .map(|(number, &count)| {
+            Bar::new(number as f64, f64::from(count))
+                .width(0.9)
+                .fill(color)
+        })
+        .collect();
+    let label = move |bar: &Bar, _: &BarChart| {
+        let more = is_clipped && bar.argument as usize >= LARGEST_LEAF_BIN;
+        let more = if more { " or more" } else { "" };
+        format!("{}{more}: {} leaves", bar.argument, bar.value)
+    };
+    Plot::new(id)
+        .height(90.0)
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .include_y(0.0)
+        .show(ui, |plot| {
+            plot.bar_chart(BarChart::new(axis, bars).element_formatter(Box::new(label)));
+        });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_builder_shows_the_settings_that_it_reads() {
+        assert_eq!(
+            shown_settings(Builder::None),
+            ["tree.builder", "tree.levels"]
+        );
+        assert!(shown_settings(Builder::Sah).contains(&"tree.bins"));
+        assert!(!shown_settings(Builder::Ploc).contains(&"tree.max_depth"));
+    }
+}

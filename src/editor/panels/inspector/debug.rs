@@ -1,0 +1,18 @@
+//! The tab Debug: what is drawn over the picture, and how the error of the render falls.
+
+use super::super::fields::section;
+use super::super::state::Panels;
+use super::error_plot::error_plot_ui;
+use crate::editor::viewport::EditorCamera;
+use crate::view::TracedRender;
+use bevy::ecs::query::With;
+use bevy::ecs::world::World;
+use bevy_egui::egui::Ui;
+
+pub(super) fn debug_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
+    let mut query = world.query_filtered::<&TracedRender, With<EditorCamera>>();
+    let status = query.single(world).ok().and_then(TracedRender::status);
+    section(ui, "Error against time", true, |ui| {
+        error_plot_ui(ui, status.as_ref(), &mut panels.error_curve);
+    });
+}

@@ -1,0 +1,225 @@
+//! The four kinds of light.
+
+use super::super::fields::{Number, angle, color, color_ui, integer, point, row, section, switch};
+use super::super::several::Several;
+use crate::scene::{Cone, DirectionalLamp, ParallelogramLamp, PointLamp, SegmentLamp};
+use bevy::color::LinearRgba;
+use bevy::ecs::entity::Entity;
+use bevy::ecs::world::World;
+use bevy_egui::egui::Ui;
+
+const COLOR: &str = "The light's colour; the intensity multiplies it";
+const SAMPLES: &str = "Shadow rays to it at the first hit of each pixel, shared by the pixel's samples: more makes its soft shadows less noisy";
+const ENDS: &str = "Metres, in the light's own space; its ends have handles in the view too";
+
+pub(super) fn lamps_ui(ui: &mut Ui, world: &mut World, entities: &[Entity]) {
+    if let Some(mut several) = Several::<PointLamp>::of(world, entities) {
+        section(ui, "Point light", true, |ui| point_ui(ui, &mut several));
+        several.write(world);
+    }
+    if let Some(mut several) = Several::<DirectionalLamp>::of(world, entities) {
+        section(ui, "Directional light", true, |ui| {
+            directional_ui(ui, &mut several);
+        });
+        several.write(world);
+    }
+    if let Some(mut several) = Several::<SegmentLamp>::of(world, entities) {
+        section(ui, "Segment light", true, |ui| segment_ui(ui, &mut several));
+        several.write(world);
+    }
+    if let Some(mut several) = Several::<ParallelogramLamp>::of(world, entities) {
+        section(ui, "Parallelogram light", true, |ui| {
+            parallelogram_ui(ui, &mut several);
+        });
+        several.write(world);
+    }
+}
+
+fn intensity(ui: &mut Ui, unit: &'static str, says: &str, value: &mut f32, mixed: bool) -> bool {
+    Number::positive(0.02, unit).row(ui, "Intensity", says, value, mixed)
+}
+
+fn point_ui(ui: &mut Ui, several: &mut Several<PointLamp>) {
+    several.field(
+        |lamp| &mut lamp.color,
+        |value, mixed| color(ui, "Colour", COLOR, value, mixed),
+    );
+    several.field(
+        |lamp| &mut lamp.intensity,
+        |value, mixed| {
+            let says = "Radiant intensity: what reaches a surface falls with the distance squared";
+            intensity(ui, "W/sr", says, value, mixed)
+        },
+    );
+    several.field(
+        |lamp| &mut lamp.cone,
+        |value, mixed| {
+            let mut is_spot = value.is_some();
+            let says = "Only within a cone around the light's -Z axis";
+            let changed = switch(ui, "Spot", says, &mut is_spot, mixed);
+            if changed {
+                *value = is_spot.then(Cone::default);
+            }
+            changed
+        },
+    );
+    if several.first().cone.is_none() {
+        return;
+    }
+    several.field(
+        |lamp| &mut lamp.cone,
+        |value, mixed| {
+            let Some(cone) = value else { return false };
+            let mut changed = angle(
+                ui,
+                "Full within",
+                "Half-angle of the cone that has full strength",
+                &mut cone.inner,
+                [0.0, 90.0],
+                mixed,
+            );
+            if changed {
+                cone.outer = cone.outer.max(cone.inner);
+            }
+            let outer = angle(
+                ui,
+                "None outside",
+                "Half-angle outside of which there is no light; between the two it fades",
+                &mut cone.outer,
+                [0.0, 90.0],
+                mixed,
+            );
+            if outer {
+                cone.inner = cone.inner.min(cone.outer);
+            }
+            changed |= outer;
+            changed
+        },
+    );
+}
+
+fn directional_ui(ui: &mut Ui, several: &mut Several<DirectionalLamp>) {
+    several.field(
+        |lamp| &mut lamp.color,
+        |value, mixed| color(ui, "Colour", COLOR, value, mixed),
+    );
+    several.field(
+        |lamp| &mut lamp.intensity,
+        |value, mixed| {
+            let says = "Irradiance on a surface that faces it, the same at every distance";
+            intensity(ui, "W/m²", says, value, mixed)
+        },
+    );
+    several.field(
+        |lamp| &mut lamp.angular_diameter,
+        |value, mixed| {
+            let says =
+                "Angle under which the source is seen: 0 gives hard shadows, the sun has 0.53°";
+            angle(ui, "Diameter", says, value, [0.0, 90.0], mixed)
+        },
+    );
+    several.field(
+        |lamp| &mut lamp.samples,
+        |value, mixed| integer(ui, "Samples", SAMPLES, value, 1..=1000, mixed),
+    );
+}
+
+fn segment_ui(ui: &mut Ui, several: &mut Several<SegmentLamp>) {
+    for (i, name) in ["Colour A", "Colour B"].into_iter().enumerate() {
+        several.field(
+            |lamp| &mut lamp.colors[i],
+            |value, mixed| {
+                color(
+                    ui,
+                    name,
+                    "The colour at this end, linear between",
+                    value,
+                    mixed,
+                )
+            },
+        );
+    }
+    several.field(
+        |lamp| &mut lamp.intensity,
+        |value, mixed| {
+            let says = "Radiant intensity of each metre, the same in all directions";
+            intensity(ui, "W/(sr·m)", says, value, mixed)
+        },
+    );
+    for (i, name) in ["End A", "End B"].into_iter().enumerate() {
+        several.field(
+            |lamp| &mut lamp.ends[i],
+            |value, mixed| point(ui, name, ENDS, value, Number::free(0.01, ""), mixed),
+        );
+    }
+    several.field(
+        |lamp| &mut lamp.samples,
+        |value, mixed| integer(ui, "Samples", SAMPLES, value, 1..=1000, mixed),
+    );
+}
+
+fn parallelogram_ui(ui: &mut Ui, several: &mut Several<ParallelogramLamp>) {
+    let says = "The colours at the four corners, bilinear between";
+    row(ui, "Colours", says, |ui| {
+        for (i, corner) in ["corner", "corner + edge A", "corner + edge B", "opposite"]
+            .into_iter()
+            .enumerate()
+        {
+            several.field(
+                |lamp| &mut lamp.colors[i],
+                |value, mixed| color_ui(ui, &format!("Colour at: {corner}"), value, mixed),
+            );
+        }
+    });
+    row(ui, "All corners", "One colour for all four corners", |ui| {
+        let mut one = several.first().colors[0];
+        let mixed = several.first().colors.iter().any(|color| *color != one);
+        if color_ui(ui, "One colour for all four corners", &mut one, mixed) {
+            let all: [LinearRgba; 4] = [one; 4];
+            several.change(|lamp| lamp.colors = all);
+        }
+    });
+    several.field(
+        |lamp| &mut lamp.intensity,
+        |value, mixed| {
+            let says = "Radiance: a larger light of the same radiance gives more light";
+            intensity(ui, "W/(sr·m²)", says, value, mixed)
+        },
+    );
+    several.field(
+        |lamp| &mut lamp.corner,
+        |value, mixed| point(ui, "Corner", ENDS, value, Number::free(0.01, ""), mixed),
+    );
+    for (i, name) in ["Edge A", "Edge B"].into_iter().enumerate() {
+        several.field(
+            |lamp| &mut lamp.edges[i],
+            |value, mixed| {
+                let says = "From the corner to its neighbour; it shines to where A × B points";
+                point(ui, name, says, value, Number::free(0.01, ""), mixed)
+            },
+        );
+    }
+    several.field(
+        |lamp| &mut lamp.two_sided,
+        |value, mixed| {
+            switch(
+                ui,
+                "Both sides",
+                "Whether the back shines too",
+                value,
+                mixed,
+            )
+        },
+    );
+    several.field(
+        |lamp| &mut lamp.visible,
+        |value, mixed| {
+            let says = "Whether the camera and mirrors see the light itself";
+            switch(ui, "Seen", says, value, mixed)
+        },
+    );
+    several.field(
+        |lamp| &mut lamp.samples,
+        |value, mixed| integer(ui, "Samples", SAMPLES, value, 1..=1000, mixed),
+    );
+}

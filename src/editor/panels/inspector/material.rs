@@ -1,0 +1,243 @@
+//! Materials: an object's own, or one that several objects share.
+
+use super::super::fields::{Number, color, radiant, row, section};
+use super::super::outline::{Kind, Outline};
+use super::super::says::Says;
+use super::super::several::Several;
+use super::super::state::Panels;
+use super::maps::{Map, map_ui};
+use super::presets::PRESETS;
+use crate::scene::{Phong, PhongMaps, UsesMaterial};
+use bevy::ecs::entity::Entity;
+use bevy::ecs::world::World;
+use bevy_egui::egui::{ComboBox, Ui};
+
+pub(super) fn material_ui(
+    ui: &mut Ui,
+    world: &mut World,
+    entities: &[Entity],
+    panels: &mut Panels,
+) {
+    let mut owners: Vec<Entity> = Vec::new();
+    for &entity in entities {
+        let owner = owner_of(world, entity);
+        if world.get::<Phong>(owner).is_some() && !owners.contains(&owner) {
+            owners.push(owner);
+        }
+    }
+    let Some(mut several) = Several::<Phong>::of(world, &owners) else {
+        return;
+    };
+    section(ui, "Material", true, |ui| {
+        assign_ui(ui, world, entities, owners[0]);
+        let says = "Sets all numbers of the material to those of a well-known one; maps stay";
+        row(ui, "Preset", says, |ui| {
+            ui.menu_button("Choose…", |ui| {
+                for preset in PRESETS {
+                    if ui.button(preset.name).says(preset.says).clicked() {
+                        several.change(|phong| preset.apply(phong));
+                        ui.close();
+                    }
+                }
+            })
+            .response
+            .says(says);
+        });
+        fields_ui(ui, &mut several);
+        let maps = world
+            .get::<PhongMaps>(owners[0])
+            .cloned()
+            .unwrap_or_default();
+        several.field(
+            |phong| &mut phong.diffuse_map,
+            |value, mixed| {
+                let map = Map {
+                    label: "Diffuse map",
+                    says: "A picture that takes the place of the diffuse colour",
+                    loaded: maps.diffuse.as_ref(),
+                };
+                map_ui(ui, world, panels, &map, value, mixed)
+            },
+        );
+        several.field(
+            |phong| &mut phong.opacity_map,
+            |value, mixed| {
+                let map = Map {
+                    label: "Opacity map",
+                    says: "A picture whose brightness multiplies the opacity",
+                    loaded: maps.opacity.as_ref(),
+                };
+                map_ui(ui, world, panels, &map, value, mixed)
+            },
+        );
+    });
+    several.write(world);
+}
+
+fn fields_ui(ui: &mut Ui, several: &mut Several<Phong>) {
+    several.field(
+        |phong| &mut phong.diffuse,
+        |value, mixed| {
+            let says = "kd: the colour of the body, lit from all sides alike";
+            color(ui, "Diffuse", says, value, mixed)
+        },
+    );
+    several.field(
+        |phong| &mut phong.specular,
+        |value, mixed| {
+            let says = "ks: the highlight's colour, and what a mirror reflects; black is no mirror";
+            color(ui, "Specular", says, value, mixed)
+        },
+    );
+    several.field(
+        |phong| &mut phong.shininess,
+        |value, mixed| {
+            let says = "How narrow the highlight is; a glossy reflection blurs by one over it";
+            Number::logarithmic(1.0, 10_000.0, "").row(ui, "Shininess", says, value, mixed)
+        },
+    );
+    several.field(
+        |phong| &mut phong.opacity,
+        |value, mixed| {
+            let says = "1 is opaque; below it light goes on through the surface, tinted";
+            Number::slider(0.0, 1.0, "").row(ui, "Opacity", says, value, mixed)
+        },
+    );
+    several.field(
+        |phong| &mut phong.emission,
+        |value, mixed| {
+            let says =
+                "ke: light that the surface sends out by itself; it is seen, but lights nothing";
+            radiant(ui, "Emission", says, value, mixed)
+        },
+    );
+}
+
+/// Whose material an object shows.
+fn owner_of(world: &World, entity: Entity) -> Entity {
+    match world.get::<UsesMaterial>(entity) {
+        Some(&UsesMaterial(owner)) if world.get::<Phong>(owner).is_some() => owner,
+        _ => entity,
+    }
+}
+
+/// Own or shared: which, with whom, and the way from one to the other.
+fn assign_ui(ui: &mut Ui, world: &mut World, entities: &[Entity], owner: Entity) {
+    let objects: Vec<Entity> = entities
+        .iter()
+        .copied()
+        .filter(|&entity| is_object(world, entity))
+        .collect();
+    let mut users = world.query::<&UsesMaterial>();
+    let count = users.iter(world).filter(|uses| uses.0 == owner).count();
+    if objects.is_empty() {
+        ui.weak(format!(
+            "Used by {count} objects: a change here reaches all of them."
+        ));
+        return;
+    }
+    let is_shared = world
+        .get::<UsesMaterial>(objects[0])
+        .is_some_and(|uses| uses.0 == owner);
+    let outline = world.resource::<Outline>();
+    let shared: Vec<(Entity, String)> = outline
+        .items
+        .iter()
+        .filter(|item| item.kind == Kind::Material)
+        .map(|item| (item.entity, item.name.clone()))
+        .collect();
+    let current = shared
+        .iter()
+        .find(|(entity, _)| is_shared && *entity == owner)
+        .map_or("Its own", |(_, name)| name.as_str());
+    let says = "Its own, or a shared one: a change of a shared material reaches all its objects";
+    let mut chosen: Option<Option<Entity>> = None;
+    row(ui, "Uses", says, |ui| {
+        ComboBox::from_id_salt("uses")
+            .selected_text(current)
+            .width((ui.available_width() - 8.0).max(60.0))
+            .show_ui(ui, |ui| {
+                if ui.selectable_label(!is_shared, "Its own").clicked() {
+                    chosen = Some(None);
+                }
+                for (entity, name) in &shared {
+                    let on = is_shared && *entity == owner;
+                    if ui.selectable_label(on, name).clicked() {
+                        chosen = Some(Some(*entity));
+                    }
+                }
+            })
+            .response
+            .says(says);
+    });
+    if is_shared {
+        ui.horizontal(|ui| {
+            ui.weak(format!("Shared by {count} objects."));
+            let says = "Gives the selected objects a copy of their own";
+            if ui.small_button("Make single").says(says).clicked() {
+                make_single(world, &objects);
+            }
+        });
+    }
+    match chosen {
+        Some(Some(material)) => assign(world, &objects, material),
+        Some(None) => {
+            for &object in &objects {
+                world.entity_mut(object).remove::<UsesMaterial>();
+            }
+        }
+        None => {}
+    }
+}
+
+fn is_object(world: &World, entity: Entity) -> bool {
+    let outline = world.resource::<Outline>();
+    let item = outline.items.iter().find(|item| item.entity == entity);
+    item.is_some_and(|item| item.kind == Kind::Object)
+}
+
+fn assign(world: &mut World, objects: &[Entity], material: Entity) {
+    for &object in objects {
+        if world.get::<UsesMaterial>(object) != Some(&UsesMaterial(material)) {
+            world.entity_mut(object).insert(UsesMaterial(material));
+        }
+    }
+}
+
+/// Copies what the objects show into materials of their own.
+fn make_single(world: &mut World, objects: &[Entity]) {
+    for &object in objects {
+        let owner = owner_of(world, object);
+        if owner == object {
+            continue;
+        }
+        let copy = world.get::<Phong>(owner).cloned();
+        let mut entity = world.entity_mut(object);
+        entity.remove::<UsesMaterial>();
+        if let Some(copy) = copy {
+            entity.insert(copy);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_shared_material_made_single_is_a_copy_that_the_others_do_not_see() {
+        let mut world = World::new();
+        let shared = Phong {
+            shininess: 77.0,
+            ..Phong::default()
+        };
+        let material = world.spawn(shared.clone()).id();
+        let objects = [0, 1].map(|_| world.spawn(Phong::default()).id());
+        assign(&mut world, &objects, material);
+        assert_eq!(owner_of(&world, objects[0]), material);
+        make_single(&mut world, &objects[..1]);
+        assert_eq!(owner_of(&world, objects[0]), objects[0]);
+        assert_eq!(world.get::<Phong>(objects[0]), Some(&shared));
+        assert_eq!(owner_of(&world, objects[1]), material);
+    }
+}

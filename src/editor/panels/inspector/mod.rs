@@ -1,0 +1,56 @@
+//! The properties: of what is selected, of the rendering, of what the gizmos show, of the trees.
+
+mod bvh;
+mod camera;
+mod debug;
+mod environment;
+mod error_plot;
+mod lamps;
+mod maps;
+mod material;
+mod object;
+mod presets;
+mod render;
+mod shape;
+mod transform;
+
+use super::says::Says;
+use super::state::{Panels, Tab};
+use bevy::ecs::world::World;
+use bevy_egui::egui::{ScrollArea, Ui};
+
+pub(super) use bvh::Trees;
+pub(super) use error_plot::ErrorCurve;
+pub(super) use maps::Thumbnails;
+pub(super) use transform::Turns;
+
+pub(super) fn inspector_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
+    ui.horizontal(|ui| {
+        for (tab, name, says) in [
+            (Tab::Object, "Object", "What is selected"),
+            (
+                Tab::Render,
+                "Render",
+                "How the scene is rendered, and its environment",
+            ),
+            (
+                Tab::Debug,
+                "Debug",
+                "What is drawn over the picture, and how the error falls",
+            ),
+            (Tab::Bvh, "BVH", "The trees that rays walk"),
+        ] {
+            ui.selectable_value(&mut panels.tab, tab, name).says(says);
+        }
+    });
+    ui.separator();
+    ScrollArea::vertical()
+        .id_salt(panels.tab as u8)
+        .auto_shrink([false, false])
+        .show(ui, |ui| match panels.tab {
+            Tab::Object => object::object_ui(ui, world, panels),
+            Tab::Render => render::render_ui(ui, world, panels),
+            Tab::Debug => debug::debug_ui(ui, world, panels),
+            Tab::Bvh => bvh::bvh_ui(ui, world, panels),
+        });
+}

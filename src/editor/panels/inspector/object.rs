@@ -1,0 +1,85 @@
+//! The tab Object: name, place and components of what is selected.
+
+use super::super::fields::row;
+use super::super::outline::{Kind, Outline};
+use super::super::says::Says;
+use super::super::state::{Panels, Renaming};
+use super::{camera, lamps, material, shape, transform};
+use crate::editor::action::Action;
+use crate::editor::selection::Selection;
+use bevy::ecs::entity::Entity;
+use bevy::ecs::world::World;
+use bevy_egui::egui::{TextEdit, Ui};
+
+pub(super) fn object_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
+    let outline = world.resource::<Outline>();
+    let selection = world.resource::<Selection>();
+    let Some(active) = selection.active().and_then(|id| outline.find(id)) else {
+        ui.weak("Nothing is selected. Click an object in the picture or a row in the list.");
+        return;
+    };
+    let active = active.clone();
+    // The active one first: fields show its values.
+    let mut entities: Vec<Entity> = selection
+        .ids()
+        .iter()
+        .rev()
+        .filter_map(|&id| Some(outline.find(id)?.entity))
+        .collect();
+    entities.retain(|&entity| world.get_entity(entity).is_ok());
+    if entities.is_empty() {
+        return;
+    }
+    let others = entities.len() - 1;
+    ui.horizontal(|ui| {
+        ui.monospace(active.kind.glyph());
+        ui.strong(active.kind.name());
+        if others > 0 {
+            ui.weak(format!("and {others} more: fields change all of them"));
+        }
+    });
+    row(
+        ui,
+        "Name",
+        "What the list calls it; also kept in files",
+        |ui| {
+            let key = ui.id().with("name");
+            let mut text = panels
+                .naming
+                .as_ref()
+                .filter(|naming| naming.id == active.id)
+                .map_or_else(|| active.name.clone(), |naming| naming.text.clone());
+            let field = TextEdit::singleline(&mut text)
+                .id(key)
+                .char_limit(200)
+                .desired_width(ui.available_width() - 12.0);
+            let response = ui
+                .add(field)
+                .says("What the list calls it; also kept in files");
+            if response.changed() {
+                panels.naming = Some(Renaming {
+                    id: active.id,
+                    text,
+                    focused: true,
+                });
+            }
+            if response.lost_focus()
+                && let Some(naming) = panels.naming.take()
+            {
+                let name = naming.text.trim();
+                if naming.id == active.id && !name.is_empty() && name != active.name {
+                    world.write_message(Action::Rename(naming.id, name.to_owned()));
+                }
+            }
+        },
+    );
+    ui.add_space(4.0);
+    if active.kind != Kind::Material {
+        transform::transform_ui(ui, world, &entities, panels);
+    }
+    lamps::lamps_ui(ui, world, &entities);
+    camera::camera_ui(ui, world, &entities);
+    shape::shape_ui(ui, world, &entities);
+    material::material_ui(ui, world, &entities, panels);
+    camera::motion_ui(ui, world, &entities);
+}

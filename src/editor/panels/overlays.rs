@@ -1,0 +1,381 @@
+//! What lies over the picture: the divider of the split view, the legend of a heatmap, the frame of
+//! a region, messages, and the hint of the first run.
+
+use super::says::Says;
+use super::state::Panels;
+use super::theme::accent;
+use crate::editor::notice::Notices;
+use crate::editor::preferences::Preferences;
+use crate::editor::viewport::{EditorCamera, Show, Viewport};
+use crate::film::views::{Scale, View};
+use crate::scene::RenderSettings;
+use crate::trace::{FirstHit, central_hits};
+use crate::view::{TracedRender, TracedView};
+use bevy::ecs::query::With;
+use bevy::ecs::world::World;
+use bevy::math::{self, UVec2, Vec2};
+use bevy_egui::egui::{
+    self, Align2, Color32, CursorIcon, FontId, Id, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2,
+};
+
+/// Half the width of what can be grabbed of the divider, in points.
+const GRAB: f32 = 5.0;
+/// Parts of a region that are too small to be meant.
+const LEAST_REGION: f32 = 0.01;
+
+/// Draws them over the free rectangle; true where the pointer is over one of them.
+pub(super) fn overlays_ui(ui: &mut Ui, free: Rect, world: &mut World, panels: &mut Panels) -> bool {
+    if !free.is_positive() {
+        return false;
+    }
+    let mut over = false;
+    if world.resource::<Viewport>().show == Show::Split {
+        over |= divider_ui(ui, free, world);
+    }
+    over |= region_ui(ui, free, world, panels);
+    legend_ui(ui, free, world, panels);
+    over |= notices_ui(ui.ctx(), free, world);
+    hint_ui(ui.ctx(), free, world);
+    over
+}
+
+/// The line between raster and traced.
+fn divider_ui(ui: &Ui, free: Rect, world: &mut World) -> bool {
+    let divider = world.resource::<Viewport>().divider.clamp(0.0, 1.0);
+    let x = free.min.x + divider * free.width();
+    let rect = Rect::from_x_y_ranges(x - GRAB..=x + GRAB, free.y_range()).intersect(free);
+    let response = ui
+        .interact(rect, Id::new("split-divider"), Sense::drag())
+        .on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
+    if response.dragged()
+        && let Some(at) = response.interact_pointer_pos()
+    {
+        let divider = ((at.x - free.min.x) / free.width()).clamp(0.02, 0.98);
+        world.resource_mut::<Viewport>().divider = divider;
+    }
+    let active = response.hovered() || response.dragged();
+    let color = if active { accent(ui) } else { Color32::WHITE };
+    let width = if active { 2.0 } else { 1.0 };
+    let painter = ui.painter();
+    painter.vline(
+        x + 1.0,
+        free.y_range(),
+        Stroke::new(width, Color32::from_black_alpha(120)),
+    );
+    painter.vline(x, free.y_range(), Stroke::new(width, color));
+    for (align, dx, text) in [
+        (Align2::RIGHT_TOP, -8.0, "raster"),
+        (Align2::LEFT_TOP, 8.0, "traced"),
+    ] {
+        label(ui, pos2(x + dx, free.min.y + 8.0), align, text);
+    }
+    active
+}
+
+/// Text over a picture of any brightness.
+fn label(ui: &Ui, at: egui::Pos2, align: Align2, text: &str) {
+    let galley =
+        ui.painter()
+            .layout_no_wrap(text.to_owned(), FontId::proportional(12.0), Color32::WHITE);
+    let rect = align.anchor_size(at, galley.size());
+    let painter = ui.painter();
+    painter.rect_filled(
+        rect.expand2(vec2(5.0, 2.0)),
+        3.0,
+        Color32::from_black_alpha(150),
+    );
+    painter.galley(rect.min, galley, Color32::WHITE);
+}
+
+/// The frame of the region that is traced, and dragging a new one.
+fn region_ui(ui: &Ui, free: Rect, world: &mut World, panels: &mut Panels) -> bool {
+    let mut query = world.query_filtered::<&TracedView, With<EditorCamera>>();
+    let region = query.single(world).ok().and_then(|view| view.region);
+    let place = |at: egui::Pos2| {
+        let at = (at - free.min) / free.size();
+        Vec2::new(at.x, at.y).clamp(Vec2::ZERO, Vec2::ONE)
+    };
+    let point = |at: Vec2| free.min + vec2(at.x, at.y) * free.size();
+    if let Some(region) = region {
+        let rect = Rect::from_min_max(point(region.min), point(region.max));
+        let stroke = Stroke::new(1.0, accent(ui));
+        ui.painter()
+            .rect_stroke(rect, 0.0, stroke, StrokeKind::Outside);
+    }
+    if !panels.drags_region {
+        return false;
+    }
+    let response = ui
+        .interact(free, Id::new("region"), Sense::drag())
+        .on_hover_and_drag_cursor(CursorIcon::Crosshair);
+    if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+        panels.drags_region = false;
+        panels.region_start = None;
+        return true;
+    }
+    if response.drag_started() {
+        panels.region_start = ui.input(|input| input.pointer.press_origin());
+    }
+    let Some(start) = panels.region_start else {
+        return response.hovered();
+    };
+    let Some(end) = response.interact_pointer_pos() else {
+        return true;
+    };
+    let rect = Rect::from_two_pos(start, end).intersect(free);
+    let stroke = Stroke::new(1.0, accent(ui));
+    ui.painter()
+        .rect_stroke(rect, 0.0, stroke, StrokeKind::Inside);
+    if response.drag_stopped() {
+        panels.drags_region = false;
+        panels.region_start = None;
+        let region = math::Rect::from_corners(place(start), place(end));
+        if region.size().min_element() > LEAST_REGION {
+            let mut query = world.query_filtered::<&mut TracedView, With<EditorCamera>>();
+            if let Ok(mut view) = query.single_mut(world) {
+                view.region = Some(region);
+            }
+        }
+    }
+    true
+}
+
+/// The palette of a heatmap with its ends, which can be dragged, and the value under the pointer.
+fn legend_ui(ui: &Ui, free: Rect, world: &mut World, panels: &mut Panels) {
+    let mut query = world.query_filtered::<(&TracedView, &TracedRender), With<EditorCamera>>();
+    let Ok((view, render)) = query.single(world) else {
+        return;
+    };
+    let scale = render.shown().and_then(|shown| shown.scale);
+    let (Some(scale), true) = (scale, view.view.is_heatmap() && view.divider < 1.0) else {
+        return;
+    };
+    let (kind, range) = (view.view, view.range);
+    let under = value_under_pointer(ui, free, view, render, panels);
+    let mut entered = range;
+    egui::Area::new(Id::new("legend"))
+        .anchor(
+            Align2::LEFT_BOTTOM,
+            vec2(
+                free.min.x + 10.0,
+                -(ui.ctx().viewport_rect().max.y - free.max.y + 10.0),
+            ),
+        )
+        .order(egui::Order::Middle)
+        .show(ui.ctx(), |ui| {
+            egui::Frame::popup(ui.style())
+                .inner_margin(egui::Margin::same(6))
+                .show(ui, |ui| entered = legend_body(ui, &scale, range, under));
+        });
+    if entered != range {
+        let mut query = world.query_filtered::<&mut TracedView, With<EditorCamera>>();
+        if let Ok(mut view) = query.single_mut(world)
+            && view.view == kind
+        {
+            view.range = entered;
+        }
+    }
+}
+
+fn legend_body(
+    ui: &mut Ui,
+    scale: &Scale,
+    range: Option<[f32; 2]>,
+    under: Option<f32>,
+) -> Option<[f32; 2]> {
+    let width = 200.0;
+    let (bar, _) = ui.allocate_exact_size(vec2(width, 12.0), Sense::hover());
+    let steps = 64;
+    let mut mesh = egui::Mesh::default();
+    for i in 0..=steps {
+        let part = i as f32 / steps as f32;
+        let [r, g, b] = scale
+            .color(scale.low + part * (scale.high - scale.low))
+            .map(|channel| (channel * 255.0 + 0.5) as u8);
+        let x = bar.min.x + part * width;
+        let color = Color32::from_rgb(r, g, b);
+        mesh.colored_vertex(pos2(x, bar.min.y), color);
+        mesh.colored_vertex(pos2(x, bar.max.y), color);
+        if i > 0 {
+            let at = 2 * i as u32;
+            mesh.add_triangle(at - 2, at - 1, at);
+            mesh.add_triangle(at - 1, at, at + 1);
+        }
+    }
+    ui.painter().add(mesh);
+    if let Some(value) = under.filter(|value| value.is_finite()) {
+        let part = ((value - scale.low) / (scale.high - scale.low)).clamp(0.0, 1.0);
+        let x = bar.min.x + part * width;
+        let marker =
+            Rect::from_x_y_ranges(x - 1.5..=x + 1.5, bar.y_range()).expand2(vec2(0.0, 2.0));
+        ui.painter().rect_filled(marker, 1.0, Color32::WHITE);
+        let stroke = Stroke::new(1.0, Color32::BLACK);
+        ui.painter()
+            .rect_stroke(marker, 1.0, stroke, StrokeKind::Outside);
+    }
+    let mut ends = [scale.low, scale.high];
+    let mut entered = range;
+    ui.horizontal(|ui| {
+        let speed = ((scale.high - scale.low) * 0.01).max(1e-4);
+        for (i, says) in [
+            "The value at the palette's left end",
+            "The value at its right end",
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let field = egui::DragValue::new(&mut ends[i])
+                .speed(speed)
+                .max_decimals(4);
+            if ui.add(field).says(says).changed() && ends[0] < ends[1] {
+                entered = Some(ends);
+            }
+        }
+        ui.label(scale.unit);
+        let auto = ui.add_enabled(range.is_some(), egui::Button::new("auto").small());
+        if auto
+            .says("Takes the range from the picture again")
+            .clicked()
+        {
+            entered = None;
+        }
+    });
+    let text = match under {
+        Some(value) if value.is_finite() => format!("{} {}", short(value), scale.unit),
+        Some(_) => "nothing there".into(),
+        None => "move the pointer over the picture for its value".into(),
+    };
+    ui.weak(text);
+    entered.filter(|[low, high]| low < high && low.is_finite() && high.is_finite())
+}
+
+fn short(value: f32) -> String {
+    match value.abs() {
+        v if v == 0.0 || v >= 100.0 => format!("{value:.0}"),
+        v if v >= 1.0 => format!("{value:.2}"),
+        v if v >= 0.001 => format!("{value:.4}"),
+        _ => format!("{value:.1e}"),
+    }
+}
+
+/// What the heatmap shows at the pixel under the pointer. Looked up when the pointer or the picture
+/// moved on, by the same function that the view is made with.
+fn value_under_pointer(
+    ui: &Ui,
+    free: Rect,
+    view: &TracedView,
+    render: &TracedRender,
+    panels: &mut Panels,
+) -> Option<f32> {
+    let at = ui
+        .ctx()
+        .pointer_latest_pos()
+        .filter(|&at| free.contains(at))?;
+    let (world, camera, settings) = render.subject()?;
+    let place = (at - free.min) / free.size();
+    if place.x < view.divider {
+        return None;
+    }
+    let size = settings.size;
+    let pixel = (Vec2::new(place.x, place.y) * size.as_vec2()).as_uvec2();
+    let pixel = pixel.min(size - UVec2::ONE);
+    let film = || render.render()?.pixel(pixel);
+    match view.view {
+        View::Samples => film().map(|(samples, _)| samples as f32),
+        View::Error => film().map(|(_, error)| error),
+        kind => {
+            let key = (
+                std::sync::Arc::as_ptr(world) as usize,
+                pixel,
+                camera.clone(),
+            );
+            let known = panels.under_pointer.take();
+            let hit = match known {
+                Some((known, hit)) if known == key => hit,
+                _ => {
+                    let mut hits = [FirstHit::MISS];
+                    let settings = RenderSettings {
+                        size,
+                        ..settings.clone()
+                    };
+                    central_hits(world, camera, &settings, &[pixel], &mut hits);
+                    hits[0]
+                }
+            };
+            panels.under_pointer = Some((key, hit));
+            Some(match kind {
+                View::Nodes => hit.cost.nodes as f32,
+                View::Triangles => hit.cost.triangles as f32,
+                _ => hit.depth,
+            })
+        }
+    }
+}
+
+/// Messages, the newest below.
+fn notices_ui(context: &egui::Context, free: Rect, world: &mut World) -> bool {
+    // Only looked at while there are any: asking makes the resource count as changed.
+    if world.resource::<Notices>().is_empty() {
+        return false;
+    }
+    let mut closed = None;
+    let mut notices = world.resource_mut::<Notices>();
+    let shown: Vec<_> = notices.shown().to_vec();
+    let width = (free.width() - 40.0).clamp(120.0, 460.0);
+    let bottom = context.viewport_rect().max - free.max;
+    let area = egui::Area::new(Id::new("notices"))
+        .anchor(Align2::RIGHT_BOTTOM, -bottom - vec2(12.0, 12.0))
+        .order(egui::Order::Foreground)
+        .show(context, |ui| {
+            ui.set_max_width(width);
+            for (i, notice) in shown.iter().enumerate() {
+                egui::Frame::popup(ui.style()).show(ui, |ui| {
+                    ui.horizontal_top(|ui| {
+                        ui.set_width(width);
+                        let color = match notice.is_fault {
+                            true => ui.visuals().error_fg_color,
+                            false => ui.visuals().text_color(),
+                        };
+                        let text = egui::RichText::new(&notice.text).color(color);
+                        let room = ui.available_width() - 30.0;
+                        ui.allocate_ui(vec2(room, 0.0), |ui| {
+                            ui.set_width(room);
+                            ui.add(egui::Label::new(text).wrap().selectable(true));
+                        });
+                        if ui.small_button("✖").says("Closes this message").clicked() {
+                            closed = Some(i);
+                        }
+                    });
+                });
+            }
+        });
+    if let Some(i) = closed {
+        notices.close(i);
+    }
+    !shown.is_empty() && area.response.contains_pointer()
+}
+
+/// How one begins, until it was read once.
+fn hint_ui(context: &egui::Context, free: Rect, world: &mut World) {
+    if world.resource::<Preferences>().hint_seen {
+        return;
+    }
+    let text = "Click selects · middle drag turns the view, with Shift moves it · wheel zooms · W E T: move, turn, scale · F1: all keys";
+    let top = free.min.y + 10.0;
+    let middle = free.center().x - context.viewport_rect().center().x;
+    egui::Area::new(Id::new("hint"))
+        .anchor(Align2::CENTER_TOP, vec2(middle, top))
+        .order(egui::Order::Middle)
+        .show(context, |ui| {
+            ui.set_max_width((free.width() - 40.0).max(160.0));
+            egui::Frame::popup(ui.style()).show(ui, |ui| {
+                ui.horizontal_wrapped(|ui| {
+                    ui.label(text);
+                    let close = ui.small_button("Got it");
+                    if close.says("Does not show this line again").clicked() {
+                        world.resource_mut::<Preferences>().hint_seen = true;
+                    }
+                });
+            });
+        });
+}

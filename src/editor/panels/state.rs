@@ -1,0 +1,77 @@
+//! What the panels remember between two frames, and forget when the editor is closed.
+
+use super::dialogs::Gallery;
+use super::inspector::{ErrorCurve, Thumbnails, Trees, Turns};
+use super::status::{Memory, Numbers};
+use crate::editor::action::Action;
+use crate::scene::SceneId;
+use crate::trace::{Camera, FirstHit};
+use bevy::ecs::message::MessageCursor;
+use bevy::ecs::resource::Resource;
+use bevy::math::UVec2;
+use bevy::platform::collections::HashSet;
+use bevy_egui::egui::Pos2;
+
+/// The inspector's tabs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Tab {
+    #[default]
+    Object,
+    Render,
+    Debug,
+    Bvh,
+}
+
+/// A pixel of a world's picture; the world by its address.
+pub(super) type PixelOf = (usize, UVec2, Camera);
+
+/// What is in front of everything else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Dialog {
+    Keys,
+    About,
+    Preferences,
+    Scenes,
+}
+
+/// A name that is being typed.
+#[derive(Clone, Debug)]
+pub(super) struct Renaming {
+    pub id: SceneId,
+    pub text: String,
+    /// The field has the keys; until then it asks for them.
+    pub focused: bool,
+}
+
+/// What the panels remember between two frames.
+#[derive(Resource, Default)]
+pub(super) struct Panels {
+    pub tab: Tab,
+    pub dialog: Option<Dialog>,
+    /// How far actions were read.
+    pub heard: MessageCursor<Action>,
+    pub gallery: Gallery,
+    /// What is searched for in the hierarchy.
+    pub search: String,
+    /// Entities whose descendants the hierarchy does not show.
+    pub folded: HashSet<SceneId>,
+    /// Where a range of rows begins.
+    pub anchor: Option<SceneId>,
+    pub renaming: Option<Renaming>,
+    /// How many rows the hierarchy laid out in this frame.
+    pub rows_drawn: usize,
+    /// The next drag over the picture limits the traced view to a region.
+    pub drags_region: bool,
+    /// Where such a drag began.
+    pub region_start: Option<Pos2>,
+    /// A name that is being typed in the inspector.
+    pub naming: Option<Renaming>,
+    pub turns: Turns,
+    pub thumbnails: Thumbnails,
+    pub error_curve: ErrorCurve,
+    pub trees: Trees,
+    pub numbers: Numbers,
+    pub memory: Memory,
+    /// What the pixel under the pointer shows, and of which world, pixel and camera that is.
+    pub under_pointer: Option<(PixelOf, FirstHit)>,
+}

@@ -1,0 +1,259 @@
+//! The line below: what the traced view has, how fast it gets on, and what is under the pointer.
+
+use super::says::{Says, take_hint};
+use super::state::Panels;
+use crate::editor::viewport::EditorCamera;
+use crate::film::{Ending, State};
+use crate::io::LoadProblems;
+use crate::sync::Traced;
+use crate::trace;
+use crate::view::TracedRender;
+use bevy::ecs::query::With;
+use bevy::ecs::world::World;
+use bevy::platform::collections::HashSet;
+use bevy_egui::egui::{self, Popup, RichText, Ui};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// How often the memory is asked for.
+const MEMORY_INTERVAL: Duration = Duration::from_secs(1);
+
+pub(super) fn status_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
+    let hint = take_hint(ui.ctx());
+    let mut query = world.query_filtered::<&TracedRender, With<EditorCamera>>();
+    let render = query.single(world).ok();
+    let status = render.and_then(TracedRender::status);
+    let shown = render.and_then(TracedRender::shown);
+    let traced = world.resource::<Traced>();
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 14.0;
+        if let Some(status) = &status {
+            let state = match status.state {
+                State::Running => "",
+                State::Paused => " paused",
+                State::Ended(Ending::Cancelled) => " stopped",
+                State::Ended(_) => " done",
+            };
+            let wanted = count(status.samples_wanted);
+            figure(
+                ui,
+                &format!("{} / {wanted} spp{state}", count(status.samples)),
+                "Samples of each pixel so far, on average, and how many there shall be",
+            );
+            let error = status.error().map_or_else(
+                || "error –".to_owned(),
+                |error| {
+                    let slope = status.decline();
+                    let trend = slope.map_or_else(String::new, |slope| format!(" ~ t^-{slope:.2}"));
+                    format!("error {}{trend}", percent(error.relative()))
+                },
+            );
+            figure(
+                ui,
+                &error,
+                "Estimated relative error of the picture, and how it falls with time: t^-0.5 is plain random sampling",
+            );
+            figure(
+                ui,
+                &format!("{:.2} Mrays/s", status.mrays_per_s()),
+                "Million rays of all kinds a second, all threads together",
+            );
+        } else {
+            figure(ui, "not tracing", "The view shows no traced picture");
+        }
+        if let Some(shown) = shown {
+            let ms = shown.first_picture.as_secs_f64() * 1e3;
+            figure(
+                ui,
+                &format!("{ms:.0} ms to picture"),
+                "From the last edit to the first picture of it on the screen",
+            );
+        }
+        let numbers = panels.numbers.of(traced);
+        figure(
+            ui,
+            &format!("{} triangles", grouped(numbers.triangles)),
+            "Triangles of all objects; a mesh that two objects share counts twice",
+        );
+        figure(
+            ui,
+            &format!("{} lights", numbers.lights),
+            "Lights that are traced: hidden ones are not",
+        );
+        if let Some(bytes) = panels.memory.bytes() {
+            figure(
+                ui,
+                &memory_text(bytes),
+                "Memory of the whole program",
+            );
+        }
+        problems_ui(ui, world);
+        if let Some(hint) = hint {
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                ui.add(egui::Label::new(RichText::new(hint).weak()).truncate());
+            });
+        }
+    });
+}
+
+fn figure(ui: &mut Ui, text: &str, says: &str) {
+    ui.label(text).says(says);
+}
+
+/// What cannot be loaded or traced as it is.
+fn problems_ui(ui: &mut Ui, world: &World) {
+    let load = world.resource::<LoadProblems>().problems.iter();
+    let sync = world.resource::<Traced>().problems.iter();
+    let lines: Vec<String> = load
+        .map(|problem| format!("{}: {}", problem.what, problem.error))
+        .chain(sync.map(ToString::to_string))
+        .collect();
+    if lines.is_empty() {
+        return;
+    }
+    let color = ui.visuals().warn_fg_color;
+    let text = match lines.len() {
+        1 => "⚠ 1 problem".to_owned(),
+        n => format!("⚠ {n} problems"),
+    };
+    let label = egui::Label::new(RichText::new(text).color(color)).sense(egui::Sense::click());
+    let response = ui
+        .add(label)
+        .says("What of the scene cannot be drawn as it is; click to read");
+    Popup::menu(&response).show(|ui| {
+        ui.set_max_width(480.0);
+        for line in lines.iter().take(30) {
+            ui.label(line);
+        }
+        if lines.len() > 30 {
+            ui.weak(format!("and {} more", lines.len() - 30));
+        }
+    });
+}
+
+/// What is counted of a traced world; counted again only when it is another.
+#[derive(Default)]
+pub(super) struct Numbers {
+    of: Option<Arc<trace::World>>,
+    pub triangles: u64,
+    pub lights: usize,
+    /// Of meshes and trees.
+    pub bytes: usize,
+}
+
+impl Numbers {
+    /// Of this world.
+    pub fn of(&mut self, traced: &Traced) -> &Self {
+        let world = &traced.world;
+        if self.of.as_ref().is_some_and(|of| Arc::ptr_eq(of, world)) {
+            return self;
+        }
+        let mut seen = HashSet::new();
+        let objects = world.objects.iter();
+        let lights = &world.lights;
+        *self = Self {
+            of: Some(world.clone()),
+            triangles: objects
+                .clone()
+                .map(|object| object.mesh.tree.triangles().len() as u64)
+                .sum(),
+            lights: lights.points.len()
+                + lights.directionals.len()
+                + lights.segments.len()
+                + lights.parallelograms.len(),
+            bytes: objects
+                .filter(|object| seen.insert(Arc::as_ptr(&object.mesh)))
+                .map(|object| object.mesh.tree.bytes())
+                .sum::<usize>()
+                + world.aggregate.bytes(),
+        };
+        self
+    }
+}
+
+/// The memory of this process, asked for now and then.
+#[derive(Default)]
+pub(super) struct Memory {
+    known: Option<(u64, Instant)>,
+}
+
+impl Memory {
+    /// Bytes that are in memory; `None` where the system does not say in a file.
+    fn bytes(&mut self) -> Option<u64> {
+        if self
+            .known
+            .is_none_or(|(_, when)| when.elapsed() > MEMORY_INTERVAL)
+        {
+            let text = std::fs::read_to_string("/proc/self/status").ok()?;
+            let line = text.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+            let kib: u64 = line.split_whitespace().next()?.parse().ok()?;
+            self.known = Some((kib * 1024, Instant::now()));
+        }
+        self.known.map(|(bytes, _)| bytes)
+    }
+}
+
+/// `12`, `3.5`: an average that is whole is shown whole.
+fn count(samples: f64) -> String {
+    if samples.fract() == 0.0 || samples >= 100.0 {
+        format!("{samples:.0}")
+    } else {
+        format!("{samples:.1}")
+    }
+}
+
+/// `12 %`, `0.34 %`.
+pub(super) fn percent(part: f64) -> String {
+    let percent = part * 100.0;
+    match percent {
+        p if !p.is_finite() => "–".into(),
+        p if p >= 10.0 => format!("{p:.0} %"),
+        p if p >= 1.0 => format!("{p:.1} %"),
+        p => format!("{p:.2} %"),
+    }
+}
+
+/// With a narrow space between thousands.
+pub(super) fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i) % 3 == 0 {
+            text.push('\u{2009}');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// `12.3 MB`, `1.2 GB`.
+pub(super) fn memory_text(bytes: u64) -> String {
+    let mb = bytes as f64 * 1e-6;
+    match mb {
+        mb if mb >= 1000.0 => format!("{:.1} GB", mb * 1e-3),
+        mb if mb >= 100.0 => format!("{mb:.0} MB"),
+        mb if mb >= 0.1 => format!("{mb:.1} MB"),
+        _ => format!("{:.1} kB", mb * 1e3),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_are_written_with_as_many_digits_as_mean_something() {
+        assert_eq!([1.0, 3.25, 250.4].map(count), ["1", "3.2", "250"]);
+        assert_eq!(
+            [0.25, 0.034, 0.0012, f64::NAN].map(percent),
+            ["25 %", "3.4 %", "0.12 %", "–"]
+        );
+        assert_eq!(grouped(87_040), "87\u{2009}040");
+        assert_eq!(grouped(7), "7");
+        assert_eq!(grouped(1_234_567), "1\u{2009}234\u{2009}567");
+        assert_eq!(
+            [900, 4_560_000, 2_340_000_000].map(memory_text),
+            ["0.9 kB", "4.6 MB", "2.3 GB"]
+        );
+    }
+}

@@ -1,0 +1,204 @@
+//! The look: two themes with one accent, quiet surfaces, and the picture as the brightest thing.
+
+use super::super::preferences::{Preferences, ThemeChoice};
+use bevy_egui::egui::{
+    self, Color32, CornerRadius, FontFamily, FontId, Shadow, Stroke, Style, TextStyle, Theme,
+    ThemePreference, Visuals, vec2,
+};
+
+/// The accent on dark surfaces, and on light ones.
+const ACCENT: [Color32; 2] = [
+    Color32::from_rgb(79, 188, 199),
+    Color32::from_rgb(10, 110, 122),
+];
+
+/// Surfaces and inks of one theme, from the ground up.
+struct Palette {
+    /// Text fields, plots, the rails of sliders.
+    well: Color32,
+    panel: Color32,
+    /// Popups, menus and windows.
+    raised: Color32,
+    /// Buttons at rest, under the pointer, pressed.
+    button: [Color32; 3],
+    line: Color32,
+    /// Labels, what can be pressed, what is under the pointer.
+    ink: [Color32; 3],
+    selected: Color32,
+    accent: Color32,
+    warn: Color32,
+    fault: Color32,
+}
+
+const DARK: Palette = Palette {
+    well: Color32::from_rgb(18, 19, 22),
+    panel: Color32::from_rgb(29, 31, 35),
+    raised: Color32::from_rgb(38, 40, 45),
+    button: [
+        Color32::from_rgb(46, 49, 55),
+        Color32::from_rgb(58, 62, 70),
+        Color32::from_rgb(40, 74, 80),
+    ],
+    line: Color32::from_rgb(52, 55, 61),
+    ink: [
+        Color32::from_rgb(178, 183, 191),
+        Color32::from_rgb(208, 212, 218),
+        Color32::from_rgb(244, 246, 248),
+    ],
+    selected: Color32::from_rgb(30, 78, 86),
+    accent: ACCENT[0],
+    warn: Color32::from_rgb(240, 176, 72),
+    fault: Color32::from_rgb(244, 108, 100),
+};
+
+const LIGHT: Palette = Palette {
+    well: Color32::from_rgb(255, 255, 255),
+    panel: Color32::from_rgb(240, 241, 243),
+    raised: Color32::from_rgb(250, 250, 251),
+    button: [
+        Color32::from_rgb(222, 225, 229),
+        Color32::from_rgb(208, 213, 219),
+        Color32::from_rgb(168, 214, 219),
+    ],
+    line: Color32::from_rgb(202, 206, 212),
+    ink: [
+        Color32::from_rgb(66, 71, 79),
+        Color32::from_rgb(40, 44, 51),
+        Color32::from_rgb(12, 14, 18),
+    ],
+    selected: Color32::from_rgb(176, 220, 225),
+    accent: ACCENT[1],
+    warn: Color32::from_rgb(166, 98, 0),
+    fault: Color32::from_rgb(184, 32, 32),
+};
+
+/// The colour of what is chosen, dragged or drawn by the editor over the picture.
+pub(super) fn accent(ui: &egui::Ui) -> Color32 {
+    ACCENT[usize::from(!ui.visuals().dark_mode)]
+}
+
+/// Makes egui look as the preferences say; cheap where it does already.
+pub(super) fn apply(context: &egui::Context, preferences: &Preferences) {
+    let ours = egui::Id::new("glassbox-theme");
+    if !context.data(|data| data.get_temp::<bool>(ours).unwrap_or(false)) {
+        context.set_style_of(Theme::Dark, style(Theme::Dark));
+        context.set_style_of(Theme::Light, style(Theme::Light));
+        context.data_mut(|data| data.insert_temp(ours, true));
+    }
+    let wanted = match preferences.theme {
+        ThemeChoice::System => ThemePreference::System,
+        ThemeChoice::Dark => ThemePreference::Dark,
+        ThemeChoice::Light => ThemePreference::Light,
+    };
+    if context.options(|options| options.theme_preference) != wanted {
+        context.set_theme(wanted);
+    }
+}
+
+fn style(theme: Theme) -> Style {
+    let palette = match theme {
+        Theme::Dark => DARK,
+        Theme::Light => LIGHT,
+    };
+    let mut style = Style {
+        visuals: visuals(theme, &palette),
+        explanation_tooltips: false,
+        animation_time: 0.08,
+        ..Style::default()
+    };
+    let font = |size| FontId::new(size, FontFamily::Proportional);
+    style.text_styles = [
+        (TextStyle::Small, font(10.5)),
+        (TextStyle::Body, font(13.0)),
+        (TextStyle::Button, font(13.0)),
+        (TextStyle::Heading, font(16.0)),
+        (
+            TextStyle::Monospace,
+            FontId::new(12.0, FontFamily::Monospace),
+        ),
+    ]
+    .into();
+    style.drag_value_text_style = TextStyle::Body;
+    let spacing = &mut style.spacing;
+    spacing.item_spacing = vec2(6.0, 4.0);
+    spacing.button_padding = vec2(6.0, 2.0);
+    spacing.interact_size = vec2(36.0, 20.0);
+    spacing.indent = 14.0;
+    spacing.slider_width = 90.0;
+    spacing.slider_rail_height = 4.0;
+    spacing.combo_width = 90.0;
+    spacing.tooltip_width = 320.0;
+    spacing.menu_margin = egui::Margin::same(6);
+    style.interaction.selectable_labels = false;
+    style.interaction.tooltip_delay = 0.45;
+    style
+}
+
+fn visuals(theme: Theme, palette: &Palette) -> Visuals {
+    let mut visuals = theme.default_visuals();
+    visuals.panel_fill = palette.panel;
+    visuals.window_fill = palette.raised;
+    visuals.window_stroke = Stroke::new(1.0, palette.line);
+    visuals.extreme_bg_color = palette.well;
+    visuals.faint_bg_color = palette.raised;
+    visuals.code_bg_color = palette.button[0];
+    visuals.hyperlink_color = palette.accent;
+    visuals.warn_fg_color = palette.warn;
+    visuals.error_fg_color = palette.fault;
+    visuals.selection.bg_fill = palette.selected;
+    visuals.selection.stroke = Stroke::new(1.0, palette.ink[2]);
+    visuals.window_corner_radius = CornerRadius::same(6);
+    visuals.menu_corner_radius = CornerRadius::same(5);
+    visuals.slider_trailing_fill = true;
+    visuals.indent_has_left_vline = false;
+    let shadow = Shadow {
+        offset: [0, 4],
+        blur: 14,
+        spread: 0,
+        color: Color32::from_black_alpha(if theme == Theme::Dark { 110 } else { 40 }),
+    };
+    visuals.window_shadow = shadow;
+    visuals.popup_shadow = shadow;
+
+    let radius = CornerRadius::same(3);
+    let widgets = &mut visuals.widgets;
+    widgets.noninteractive.bg_fill = palette.panel;
+    widgets.noninteractive.weak_bg_fill = palette.panel;
+    widgets.noninteractive.bg_stroke = Stroke::new(1.0, palette.line);
+    widgets.noninteractive.fg_stroke = Stroke::new(1.0, palette.ink[0]);
+    for (state, fill, stroke, ink) in [
+        (
+            &mut widgets.inactive,
+            palette.button[0],
+            Stroke::NONE,
+            palette.ink[1],
+        ),
+        (
+            &mut widgets.hovered,
+            palette.button[1],
+            Stroke::new(1.0, palette.line),
+            palette.ink[2],
+        ),
+        (
+            &mut widgets.active,
+            palette.button[2],
+            Stroke::new(1.0, palette.accent),
+            palette.ink[2],
+        ),
+        (
+            &mut widgets.open,
+            palette.button[1],
+            Stroke::new(1.0, palette.line),
+            palette.ink[2],
+        ),
+    ] {
+        state.bg_fill = fill;
+        state.weak_bg_fill = fill;
+        state.bg_stroke = stroke;
+        state.fg_stroke = Stroke::new(1.0, ink);
+        state.corner_radius = radius;
+        state.expansion = 0.0;
+    }
+    widgets.noninteractive.corner_radius = radius;
+    visuals
+}

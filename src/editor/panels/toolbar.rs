@@ -1,0 +1,169 @@
+//! Below the menu: handles, what the view shows, and how the traced picture is developed.
+
+use super::says::Says;
+use super::state::Panels;
+use crate::editor::action::Action;
+use crate::editor::viewport::{EditorCamera, Show, Viewport};
+use crate::film::views::View;
+use crate::scene::RenderSettings;
+use crate::view::TracedView;
+use bevy::ecs::query::With;
+use bevy::ecs::world::World;
+use bevy_egui::egui::{Button, ComboBox, DragValue, Ui};
+
+pub(super) fn toolbar_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
+    ui.horizontal(|ui| {
+        tools_ui(ui, world);
+        ui.separator();
+        let show = world.resource::<Viewport>().show;
+        for (action, name, is) in [
+            (Action::ShowRaster, "Raster", Show::Raster),
+            (Action::ShowTraced, "Traced", Show::Traced),
+            (Action::ShowSplit, "Split", Show::Split),
+        ] {
+            action_ui(ui, world, &action, name, show == is);
+        }
+        ui.separator();
+        traced_ui(ui, world, panels);
+        ui.separator();
+        exposure_ui(ui, world);
+    });
+}
+
+/// A button for an action of the table, pressed in where it is what holds.
+fn action_ui(ui: &mut Ui, world: &mut World, action: &Action, name: &str, on: bool) {
+    let Some(entry) = action.entry() else {
+        return;
+    };
+    let says = match entry.keys.first() {
+        Some(keys) => format!("{} ({})", entry.says, keys.text()),
+        None => entry.says.to_owned(),
+    };
+    if ui.add(Button::selectable(on, name)).says(&says).clicked() {
+        world.write_message(action.clone());
+    }
+}
+
+fn tools_ui(ui: &mut Ui, world: &mut World) {
+    for (action, name) in [
+        (Action::Move, "Move"),
+        (Action::Turn, "Turn"),
+        (Action::Scale, "Scale"),
+        (Action::ToggleLocal, "Local"),
+        (Action::ToggleSnap, "Snap"),
+    ] {
+        action_ui(ui, world, &action, name, false);
+    }
+}
+
+/// What of the film is shown, and whether it goes on.
+fn traced_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
+    let mut query = world.query_filtered::<&TracedView, With<EditorCamera>>();
+    let Ok(before) = query.single(world).cloned() else {
+        return;
+    };
+    let mut view = before.clone();
+    ComboBox::from_id_salt("view of the film")
+        .selected_text(view_name(view.view))
+        .width(104.0)
+        .height(400.0)
+        .show_ui(ui, |ui| {
+            for (choice, says) in VIEWS {
+                ui.selectable_value(&mut view.view, choice, view_name(choice))
+                    .says(says);
+            }
+        })
+        .response
+        .says("What of the traced picture is shown: the picture, or how it came about");
+    if view.view != before.view {
+        view.range = None;
+    }
+    let paused = before.paused;
+    let glyph = if paused { "▶" } else { "⏸" };
+    action_ui(ui, world, &Action::TogglePause, glyph, paused);
+    action_ui(ui, world, &Action::Restart, "⟲", false);
+    let on = panels.drags_region || view.region.is_some();
+    let region = ui.add(Button::selectable(on, "Region")).says(
+        "Only a part of the view is traced: press, then drag a frame over the picture; press again for all",
+    );
+    if region.clicked() {
+        panels.drags_region = !on;
+        panels.region_start = None;
+        view.region = None;
+    }
+    if view != before {
+        let mut query = world.query_filtered::<&mut TracedView, With<EditorCamera>>();
+        if let Ok(mut traced) = query.single_mut(world) {
+            *traced = view;
+        }
+    }
+}
+
+/// Of the picture on the screen and in files alike; no ray is traced for it.
+fn exposure_ui(ui: &mut Ui, world: &mut World) {
+    let mut exposure = world.resource::<RenderSettings>().output.exposure;
+    let field = DragValue::new(&mut exposure)
+        .range(-64.0..=64.0)
+        .clamp_existing_to_range(false)
+        .speed(0.02)
+        .fixed_decimals(2)
+        .prefix("EV ");
+    let response = ui
+        .add(field)
+        .says("Exposure in stops: +1 doubles the picture's brightness; nothing is traced again");
+    let mut entered = response.changed().then_some(exposure);
+    response.context_menu(|ui| {
+        if ui.button("Reset to 0").clicked() {
+            entered = Some(0.0);
+            ui.close();
+        }
+    });
+    if let Some(exposure) = entered.filter(|exposure| !exposure.is_nan())
+        && world.resource::<RenderSettings>().output.exposure != exposure
+    {
+        world.resource_mut::<RenderSettings>().output.exposure = exposure;
+    }
+}
+
+/// The views with what they show.
+const VIEWS: [(View, &str); 11] = [
+    (View::Shaded, "The picture"),
+    (
+        View::Albedo,
+        "The diffuse colour that the camera meets first",
+    ),
+    (View::Normal, "The normal that shading uses, as a colour"),
+    (View::Depth, "Metres to the first surface"),
+    (View::Object, "A colour for each object"),
+    (
+        View::Nodes,
+        "Nodes of the trees that the pixel's ray entered",
+    ),
+    (
+        View::Triangles,
+        "Triangles that the pixel's ray was tested against",
+    ),
+    (View::Samples, "Samples that each pixel has so far"),
+    (
+        View::Error,
+        "The estimated error of each pixel: where the noise is",
+    ),
+    (View::BloomThreshold, "What is bright enough for bloom"),
+    (View::BloomLayer, "The light that bloom adds"),
+];
+
+fn view_name(view: View) -> &'static str {
+    match view {
+        View::Shaded => "Picture",
+        View::Albedo => "Albedo",
+        View::Normal => "Normals",
+        View::Depth => "Depth",
+        View::Object => "Objects",
+        View::Nodes => "Nodes visited",
+        View::Triangles => "Triangles tested",
+        View::Samples => "Samples",
+        View::Error => "Error",
+        View::BloomThreshold => "Bloom: bright",
+        View::BloomLayer => "Bloom: added",
+    }
+}

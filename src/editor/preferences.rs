@@ -1,0 +1,294 @@
+//! What a person chose about the editor itself, kept from one day to the next in a file of the
+//! user's configuration folder. Nothing in it belongs to a scene.
+
+use super::notice::Notices;
+use crate::io::replace_file;
+use bevy::app::{App, AppExit, Last, Plugin};
+use bevy::ecs::message::MessageReader;
+use bevy::ecs::resource::Resource;
+use bevy::ecs::system::{Local, Res, ResMut};
+use serde::{Deserialize, Serialize};
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// The variable that puts the configuration elsewhere, for tests and portable copies.
+pub const CONFIG_VARIABLE: &str = "GLASSBOX_CONFIG_DIR";
+
+/// The file's name.
+const FILE: &str = "preferences.ron";
+/// How many files are remembered.
+const MOST_RECENT: usize = 10;
+/// How long preferences stand still before they are written: dragging a border is one change.
+const SETTLE: Duration = Duration::from_millis(700);
+/// No file of ours is larger.
+const LARGEST: u64 = 1 << 20;
+
+/// Dark or light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum ThemeChoice {
+    /// As the desktop says; dark where it says nothing.
+    System,
+    /// Light text on dark: what is rendered is easier to judge.
+    #[default]
+    Dark,
+    /// Dark text on light.
+    Light,
+}
+
+/// What a person chose about the editor itself.
+#[derive(Resource, Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Preferences {
+    /// Dark or light.
+    pub theme: ThemeChoice,
+    /// Multiplies the size of everything in panels, besides the screen's own scale factor; 0.5 to 3.
+    pub zoom: f32,
+    /// Logical pixels.
+    pub hierarchy_width: f32,
+    /// Logical pixels.
+    pub inspector_width: f32,
+    /// Whether the list of entities is shown.
+    pub show_hierarchy: bool,
+    /// Whether the properties are shown.
+    pub show_inspector: bool,
+    /// Screen pixels along each side of one that is traced, 1 to 8: larger is quicker and coarser.
+    pub pixel_size: u32,
+    /// The first-run hint was read.
+    pub hint_seen: bool,
+    /// Files that were opened or saved, the newest first.
+    pub recent: Vec<PathBuf>,
+}
+
+impl Default for Preferences {
+    fn default() -> Self {
+        Self {
+            theme: ThemeChoice::default(),
+            zoom: 1.0,
+            hierarchy_width: 220.0,
+            inspector_width: 300.0,
+            show_hierarchy: true,
+            show_inspector: true,
+            pixel_size: 1,
+            hint_seen: false,
+            recent: Vec::new(),
+        }
+    }
+}
+
+impl Preferences {
+    /// Puts a file at the head of the recent ones.
+    pub fn remember(&mut self, file: &Path) {
+        let file = std::path::absolute(file).unwrap_or_else(|_| file.to_path_buf());
+        self.recent.retain(|other| *other != file);
+        self.recent.insert(0, file);
+        self.recent.truncate(MOST_RECENT);
+    }
+
+    /// Takes a file out of the recent ones: it is gone.
+    pub fn forget(&mut self, file: &Path) {
+        self.recent.retain(|other| other != file);
+    }
+
+    /// The same with every number inside its range: the file may have been edited by hand.
+    fn checked(mut self) -> Self {
+        let default = Self::default();
+        let within = |value: f32, least: f32, most: f32, default: f32| {
+            if value.is_finite() {
+                value.clamp(least, most)
+            } else {
+                default
+            }
+        };
+        self.zoom = within(self.zoom, 0.5, 3.0, default.zoom);
+        let width = |value, default| within(value, 120.0, 2000.0, default);
+        self.hierarchy_width = width(self.hierarchy_width, default.hierarchy_width);
+        self.inspector_width = width(self.inspector_width, default.inspector_width);
+        self.pixel_size = self.pixel_size.clamp(1, 8);
+        self.recent.truncate(MOST_RECENT);
+        self
+    }
+
+    /// The preferences in a folder; the defaults where there are none. Where the file cannot be
+    /// read the second value says why, and the file is kept under another name.
+    pub fn load(folder: &Path) -> (Self, Option<String>) {
+        let file = folder.join(FILE);
+        match read(&file) {
+            Ok(None) => (Self::default(), None),
+            Ok(Some(preferences)) => (preferences.checked(), None),
+            Err(why) => {
+                let kept = folder.join(format!("{FILE}.broken"));
+                let then = match fs::rename(&file, &kept) {
+                    Ok(()) => format!("it is kept as {}", kept.display()),
+                    Err(_) => "it will be replaced".into(),
+                };
+                let text = format!(
+                    "{}: {why}; the defaults are used, and {then}",
+                    file.display()
+                );
+                (Self::default(), Some(text))
+            }
+        }
+    }
+
+    /// Writes them into a folder, which is made where it is missing.
+    pub fn save(&self, folder: &Path) -> Result<(), String> {
+        fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+        let pretty = ron::ser::PrettyConfig::default();
+        let text = ron::ser::to_string_pretty(self, pretty).map_err(|error| error.to_string())?;
+        replace_file(&folder.join(FILE), |out| out.write_all(text.as_bytes()))
+            .map_err(|error| error.to_string())
+    }
+}
+
+fn read(file: &Path) -> Result<Option<Preferences>, String> {
+    let metadata = match fs::metadata(file) {
+        Ok(metadata) => metadata,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(error.to_string()),
+    };
+    if metadata.len() > LARGEST {
+        return Err(format!("{} bytes are too many", metadata.len()));
+    }
+    let text = fs::read_to_string(file).map_err(|error| error.to_string())?;
+    ron::from_str(&text)
+        .map(Some)
+        .map_err(|error| error.to_string())
+}
+
+/// Where the editor keeps its own files; `None` where the system names no place for them.
+pub fn config_folder() -> Option<PathBuf> {
+    if let Some(folder) = std::env::var_os(CONFIG_VARIABLE).filter(|folder| !folder.is_empty()) {
+        return Some(folder.into());
+    }
+    let folders = directories::ProjectDirs::from("", "", "glassbox")?;
+    Some(folders.config_dir().to_path_buf())
+}
+
+/// Loads the preferences, and writes them when they have changed.
+pub struct PreferencesPlugin;
+
+impl Plugin for PreferencesPlugin {
+    fn build(&self, app: &mut App) {
+        let (preferences, fault) = match config_folder() {
+            Some(folder) => Preferences::load(&folder),
+            None => (Preferences::default(), None),
+        };
+        app.init_resource::<Notices>();
+        if let Some(fault) = fault {
+            app.world_mut().resource_mut::<Notices>().fault(fault);
+        }
+        app.insert_resource(preferences)
+            .add_systems(Last, write_changes);
+    }
+}
+
+/// What is in the file, and since when something else is meant.
+#[derive(Default)]
+struct Written {
+    preferences: Option<Preferences>,
+    pending: Option<(Preferences, Instant)>,
+    failed: bool,
+}
+
+fn write_changes(
+    preferences: Res<Preferences>,
+    mut exits: MessageReader<AppExit>,
+    mut written: Local<Written>,
+    mut notices: ResMut<Notices>,
+) {
+    let leaving = exits.read().next().is_some();
+    let current = &*preferences;
+    let saved = written.preferences.get_or_insert_with(|| current.clone());
+    if saved == current {
+        written.pending = None;
+        return;
+    }
+    let since = match &written.pending {
+        Some((pending, since)) if pending == current => *since,
+        _ => {
+            let now = Instant::now();
+            written.pending = Some((current.clone(), now));
+            now
+        }
+    };
+    if !leaving && since.elapsed() < SETTLE {
+        return;
+    }
+    written.preferences = Some(current.clone());
+    written.pending = None;
+    let Some(folder) = config_folder() else {
+        return;
+    };
+    if let Err(why) = current.save(&folder)
+        && !written.failed
+    {
+        // Once: what cannot be written now will not be written a second later.
+        written.failed = true;
+        notices.fault(format!("the preferences are not kept: {why}"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_saved_is_loaded_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let inner = folder.path().join("glassbox");
+        assert_eq!(Preferences::load(&inner), (Preferences::default(), None));
+        let mut preferences = Preferences {
+            theme: ThemeChoice::Light,
+            zoom: 1.5,
+            hierarchy_width: 310.0,
+            hint_seen: true,
+            ..Preferences::default()
+        };
+        preferences.remember(Path::new("/a/b.scn.ron"));
+        preferences.save(&inner).unwrap();
+        assert_eq!(Preferences::load(&inner), (preferences, None));
+    }
+
+    #[test]
+    fn a_file_that_cannot_be_read_is_kept_and_named_and_the_defaults_are_used() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join(FILE), "(zoom: \"large\")").unwrap();
+        let (preferences, fault) = Preferences::load(folder.path());
+        assert_eq!(preferences, Preferences::default());
+        assert!(fault.unwrap().contains(FILE));
+        let kept = folder.path().join(format!("{FILE}.broken"));
+        assert_eq!(fs::read_to_string(kept).unwrap(), "(zoom: \"large\")");
+    }
+
+    #[test]
+    fn numbers_that_were_edited_out_of_range_come_back_into_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let text = "(zoom: 1000.0, hierarchy_width: inf, pixel_size: 0)";
+        fs::write(folder.path().join(FILE), text).unwrap();
+        let (preferences, fault) = Preferences::load(folder.path());
+        assert_eq!(fault, None);
+        assert_eq!(preferences.zoom, 3.0);
+        assert_eq!(preferences.hierarchy_width, 220.0);
+        assert_eq!(preferences.pixel_size, 1);
+    }
+
+    #[test]
+    fn a_file_that_is_opened_again_moves_to_the_head_of_the_recent_ones() {
+        let mut preferences = Preferences::default();
+        for i in 0..15 {
+            preferences.remember(Path::new(&format!("/scenes/{i}.scn.ron")));
+        }
+        preferences.remember(Path::new("/scenes/10.scn.ron"));
+        let names: Vec<_> = preferences
+            .recent
+            .iter()
+            .filter_map(|file| file.file_name()?.to_str()?.split('.').next())
+            .collect();
+        assert_eq!(
+            names,
+            ["10", "14", "13", "12", "11", "9", "8", "7", "6", "5"]
+        );
+    }
+}
