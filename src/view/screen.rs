@@ -7,11 +7,9 @@
 use bevy::asset::{Asset, Assets, Handle, RenderAssetUsages, embedded_asset};
 use bevy::camera::visibility::{NoFrustumCulling, RenderLayers};
 use bevy::image::{Image, ImageSampler, TextureFormatPixelInfo};
+use bevy::light::{NotShadowCaster, NotShadowReceiver};
 use bevy::mesh::{Indices, Mesh, Mesh3d, MeshVertexBufferLayoutRef, PrimitiveTopology};
-use bevy::pbr::{
-    Material, MaterialPipeline, MaterialPipelineKey, MaterialPlugin, MeshMaterial3d,
-    NotShadowCaster, NotShadowReceiver,
-};
+use bevy::pbr::{Material, MaterialPipeline, MaterialPipelineKey, MaterialPlugin, MeshMaterial3d};
 use bevy::prelude::{AlphaMode, App, Commands, Component, Plugin, Transform, Vec2, Vec3, Vec4};
 use bevy::reflect::TypePath;
 use bevy::render::render_resource::{

@@ -18,6 +18,7 @@ use bevy::asset::{Assets, Handle};
 use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{Camera, Camera3d, Projection};
 use bevy::core_pipeline::tonemapping::Tonemapping;
+use bevy::ecs::change_detection::DetectChangesMut;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::hierarchy::ChildOf;
 use bevy::ecs::reflect::ReflectComponent;
@@ -253,7 +254,7 @@ fn follow(
             continue;
         };
         let order = Order {
-            output: settings.output.clone(),
+            output: settings.output,
             view: view.view,
             range: view.range,
         };
