@@ -161,17 +161,20 @@ type Parts<'a> = (
     ),
 );
 
+/// Components whose absence shows.
+type Gone<'w, 's> = (
+    RemovedComponents<'w, 's, SceneId>,
+    RemovedComponents<'w, 's, Name>,
+    RemovedComponents<'w, 's, ChildOf>,
+    RemovedComponents<'w, 's, MeshSource>,
+    RemovedComponents<'w, 's, Phong>,
+    RemovedComponents<'w, 's, SceneCamera>,
+);
+
 /// Makes the list again where anything that it shows changed.
 pub(super) fn outline_scene(
     changed: Query<(), (With<SceneId>, Shown)>,
-    mut gone: (
-        RemovedComponents<SceneId>,
-        RemovedComponents<Name>,
-        RemovedComponents<ChildOf>,
-        RemovedComponents<MeshSource>,
-        RemovedComponents<Phong>,
-        RemovedComponents<SceneCamera>,
-    ),
+    mut gone: Gone,
     all: Query<Parts>,
     mut outline: ResMut<Outline>,
 ) {

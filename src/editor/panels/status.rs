@@ -10,7 +10,6 @@ use crate::trace;
 use crate::view::TracedRender;
 use bevy::ecs::query::With;
 use bevy::ecs::world::World;
-use bevy::platform::collections::HashSet;
 use bevy_egui::egui::{self, Popup, RichText, Ui};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -137,8 +136,6 @@ pub(super) struct Numbers {
     of: Option<Arc<trace::World>>,
     pub triangles: u64,
     pub lights: usize,
-    /// Of meshes and trees.
-    pub bytes: usize,
 }
 
 impl Numbers {
@@ -148,24 +145,17 @@ impl Numbers {
         if self.of.as_ref().is_some_and(|of| Arc::ptr_eq(of, world)) {
             return self;
         }
-        let mut seen = HashSet::new();
         let objects = world.objects.iter();
         let lights = &world.lights;
         *self = Self {
             of: Some(world.clone()),
             triangles: objects
-                .clone()
                 .map(|object| object.mesh.tree.triangles().len() as u64)
                 .sum(),
             lights: lights.points.len()
                 + lights.directionals.len()
                 + lights.segments.len()
                 + lights.parallelograms.len(),
-            bytes: objects
-                .filter(|object| seen.insert(Arc::as_ptr(&object.mesh)))
-                .map(|object| object.mesh.tree.bytes())
-                .sum::<usize>()
-                + world.aggregate.bytes(),
         };
         self
     }
@@ -218,7 +208,7 @@ pub(super) fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::with_capacity(digits.len() + digits.len() / 3);
     for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i) % 3 == 0 {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
             text.push('\u{2009}');
         }
         text.push(digit);

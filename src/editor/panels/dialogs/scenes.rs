@@ -41,7 +41,9 @@ impl Gallery {
                 self.coming = Some(SyncCell::new(coming));
             }
         }
-        let Some(coming) = &mut self.coming else { return };
+        let Some(coming) = &mut self.coming else {
+            return;
+        };
         while let Ok((i, picture)) = coming.get().try_recv() {
             let name = format!("scene {}", SCENES[i].name);
             let texture = context.load_texture(name, picture, TextureOptions::LINEAR);

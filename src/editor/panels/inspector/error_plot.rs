@@ -125,7 +125,7 @@ fn decades(input: GridInput) -> Vec<GridMark> {
 fn power(exponent: f64, unit: &str) -> String {
     let value = 10_f64.powf(exponent);
     match value {
-        v if v >= 1000.0 || v < 1e-3 => format!("{v:.0e} {unit}"),
+        v if !(1e-3..1000.0).contains(&v) => format!("{v:.0e} {unit}"),
         v if v >= 1.0 => format!("{v:.0} {unit}"),
         v => format!("{} {unit}", (v * 1000.0).round() / 1000.0),
     }
