@@ -3,7 +3,7 @@
 use crate::io::IoPlugin;
 use crate::scene::ScenePlugin;
 use crate::sync::{SyncPlugin, TreeBuilding};
-use bevy::app::{App, TaskPoolPlugin};
+use bevy::app::{App, Plugins, TaskPoolPlugin};
 use bevy::asset::{AssetApp, AssetPlugin};
 use bevy::camera::visibility::VisibilityPlugin;
 use bevy::ecs::schedule::{Schedules, SingleThreadedExecutor};
@@ -18,6 +18,11 @@ use bevy::transform::TransformPlugin;
 /// Systems run on the calling thread, and trees are built there and then
 /// ([`TreeBuilding::AtOnce`]), in the rayon pool it belongs to.
 pub fn headless_app() -> App {
+    headless_app_with(())
+}
+
+/// The same with more plugins.
+pub(crate) fn headless_app_with<M>(plugins: impl Plugins<M>) -> App {
     let mut app = App::new();
     app.add_plugins((
         TaskPoolPlugin::default(),
@@ -29,7 +34,8 @@ pub fn headless_app() -> App {
     ))
     .init_asset::<Image>()
     .add_plugins((ScenePlugin, IoPlugin, SyncPlugin))
-    .insert_resource(TreeBuilding::AtOnce);
+    .insert_resource(TreeBuilding::AtOnce)
+    .add_plugins(plugins);
     app.finish();
     app.cleanup();
     let mut schedules = app.world_mut().resource_mut::<Schedules>();

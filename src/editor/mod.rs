@@ -3,17 +3,22 @@
 //!
 //! Whatever a person does ends in one of two things: an [`Action`], which menus, keys, buttons and
 //! scripts send alike, or a change of a component, which panels and handles make directly.
-//! [`History`] watches the components, so every change can be undone however it was made.
+//! [`History`](history::History) watches the components, so every change can be undone however it was made.
 //!
 //! | module | does |
 //! |---|---|
 //! | [`action`] | what can be asked for, with names, keys and explanations in one table |
+//! | [`edits`] | what can be done to the scene |
+//! | [`history`] | undo and redo |
 //! | [`selection`] | which entities are meant |
 //! | [`viewport`] | the part of the window that shows the scene, and how |
 //! | `window` | the app: plugins, window, cameras |
 //! | `panels` | everything that egui draws |
 
 pub mod action;
+pub mod edits;
+mod headless;
+pub mod history;
 pub mod notice;
 mod panels;
 pub mod preferences;
@@ -22,6 +27,7 @@ pub mod viewport;
 mod window;
 
 pub use action::Action;
+pub use headless::headless_editor;
 pub use selection::Selection;
 pub use viewport::Viewport;
 pub use window::run;

@@ -22,6 +22,7 @@ mod folder;
 mod frame;
 mod gltf;
 mod ids;
+mod import;
 mod limits;
 mod loader;
 mod model;
@@ -29,7 +30,7 @@ mod obj;
 mod open;
 mod part;
 mod picture;
-mod place;
+pub(crate) mod place;
 mod problems;
 mod replace;
 mod save;
@@ -39,14 +40,20 @@ mod sources;
 
 pub use error::{FileError, Place, Problem};
 pub use folder::Folder;
+pub use import::{Imported, import};
 pub use limits::Limits;
-pub use open::{OpenOptions, Opened, SceneSource, open};
+pub use open::{OpenOptions, Opened, SceneSource, open, open_empty};
 pub use part::{Merge, MergeError, Part, read_part, write_part};
 pub use picture::{PictureFormat, check_size, write_picture};
 pub use problems::{LoadProblem, LoadProblems};
 pub use replace::check_writable;
 pub(crate) use replace::replace_file;
 pub use save::save;
+#[cfg(feature = "editor")]
+pub(crate) use scene_file::{
+    AnyKeptChanged, KeptComponents, Rebase, SceneContent, kept_components, kept_types,
+    read_scene_text, scene_entities,
+};
 pub use sources::SceneFiles;
 
 use crate::scene::EnvironmentMap;

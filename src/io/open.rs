@@ -152,36 +152,45 @@ fn open_model(
     let path = file
         .file_name()
         .map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    let Model {
-        materials,
-        nodes,
-        meshes,
-        notes,
-    } = model;
-    let mut loaded = Loaded::default();
-    let loader = Loader::new(&folder, &limits);
-    for (_, phong) in &materials {
-        loaded.load_pictures(phong, &loader)?;
-    }
-    for (name, mesh) in meshes {
-        let path = path.clone();
-        loaded.meshes.push((MeshSource::File { path, name }, mesh));
-    }
+    let mut model = model;
+    let loaded = Loaded::of_model(&mut model, &path, &Loader::new(&folder, &limits))?;
     clear(world, SceneFiles::new(folder, limits));
     let held = loaded.hand_over(world);
+    let notes = std::mem::take(&mut model.notes);
     let mut next = 0;
-    let mut id = || {
+    spawn_model(world, model, &path, &mut || {
         next += 1;
         SceneId(next)
-    };
-    let materials: Vec<Entity> = materials
+    });
+    resolve(world);
+    drop(held);
+    Ok(notes)
+}
+
+/// Entities that a model became.
+pub(super) struct SpawnedModel {
+    /// Materials that objects share.
+    pub materials: Vec<Entity>,
+    /// Parents before their children.
+    pub nodes: Vec<Entity>,
+}
+
+/// Makes a model's entities; `path` is what its meshes' sources call the file.
+pub(super) fn spawn_model(
+    world: &mut World,
+    model: Model,
+    path: &str,
+    next: &mut dyn FnMut() -> SceneId,
+) -> SpawnedModel {
+    let materials: Vec<Entity> = model
+        .materials
         .into_iter()
-        .map(|(name, phong)| world.spawn((id(), Name::new(name), phong)).id())
+        .map(|(name, phong)| world.spawn((next(), Name::new(name), phong)).id())
         .collect();
-    let mut spawned: Vec<Entity> = Vec::with_capacity(nodes.len());
-    for node in nodes {
+    let mut spawned: Vec<Entity> = Vec::with_capacity(model.nodes.len());
+    for node in model.nodes {
         let mut entity = world.spawn((
-            id(),
+            next(),
             Name::new(node.name),
             node.transform,
             Visibility::default(),
@@ -190,7 +199,7 @@ fn open_model(
             entity.insert(ChildOf(parent));
         }
         if let Some(name) = node.mesh {
-            let path = path.clone();
+            let path = path.to_owned();
             entity.insert(MeshSource::File { path, name });
         }
         if let Some(&material) = node.material.and_then(|index| materials.get(index)) {
@@ -207,9 +216,17 @@ fn open_model(
         }
         spawned.push(entity.id());
     }
+    SpawnedModel {
+        materials,
+        nodes: spawned,
+    }
+}
+
+/// Replaces the open scene by one with a camera and a light, and nothing to see.
+pub fn open_empty(world: &mut World) {
+    clear(world, SceneFiles::default());
+    frame(world);
     resolve(world);
-    drop(held);
-    Ok(notes)
 }
 
 /// A scene that points at a missing or forbidden file is at fault itself: say which scene it was.
@@ -225,13 +242,13 @@ fn name_referrer(file: &Path, error: FileError) -> FileError {
 
 /// Everything that a scene's sources name, loaded before the open scene is given up.
 #[derive(Default)]
-struct Loaded {
-    meshes: Vec<(MeshSource, Mesh)>,
-    pictures: Vec<(TextureSource, PictureUse, Image)>,
+pub(super) struct Loaded {
+    pub meshes: Vec<(MeshSource, Mesh)>,
+    pub pictures: Vec<(TextureSource, PictureUse, Image)>,
 }
 
 /// Keeps assets alive until entities hold them.
-type Held = (Vec<Handle<Mesh>>, Vec<Handle<Image>>);
+pub(super) type Held = (Vec<Handle<Mesh>>, Vec<Handle<Image>>);
 
 impl Loaded {
     fn for_scene(scene: &SceneFile, folder: &Folder, limits: &Limits) -> Result<Self, FileError> {
@@ -248,6 +265,19 @@ impl Loaded {
         }
         if let Some(map) = scene.environment().and_then(|e| e.map.as_ref()) {
             loaded.load_picture(map, PictureUse::Color, &loader)?;
+        }
+        Ok(loaded)
+    }
+
+    /// A model's meshes, which are taken out of it, and the pictures of its materials.
+    pub fn of_model(model: &mut Model, path: &str, loader: &Loader) -> Result<Self, FileError> {
+        let mut loaded = Self::default();
+        for (_, phong) in &model.materials {
+            loaded.load_pictures(phong, loader)?;
+        }
+        for (name, mesh) in std::mem::take(&mut model.meshes) {
+            let path = path.to_owned();
+            loaded.meshes.push((MeshSource::File { path, name }, mesh));
         }
         Ok(loaded)
     }
@@ -276,7 +306,22 @@ impl Loaded {
         Ok(())
     }
 
-    fn hand_over(self, world: &mut World) -> Held {
+    /// Leaves out what the open scene has loaded from the same sources already.
+    pub fn forget_known(&mut self, world: &World) {
+        let (Some(files), Some(meshes), Some(images)) = (
+            world.get_resource::<SceneFiles>(),
+            world.get_resource::<Assets<Mesh>>(),
+            world.get_resource::<Assets<Image>>(),
+        ) else {
+            return;
+        };
+        self.meshes
+            .retain(|(source, _)| files.loaded_mesh(source, meshes).is_none());
+        self.pictures
+            .retain(|(source, usage, _)| files.loaded_picture(source, *usage, images).is_none());
+    }
+
+    pub fn hand_over(self, world: &mut World) -> Held {
         let meshes = world.resource_scope(|world, mut files: bevy::prelude::Mut<SceneFiles>| {
             let mut assets = world.resource_mut::<Assets<Mesh>>();
             let add = |(source, mesh)| {
@@ -314,7 +359,7 @@ fn clear(world: &mut World, files: SceneFiles) {
 }
 
 /// What the systems of [`super::IoPlugin`] do each frame, now.
-fn resolve(world: &mut World) {
+pub(super) fn resolve(world: &mut World) {
     for result in [
         world.run_system_cached(resolve_meshes),
         world.run_system_cached(resolve_pictures),

@@ -59,6 +59,27 @@ impl SceneFiles {
             .insert((source.path.clone(), usage), handle.id());
     }
 
+    /// The mesh of this source, where one is in use.
+    pub(crate) fn loaded_mesh(
+        &self,
+        source: &MeshSource,
+        assets: &Assets<Mesh>,
+    ) -> Option<AssetId<Mesh>> {
+        let id = self.meshes.get(&mesh_key(source)).copied();
+        id.filter(|&id| assets.contains(id))
+    }
+
+    /// The same for a picture.
+    pub(crate) fn loaded_picture(
+        &self,
+        source: &TextureSource,
+        usage: PictureUse,
+        assets: &Assets<Image>,
+    ) -> Option<AssetId<Image>> {
+        let id = self.pictures.get(&(source.path.clone(), usage)).copied();
+        id.filter(|&id| assets.contains(id))
+    }
+
     fn mesh(
         &mut self,
         source: &MeshSource,

@@ -5,24 +5,26 @@
 //! the same scene gives the same bytes. Handles are not written: the sources are.
 
 mod check;
+mod kept;
 mod read;
 mod write;
 
+#[cfg(feature = "editor")]
+pub(crate) use kept::{AnyKeptChanged, KeptComponents, kept_components, kept_types};
+#[cfg(feature = "editor")]
+pub(crate) use read::read_scene_text;
 pub(crate) use read::{SceneFile, read_scene};
+#[cfg(feature = "editor")]
+pub(crate) use write::SceneContent;
 pub(crate) use write::{Rebase, write_scene};
 
 use crate::scene::{
-    DirectionalLamp, Environment, Lens, MeshSource, Motion, ParallelogramLamp, Phong, PointLamp,
-    RenderSettings, SceneCamera, SceneId, SegmentLamp, UsesMaterial,
+    DirectionalLamp, MeshSource, ParallelogramLamp, Phong, PointLamp, SceneCamera, SceneId,
+    SegmentLamp,
 };
-use bevy::camera::visibility::Visibility;
-use bevy::ecs::{
-    hierarchy::ChildOf, name::Name, reflect::ReflectResource, resource::Resource, world::World,
-};
+use bevy::ecs::{hierarchy::ChildOf, reflect::ReflectResource, resource::Resource, world::World};
 use bevy::prelude::{Entity, With};
-use bevy::reflect::{Reflect, TypeRegistry, std_traits::ReflectDefault};
-use bevy::transform::components::Transform;
-use bevy::world_serialization::DynamicWorldBuilder;
+use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 
 /// Which rules a scene file follows. A file with a higher number than this program's is refused.
 #[derive(Resource, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -33,63 +35,6 @@ pub(crate) struct FileVersion(pub u32);
 impl FileVersion {
     /// The rules that this program writes.
     const CURRENT: Self = Self(1);
-}
-
-/// Calls a macro with the components that scene files keep.
-macro_rules! for_each_kept_component {
-    ($call:ident) => {
-        $call!(
-            SceneId,
-            Name,
-            ChildOf,
-            Transform,
-            Visibility,
-            MeshSource,
-            Phong,
-            UsesMaterial,
-            PointLamp,
-            DirectionalLamp,
-            SegmentLamp,
-            ParallelogramLamp,
-            SceneCamera,
-            Lens,
-            Motion
-        )
-    };
-}
-
-/// Knows the kept components and resources, what they are made of, and nothing else, so that
-/// reading refuses any other.
-fn kept_types() -> TypeRegistry {
-    let mut registry = TypeRegistry::new();
-    macro_rules! register {
-        ($($component:ty),*) => { $(registry.register::<$component>();)* };
-    }
-    for_each_kept_component!(register);
-    registry.register::<Environment>();
-    registry.register::<RenderSettings>();
-    registry.register::<FileVersion>();
-    registry
-}
-
-/// Extracts the kept components and resources, and nothing else.
-fn kept_only<'w>(world: &'w World, registry: &'w TypeRegistry) -> DynamicWorldBuilder<'w> {
-    let mut builder = DynamicWorldBuilder::from_world(world, registry).deny_all();
-    macro_rules! allow {
-        ($($component:ty),*) => { $(builder = builder.allow_component::<$component>();)* };
-    }
-    for_each_kept_component!(allow);
-    builder
-        .allow_resource::<Environment>()
-        .allow_resource::<RenderSettings>()
-}
-
-/// Whether a type is one of the components that scene files keep.
-fn is_kept_component(id: std::any::TypeId) -> bool {
-    macro_rules! any {
-        ($($component:ty),*) => { $(id == std::any::TypeId::of::<$component>())||* };
-    }
-    for_each_kept_component!(any)
 }
 
 /// Every entity that belongs to the scene: what carries one of its components, and the ancestors

@@ -1,6 +1,7 @@
 use super::super::error::{FileError, Place, Problem};
+use super::FileVersion;
 use super::check::check_value;
-use super::{FileVersion, is_kept_component, kept_types};
+use super::kept::{is_kept_component, kept_types};
 use crate::io::Limits;
 use crate::scene::{Environment, MeshSource, Phong, RenderSettings, SceneId, UsesMaterial};
 use bevy::asset::{AssetPath, Handle, LoadFromPath, UntypedHandle};
@@ -26,10 +27,19 @@ pub(crate) struct SceneFile {
 /// Reads a scene file and checks everything in it that can be checked without other files.
 pub(crate) fn read_scene(file: &Path, limits: &Limits) -> Result<SceneFile, FileError> {
     let bytes = super::super::read_bytes(file, limits.file_bytes)?;
+    read_scene_text(file, &bytes, limits)
+}
+
+/// The same from the text of a file; its name is for what is wrong with it.
+pub(crate) fn read_scene_text(
+    file: &Path,
+    bytes: &[u8],
+    limits: &Limits,
+) -> Result<SceneFile, FileError> {
     if bytes.trim_ascii().is_empty() {
         return Err(FileError::new(file, Problem::Empty));
     }
-    let text = std::str::from_utf8(&bytes).map_err(|error| {
+    let text = std::str::from_utf8(bytes).map_err(|error| {
         let line = bytes[..error.valid_up_to()].split(|&b| b == b'\n').count();
         let problem = Problem::Malformed("is not UTF-8 text".into());
         FileError::at(file, Place::Line(line as u64), problem)
@@ -159,6 +169,32 @@ impl SceneFile {
     /// The environment, which may name a map.
     pub fn environment(&self) -> Option<&Environment> {
         self.all::<Environment>().next()
+    }
+
+    /// Other numbers for the entities, so that they can be added to a scene, and other paths, so
+    /// that they mean the same files from another folder. Resources are left out. Returns the new
+    /// numbers by the old ones.
+    #[cfg(feature = "editor")]
+    pub fn as_addition(
+        &mut self,
+        mut next: impl FnMut() -> SceneId,
+        rebase: &super::Rebase,
+    ) -> std::collections::HashMap<SceneId, SceneId> {
+        let mut notes = Vec::new();
+        let mut renumbered = std::collections::HashMap::new();
+        self.content.resources.clear();
+        let entities = self.content.entities.iter_mut();
+        for component in entities.flat_map(|entity| &mut entity.components) {
+            let new = component
+                .try_downcast_ref::<SceneId>()
+                .map(|old| (*old, next()));
+            if let Some((old, new)) = new {
+                *component = Box::new(new);
+                renumbered.insert(old, new);
+            }
+            rebase.apply(component.as_mut(), &mut notes);
+        }
+        renumbered
     }
 
     /// Makes entities and resources. Returns the entities in the order of the file.

@@ -3,15 +3,18 @@ use super::super::folder::Folder;
 use super::super::ids::assign_ids;
 use super::super::replace::replace_file;
 use super::super::sources::SceneFiles;
-use super::{FileVersion, kept_only, kept_types, scene_entities};
+use super::kept::{kept_only, kept_types};
+use super::{FileVersion, scene_entities};
 use crate::scene::{Environment, MeshSource, Phong, SceneId, TextureSource, UsesMaterial};
 use bevy::ecs::entity::EntityHashMap;
 use bevy::ecs::hierarchy::ChildOf;
 use bevy::mesh::Mesh3d;
 use bevy::prelude::{Entity, World};
 use bevy::reflect::PartialReflect;
+#[cfg(feature = "editor")]
+use bevy::transform::components::Transform;
 use bevy::world_serialization::serde::DynamicWorldSerializer;
-use bevy::world_serialization::serialize_ron;
+use bevy::world_serialization::{DynamicWorld, serialize_ron};
 use std::io::Write;
 use std::path::Path;
 
@@ -19,62 +22,130 @@ use std::path::Path;
 /// free number first. Paths are written relative to the new file's folder. Returns a line for each
 /// thing that the file cannot say.
 pub(crate) fn write_scene(world: &mut World, file: &Path) -> Result<Vec<String>, FileError> {
-    let mut notes = Vec::new();
-    let entities = scene_entities(world);
-    assign_ids(world, &entities);
-    let mut labels = EntityHashMap::default();
-    for &entity in &entities {
-        let id = world.get::<SceneId>(entity).map_or(0, |id| id.0);
-        // Fails for multiples of 2^32, which nobody reaches by counting.
-        let label = Entity::try_from_bits(id).ok_or_else(|| {
-            let problem = Problem::OutOfRange {
-                what: "a SceneId".into(),
-                value: id.to_string(),
-                range: "no multiple of 2^32",
+    let content = SceneContent::of_scene(world, file)?;
+    content.write(file)?;
+    Ok(content.notes)
+}
+
+/// What a scene file says, taken from the world, so that it can be written on another thread.
+pub(crate) struct SceneContent {
+    content: DynamicWorld,
+    /// A line for each thing that the file cannot say.
+    pub notes: Vec<String>,
+}
+
+impl SceneContent {
+    /// The whole open scene, for a file at this place.
+    pub fn of_scene(world: &mut World, file: &Path) -> Result<Self, FileError> {
+        let entities = scene_entities(world);
+        assign_ids(world, &entities);
+        let rebase = Rebase::new(world, file);
+        Self::new(world, &entities, file, Some(&rebase))
+    }
+
+    /// These entities alone, their paths as they are, some of them placed elsewhere. What they
+    /// name outside of the list is left out.
+    #[cfg(feature = "editor")]
+    pub fn of_entities(
+        world: &mut World,
+        entities: &[Entity],
+        placed: &[(Entity, Transform)],
+    ) -> Result<Self, FileError> {
+        let mut content = Self::new(world, entities, Path::new("clipboard"), None)?;
+        for (entity, place) in placed {
+            let Some(id) = world.get::<SceneId>(*entity) else {
+                continue;
             };
-            FileError::new(file, problem)
-        })?;
-        labels.insert(entity, label);
-        if world.get::<Mesh3d>(entity).is_some() && world.get::<MeshSource>(entity).is_none() {
-            notes.push(format!(
-                "entity {id}: its mesh has no MeshSource, so the file cannot say it"
-            ));
-        }
-    }
-    let rebase = Rebase::new(world, file);
-    let registry = kept_types();
-    let mut content = kept_only(world, &registry)
-        .extract_entities(entities.iter().copied())
-        .extract_resources()
-        .build();
-    for dynamic in &mut content.entities {
-        dynamic.components.retain_mut(|component| {
-            let kept = relabel(component.as_mut(), &labels);
-            if !kept {
-                notes.push("a reference to an entity outside the scene was left out".into());
+            let mut all = content.content.entities.iter_mut();
+            let Some(entity) = all.find(|other| other.entity.to_bits() == id.0) else {
+                continue;
+            };
+            for component in &mut entity.components {
+                if component.try_downcast_ref::<Transform>().is_some() {
+                    *component = Box::new(*place);
+                }
             }
-            rebase.apply(component.as_mut(), &mut notes);
-            kept
-        });
-        if let Some(&label) = labels.get(&dynamic.entity) {
-            dynamic.entity = label;
         }
+        Ok(content)
     }
-    for resource in &mut content.resources {
-        rebase.apply(resource.as_mut(), &mut notes);
+
+    fn new(
+        world: &mut World,
+        entities: &[Entity],
+        file: &Path,
+        rebase: Option<&Rebase>,
+    ) -> Result<Self, FileError> {
+        let mut notes = Vec::new();
+        let mut labels = EntityHashMap::default();
+        for &entity in entities {
+            let id = world.get::<SceneId>(entity).map_or(0, |id| id.0);
+            // Fails for multiples of 2^32, which nobody reaches by counting.
+            let label = Entity::try_from_bits(id).ok_or_else(|| {
+                let problem = Problem::OutOfRange {
+                    what: "a SceneId".into(),
+                    value: id.to_string(),
+                    range: "no multiple of 2^32",
+                };
+                FileError::new(file, problem)
+            })?;
+            labels.insert(entity, label);
+            if world.get::<Mesh3d>(entity).is_some() && world.get::<MeshSource>(entity).is_none() {
+                notes.push(format!(
+                    "entity {id}: its mesh has no MeshSource, so the file cannot say it"
+                ));
+            }
+        }
+        let registry = kept_types();
+        let mut builder = kept_only(world, &registry).extract_entities(entities.iter().copied());
+        if rebase.is_some() {
+            builder = builder.extract_resources();
+        }
+        let mut content = builder.build();
+        for dynamic in &mut content.entities {
+            dynamic.components.retain_mut(|component| {
+                let kept = relabel(component.as_mut(), &labels);
+                if !kept {
+                    notes.push("a reference to an entity outside the scene was left out".into());
+                }
+                if let Some(rebase) = rebase {
+                    rebase.apply(component.as_mut(), &mut notes);
+                }
+                kept
+            });
+            if let Some(&label) = labels.get(&dynamic.entity) {
+                dynamic.entity = label;
+            }
+        }
+        if let Some(rebase) = rebase {
+            for resource in &mut content.resources {
+                rebase.apply(resource.as_mut(), &mut notes);
+            }
+        }
+        content
+            .entities
+            .sort_by_key(|dynamic| dynamic.entity.to_bits());
+        content.resources.push(Box::new(FileVersion::CURRENT));
+        notes.sort();
+        notes.dedup();
+        Ok(Self { content, notes })
     }
-    content
-        .entities
-        .sort_by_key(|dynamic| dynamic.entity.to_bits());
-    content.resources.push(Box::new(FileVersion::CURRENT));
-    let malformed = |error: ron::Error| FileError::new(file, Problem::Malformed(error.to_string()));
-    let mut text =
-        serialize_ron(DynamicWorldSerializer::new(&content, &registry)).map_err(malformed)?;
-    text.push('\n');
-    replace_file(file, |writer| writer.write_all(text.as_bytes()))?;
-    notes.sort();
-    notes.dedup();
-    Ok(notes)
+
+    /// As the file says it.
+    pub fn to_text(&self, file: &Path) -> Result<String, FileError> {
+        let registry = kept_types();
+        let malformed =
+            |error: ron::Error| FileError::new(file, Problem::Malformed(error.to_string()));
+        let mut text = serialize_ron(DynamicWorldSerializer::new(&self.content, &registry))
+            .map_err(malformed)?;
+        text.push('\n');
+        Ok(text)
+    }
+
+    /// Writes the file: complete, or not at all.
+    pub fn write(&self, file: &Path) -> Result<(), FileError> {
+        let text = self.to_text(file)?;
+        replace_file(file, |writer| writer.write_all(text.as_bytes()))
+    }
 }
 
 /// Replaces the entity that a component names by its label. False where it has none.
@@ -113,7 +184,12 @@ impl Rebase {
         }
     }
 
-    fn apply(&self, value: &mut dyn PartialReflect, notes: &mut Vec<String>) {
+    /// From one folder to another.
+    pub fn between(from: Folder, to: Folder) -> Self {
+        Self { from, to }
+    }
+
+    pub fn apply(&self, value: &mut dyn PartialReflect, notes: &mut Vec<String>) {
         let mut texture = |source: &mut Option<TextureSource>| {
             if let Some(TextureSource { path }) = source {
                 *path = self.path(path, notes);

@@ -1,0 +1,141 @@
+//! Adding to the scene.
+
+use super::index::FreeIds;
+use super::names::{Names, unique_name};
+use crate::editor::action::{Addition, shapes};
+use crate::io::{FileError, Imported, import};
+use crate::scene::{
+    DirectionalLamp, MeshSource, ParallelogramLamp, Phong, PointLamp, SceneCamera, SceneId,
+    SegmentLamp,
+};
+use bevy::camera::visibility::Visibility;
+use bevy::ecs::entity::Entity;
+use bevy::ecs::name::Name;
+use bevy::ecs::resource::Resource;
+use bevy::ecs::world::World;
+use bevy::math::{Quat, Vec3};
+use bevy::transform::components::Transform;
+use std::f32::consts::{FRAC_PI_2, PI};
+use std::path::Path;
+
+/// Where the next thing is added, in the world's space, and how large a thing of one metre becomes.
+/// Whoever moves the view keeps it where the view looks.
+#[derive(Resource, Clone, Copy, Debug, PartialEq)]
+pub struct AddAt {
+    /// Its place.
+    pub place: Vec3,
+    /// Greater than 0.
+    pub size: f32,
+}
+
+impl Default for AddAt {
+    fn default() -> Self {
+        Self {
+            place: Vec3::ZERO,
+            size: 1.0,
+        }
+    }
+}
+
+/// Adds a thing at a place. `None` where no shape is called so.
+pub fn add(world: &mut World, what: &Addition, at: AddAt) -> Option<SceneId> {
+    let id = FreeIds::new(world).next();
+    let place = Transform::from_translation(at.place);
+    let scaled = place.with_scale(Vec3::splat(at.size));
+    // Lamps shine along their local -Z.
+    let downwards = place.with_rotation(Quat::from_rotation_x(-FRAC_PI_2));
+    // As bright on a surface `size` away as one W/sr is at a metre.
+    let intensity = at.size * at.size;
+    let mut spawn = |name: &str, bundle: EntityBundle| {
+        let name = Name::new(unique_name(world, name));
+        let mut entity = world.spawn((id, name));
+        match bundle {
+            EntityBundle::Shape(source) => entity.insert((source, scaled)),
+            EntityBundle::Group => entity.insert((place, Visibility::default())),
+            EntityBundle::Point(lamp) => entity.insert((lamp, place)),
+            EntityBundle::Directional(lamp) => entity.insert((lamp, downwards)),
+            EntityBundle::Segment(lamp) => entity.insert((lamp, scaled)),
+            EntityBundle::Parallelogram(lamp) => entity.insert((lamp, scaled)),
+            EntityBundle::Camera => entity.insert((SceneCamera::default(), place)),
+            EntityBundle::Material => entity.insert(Phong::default()),
+        };
+    };
+    match what {
+        Addition::Shape(name) => {
+            let shapes = shapes();
+            let (name, shape) = shapes.into_iter().find(|(known, _)| known == name)?;
+            spawn(name, EntityBundle::Shape(MeshSource::Shape(shape)));
+        }
+        Addition::Group => spawn("Group", EntityBundle::Group),
+        Addition::PointLamp => spawn(
+            "Point light",
+            EntityBundle::Point(PointLamp {
+                intensity: 10.0 * intensity,
+                ..PointLamp::default()
+            }),
+        ),
+        Addition::DirectionalLamp => spawn(
+            "Directional light",
+            EntityBundle::Directional(DirectionalLamp {
+                // A white surface that faces it then has a radiance of 1.
+                intensity: PI,
+                ..DirectionalLamp::default()
+            }),
+        ),
+        Addition::SegmentLamp => spawn(
+            "Segment light",
+            EntityBundle::Segment(SegmentLamp {
+                intensity: 5.0 * at.size,
+                ..SegmentLamp::default()
+            }),
+        ),
+        Addition::ParallelogramLamp => spawn(
+            "Parallelogram light",
+            EntityBundle::Parallelogram(ParallelogramLamp {
+                // Its front, where x × z points, looks down.
+                intensity: 10.0,
+                ..ParallelogramLamp::default()
+            }),
+        ),
+        Addition::Camera => spawn("Camera", EntityBundle::Camera),
+        Addition::Material => spawn("Material", EntityBundle::Material),
+    }
+    Some(id)
+}
+
+/// What makes an entity a thing of its kind.
+enum EntityBundle {
+    Shape(MeshSource),
+    Group,
+    Point(PointLamp),
+    Directional(DirectionalLamp),
+    Segment(SegmentLamp),
+    Parallelogram(ParallelogramLamp),
+    Camera,
+    Material,
+}
+
+/// Adds what a model file holds, where it stands in the file. On an error the scene is as it was.
+/// The number is that of the entity that places all of it; none where the file holds materials alone.
+pub fn add_model(world: &mut World, file: &Path) -> Result<(Option<SceneId>, Imported), FileError> {
+    let mut ids = FreeIds::new(world);
+    let mut names = Names::new(world);
+    let imported = import(world, file, || ids.next())?;
+    let new: Vec<Entity> = imported
+        .root
+        .into_iter()
+        .chain(imported.materials.iter().copied())
+        .collect();
+    for entity in new {
+        if let Some(name) = world.get::<Name>(entity).map(ToString::to_string) {
+            let unique = names.unique(&name);
+            if unique != name {
+                world.entity_mut(entity).insert(Name::new(unique));
+            }
+        }
+    }
+    let id = imported
+        .root
+        .and_then(|root| world.get::<SceneId>(root).copied());
+    Ok((id, imported))
+}

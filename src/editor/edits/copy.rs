@@ -1,0 +1,190 @@
+//! Copies: beside the original, or through the clipboard.
+
+use super::index::FreeIds;
+use super::names::Names;
+use super::parents::{place_in, roots_of, with_descendants};
+use super::scene_entity;
+use crate::editor::history::Kinds;
+use crate::io::place::world_from;
+use crate::io::{FileError, Folder, Rebase, SceneContent, SceneFiles, read_scene_text};
+use crate::scene::{Phong, PhongMaps, SceneId, UsesMaterial};
+use bevy::ecs::entity::Entity;
+use bevy::ecs::hierarchy::ChildOf;
+use bevy::ecs::name::Name;
+use bevy::ecs::resource::Resource;
+use bevy::ecs::world::{Mut, World};
+use bevy::math::Affine3A;
+use bevy::mesh::Mesh3d;
+use bevy::reflect::Reflect;
+use bevy::transform::components::Transform;
+use std::collections::HashMap;
+use std::path::Path;
+
+/// What was copied, as the text of a scene file.
+#[derive(Resource, Clone, Debug, Default, PartialEq)]
+pub struct Clipboard {
+    /// Empty until something was copied.
+    pub text: String,
+    /// Where its paths start from.
+    folder: Folder,
+    /// Materials that were copied because objects use them, by their numbers, and where they came
+    /// from: pasted into the same scene the objects go on sharing them.
+    shared: Vec<(SceneId, Phong)>,
+}
+
+/// Adds copies of entities and of what is below them, beside the originals. They share the
+/// originals' materials. Returns the new roots.
+pub fn duplicate(world: &mut World, ids: &[SceneId]) -> Vec<SceneId> {
+    let mut free = FreeIds::new(world);
+    let mut names = Names::new(world);
+    let mut roots = Vec::new();
+    for id in roots_of(world, ids) {
+        let Some(root) = scene_entity(world, id) else {
+            continue;
+        };
+        let mut twins: HashMap<Entity, Entity> = HashMap::new();
+        for original in with_descendants(world, root) {
+            let id = free.next();
+            let twin = copy_entity(world, original, id);
+            if let Some(name) = world.get::<Name>(original).map(ToString::to_string) {
+                let name = Name::new(names.unique(&name));
+                world.entity_mut(twin).insert(name);
+            }
+            let parent = world.get::<ChildOf>(original).map(|child_of| child_of.0);
+            if let Some(parent) = parent {
+                let parent = twins.get(&parent).copied().unwrap_or(parent);
+                world.entity_mut(twin).insert(ChildOf(parent));
+            }
+            if original == root {
+                roots.push(id);
+            }
+            twins.insert(original, twin);
+        }
+    }
+    roots
+}
+
+/// A copy of the kept components, and of the handles that would be loaded again otherwise.
+fn copy_entity(world: &mut World, original: Entity, id: SceneId) -> Entity {
+    world.resource_scope(|world, kinds: Mut<Kinds>| {
+        let values: Vec<(usize, Box<dyn Reflect>)> = kinds.clones(world, original);
+        let maps = world.get::<PhongMaps>(original).cloned();
+        let mesh = world.get::<Mesh3d>(original).cloned();
+        let mut twin = world.spawn_empty();
+        for (place, value) in values {
+            let is_own =
+                value.as_ref().as_any().is::<SceneId>() || value.as_ref().as_any().is::<ChildOf>();
+            if !is_own {
+                kinds.insert(&mut twin, place, value.as_ref());
+            }
+        }
+        if let Some(maps) = maps {
+            twin.insert(maps);
+        }
+        if let Some(mesh) = mesh {
+            twin.insert(mesh);
+        }
+        twin.insert(id);
+        twin.id()
+    })
+}
+
+/// What pasting needs to add these entities, what is below them, and the materials that they use.
+pub fn copy(world: &mut World, ids: &[SceneId]) -> Result<Clipboard, FileError> {
+    let roots: Vec<Entity> = roots_of(world, ids)
+        .into_iter()
+        .filter_map(|id| scene_entity(world, id))
+        .collect();
+    let mut entities: Vec<Entity> = Vec::new();
+    for &root in &roots {
+        entities.extend(with_descendants(world, root));
+    }
+    let mut shared = Vec::new();
+    for entity in entities.clone() {
+        let Some(&UsesMaterial(material)) = world.get::<UsesMaterial>(entity) else {
+            continue;
+        };
+        if let (Some(&id), Some(look)) =
+            (world.get::<SceneId>(material), world.get::<Phong>(material))
+            && !entities.contains(&material)
+        {
+            shared.push((id, look.clone()));
+            entities.push(material);
+        }
+    }
+    // A root's parent is not copied, so the text says where it stands in the world.
+    let placed: Vec<(Entity, Transform)> = roots
+        .iter()
+        .filter(|&&root| world.get::<ChildOf>(root).is_some())
+        .filter_map(|&root| Some((root, place_in(Affine3A::IDENTITY, world_from(world, root))?)))
+        .collect();
+    let text =
+        SceneContent::of_entities(world, &entities, &placed)?.to_text(Path::new("clipboard"))?;
+    let folder = world
+        .get_resource::<SceneFiles>()
+        .map(|files| files.folder.clone())
+        .unwrap_or_default();
+    Ok(Clipboard {
+        text,
+        folder,
+        shared,
+    })
+}
+
+/// Adds what was copied; returns the new roots.
+pub fn paste(world: &mut World, clipboard: &Clipboard) -> Result<Vec<SceneId>, FileError> {
+    if clipboard.text.is_empty() {
+        return Ok(Vec::new());
+    }
+    let (here, limits) = world
+        .get_resource::<SceneFiles>()
+        .map(|files| (files.folder.clone(), files.limits.clone()))
+        .unwrap_or_default();
+    let mut content = read_scene_text(Path::new("clipboard"), clipboard.text.as_bytes(), &limits)?;
+    let mut free = FreeIds::new(world);
+    let mut names = Names::new(world);
+    let rebase = Rebase::between(clipboard.folder.clone(), here);
+    let renumbered = content.as_addition(|| free.next(), &rebase);
+    let spawned = content
+        .spawn(world)
+        .map_err(|error| FileError::new("clipboard", crate::io::Problem::Malformed(error)))?;
+    let mut kept: HashMap<Entity, Entity> = HashMap::new();
+    for (old, look) in &clipboard.shared {
+        let Some(new) = renumbered.get(old) else {
+            continue;
+        };
+        let copy = spawned
+            .iter()
+            .copied()
+            .find(|&entity| world.get::<SceneId>(entity) == Some(new));
+        let original =
+            scene_entity(world, *old).filter(|&entity| world.get::<Phong>(entity) == Some(look));
+        if let (Some(copy), Some(original)) = (copy, original) {
+            kept.insert(copy, original);
+        }
+    }
+    let mut roots = Vec::new();
+    for &entity in &spawned {
+        if kept.contains_key(&entity) {
+            world.despawn(entity);
+            continue;
+        }
+        if let Some(uses) = world.get::<UsesMaterial>(entity)
+            && let Some(&original) = kept.get(&uses.0)
+        {
+            world.entity_mut(entity).insert(UsesMaterial(original));
+        }
+        if let Some(name) = world.get::<Name>(entity).map(ToString::to_string) {
+            let name = Name::new(names.unique(&name));
+            world.entity_mut(entity).insert(name);
+        }
+        let is_shared = clipboard
+            .shared
+            .iter()
+            .any(|(old, _)| renumbered.get(old) == world.get::<SceneId>(entity));
+        if !is_shared && world.get::<ChildOf>(entity).is_none() {
+            roots.extend(world.get::<SceneId>(entity).copied());
+        }
+    }
+    Ok(roots)
+}

@@ -1,0 +1,21 @@
+//! What can be done to the scene: plain functions on the world. Each leaves it complete, so that
+//! the history can make a step of the difference.
+
+mod add;
+mod copy;
+mod index;
+mod names;
+mod parents;
+mod plugin;
+mod remove;
+
+#[cfg(test)]
+mod tests;
+
+pub use add::{AddAt, add, add_model};
+pub use copy::{Clipboard, copy, duplicate, paste};
+pub use index::{SceneIndex, scene_entity};
+pub use names::{name_of, rename, unique_name};
+pub use parents::{reparent, roots_of};
+pub use plugin::EditsPlugin;
+pub use remove::{delete, set_visible};
