@@ -4,6 +4,8 @@ mod analytic;
 mod bad_input;
 mod cli;
 mod convergence;
+#[cfg(feature = "editor")]
+mod editor;
 mod effects;
 mod files;
 mod film;

@@ -1,6 +1,8 @@
 //! The app with a window: its plugins, and the two cameras that draw into it.
 
 use super::action::Action;
+use super::edits::EditsPlugin;
+use super::history::HistoryPlugin;
 use super::notice::Notices;
 use super::panels::PanelsPlugin;
 use super::selection::Selection;
@@ -35,7 +37,7 @@ pub fn run(scene: SceneSource) -> ExitCode {
         }),
         ..WindowPlugin::default()
     }))
-    .add_plugins((GlassboxPlugins, PanelsPlugin))
+    .add_plugins((GlassboxPlugins, HistoryPlugin, EditsPlugin, PanelsPlugin))
     .add_message::<Action>()
     .init_resource::<Selection>()
     .init_resource::<Viewport>()

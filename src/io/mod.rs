@@ -52,7 +52,7 @@ pub use save::save;
 #[cfg(feature = "editor")]
 pub(crate) use scene_file::{
     AnyKeptChanged, KeptComponents, Rebase, SceneContent, kept_components, kept_types,
-    read_scene_text, scene_entities,
+    read_scene_text,
 };
 pub use sources::SceneFiles;
 

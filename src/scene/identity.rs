@@ -10,6 +10,8 @@ use serde::{Deserialize, Serialize};
 #[derive(
     Component,
     Reflect,
+    Serialize,
+    Deserialize,
     Clone,
     Copy,
     Debug,
@@ -19,8 +21,6 @@ use serde::{Deserialize, Serialize};
     PartialOrd,
     Ord,
     Hash,
-    Serialize,
-    Deserialize,
 )]
 #[reflect(Component, Default, Clone, PartialEq, Debug)]
 #[type_path = "glassbox::scene"]

@@ -9,9 +9,6 @@ mod parents;
 mod plugin;
 mod remove;
 
-#[cfg(test)]
-mod tests;
-
 pub use add::{AddAt, add, add_model};
 pub use copy::{Clipboard, copy, duplicate, paste};
 pub use index::{SceneIndex, scene_entity};

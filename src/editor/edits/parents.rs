@@ -42,7 +42,8 @@ pub(super) fn with_descendants(world: &World, root: Entity) -> Vec<Entity> {
         if let Some(children) = world.get::<Children>(entity) {
             let of_scene = children
                 .iter()
-                .filter(|child| world.get::<SceneId>(*child).is_some());
+                .copied()
+                .filter(|&child| world.get::<SceneId>(child).is_some());
             found.extend(of_scene);
         }
     }

@@ -16,9 +16,6 @@ mod mirror;
 mod state;
 mod step;
 
-#[cfg(test)]
-mod tests;
-
 pub use apply::{go_to, redo, undo};
 pub use gesture::Gesture;
 pub(in crate::editor) use state::Kinds;

@@ -136,7 +136,7 @@ impl Kinds {
     }
 
     /// How an entity stands now. What is as it was before is shared with that.
-    pub fn capture(
+    pub(super) fn capture(
         &self,
         world: &World,
         entity: Entity,
@@ -177,7 +177,7 @@ impl Kinds {
     }
 
     /// Makes an entity what a state says. What is so already is not touched.
-    pub fn enforce(&self, world: &mut World, entity: Entity, target: &EntityState) {
+    pub(super) fn enforce(&self, world: &mut World, entity: Entity, target: &EntityState) {
         let now = self.capture(world, entity, Some(target));
         for (place, (id, _)) in self.kinds.iter().enumerate() {
             let (now, wanted) = (now.get(place), target.get(place));
