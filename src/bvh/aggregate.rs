@@ -1,6 +1,9 @@
 //! All instances of a scene, and the tree above their meshes' trees. [`super::queries`] asks it.
 
-use std::time::{Duration, Instant};
+use std::{
+    ops::Range,
+    time::{Duration, Instant},
+};
 
 use obvhs::{aabb::Aabb, bvh2::Bvh2};
 
@@ -9,6 +12,8 @@ use super::{
     instance::Instance,
     options::{BuildOptions, Levels},
     stats::TreeStats,
+    triangle::LeafTriangle,
+    wide::{TriangleBlock, WideTree},
 };
 
 /// The instances, and a tree over them or over all their triangles. The default is empty: every ray misses.
@@ -19,6 +24,16 @@ pub struct Aggregate {
     pub(super) tree: Bvh2,
     /// What a leaf of `tree` holds, in leaf order.
     pub(super) places: Places,
+    /// The tree as rays walk it when nobody watches.
+    pub(super) wide: WideTree,
+    /// What its leaves hold: ranges of the places of instances, or of the blocks.
+    pub(super) wide_leaves: Vec<Range<usize>>,
+    /// One level: all triangles, each block's of one instance.
+    pub(super) blocks: Vec<TriangleBlock>,
+    /// Which instance that is.
+    pub(super) block_instances: Vec<u32>,
+    /// Entries of a stack that a walk through this tree and any mesh's needs.
+    pub(super) most_pending: usize,
     /// The factor of |o|∞ that pads the origin of a world ray.
     pub(super) ray_pad: f32,
     build_time: Duration,
@@ -82,12 +97,45 @@ impl Aggregate {
                 (tree, places)
             }
         };
+        let mut wide_leaves = Vec::new();
+        let (mut blocks, mut block_instances) = (Vec::new(), Vec::new());
+        let wide = match &places {
+            // An instance is dear to enter, so none shares its leaf.
+            Places::Instances(_) => WideTree::new(&tree, 1, |leaf| {
+                wide_leaves.push(leaf);
+                wide_leaves.len() as u32 - 1
+            }),
+            Places::Triangles(places) => WideTree::new(&tree, TriangleBlock::CAPACITY, |leaf| {
+                let first = blocks.len();
+                let mut leaf = places[leaf].to_vec();
+                leaf.sort_unstable();
+                for same in leaf.chunk_by(|a, b| a.0 == b.0) {
+                    let number = same[0].0;
+                    let mesh = &instances[number as usize].mesh;
+                    let triangles: Vec<LeafTriangle> = same
+                        .iter()
+                        .map(|&(_, place)| mesh.leaf_triangle(place))
+                        .collect();
+                    TriangleBlock::append(&triangles, &mut blocks);
+                    block_instances.resize(blocks.len(), number);
+                }
+                wide_leaves.push(first..blocks.len());
+                wide_leaves.len() as u32 - 1
+            }),
+        };
+        let meshes = instances.iter().map(|i| i.mesh.most_pending());
+        let most_pending = wide.most_pending() + meshes.max().unwrap_or(0);
         let ray_pad = instances.iter().map(Instance::ray_pad).fold(0.0, f32::max);
         Self {
             instances,
             options: *options,
             tree,
             places,
+            wide,
+            wide_leaves,
+            blocks,
+            block_instances,
+            most_pending,
             ray_pad,
             build_time: start.elapsed(),
         }
@@ -128,5 +176,9 @@ impl Aggregate {
             + size_of_val(self.tree.nodes.as_slice())
             + size_of_val(self.tree.primitive_indices.as_slice())
             + size_of_val(self.instances.as_slice())
+            + self.wide.bytes()
+            + size_of_val(self.wide_leaves.as_slice())
+            + size_of_val(self.blocks.as_slice())
+            + size_of_val(self.block_instances.as_slice())
     }
 }

@@ -14,14 +14,18 @@ use super::{
     triangle::{Crossing, LeafTriangle, Shear, cross},
     triangles::Triangles,
     visitor::{TreeRef, Visitor},
+    wide::{self, Eight, Leaves, TriangleBlock, WideRay, WideStats, WideTree},
 };
 
-/// A mesh's triangles, the tree over them, and their corners again in the order of the tree's leaves.
+/// A mesh's triangles, the tree over them, and their corners again in the order of the tree's leaves. And the same in
+/// the form in which rays walk it when nobody watches.
 #[derive(Clone)]
 pub struct MeshTree {
     triangles: Triangles,
     tree: Bvh2,
     leaves: Vec<LeafTriangle>,
+    wide: WideTree,
+    blocks: Vec<TriangleBlock>,
     build_time: Duration,
 }
 
@@ -37,7 +41,7 @@ impl MeshTree {
             .map(|&triangle| triangle_box(triangles.corners(triangle).map(Vec3A::from)))
             .collect();
         let tree = build_tree(&boxes, options);
-        let leaves = tree
+        let leaves: Vec<LeafTriangle> = tree
             .primitive_indices
             .iter()
             .map(|&slot| {
@@ -45,10 +49,19 @@ impl MeshTree {
                 LeafTriangle::new(triangles.corners(number), number)
             })
             .collect();
+        let mut blocks = Vec::with_capacity(leaves.len() / 4);
+        let wide = WideTree::new(&tree, TriangleBlock::CAPACITY, |places| {
+            let first = blocks.len() as u32;
+            TriangleBlock::append(&leaves[places], &mut blocks);
+            first
+        });
+        blocks.shrink_to_fit();
         Self {
             triangles,
             tree,
             leaves,
+            wide,
+            blocks,
             build_time: start.elapsed(),
         }
     }
@@ -86,6 +99,8 @@ impl MeshTree {
             + size_of_val(self.leaves.as_slice())
             + size_of_val(self.tree.nodes.as_slice())
             + size_of_val(self.tree.primitive_indices.as_slice())
+            + self.wide.bytes()
+            + size_of_val(self.blocks.as_slice())
     }
 
     /// Statistics of the tree.
@@ -93,9 +108,51 @@ impl MeshTree {
         TreeStats::of(&self.tree)
     }
 
+    /// Statistics of the form that rays walk when nobody watches.
+    pub fn wide_stats(&self) -> WideStats {
+        let nodes = self.wide.stats();
+        WideStats {
+            blocks: self.blocks.len(),
+            triangles_per_block: self.traced() as f64 / self.blocks.len().max(1) as f64,
+            bytes: nodes.bytes + size_of_val(self.blocks.as_slice()),
+            ..nodes
+        }
+    }
+
     /// How long building took.
     pub fn build_time(&self) -> Duration {
         self.build_time
+    }
+
+    /// The wide form.
+    #[cfg(test)]
+    pub(crate) fn wide(&self) -> (&WideTree, &[TriangleBlock]) {
+        (&self.wide, &self.blocks)
+    }
+
+    /// Entries of a stack that [`Self::walk_wide`] needs.
+    pub(crate) fn most_pending(&self) -> usize {
+        self.wide.most_pending()
+    }
+
+    /// Walks the tree along a ray in object space, unwatched: [`walk`](wide::walk). `at(triangle number, crossing,
+    /// limit)` returns the new limit, or [`STOP`].
+    #[inline(always)]
+    pub(crate) fn walk_wide<E: Eight, const NEAREST_FIRST: bool>(
+        &self,
+        ray: &ObjectRay,
+        stack: &mut [u64],
+        limit: f32,
+        at: impl FnMut(u32, Crossing, f32) -> f32,
+    ) -> f32 {
+        let mut leaves = MeshLeaves {
+            blocks: &self.blocks,
+            ray,
+            shear: None,
+            at,
+        };
+        let wide_ray = WideRay::new(&ray.slab);
+        wide::walk::<E, NEAREST_FIRST>(&self.wide, stack, &wide_ray, limit, &mut leaves)
     }
 
     /// Walks the tree along a ray in object space. `at(triangle number, crossing, limit)` returns the new limit.
@@ -132,6 +189,11 @@ impl MeshTree {
         )
     }
 
+    /// A triangle by its place in leaf order.
+    pub(crate) fn leaf_triangle(&self, place: u32) -> LeafTriangle {
+        self.leaves[place as usize]
+    }
+
     /// The padded box of a triangle by its place in leaf order, in object space.
     pub(crate) fn box_at(&self, place: usize) -> Aabb {
         triangle_box(self.leaves[place].corners().map(Vec3A::from))
@@ -148,6 +210,33 @@ impl MeshTree {
     ) -> (u32, Option<Crossing>) {
         let triangle = &self.leaves[place as usize];
         (triangle.number, cross(shear, &ray.slab, triangle, limit))
+    }
+}
+
+/// The blocks of a mesh's wide tree, with a ray.
+struct MeshLeaves<'a, At> {
+    blocks: &'a [TriangleBlock],
+    ray: &'a ObjectRay,
+    /// Made at the first leaf: many rays meet none.
+    shear: Option<Shear>,
+    at: At,
+}
+
+impl<E: Eight, At: FnMut(u32, Crossing, f32) -> f32> Leaves<E> for MeshLeaves<'_, At> {
+    #[inline(always)]
+    fn visit(&mut self, first: u32, mut limit: f32, _: &mut [u64]) -> f32 {
+        let ray = self.ray;
+        let shear = match &mut self.shear {
+            Some(shear) => shear,
+            none => none.insert(Shear::new(ray.origin, ray.direction)),
+        };
+        for block in &self.blocks[first as usize..] {
+            limit = block.cross::<E>(shear, &ray.slab, limit, &mut self.at);
+            if limit == STOP || !block.continues() {
+                break;
+            }
+        }
+        limit
     }
 }
 

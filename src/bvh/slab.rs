@@ -52,11 +52,11 @@ pub(crate) fn triangle_box([a, b, c]: [Vec3A; 3]) -> Aabb {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SlabRay {
     /// Origin moved up: what lower faces are measured from.
-    above: Vec3A,
+    pub(crate) above: Vec3A,
     /// Origin moved down: what upper faces are measured from.
-    below: Vec3A,
+    pub(crate) below: Vec3A,
     /// One over the direction; finite.
-    inverse: Vec3A,
+    pub(crate) inverse: Vec3A,
 }
 
 impl SlabRay {

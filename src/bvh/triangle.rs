@@ -69,13 +69,13 @@ impl LeafTriangle {
 pub(crate) struct Shear {
     origin: Vec3,
     direction: Vec3,
-    axes: [usize; 3],
+    pub(crate) axes: [usize; 3],
     /// The origin along those axes in every lane, and the shear likewise.
-    right: Vec3A,
-    up: Vec3A,
-    ahead: Vec3A,
-    x: Vec3A,
-    y: Vec3A,
+    pub(crate) right: Vec3A,
+    pub(crate) up: Vec3A,
+    pub(crate) ahead: Vec3A,
+    pub(crate) x: Vec3A,
+    pub(crate) y: Vec3A,
 }
 
 impl Shear {
@@ -131,18 +131,29 @@ pub(crate) fn cross(
     if edges.cmplt(Vec3A::ZERO).any() && edges.cmpgt(Vec3A::ZERO).any() {
         return None;
     }
-    let [u, v, w] = edges.to_array();
-    let det = u + v + w;
+    let edges = edges.to_array();
+    let det = edges[0] + edges[1] + edges[2];
     // Also false for a NaN.
     if !(det != 0.0 && det.is_finite()) {
         return None;
     }
-    let corners = triangle.corners();
+    accept(shear, slab, triangle.corners(), edges, limit)
+}
+
+/// The rest of [`cross`], for a triangle whose edge functions do not differ in sign and have a finite sum, not zero.
+#[inline(always)]
+pub(crate) fn accept(
+    shear: &Shear,
+    slab: &SlabRay,
+    corners: [Vec3; 3],
+    [u, v, w]: [f32; 3],
+    limit: f32,
+) -> Option<Crossing> {
     let (entry, exit) = slab.span(&triangle_box(corners.map(Vec3A::from)));
     if entry > exit || entry > limit || exit <= 0.0 {
         return None;
     }
-    let inverse = 1.0 / det;
+    let inverse = 1.0 / (u + v + w);
     Some(Crossing {
         t: clamp(plane(shear, corners), entry, exit),
         u: v * inverse,

@@ -11,3 +11,4 @@ mod oracle;
 mod random;
 mod spawned;
 mod trees;
+mod wide;

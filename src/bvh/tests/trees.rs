@@ -86,7 +86,7 @@ fn a_hundred_thousand_equally_spaced_triangles_in_a_row_are_each_found() {
 }
 
 /// A chain: every inner node has a leaf and the rest of the chain, both of which the ray enters.
-fn chain(levels: usize, leaf_first: bool) -> Vec<Bvh2Node> {
+pub(super) fn chain(levels: usize, leaf_first: bool) -> Vec<Bvh2Node> {
     let bounds = Aabb::new(Vec3A::splat(-1.0), Vec3A::splat(1.0));
     let mut nodes = vec![Bvh2Node::new(bounds, 0, 1)];
     for level in 0..levels {

@@ -1,0 +1,371 @@
+//! How the wide trees of an aggregate hang together, and the questions that are compiled for each way apart: what a
+//! scene does not have costs nothing, not even the registers.
+
+#[cfg(test)]
+use super::wide::Portable;
+use super::{
+    aggregate::{Aggregate, Places},
+    mesh_tree::{MeshTree, ObjectRay},
+    queries::Best,
+    ray::{Hit, Ray},
+    safe_ray::SafeRay,
+    slab::SlabRay,
+    traverse::STOP,
+    triangle::{Crossing, Shear},
+    wide::{Eight, FEW, Leaves, MANY, Query, WideRay, answer, few_hold, walk},
+};
+
+/// What rays walk: one of the ways in which an aggregate is arranged.
+pub(super) trait Arrangement: Copy {
+    /// Entries of a stack that a walk needs.
+    fn most_pending(self) -> usize;
+
+    /// Hands the hits on the ray whose `t` is not beyond the limit to `at(hit, limit)`, which returns the new limit, or
+    /// [`STOP`]. `t` is the [`SafeRay`]'s. The order is that of [`walk`].
+    fn each_hit<E: Eight, const NEAREST_FIRST: bool>(
+        self,
+        ray: &SafeRay,
+        stack: &mut [u64],
+        at: impl FnMut(Hit, f32) -> f32,
+    );
+}
+
+/// Runs `$ask` with `$of` as the arrangement of an aggregate.
+macro_rules! arranged {
+    ($aggregate:expr, $of:ident => $ask:expr) => {
+        match &$aggregate.places {
+            Places::Instances(places) => match $aggregate.instances() {
+                [instance] if instance.is_identity() => {
+                    let $of = OneMesh(&instance.mesh);
+                    $ask
+                }
+                _ => {
+                    let $of = TwoLevels($aggregate, places);
+                    $ask
+                }
+            },
+            Places::Triangles(_) => {
+                let $of = OneLevel($aggregate);
+                $ask
+            }
+        }
+    };
+}
+
+impl Aggregate {
+    /// Hands the nearest hit of each ray to `found`.
+    pub(super) fn ask_closest(&self, rays: &[Ray], found: impl FnMut(Option<Hit>)) {
+        arranged!(self, of => answer(Closest { of, rays, found }));
+    }
+
+    /// Hands to `found` whether each ray hits anything.
+    pub(super) fn ask_any(&self, rays: &[Ray], found: impl FnMut(bool)) {
+        arranged!(self, of => answer(Any { of, rays, found }));
+    }
+
+    /// [`Arrangement::each_hit`].
+    pub(super) fn ask_every<const NEAREST_FIRST: bool>(
+        &self,
+        ray: &SafeRay,
+        at: impl FnMut(Hit, f32) -> f32,
+    ) {
+        arranged!(self, of => answer(Every::<_, _, NEAREST_FIRST> { of, ray, at }));
+    }
+}
+
+#[cfg(test)]
+impl Aggregate {
+    /// What [`Aggregate::closest_hits`] and [`Aggregate::occlusions`] find on a machine without vector instructions.
+    pub(super) fn ask_portably(&self, rays: &[Ray]) -> (Vec<Option<Hit>>, Vec<bool>) {
+        let (mut hits, mut occluded) = (Vec::new(), Vec::new());
+        arranged!(self, of => {
+            let found = |hit| hits.push(hit);
+            Closest { of, rays, found }.ask::<Portable>();
+            let found = |any| occluded.push(any);
+            Any { of, rays, found }.ask::<Portable>();
+        });
+        (hits, occluded)
+    }
+}
+
+/// A stack for walks through this arrangement, on the program's own: `$stack` becomes a slice of it. Clearing [`FEW`]
+/// entries takes as long as a node or two; [`MANY`] are for trees out of the ordinary.
+macro_rules! stack_for {
+    ($of:expr, $stack:ident) => {
+        let (mut few, mut many);
+        let $stack: &mut [u64] = if few_hold($of.most_pending()) {
+            few = [0; FEW];
+            &mut few
+        } else {
+            many = [0; MANY];
+            &mut many
+        };
+    };
+}
+
+/// The nearest hit of each ray.
+pub(super) struct Closest<'a, Of, Found> {
+    pub(super) of: Of,
+    pub(super) rays: &'a [Ray],
+    pub(super) found: Found,
+}
+
+impl<Of: Arrangement, Found: FnMut(Option<Hit>)> Query for Closest<'_, Of, Found> {
+    type Answer = ();
+
+    #[inline(always)]
+    fn ask<E: Eight>(mut self) {
+        stack_for!(self.of, stack);
+        for ray in self.rays {
+            let mut closest = None;
+            if let Some(ray) = SafeRay::new(ray) {
+                let mut best = Best::NONE;
+                let offer = |hit, limit| best.offer(hit, limit);
+                self.of.each_hit::<E, true>(&ray, stack, offer);
+                closest = best.found(&ray);
+            }
+            (self.found)(closest);
+        }
+    }
+}
+
+/// Whether each ray hits anything.
+pub(super) struct Any<'a, Of, Found> {
+    pub(super) of: Of,
+    pub(super) rays: &'a [Ray],
+    pub(super) found: Found,
+}
+
+impl<Of: Arrangement, Found: FnMut(bool)> Query for Any<'_, Of, Found> {
+    type Answer = ();
+
+    #[inline(always)]
+    fn ask<E: Eight>(mut self) {
+        stack_for!(self.of, stack);
+        for ray in self.rays {
+            let mut occluded = false;
+            if let Some(ray) = SafeRay::new(ray) {
+                self.of.each_hit::<E, false>(&ray, stack, |_, _| {
+                    occluded = true;
+                    STOP
+                });
+            }
+            (self.found)(occluded);
+        }
+    }
+}
+
+/// Every hit of one ray up to a limit that may shrink.
+struct Every<'a, Of, At, const NEAREST_FIRST: bool> {
+    of: Of,
+    ray: &'a SafeRay,
+    at: At,
+}
+
+impl<Of, At, const NEAREST_FIRST: bool> Query for Every<'_, Of, At, NEAREST_FIRST>
+where
+    Of: Arrangement,
+    At: FnMut(Hit, f32) -> f32,
+{
+    type Answer = ();
+
+    #[inline(always)]
+    fn ask<E: Eight>(self) {
+        stack_for!(self.of, stack);
+        (self.of).each_hit::<E, NEAREST_FIRST>(self.ray, stack, self.at);
+    }
+}
+
+/// Calls `at(hit, limit)` if the crossing lies on the ray, not beyond the limit.
+#[inline(always)]
+fn offer(
+    ray: &SafeRay,
+    (instance, triangle): (u32, u32),
+    Crossing { t, u, v }: Crossing,
+    limit: f32,
+    at: &mut impl FnMut(Hit, f32) -> f32,
+) -> f32 {
+    if t <= limit && ray.reaches(t) {
+        let hit = Hit {
+            t,
+            instance,
+            triangle,
+            u,
+            v,
+        };
+        at(hit, limit)
+    } else {
+        limit
+    }
+}
+
+/// One mesh that stands still where it was modelled: no tree above it, and no other ray.
+#[derive(Clone, Copy)]
+pub(super) struct OneMesh<'a>(pub(super) &'a MeshTree);
+
+impl Arrangement for OneMesh<'_> {
+    #[inline(always)]
+    fn most_pending(self) -> usize {
+        self.0.most_pending()
+    }
+
+    #[inline(always)]
+    fn each_hit<E: Eight, const NEAREST_FIRST: bool>(
+        self,
+        ray: &SafeRay,
+        stack: &mut [u64],
+        mut at: impl FnMut(Hit, f32) -> f32,
+    ) {
+        let at = |triangle, crossing, limit| offer(ray, (0, triangle), crossing, limit, &mut at);
+        (self.0).walk_wide::<E, NEAREST_FIRST>(&ray.world, stack, ray.end, at);
+    }
+}
+
+/// A tree over instances, and one for each mesh.
+#[derive(Clone, Copy)]
+pub(super) struct TwoLevels<'a>(&'a Aggregate, &'a [u32]);
+
+impl Arrangement for TwoLevels<'_> {
+    #[inline(always)]
+    fn most_pending(self) -> usize {
+        self.0.most_pending
+    }
+
+    #[inline(always)]
+    fn each_hit<E: Eight, const NEAREST_FIRST: bool>(
+        self,
+        ray: &SafeRay,
+        stack: &mut [u64],
+        at: impl FnMut(Hit, f32) -> f32,
+    ) {
+        let Self(scene, places) = self;
+        let mut leaves = InstanceLeaves::<_, NEAREST_FIRST> {
+            scene,
+            places,
+            ray,
+            at,
+        };
+        let top = WideRay::new(&scene.top_slab(&ray.world));
+        walk::<E, NEAREST_FIRST>(&scene.wide, stack, &top, ray.end, &mut leaves);
+    }
+}
+
+/// One tree over all triangles.
+#[derive(Clone, Copy)]
+pub(super) struct OneLevel<'a>(&'a Aggregate);
+
+impl Arrangement for OneLevel<'_> {
+    #[inline(always)]
+    fn most_pending(self) -> usize {
+        self.0.most_pending
+    }
+
+    #[inline(always)]
+    fn each_hit<E: Eight, const NEAREST_FIRST: bool>(
+        self,
+        ray: &SafeRay,
+        stack: &mut [u64],
+        at: impl FnMut(Hit, f32) -> f32,
+    ) {
+        let scene = self.0;
+        let mut leaves = FlatLeaves {
+            scene,
+            ray,
+            last: None,
+            at,
+        };
+        let top = WideRay::new(&scene.top_slab(&ray.world));
+        walk::<E, NEAREST_FIRST>(&scene.wide, stack, &top, ray.end, &mut leaves);
+    }
+}
+
+impl Aggregate {
+    /// The ray as the boxes of the top tree need it.
+    #[inline(always)]
+    pub(super) fn top_slab(&self, world: &ObjectRay) -> SlabRay {
+        let pad = world.origin.abs().max_element() * self.ray_pad;
+        SlabRay::new(world.origin, world.direction, pad)
+    }
+
+    /// The ray in an instance's space and its frame there, made anew when the instance is not the last one; `None`
+    /// where the instance cannot be met.
+    #[inline(always)]
+    pub(super) fn object_ray<'a>(
+        &self,
+        ray: &SafeRay,
+        number: u32,
+        last: &'a mut Option<(u32, Option<(ObjectRay, Shear)>)>,
+    ) -> Option<&'a (ObjectRay, Shear)> {
+        if last.as_ref().is_none_or(|(of, _)| *of != number) {
+            let instance = &self.instances()[number as usize];
+            let object = instance.to_object_ray(&ray.world, ray.time);
+            let with_frame = |object: ObjectRay| {
+                let shear = Shear::new(object.origin, object.direction);
+                (object, shear)
+            };
+            *last = Some((number, object.map(with_frame)));
+        }
+        last.as_ref().and_then(|(_, object)| object.as_ref())
+    }
+}
+
+/// Two levels: a leaf of the top tree is an instance, or several where they could not be told apart.
+struct InstanceLeaves<'a, At, const NEAREST_FIRST: bool> {
+    scene: &'a Aggregate,
+    places: &'a [u32],
+    ray: &'a SafeRay,
+    at: At,
+}
+
+impl<E: Eight, At: FnMut(Hit, f32) -> f32, const NEAREST_FIRST: bool> Leaves<E>
+    for InstanceLeaves<'_, At, NEAREST_FIRST>
+{
+    #[inline(always)]
+    fn visit(&mut self, leaf: u32, mut limit: f32, stack: &mut [u64]) -> f32 {
+        let ray = self.ray;
+        for &number in &self.places[self.scene.wide_leaves[leaf as usize].clone()] {
+            let instance = &self.scene.instances()[number as usize];
+            let Some(object) = instance.to_object_ray(&ray.world, ray.time) else {
+                continue;
+            };
+            let at = |triangle, crossing, limit| {
+                offer(ray, (number, triangle), crossing, limit, &mut self.at)
+            };
+            let mesh = &instance.mesh;
+            limit = mesh.walk_wide::<E, NEAREST_FIRST>(&object, stack, limit, at);
+            if limit == STOP {
+                break;
+            }
+        }
+        limit
+    }
+}
+
+/// One level: a leaf of the tree is blocks of triangles, each of one instance.
+struct FlatLeaves<'a, At> {
+    scene: &'a Aggregate,
+    ray: &'a SafeRay,
+    last: Option<(u32, Option<(ObjectRay, Shear)>)>,
+    at: At,
+}
+
+impl<E: Eight, At: FnMut(Hit, f32) -> f32> Leaves<E> for FlatLeaves<'_, At> {
+    #[inline(always)]
+    fn visit(&mut self, leaf: u32, mut limit: f32, _: &mut [u64]) -> f32 {
+        let (scene, ray) = (self.scene, self.ray);
+        for block in scene.wide_leaves[leaf as usize].clone() {
+            let number = scene.block_instances[block];
+            let Some((object, shear)) = scene.object_ray(ray, number, &mut self.last) else {
+                continue;
+            };
+            let mut at = |triangle, crossing, limit| {
+                offer(ray, (number, triangle), crossing, limit, &mut self.at)
+            };
+            limit = scene.blocks[block].cross::<E>(shear, &object.slab, limit, &mut at);
+            if limit == STOP {
+                break;
+            }
+        }
+        limit
+    }
+}

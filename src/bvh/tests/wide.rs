@@ -1,0 +1,231 @@
+//! The wide form of a tree: the same triangles, the same hits, on every machine.
+
+use glam::{Affine3A, Vec3, Vec3A};
+use obvhs::{aabb::Aabb, bvh2::Bvh2};
+
+use super::{
+    instances::any_transform,
+    meshes::{cube, joined, knot, mesh, placed, scatter, soup},
+    oracle::same,
+    random::Random,
+    trees::chain,
+};
+use crate::bvh::{
+    BuildOptions, Builder, Levels, MAX_DEPTH, MeshTree, Ray, Triangles,
+    slab::SlabRay,
+    wide::{FEW, LEAF, Leaves, MANY, Portable, TriangleBlock, WideRay, WideTree, walk},
+};
+
+/// Rays from everywhere to everywhere, some along axes and into corners, some that end early.
+fn rays(count: usize, places: &[Affine3A]) -> Vec<Ray> {
+    let mut random = Random::new(77);
+    (0..count)
+        .map(|i| {
+            let place = random.of(places);
+            let (mut from, mut to) = (random.cube() * 2.0, random.cube());
+            if i % 3 == 0 {
+                (from, to) = ((from * 2.0).round() / 2.0, (to * 2.0).round() / 2.0);
+            }
+            let from = place.transform_point3(from);
+            let direction = place.transform_point3(to) - from;
+            Ray {
+                t_max: random.of(&[f32::INFINITY, 1.0, 0.7]),
+                ..Ray::new(from, direction)
+            }
+        })
+        .collect()
+}
+
+#[test]
+fn every_instruction_set_finds_the_same_bits() {
+    let mut random = Random::new(5);
+    let mesh = joined(&[scatter(3_000, 0.1, 3), cube(), knot(60, 12), cube()]);
+    let turned: Vec<Affine3A> = (0..12).map(|_| any_transform(&mut random)).collect();
+    for places in [vec![Affine3A::IDENTITY], turned] {
+        for levels in [Levels::One, Levels::Two] {
+            let options = BuildOptions {
+                levels,
+                ..BuildOptions::default()
+            };
+            let meshes: Vec<(Triangles, Affine3A)> =
+                places.iter().map(|&place| (mesh.clone(), place)).collect();
+            let scene = placed(&meshes, &options);
+            let rays = rays(100_000, &places);
+            let (mut hits, mut occluded) = (Vec::new(), Vec::new());
+            scene.closest_hits(&rays, &mut hits);
+            scene.occlusions(&rays, &mut occluded);
+            let (portable_hits, portably_occluded) = scene.ask_portably(&rays);
+            let found = hits.iter().flatten().count();
+            assert!(found > 20_000, "{levels:?}: only {found} hits");
+            for (i, ray) in rays.iter().enumerate() {
+                let (a, b) = (hits[i], portable_hits[i]);
+                assert!(same(a, b), "{levels:?}: {a:?}, portably {b:?}, {ray:?}");
+            }
+            assert_eq!(occluded, portably_occluded, "{levels:?}");
+        }
+    }
+}
+
+/// What is wrong with a mesh's wide form, if anything.
+fn fault(tree: &MeshTree) -> Option<String> {
+    let (wide, blocks) = tree.wide();
+    let nodes: Vec<Vec<(Aabb, u32)>> = wide.nodes().collect();
+    let mut found = Vec::new();
+    let everywhere = Aabb::INFINITY;
+    let mut pending: Vec<(Aabb, u32)> = wide
+        .root()
+        .map(|root| (everywhere, root))
+        .into_iter()
+        .collect();
+    let mut visited = 0;
+    while let Some((bounds, child)) = pending.pop() {
+        let within =
+            |inner: &Aabb| inner.min.cmpge(bounds.min).all() && inner.max.cmple(bounds.max).all();
+        if child & LEAF == 0 {
+            visited += 1;
+            let children = &nodes[child as usize];
+            if !(2..=8).contains(&children.len()) {
+                return Some(format!("node {child} has {} children", children.len()));
+            }
+            if !children.iter().all(|(inner, _)| within(inner)) {
+                return Some(format!("a child of node {child} sticks out"));
+            }
+            pending.extend(children);
+            continue;
+        }
+        for block in &blocks[(child & !LEAF) as usize..] {
+            for (corners, number) in block.triangles() {
+                let [a, b, c] = corners.map(Vec3A::from);
+                if !within(&Aabb::new(a.min(b).min(c), a.max(b).max(c))) {
+                    return Some(format!("triangle {number} sticks out of its leaf"));
+                }
+                if corners != tree.triangles().corners(number) {
+                    return Some(format!("triangle {number} is another one"));
+                }
+                found.push(number);
+            }
+            if !block.continues() {
+                break;
+            }
+        }
+    }
+    let mut expected: Vec<u32> = (0..tree.traced())
+        .map(|place| tree.triangle_at(place))
+        .collect();
+    found.sort_unstable();
+    expected.sort_unstable();
+    if found != expected {
+        return Some(format!(
+            "{} triangles instead of {}",
+            found.len(),
+            expected.len()
+        ));
+    }
+    (visited != nodes.len()).then(|| format!("{visited} of {} nodes are reachable", nodes.len()))
+}
+
+#[test]
+fn the_binary_and_the_wide_form_hold_exactly_the_same_triangles() {
+    let meshes = [
+        mesh(Vec::new(), Vec::new()),
+        cube(),
+        scatter(1, 0.5, 1),
+        scatter(8, 0.5, 2),
+        scatter(9, 0.5, 3),
+        scatter(5_000, 0.05, 4),
+        knot(100, 20),
+        soup(vec![[Vec3::ZERO, Vec3::X, Vec3::Y]; 3_000]),
+        soup((0..3_000).map(|i| [Vec3::ZERO, Vec3::X, Vec3::Y].map(|p| p + Vec3::X * i as f32))),
+    ];
+    for triangles in &meshes {
+        for builder in [Builder::None, Builder::Median, Builder::Sah, Builder::Ploc] {
+            for (max_leaf_size, max_depth) in [(1, 64), (8, 64), (255, 64), (8, 3)] {
+                let options = BuildOptions {
+                    builder,
+                    max_leaf_size,
+                    max_depth,
+                    ..BuildOptions::default()
+                };
+                let tree = MeshTree::build(triangles.clone(), &options);
+                let stats = tree.wide_stats();
+                assert_eq!(fault(&tree), None, "{options:?}, {stats:?}");
+                let triangles = stats.triangles_per_block * stats.blocks as f64;
+                assert_eq!(triangles.round() as usize, tree.traced(), "{stats:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn collapsing_fills_nodes_and_blocks_of_an_ordinary_mesh() {
+    let tree = MeshTree::build(knot(400, 25), &BuildOptions::default());
+    let stats = tree.wide_stats();
+    assert!(stats.children_per_node > 5.0, "{stats:?}");
+    assert!(stats.triangles_per_block > 4.0, "{stats:?}");
+    assert!(stats.bytes < 100 * tree.traced(), "{stats:?}");
+}
+
+/// Counts how often each leaf is visited.
+struct Visits(Vec<u32>);
+
+impl Leaves<Portable> for Visits {
+    fn visit(&mut self, leaf: u32, limit: f32, _: &mut [u64]) -> f32 {
+        self.0[leaf as usize] += 1;
+        limit
+    }
+}
+
+#[test]
+fn a_tree_as_deep_as_any_is_walked_to_its_last_leaf_within_its_stack() {
+    for leaf_first in [true, false] {
+        let tree = Bvh2 {
+            nodes: chain(MAX_DEPTH, leaf_first),
+            ..Bvh2::default()
+        };
+        let mut leaves = 0;
+        let wide = WideTree::new(&tree, TriangleBlock::CAPACITY, |_| {
+            leaves += 1;
+            leaves - 1
+        });
+        assert!(
+            wide.most_pending() <= MANY / 2,
+            "{} pending",
+            wide.most_pending()
+        );
+        let slab = SlabRay::new(Vec3::ZERO, Vec3::new(0.3, -0.4, 0.5), 0.0);
+        let ray = WideRay::<Portable>::new(&slab);
+        let mut visits = Visits(vec![0; leaves as usize]);
+        let end = f32::INFINITY;
+        let mut stack = vec![0; wide.most_pending() + 8];
+        walk::<Portable, true>(&wide, &mut stack, &ray, end, &mut visits);
+        walk::<Portable, false>(&wide, &mut stack, &ray, end, &mut visits);
+        let expected = vec![2; leaves as usize];
+        assert_eq!(visits.0, expected, "leaves were visited so often");
+    }
+}
+
+#[test]
+fn a_mesh_that_needs_a_large_stack_is_traced_like_any_other() {
+    // Boxes that shrink by powers of two: the best tree parts one after another from all smaller ones.
+    let axes = [Vec3::X, Vec3::Y, Vec3::Z];
+    let triangles = soup((-30..30).flat_map(|exponent| {
+        axes.map(|axis| {
+            let far = axis * 2f32.powi(exponent);
+            let aside = Vec3::new(axis.y, axis.z, axis.x) * far.length() * 0.3;
+            [far, far * 0.5 + aside, far * 0.5 - aside]
+        })
+    }));
+    let options = BuildOptions {
+        builder: Builder::Sah,
+        max_leaf_size: 1,
+        max_depth: MAX_DEPTH as u32,
+        ..BuildOptions::default()
+    };
+    let scene = placed(&[(triangles, Affine3A::IDENTITY)], &options);
+    let most_pending = scene.instances()[0].mesh.wide_stats().most_pending;
+    assert!(most_pending > FEW, "only {most_pending} pending");
+    for ray in rays(2_000, &[Affine3A::IDENTITY]) {
+        let hit = scene.closest_hit(&ray);
+        assert!(same(hit, super::oracle::brute(&scene, &ray)), "{ray:?}");
+    }
+}

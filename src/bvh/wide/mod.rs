@@ -1,0 +1,36 @@
+//! The form of a tree that rays walk when nobody watches: eight boxes a node, eight triangles a leaf, tested at once.
+//!
+//! A [`Bvh2`](obvhs::bvh2::Bvh2) from any builder is [`collapse`]d into [`WideTree`]: nodes of up to eight children, in
+//! which the SAH says which levels to leave out. Its leaves are [`TriangleBlock`]s (or instances, in the top tree).
+//! [`walk`] takes a ray through it.
+//!
+//! # The same hits as the binary tree, bit for bit
+//! Node boxes are those of the binary tree, unchanged, and the slab test is that of [`super::slab`]: the same
+//! differences, products, minima and maxima, eight at a time. The triangle test is that of [`super::triangle`], eight at
+//! a time up to the edge functions' signs and then the same code for the few that pass. What a box above a triangle
+//! says does not matter for a hit, as long as it is a box around the triangle's own; so another tree finds the same.
+//!
+//! # Instruction sets
+//! The kernels are written once, over [`Eight`], eight `f32`s with the few operations that they need. [`Eight`] has an
+//! implementation for each instruction set, in a file of its own: `avx2`, and `portable` for everything else. No
+//! operation of them rounds differently. [`answer`] picks one when the program runs.
+
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+mod block;
+mod collapse;
+mod eight;
+mod node;
+mod portable;
+mod tree;
+mod walk;
+
+pub(crate) use block::TriangleBlock;
+pub(crate) use eight::{Eight, Query, answer};
+#[cfg(test)]
+pub(crate) use node::LEAF;
+#[cfg(test)]
+pub(crate) use portable::Portable;
+pub use tree::WideStats;
+pub(crate) use tree::WideTree;
+pub(crate) use walk::{FEW, Leaves, MANY, WideRay, few_hold, walk};

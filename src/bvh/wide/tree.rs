@@ -1,0 +1,139 @@
+//! A tree of wide nodes, made of a binary one.
+
+use std::ops::Range;
+
+#[cfg(test)]
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+
+use super::{
+    collapse,
+    node::{LEAF, WideNode},
+};
+use crate::bvh::split_plane::primitives_below;
+
+/// What a wide tree is like, in numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WideStats {
+    /// Nodes of up to eight children; leaves are not nodes.
+    pub nodes: usize,
+    /// Leaves.
+    pub leaves: usize,
+    /// Blocks of up to eight triangles, one a leaf as a rule; 0 in a tree over instances.
+    pub blocks: usize,
+    /// Children a node has on average, up to 8; 0 without nodes.
+    pub children_per_node: f64,
+    /// Triangles a block holds on average, up to 8; 0 without blocks.
+    pub triangles_per_block: f64,
+    /// Most children that can wait their turn while a ray walks the tree.
+    pub most_pending: usize,
+    /// Memory of nodes and blocks.
+    pub bytes: usize,
+}
+
+/// Wide nodes, the root first.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct WideTree {
+    pub(super) nodes: Vec<WideNode>,
+    /// A node or a leaf, as a child is numbered; `None` in a tree over nothing.
+    pub(super) root: Option<u32>,
+    leaves: usize,
+    /// Entries of a stack that the walk needs.
+    most_pending: usize,
+}
+
+impl WideTree {
+    /// Collapses a tree as [`crate::bvh::build_tree`] makes them. A leaf's block holds `capacity` primitives. For each leaf `leaf`
+    /// gets its range of the tree's `primitive_indices` and returns its number, below 2^31.
+    pub(crate) fn new(
+        tree: &Bvh2,
+        capacity: usize,
+        mut leaf: impl FnMut(Range<usize>) -> u32,
+    ) -> Self {
+        let mut wide = Self::default();
+        let plans = collapse::plan(tree, capacity);
+        let Some(plan) = plans.first() else {
+            return wide;
+        };
+        if plan.is_leaf {
+            wide.leaves = 1;
+            wide.root = Some(LEAF | leaf(primitives_below(tree, 0)));
+            return wide;
+        }
+        wide.root = Some(0);
+        wide.nodes.push(WideNode::EMPTY);
+        let mut pending = vec![(0, 0)];
+        while let Some((from, to)) = pending.pop() {
+            let (children, count) = collapse::children(tree, &plans, from);
+            let mut node = WideNode::EMPTY;
+            for (lane, &child) in children[..count].iter().enumerate() {
+                let number = if plans[child].is_leaf {
+                    wide.leaves += 1;
+                    LEAF | leaf(primitives_below(tree, child))
+                } else {
+                    wide.nodes.push(WideNode::EMPTY);
+                    wide.nodes.len() as u32 - 1
+                };
+                node.set(lane, tree.nodes[child].aabb(), number);
+                if number & LEAF == 0 {
+                    pending.push((child, number as usize));
+                }
+            }
+            wide.nodes[to] = node;
+        }
+        wide.nodes.shrink_to_fit();
+        wide.most_pending = wide.count_pending();
+        wide
+    }
+
+    /// While one child is walked the others wait. Children stand after their parents.
+    fn count_pending(&self) -> usize {
+        let mut most = vec![0; self.nodes.len()];
+        for (index, node) in self.nodes.iter().enumerate().rev() {
+            let below = node.children().map(|(_, child)| {
+                if child & LEAF == 0 {
+                    most[child as usize]
+                } else {
+                    0
+                }
+            });
+            most[index] = node.children().count() - 1 + below.max().unwrap_or(0);
+        }
+        most.first().copied().unwrap_or(0)
+    }
+
+    /// Entries of a stack that the walk needs.
+    pub(crate) fn most_pending(&self) -> usize {
+        self.most_pending
+    }
+
+    /// Statistics, blocks excepted.
+    pub(crate) fn stats(&self) -> WideStats {
+        let children: usize = self.nodes.iter().map(|node| node.children().count()).sum();
+        WideStats {
+            nodes: self.nodes.len(),
+            leaves: self.leaves,
+            children_per_node: children as f64 / self.nodes.len().max(1) as f64,
+            most_pending: self.most_pending,
+            bytes: self.bytes(),
+            ..WideStats::default()
+        }
+    }
+
+    /// Memory of the nodes, in bytes.
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(self.nodes.as_slice())
+    }
+
+    /// The root and all that is below it, as (box of the child, child) lists.
+    #[cfg(test)]
+    pub(crate) fn nodes(&self) -> impl Iterator<Item = Vec<(Aabb, u32)>> + '_ {
+        self.nodes.iter().map(|node| node.children().collect())
+    }
+
+    /// A node or, marked by [`LEAF`], a leaf.
+    #[cfg(test)]
+    pub(crate) fn root(&self) -> Option<u32> {
+        self.root
+    }
+}

@@ -1,0 +1,187 @@
+//! The walk through a wide tree.
+
+use glam::Vec3A;
+
+use super::{
+    Eight, WideTree,
+    node::{LEAF, WideNode},
+};
+use crate::bvh::{MAX_DEPTH, slab::SlabRay, traverse::STOP};
+
+/// A node's children are written in a window of eight.
+const WINDOW: usize = 8;
+/// Entries of a stack that ordinary meshes of a million triangles get by with: they need 40 to 60.
+pub(crate) const FEW: usize = 64;
+/// Entries that every tree gets by with: two levels of trees no deeper than [`MAX_DEPTH`], seven a node.
+pub(crate) const MANY: usize = 2 * 7 * MAX_DEPTH + WINDOW;
+
+/// Whether a stack of [`FEW`] entries holds as many, or else one of [`MANY`] does.
+#[inline(always)]
+pub(crate) fn few_hold(most_pending: usize) -> bool {
+    most_pending + WINDOW <= FEW
+}
+
+/// What the slab test needs of a ray, eight times over.
+#[derive(Clone, Copy)]
+pub(crate) struct WideRay<E> {
+    /// The rows of a node that hold the faces which the ray meets first, axis by axis, and those it meets last.
+    near: [usize; 3],
+    far: [usize; 3],
+    /// What those are measured from: the origin, moved against the ray or along it.
+    near_origin: [E; 3],
+    far_origin: [E; 3],
+    inverse: [E; 3],
+}
+
+impl<E: Eight> WideRay<E> {
+    #[inline(always)]
+    pub(crate) fn new(slab: &SlabRay) -> Self {
+        let (above, below) = (slab.above, slab.below);
+        let inverse = slab.inverse;
+        let backwards = inverse.cmplt(Vec3A::ZERO);
+        let near = Vec3A::select(backwards, below, above);
+        let far = Vec3A::select(backwards, above, below);
+        let x = usize::from(backwards.test(0));
+        let y = usize::from(backwards.test(1));
+        let z = usize::from(backwards.test(2));
+        Self {
+            near: [3 * x, 1 + 3 * y, 2 + 3 * z],
+            far: [3 - 3 * x, 4 - 3 * y, 5 - 3 * z],
+            near_origin: [E::splat(near.x), E::splat(near.y), E::splat(near.z)],
+            far_origin: [E::splat(far.x), E::splat(far.y), E::splat(far.z)],
+            inverse: [
+                E::splat(inverse.x),
+                E::splat(inverse.y),
+                E::splat(inverse.z),
+            ],
+        }
+    }
+
+    /// Which children the ray enters, no later than at `limit`, and where. The numbers are those of
+    /// [`SlabRay::span_ahead`]: which of a box's two faces is nearer follows from the direction's sign, because the
+    /// differences and products are monotone.
+    #[inline(always)]
+    fn enter(&self, node: &WideNode, limit: f32) -> (u32, E) {
+        let [x, y, z] = self.faces(node, &self.near, &self.near_origin);
+        // Zero last, so that no entry is -0.0 and their bits are in order.
+        let entry = x.max(y).max(z).max(E::splat(0.0));
+        let [x, y, z] = self.faces(node, &self.far, &self.far_origin);
+        let exit = x.min(y).min(z).min(E::splat(limit));
+        (E::bits(entry.le(exit)), entry)
+    }
+
+    /// Where the ray meets three faces of each child.
+    #[inline(always)]
+    fn faces(&self, node: &WideNode, rows: &[usize; 3], origin: &[E; 3]) -> [E; 3] {
+        let [x, y, z] = [node.row(rows[0]), node.row(rows[1]), node.row(rows[2])];
+        [
+            E::load(x).sub(origin[0]).mul(self.inverse[0]),
+            E::load(y).sub(origin[1]).mul(self.inverse[1]),
+            E::load(z).sub(origin[2]).mul(self.inverse[2]),
+        ]
+    }
+}
+
+/// A child that waits, and where the ray enters it: ordered by that.
+#[inline(always)]
+fn waiting(node: &WideNode, entries: &[f32; 8], lane: u32) -> u64 {
+    u64::from(entries[lane as usize % 8].to_bits()) << 32 | u64::from(node.child(lane))
+}
+
+/// What the leaves of a tree hold. A trait and not a closure, because its method has to become part of the function
+/// that is compiled for the instruction set of `E`, and only a method can be `#[inline(always)]`.
+pub(crate) trait Leaves<E> {
+    /// Tests the ray against a leaf, and returns the new limit: the `t` beyond which nothing matters any more, or
+    /// [`STOP`]. The rest of the walk's stack may be used.
+    fn visit(&mut self, leaf: u32, limit: f32, stack: &mut [u64]) -> f32;
+}
+
+/// Walks a tree along the ray and visits each leaf it reaches: with `NEAREST_FIRST` in the order in which it enters
+/// nodes, and else in no particular order, since sorting costs more than a ray saves that wants any hit. What is entered
+/// exactly at the limit is still walked, since ties are decided by number. Returns the last limit.
+///
+/// The stack holds the tree's [`WideTree::most_pending`] and [`WINDOW`] more, and what the leaves need.
+#[inline(always)]
+pub(crate) fn walk<E: Eight, const NEAREST_FIRST: bool>(
+    tree: &WideTree,
+    stack: &mut [u64],
+    ray: &WideRay<E>,
+    mut limit: f32,
+    leaves: &mut impl Leaves<E>,
+) -> f32 {
+    let Some(mut next) = tree.root else {
+        return limit;
+    };
+    let mut pending = 0;
+    loop {
+        if next & LEAF != 0 {
+            limit = leaves.visit(next & !LEAF, limit, &mut stack[pending..]);
+            if limit == STOP {
+                return STOP;
+            }
+        } else {
+            let node = &tree.nodes[next as usize];
+            let (mut hits, entries) = ray.enter(node, limit);
+            if hits != 0 {
+                let first = hits.trailing_zeros();
+                hits &= hits - 1;
+                if hits == 0 {
+                    next = node.child(first);
+                    continue;
+                }
+                if NEAREST_FIRST {
+                    let entries = entries.to_array();
+                    let second = hits.trailing_zeros();
+                    hits &= hits - 1;
+                    let a = waiting(node, &entries, first);
+                    let b = waiting(node, &entries, second);
+                    let (near, far) = (a.min(b), a.max(b));
+                    if hits == 0 {
+                        stack[pending] = far;
+                        pending += 1;
+                        next = near as u32;
+                        continue;
+                    }
+                    let window = &mut stack[pending..pending + WINDOW];
+                    (window[0], window[1]) = (far, near);
+                    let mut count = 2;
+                    while hits != 0 {
+                        let new = waiting(node, &entries, hits.trailing_zeros());
+                        hits &= hits - 1;
+                        let mut place = count;
+                        while place > 0 && window[(place - 1) % 8] < new {
+                            window[place % 8] = window[(place - 1) % 8];
+                            place -= 1;
+                        }
+                        window[place % 8] = new;
+                        count += 1;
+                    }
+                    next = window[(count - 1) % 8] as u32;
+                    pending += count - 1;
+                } else {
+                    next = node.child(first);
+                    let window = &mut stack[pending..pending + WINDOW];
+                    let mut count = 0;
+                    while hits != 0 {
+                        window[count % 8] = u64::from(node.child(hits.trailing_zeros()));
+                        hits &= hits - 1;
+                        count += 1;
+                    }
+                    pending += count;
+                }
+                continue;
+            }
+        }
+        loop {
+            if pending == 0 {
+                return limit;
+            }
+            pending -= 1;
+            let waiting = stack[pending];
+            if !NEAREST_FIRST || f32::from_bits((waiting >> 32) as u32) <= limit {
+                next = waiting as u32;
+                break;
+            }
+        }
+    }
+}
