@@ -58,7 +58,7 @@ pub use sources::SceneFiles;
 
 use crate::scene::EnvironmentMap;
 use bevy::app::{App, Plugin, PreUpdate};
-use bevy::asset::AssetApp;
+use bevy::asset::{AssetApp, Assets};
 use bevy::image::Image;
 use bevy::mesh::Mesh;
 use bevy::prelude::IntoScheduleConfigs;
@@ -71,9 +71,14 @@ pub struct IoPlugin;
 
 impl Plugin for IoPlugin {
     fn build(&self, app: &mut App) {
-        app.init_asset::<Mesh>()
-            .init_asset::<Image>()
-            .init_resource::<SceneFiles>()
+        // Bevy's renderer has its own already, with what it has put into them.
+        if !app.world().contains_resource::<Assets<Mesh>>() {
+            app.init_asset::<Mesh>();
+        }
+        if !app.world().contains_resource::<Assets<Image>>() {
+            app.init_asset::<Image>();
+        }
+        app.init_resource::<SceneFiles>()
             .init_resource::<LoadProblems>()
             .init_resource::<EnvironmentMap>()
             .add_systems(
