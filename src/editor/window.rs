@@ -8,11 +8,12 @@ use super::panels::PanelsPlugin;
 use super::selection::Selection;
 use super::viewport::{EditorCamera, Viewport};
 use crate::io::{OpenOptions, SceneSource, open};
-use crate::view::{GlassboxPlugins, TracedView};
+use crate::view::{GlassboxPlugins, RASTER_LAYER, RasterPlugin, SymbolsPlugin, TracedView, raster};
 use bevy::DefaultPlugins;
 use bevy::app::{App, AppExit, PluginGroup, PostUpdate, PreStartup};
 use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{Camera, Camera2d, ClearColorConfig, PerspectiveProjection, Projection};
+use bevy::ecs::change_detection::DetectChangesMut;
 use bevy::ecs::query::With;
 use bevy::ecs::system::{Commands, Res, Single};
 use bevy::math::Vec2;
@@ -37,7 +38,14 @@ pub fn run(scene: SceneSource) -> ExitCode {
         }),
         ..WindowPlugin::default()
     }))
-    .add_plugins((GlassboxPlugins, HistoryPlugin, EditsPlugin, PanelsPlugin))
+    .add_plugins((
+        GlassboxPlugins,
+        RasterPlugin,
+        SymbolsPlugin,
+        HistoryPlugin,
+        EditsPlugin,
+        PanelsPlugin,
+    ))
     .add_message::<Action>()
     .init_resource::<Selection>()
     .init_resource::<Viewport>()
@@ -67,6 +75,8 @@ fn spawn_cameras(mut commands: Commands) {
         EditorCamera,
         TracedView::default(),
         Msaa::Off,
+        raster::exposure(),
+        RenderLayers::from_layers(&[0, RASTER_LAYER]),
         Projection::Perspective(PerspectiveProjection::default()),
     ));
     commands.spawn((
@@ -86,9 +96,9 @@ fn spawn_cameras(mut commands: Commands) {
 fn fit_viewport(
     viewport: Res<Viewport>,
     window: Single<&Window, With<PrimaryWindow>>,
-    camera: Single<(&mut Camera, &mut TracedView), With<EditorCamera>>,
+    camera: Single<(&mut Camera, &mut TracedView, &mut RenderLayers), With<EditorCamera>>,
 ) {
-    let (mut camera, mut view) = camera.into_inner();
+    let (mut camera, mut view, mut layers) = camera.into_inner();
     let scale = window.scale_factor();
     let whole = window.physical_size();
     let min = (viewport.rect.min * scale)
@@ -123,4 +133,11 @@ fn fit_viewport(
     if view.divider != divider {
         view.divider = divider;
     }
+    // What the traced picture covers is not drawn beneath it.
+    let wanted = if divider > 0.0 {
+        RenderLayers::from_layers(&[0, RASTER_LAYER])
+    } else {
+        RenderLayers::layer(0)
+    };
+    layers.set_if_neq(wanted);
 }

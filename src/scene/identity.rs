@@ -32,3 +32,10 @@ impl SceneId {
         self.0 == 0
     }
 }
+
+/// On an entity with a mesh or a light that is no part of the scene, such as a handle of an editor:
+/// it gets no [`SceneId`], so it is not traced, listed or saved.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[reflect(Component, Default, Clone, PartialEq, Debug)]
+#[type_path = "glassbox::scene"]
+pub struct NotTraced;

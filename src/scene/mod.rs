@@ -26,7 +26,7 @@ mod setting_table;
 mod settings;
 
 pub use camera::{Lens, Motion, Projection, SceneCamera};
-pub use identity::SceneId;
+pub use identity::{NotTraced, SceneId};
 pub use lamps::{Cone, DirectionalLamp, ParallelogramLamp, PointLamp, SegmentLamp};
 pub use material::{Phong, PhongMaps, TextureSource, UsesMaterial};
 pub use mesh_source::{MeshSource, Shape};
@@ -44,6 +44,7 @@ pub struct ScenePlugin;
 impl Plugin for ScenePlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<SceneId>()
+            .register_type::<NotTraced>()
             .register_type::<MeshSource>()
             .register_type::<Shape>()
             .register_type::<Phong>()

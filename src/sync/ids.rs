@@ -1,5 +1,6 @@
 use crate::scene::{
-    DirectionalLamp, ParallelogramLamp, Phong, PointLamp, SceneCamera, SceneId, SegmentLamp,
+    DirectionalLamp, NotTraced, ParallelogramLamp, Phong, PointLamp, SceneCamera, SceneId,
+    SegmentLamp,
 };
 use bevy::ecs::entity::Entity;
 use bevy::ecs::query::{Changed, Or, With, Without};
@@ -31,7 +32,7 @@ type OfScene = Or<(
 /// had it first keeps it; among those that appear in the same frame, the one with the lower index.
 pub(super) fn assign_scene_ids(
     changed: Query<(), Changed<SceneId>>,
-    missing: Query<Entity, (OfScene, Without<SceneId>)>,
+    missing: Query<Entity, (OfScene, Without<SceneId>, Without<NotTraced>)>,
     ids: Query<(Entity, &SceneId)>,
     mut known: ResMut<IdOwners>,
     mut commands: Commands,

@@ -2,12 +2,12 @@ use super::mesh_data::{MeshCopy, MeshFault, trace_mesh};
 use super::traced::Draft;
 use super::tree_building::{Built, TreeBuilding, TreeThreads};
 use crate::bvh::{self, BuildOptions, Builder, Levels};
-use crate::scene::{self, RenderSettings};
+use crate::scene::{self, NotTraced, RenderSettings};
 use crate::trace;
 use bevy::asset::{AssetEvent, AssetId, Assets};
 use bevy::ecs::lifecycle::RemovedComponents;
 use bevy::ecs::message::MessageReader;
-use bevy::ecs::query::Changed;
+use bevy::ecs::query::{Changed, Without};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Query, Res, ResMut};
 use bevy::mesh::{Mesh, Mesh3d};
@@ -95,8 +95,8 @@ impl TracedMeshes {
 pub(super) fn sync_meshes(
     mut events: MessageReader<AssetEvent<Mesh>>,
     mut removed: RemovedComponents<Mesh3d>,
-    changed: Query<(), Changed<Mesh3d>>,
-    users: Query<&Mesh3d>,
+    changed: Query<(), (Changed<Mesh3d>, Without<NotTraced>)>,
+    users: Query<&Mesh3d, Without<NotTraced>>,
     assets: Res<Assets<Mesh>>,
     settings: Res<RenderSettings>,
     building: Res<TreeBuilding>,

@@ -1,15 +1,31 @@
-//! The traced picture in a Bevy camera. The only room that knows Bevy's renderer.
+//! The traced picture in a Bevy camera, and what is drawn over it. The only room that knows Bevy's
+//! renderer.
 //!
 //! | plugin | does |
 //! |---|---|
 //! | [`TracedViewPlugin`] | a camera with [`TracedView`] shows what the tracer draws of it |
+//! | [`StandardMappingPlugin`] | a scene of Bevy's own materials and lights is traced |
+//! | [`TracedPickingPlugin`] | pointers pick what the tracer hits |
+//! | [`LinesPlugin`] | sets of lines, by Bevy's retained gizmos |
+//! | [`RasterPlugin`] | a scene of our components is seen in Bevy's renderer too |
+//! | [`SymbolsPlugin`] | lights, cameras and outlines |
 //!
-//! [`GlassboxPlugins`] adds them to any Bevy app, with what they need.
+//! [`GlassboxPlugins`] adds the first four to any Bevy app, with what they need.
 
 mod darkroom;
+pub mod lines;
+mod pick;
+pub mod raster;
 mod screen;
+mod standard;
+mod symbols;
 mod traced;
 
+pub use lines::{DrawnLines, Line, LinesPlugin};
+pub use pick::{Picked, TracedPickingPlugin, pick};
+pub use raster::{RASTER_LAYER, RasterPlugin};
+pub use standard::{StandardMappingPlugin, phong};
+pub use symbols::{Outlined, SymbolOf, Symbols, SymbolsPlugin, nearest_symbol};
 pub use traced::{PrintInfo, TracedRender, TracedView, TracedViewPlugin, traced_camera};
 
 use crate::io::IoPlugin;
@@ -26,8 +42,11 @@ impl PluginGroup for GlassboxPlugins {
         PluginGroupBuilder::start::<Self>()
             .add(ScenePlugin)
             .add(IoPlugin)
+            .add(StandardMappingPlugin)
             .add(SyncPlugin)
             .add(screen::ScreenPlugin)
             .add(TracedViewPlugin)
+            .add(TracedPickingPlugin)
+            .add(LinesPlugin)
     }
 }

@@ -4,6 +4,7 @@
 //! It is drawn first of all transparent things: after the rasterised scene, which it covers where
 //! it shows, and before the gizmos.
 
+use crate::scene::NotTraced;
 use bevy::asset::{Asset, Assets, Handle, RenderAssetUsages, embedded_asset};
 use bevy::camera::visibility::{NoFrustumCulling, RenderLayers};
 use bevy::image::{Image, ImageSampler, TextureFormatPixelInfo};
@@ -107,7 +108,7 @@ pub(super) fn spawn_screen(
     .with_inserted_indices(Indices::U32(vec![0, 1, 2, 0, 2, 3]));
     let handle = materials.add(material);
     let entity = commands.spawn((
-        Screen,
+        (Screen, NotTraced),
         Mesh3d(meshes.add(mesh)),
         MeshMaterial3d(handle.clone()),
         NoFrustumCulling,

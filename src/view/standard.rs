@@ -1,0 +1,285 @@
+//! A scene of Bevy's own materials and lights, traced.
+//!
+//! Each component that Bevy knows gets ours beside it, and they are kept in step:
+//!
+//! | Bevy's | ours |
+//! |---|---|
+//! | `StandardMaterial` | [`Phong`] and [`PhongMaps`]: kd = base colour · (1 - metallic); ks = base colour · metallic + 0.16 · reflectance² · (1 - metallic); s = 2/α² - 2 with α = roughness² (Beckmann's, Walter et al. 2007), 1 to 10,000; d = the base colour's alpha, but 1 where the alpha mode is opaque; ke = emissive; the base colour's texture takes kd's place (it is not multiplied) |
+//! | `PointLight` | [`PointLamp`] of lumens / 4π · E |
+//! | `SpotLight` | the same, with its cone |
+//! | `DirectionalLight` | [`DirectionalLamp`] of lux · E |
+//! | `RectLight` | [`ParallelogramLamp`] of lumens / (π · area) · E, unseen by the camera |
+//!
+//! E = 1 / (1.2 · 2^ev100) is what Bevy's cameras multiply light by, at their default exposure
+//! ([`Exposure`]'s, ev100 9.7): a picture is as bright as Bevy's. Light from the surroundings
+//! (ambient light, light probes), fog, decals and post-processing have nothing that they could
+//! become. Textures have to be in the main world (`RenderAssetUsages::MAIN_WORLD`), as Bevy's
+//! loaders keep them by default.
+
+use super::raster::{RasterTwin, WearsRaster};
+use crate::scene::{
+    Cone, DirectionalLamp, NotTraced, ParallelogramLamp, Phong, PhongMaps, PointLamp,
+};
+use bevy::asset::{AssetEvent, Assets};
+use bevy::camera::Exposure;
+use bevy::color::{Alpha, LinearRgba};
+use bevy::light::{DirectionalLight, PointLight, RectLight, SpotLight};
+use bevy::math::Vec3;
+use bevy::pbr::{MeshMaterial3d, StandardMaterial};
+use bevy::platform::collections::HashSet;
+use bevy::prelude::{
+    AlphaMode, App, Changed, Commands, Component, Entity, IntoScheduleConfigs, MessageReader,
+    Plugin, PostUpdate, Query, RemovedComponents, Res, With, Without,
+};
+use std::f32::consts::PI;
+
+/// Keeps ours beside Bevy's. The table is in the module's documentation.
+pub struct StandardMappingPlugin;
+
+impl Plugin for StandardMappingPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_systems(
+            PostUpdate,
+            (
+                map_materials,
+                map_lights::<PointLight, PointLamp>,
+                map_lights::<SpotLight, PointLamp>,
+                map_lights::<DirectionalLight, DirectionalLamp>,
+                map_lights::<RectLight, ParallelogramLamp>,
+            )
+                .before(crate::sync::SyncSystems),
+        );
+    }
+}
+
+/// The narrowest highlight that is told from a mirror.
+const MOST_SHININESS: f32 = 10_000.0;
+
+/// A material of Bevy's as ours.
+pub fn phong(material: &StandardMaterial) -> (Phong, PhongMaps) {
+    let base = LinearRgba::from(material.base_color);
+    let metallic = material.metallic.clamp(0.0, 1.0);
+    let dielectric = 0.16 * material.reflectance * material.reflectance * (1.0 - metallic);
+    let alpha = material.perceptual_roughness * material.perceptual_roughness;
+    let shininess = 2.0 / (alpha * alpha).max(1e-8) - 2.0;
+    let opaque = matches!(material.alpha_mode, AlphaMode::Opaque);
+    let color = |v: Vec3| LinearRgba::rgb(v.x, v.y, v.z);
+    let kd = base.to_vec3() * (1.0 - metallic);
+    let ks = base.to_vec3() * metallic + Vec3::splat(dielectric);
+    let phong = Phong {
+        diffuse: color(kd.clamp(Vec3::ZERO, Vec3::ONE)),
+        specular: color(ks.clamp(Vec3::ZERO, Vec3::ONE)),
+        shininess: shininess.clamp(1.0, MOST_SHININESS),
+        opacity: if opaque {
+            1.0
+        } else {
+            base.alpha().clamp(0.0, 1.0)
+        },
+        emission: material.emissive,
+        ..Phong::default()
+    };
+    let maps = PhongMaps {
+        diffuse: material.base_color_texture.clone(),
+        opacity: None,
+    };
+    (phong, maps)
+}
+
+fn map_materials(
+    mut commands: Commands,
+    assets: Res<Assets<StandardMaterial>>,
+    mut events: MessageReader<AssetEvent<StandardMaterial>>,
+    edited: Query<Entity, Changed<MeshMaterial3d<StandardMaterial>>>,
+    objects: Query<
+        (
+            Entity,
+            &MeshMaterial3d<StandardMaterial>,
+            Option<&Phong>,
+            Option<&PhongMaps>,
+        ),
+        (Without<WearsRaster>, Without<NotTraced>),
+    >,
+    mut gone: RemovedComponents<MeshMaterial3d<StandardMaterial>>,
+) {
+    for entity in gone.read() {
+        if let Ok(mut entity) = commands.get_entity(entity) {
+            entity.try_remove::<(Phong, PhongMaps)>();
+        }
+    }
+    let changed: HashSet<_> = events
+        .read()
+        .filter_map(|event| match event {
+            AssetEvent::Added { id } | AssetEvent::Modified { id } => Some(*id),
+            _ => None,
+        })
+        .collect();
+    let mut map = |entity| {
+        let Ok((entity, handle, before, maps_before)) = objects.get(entity) else {
+            return;
+        };
+        let Some(material) = assets.get(&handle.0) else {
+            return;
+        };
+        let (phong, maps) = phong(material);
+        if before != Some(&phong) || maps_before != Some(&maps) {
+            commands.entity(entity).insert((phong, maps));
+        }
+    };
+    if changed.is_empty() {
+        edited.iter().for_each(&mut map);
+    } else {
+        let worn = objects
+            .iter()
+            .filter(|(_, worn, ..)| changed.contains(&worn.0.id()));
+        let worn: Vec<Entity> = worn.map(|(entity, ..)| entity).collect();
+        worn.into_iter().chain(&edited).for_each(&mut map);
+    }
+}
+
+/// A light of Bevy's that one of ours can stand for.
+trait Maps<Ours>: Component {
+    fn map(&self) -> Ours;
+}
+
+/// What Bevy's cameras multiply light by, unless told otherwise.
+fn exposure() -> f32 {
+    Exposure::default().exposure()
+}
+
+/// W/sr for the lumens of a light that shines all around.
+fn intensity(lumens: f32) -> f32 {
+    lumens / (4.0 * PI) * exposure()
+}
+
+impl Maps<PointLamp> for PointLight {
+    fn map(&self) -> PointLamp {
+        PointLamp {
+            color: self.color.into(),
+            intensity: intensity(self.intensity),
+            cone: None,
+        }
+    }
+}
+
+impl Maps<PointLamp> for SpotLight {
+    fn map(&self) -> PointLamp {
+        PointLamp {
+            color: self.color.into(),
+            intensity: intensity(self.intensity),
+            cone: Some(Cone {
+                inner: self.inner_angle,
+                outer: self.outer_angle,
+            }),
+        }
+    }
+}
+
+impl Maps<DirectionalLamp> for DirectionalLight {
+    fn map(&self) -> DirectionalLamp {
+        DirectionalLamp {
+            color: self.color.into(),
+            intensity: self.illuminance * exposure(),
+            ..DirectionalLamp::default()
+        }
+    }
+}
+
+impl Maps<ParallelogramLamp> for RectLight {
+    fn map(&self) -> ParallelogramLamp {
+        let area = (self.width * self.height).max(f32::MIN_POSITIVE);
+        // It faces -Z, and ours faces where the product of its edges points.
+        ParallelogramLamp {
+            corner: Vec3::new(0.5 * self.width, -0.5 * self.height, 0.0),
+            edges: [Vec3::NEG_X * self.width, Vec3::Y * self.height],
+            colors: [self.color.into(); 4],
+            intensity: self.intensity / (PI * area) * exposure(),
+            visible: false,
+            ..ParallelogramLamp::default()
+        }
+    }
+}
+
+fn map_lights<Theirs: Maps<Ours>, Ours: Component + PartialEq>(
+    mut commands: Commands,
+    edited: Query<
+        (Entity, &Theirs, Option<&Ours>),
+        (Changed<Theirs>, Without<RasterTwin>, Without<NotTraced>),
+    >,
+    mut gone: RemovedComponents<Theirs>,
+    twins: Query<(), With<RasterTwin>>,
+) {
+    for entity in gone.read() {
+        if !twins.contains(entity)
+            && let Ok(mut entity) = commands.get_entity(entity)
+        {
+            entity.try_remove::<Ours>();
+        }
+    }
+    for (entity, theirs, before) in &edited {
+        let ours = theirs.map();
+        if before != Some(&ours) {
+            commands.entity(entity).insert(ours);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::color::Color;
+
+    #[test]
+    fn a_matte_material_is_matte_and_a_metal_mirrors_in_its_colour() {
+        let red = Color::LinearRgba(LinearRgba::rgb(0.8, 0.1, 0.1));
+        let (matte, _) = phong(&StandardMaterial {
+            base_color: red,
+            perceptual_roughness: 1.0,
+            reflectance: 0.0,
+            ..StandardMaterial::default()
+        });
+        assert_eq!(matte.diffuse, LinearRgba::rgb(0.8, 0.1, 0.1));
+        assert_eq!(matte.specular.to_vec3(), Vec3::ZERO);
+        assert_eq!(matte.shininess, 1.0);
+        let (metal, _) = phong(&StandardMaterial {
+            base_color: red,
+            metallic: 1.0,
+            perceptual_roughness: 0.1,
+            ..StandardMaterial::default()
+        });
+        assert_eq!(metal.diffuse.to_vec3(), Vec3::ZERO);
+        assert_eq!(metal.specular, LinearRgba::rgb(0.8, 0.1, 0.1));
+        assert_eq!(metal.shininess, MOST_SHININESS);
+    }
+
+    #[test]
+    fn a_rectangle_faces_where_bevys_does_and_sends_out_all_its_lumens() {
+        let light = RectLight {
+            width: 2.0,
+            height: 3.0,
+            intensity: 600.0,
+            ..RectLight::default()
+        };
+        let lamp = light.map();
+        let normal = lamp.edges[0].cross(lamp.edges[1]).normalize();
+        assert_eq!(normal, Vec3::NEG_Z);
+        let middle = lamp.corner + 0.5 * (lamp.edges[0] + lamp.edges[1]);
+        assert_eq!(middle, Vec3::ZERO);
+        // A cosine emitter's flux is π · radiance · area.
+        let flux = PI * lamp.intensity * 6.0 / exposure();
+        assert!((flux - 600.0).abs() < 1e-3, "{flux} lumens");
+    }
+
+    #[test]
+    fn an_opaque_material_is_opaque_whatever_its_alpha() {
+        let see_through = StandardMaterial {
+            base_color: Color::LinearRgba(LinearRgba::new(1.0, 1.0, 1.0, 0.25)),
+            ..StandardMaterial::default()
+        };
+        assert_eq!(phong(&see_through).0.opacity, 1.0);
+        let blended = StandardMaterial {
+            alpha_mode: AlphaMode::Blend,
+            ..see_through
+        };
+        assert_eq!(phong(&blended).0.opacity, 0.25);
+    }
+}
