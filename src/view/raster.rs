@@ -19,7 +19,7 @@ use crate::scene::{
 use bevy::asset::{Assets, Handle};
 use bevy::camera::Exposure;
 use bevy::camera::visibility::{InheritedVisibility, RenderLayers, Visibility};
-use bevy::color::{Color, LinearRgba};
+use bevy::color::{Color, ColorToComponents, LinearRgba};
 use bevy::light::{DirectionalLight, PointLight, SpotLight};
 use bevy::math::{Quat, Vec3};
 use bevy::mesh::Mesh3d;
@@ -72,7 +72,7 @@ pub(super) struct RasterMaterials(HashMap<Entity, Handle<StandardMaterial>>);
 pub(super) struct WearsRaster;
 
 /// A light of Bevy's that stands for one of ours.
-#[derive(Component)]
+#[derive(Component, Clone)]
 pub struct RasterTwin(Entity);
 
 /// Ours to Bevy's.
@@ -144,14 +144,14 @@ fn give_materials(
     let mut added = false;
     for (entity, phong, maps) in &edited {
         let material = standard_material(phong, maps);
-        let known = materials.0.get(&entity);
-        match known.and_then(|handle| assets.get_mut(handle)) {
-            Some(mut asset) => *asset = material,
-            None => {
-                materials.0.insert(entity, assets.add(material));
-                added = true;
-            }
+        if let Some(known) = materials.0.get(&entity)
+            && let Some(mut asset) = assets.get_mut(known)
+        {
+            *asset = material;
+            continue;
         }
+        materials.0.insert(entity, assets.add(material));
+        added = true;
     }
     let mut dress = |entity, shared: Option<&UsesMaterial>, worn: Option<&MeshMaterial3d<_>>| {
         let shared = shared.and_then(|shared| materials.0.get(&shared.0));

@@ -22,7 +22,7 @@ use crate::scene::{
 };
 use bevy::asset::{AssetEvent, Assets};
 use bevy::camera::Exposure;
-use bevy::color::{Alpha, LinearRgba};
+use bevy::color::{Alpha, ColorToComponents, LinearRgba};
 use bevy::light::{DirectionalLight, PointLight, RectLight, SpotLight};
 use bevy::math::Vec3;
 use bevy::pbr::{MeshMaterial3d, StandardMaterial};

@@ -10,7 +10,7 @@ use crate::scene::{
 use bevy::camera::Camera;
 use bevy::camera::primitives::Aabb;
 use bevy::camera::visibility::InheritedVisibility;
-use bevy::color::LinearRgba;
+use bevy::color::{ColorToComponents, LinearRgba};
 use bevy::math::{Affine3A, Vec2, Vec3, Vec3A};
 use bevy::platform::collections::{HashMap, HashSet};
 use bevy::prelude::{
