@@ -11,3 +11,5 @@ mod files;
 mod film;
 mod hard_cases;
 mod trees;
+#[cfg(feature = "editor")]
+mod window;

@@ -35,8 +35,12 @@ use std::process::ExitCode;
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
-    /// Scene file or built-in scene to show (default: cornell-box)
+    /// Scene file or built-in scene to open (default: cornell-box)
     scene: Option<PathBuf>,
+    /// Play this file's clicks and keys in the window
+    #[cfg(feature = "editor")]
+    #[arg(long, value_name = "FILE")]
+    script: Option<PathBuf>,
 }
 
 #[derive(Subcommand)]
@@ -58,20 +62,24 @@ enum Command {
 /// Runs the command line of this process.
 pub fn run() -> ExitCode {
     match execute(std::env::args_os()) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(code) => code,
         Err(failure) => failure.report(),
     }
 }
 
-fn execute(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure> {
-    let Cli { command, scene } = Cli::try_parse_from(arguments)?;
-    match command {
-        None => welcome::run(scene),
-        Some(Command::Render(render)) => render::run(render),
-        Some(Command::Merge(merge)) => merge::run(merge),
-        Some(Command::Bvh(bvh)) => bvh::run(bvh),
-        Some(Command::Scenes) => scenes::run(),
-        Some(Command::Convert(convert)) => convert::run(convert),
-        Some(Command::Bench(bench)) => bench::run(bench),
+fn execute(arguments: impl IntoIterator<Item = OsString>) -> Result<ExitCode, Failure> {
+    let cli = Cli::try_parse_from(arguments)?;
+    match cli.command {
+        #[cfg(feature = "editor")]
+        None => return welcome::run(cli.scene, cli.script.as_deref()),
+        #[cfg(not(feature = "editor"))]
+        None => welcome::run(cli.scene)?,
+        Some(Command::Render(render)) => render::run(render)?,
+        Some(Command::Merge(merge)) => merge::run(merge)?,
+        Some(Command::Bvh(bvh)) => bvh::run(bvh)?,
+        Some(Command::Scenes) => scenes::run()?,
+        Some(Command::Convert(convert)) => convert::run(convert)?,
+        Some(Command::Bench(bench)) => bench::run(bench)?,
     }
+    Ok(ExitCode::SUCCESS)
 }

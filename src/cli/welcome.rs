@@ -1,19 +1,64 @@
-//! `glassbox` without a command: until there is a window, it says what it can do and shows it.
+//! `glassbox` without a command: opens the editor. Where there can be no window it says so, and shows
+//! what it can do without one.
 
 use super::Failure;
+#[cfg(not(feature = "editor"))]
 use super::output::say;
+#[cfg(feature = "editor")]
+use super::output::tell;
 use super::render::{Render, run as render};
 use super::settings::SettingArgs;
 use super::stage::SceneArgs;
 use super::stop::StopArgs;
 use super::view::ViewArgs;
+#[cfg(feature = "editor")]
+use crate::editor::{self, NoWindow, Script};
+#[cfg(feature = "editor")]
+use crate::io::SceneSource;
 use crate::io::builtin::DEFAULT;
 use std::path::{Path, PathBuf};
+#[cfg(feature = "editor")]
+use std::process::ExitCode;
 
+/// Opens the editor, and plays a script in it.
+///
+/// Without a display the scene is rendered to a file instead. A script, and a display without a
+/// graphics adapter, are errors then: someone waits for a window.
+#[cfg(feature = "editor")]
+pub(super) fn run(scene: Option<PathBuf>, script: Option<&Path>) -> Result<ExitCode, Failure> {
+    let script = script.map(Script::read).transpose();
+    let script = script.map_err(|error| Failure::System(error.to_string()))?;
+    match editor::check() {
+        Ok(()) => {
+            let scene = scene.unwrap_or_else(|| PathBuf::from(DEFAULT));
+            Ok(editor::run(SceneSource::named(scene), script))
+        }
+        Err(no_window @ (NoWindow::Display(_) | NoWindow::Library(_))) if script.is_none() => {
+            let instead = match no_window {
+                NoWindow::Display(_) => {
+                    "; a display is needed, on Debian xvfb is one without a screen"
+                }
+                _ => "",
+            };
+            tell(
+                "note",
+                format_args!(
+                    "{no_window}{instead}. What follows is `glassbox render`, which needs none"
+                ),
+            );
+            show(scene)?;
+            Ok(ExitCode::SUCCESS)
+        }
+        Err(no_window) => Err(Failure::System(no_window.to_string())),
+    }
+}
+
+/// Says what can be done, and shows it.
+#[cfg(not(feature = "editor"))]
 pub(super) fn run(scene: Option<PathBuf>) -> Result<(), Failure> {
     say(format_args!(
         "Glassbox {}: a scene editor whose ray tracer you can see into.\n\
-         There is no window yet; these commands work without one:\n\
+         This build has no window; these commands work without one:\n\
          \x20 glassbox render SCENE -o OUT   a scene to a picture (.png, .jpg, .exr, .hdr)\n\
          \x20 glassbox merge PART… -o OUT    parts of a picture's samples to one picture\n\
          \x20 glassbox scenes                the built-in scenes\n\
@@ -23,6 +68,11 @@ pub(super) fn run(scene: Option<PathBuf>) -> Result<(), Failure> {
          Each explains itself with --help.",
         env!("CARGO_PKG_VERSION")
     ))?;
+    show(scene)
+}
+
+/// Renders a scene to a picture in the working folder.
+fn show(scene: Option<PathBuf>) -> Result<(), Failure> {
     let scene = scene.unwrap_or_else(|| PathBuf::from(DEFAULT));
     let output = picture_name(&scene);
     render(Render {

@@ -49,6 +49,10 @@ pub enum Action {
     ToggleProjection,
     /// Looks through this camera; `None`: freely again.
     LookThrough(Option<SceneId>),
+    /// Through the selected camera, or the first one; freely where it is looked through already.
+    ToggleCamera,
+    /// Whether moving the view moves the camera that it looks through.
+    ToggleLock,
     /// A camera entity where the view stands.
     AddBookmark,
     ShowRaster,
@@ -141,11 +145,19 @@ const fn ctrl_shift(key: KeyCode) -> Keys {
     }
 }
 
+const fn shift(key: KeyCode) -> Keys {
+    Keys {
+        ctrl: false,
+        shift: true,
+        key,
+    }
+}
+
 macro_rules! actions {
-    ($($action:ident $name:literal [$($keys:expr),*] $says:literal)*) => {
-        /// Every action without parameters.
+    ($($action:ident $(($with:expr))? $name:literal [$($keys:expr),*] $says:literal)*) => {
+        /// Every action that needs no further word.
         pub const ACTIONS: &[Entry] = &[$(Entry {
-            action: Action::$action,
+            action: Action::$action $(($with))?,
             name: $name,
             keys: &[$($keys),*],
             says: $says,
@@ -173,6 +185,14 @@ actions! {
     FrameSelected "Frame selected" [key(KeyCode::KeyF)] "Moves the view so that the selection fills it"
     FrameAll "Frame all" [key(KeyCode::Home)] "Moves the view so that the whole scene fills it"
     ToggleProjection "Perspective or orthographic" [key(KeyCode::Digit5), key(KeyCode::Numpad5)] "Orthographic: far things keep their size"
+    LookAlong(Axis::Front) "Front view" [key(KeyCode::Numpad1)] "Looks along -Z, without perspective"
+    LookAlong(Axis::Back) "Back view" [ctrl(KeyCode::Numpad1)] "Looks along +Z, without perspective"
+    LookAlong(Axis::Right) "Right view" [key(KeyCode::Numpad3)] "Looks along -X, without perspective"
+    LookAlong(Axis::Left) "Left view" [ctrl(KeyCode::Numpad3)] "Looks along +X, without perspective"
+    LookAlong(Axis::Top) "Top view" [key(KeyCode::Numpad7)] "Looks down, without perspective"
+    LookAlong(Axis::Bottom) "Bottom view" [ctrl(KeyCode::Numpad7)] "Looks up, without perspective"
+    ToggleCamera "Look through the camera" [key(KeyCode::Digit0), key(KeyCode::Numpad0)] "Through the selected camera, or the first one; again: freely. Moving the view leaves the camera"
+    ToggleLock "Lock the camera to the view" [ctrl_shift(KeyCode::KeyL)] "Moving the view moves the camera that it looks through"
     AddBookmark "Keep this view as a camera" [ctrl(KeyCode::KeyB)] "Adds a camera entity where the view stands"
     ShowRaster "Raster view" [key(KeyCode::Digit1)] "Bevy's renderer: quick, and an approximation"
     ShowTraced "Traced view" [key(KeyCode::Digit2)] "The ray tracer's picture"
@@ -184,7 +204,7 @@ actions! {
     Scale "Scale" [key(KeyCode::KeyT)] "Drag the cubes to scale the selection"
     ToggleLocal "World or local axes" [key(KeyCode::KeyL)] "Whether handles follow the world's axes or the object's own"
     ToggleSnap "Snap" [key(KeyCode::KeyN)] "Handles move in steps"
-    ToggleHelp "Keys and mouse" [key(KeyCode::F1)] "Shows every key"
+    ToggleHelp "Keys and mouse" [key(KeyCode::F1), shift(KeyCode::Slash)] "Shows every key"
 }
 
 impl Action {

@@ -14,20 +14,37 @@
 //! | [`viewport`] | the part of the window that shows the scene, and how |
 //! | `window` | the app: plugins, window, cameras |
 //! | `panels` | everything that egui draws |
+//! | [`navigation`] | moving the view |
+//! | [`handles`] | arrows, rings and points that are dragged |
+//! | `pointer`, `keys`, `pick` | what a press means, what a key means, what is under the pointer |
+//! | `pace` | how often the window is drawn |
+//! | `script` | clicks and keys from a file |
+//! | `startup` | whether there can be a window at all |
 
 pub mod action;
 pub mod edits;
+mod extent;
+pub mod handles;
 mod headless;
 pub mod history;
+mod keys;
+pub mod navigation;
 pub mod notice;
+mod pace;
 mod panels;
+mod pick;
+mod pointer;
 pub mod preferences;
+mod script;
 pub mod selection;
+mod startup;
 pub mod viewport;
 mod window;
 
 pub use action::Action;
 pub use headless::headless_editor;
+pub use script::{Script, ScriptError};
 pub use selection::Selection;
+pub use startup::{NoWindow, check};
 pub use viewport::Viewport;
 pub use window::run;

@@ -2,9 +2,15 @@
 
 use super::action::Action;
 use super::edits::EditsPlugin;
+use super::handles::HandlesPlugin;
 use super::history::HistoryPlugin;
+use super::keys::KeysPlugin;
+use super::navigation::NavigationPlugin;
 use super::notice::Notices;
+use super::pace::PacePlugin;
 use super::panels::PanelsPlugin;
+use super::pointer::PointerPlugin;
+use super::script::Script;
 use super::selection::Selection;
 use super::viewport::{EditorCamera, Viewport};
 use crate::io::{OpenOptions, SceneSource, open};
@@ -16,6 +22,7 @@ use bevy::camera::{Camera, Camera2d, ClearColorConfig, PerspectiveProjection, Pr
 use bevy::ecs::change_detection::DetectChangesMut;
 use bevy::ecs::query::With;
 use bevy::ecs::system::{Commands, Res, Single};
+use bevy::gizmos::transform_gizmo::TransformGizmoCamera;
 use bevy::math::Vec2;
 use bevy::prelude::IntoScheduleConfigs;
 use bevy::render::view::Msaa;
@@ -27,8 +34,8 @@ use std::process::ExitCode;
 /// The layer that holds the editor's user interface.
 const UI_LAYER: usize = 30;
 
-/// Opens the window with this scene, until it is closed.
-pub fn run(scene: SceneSource) -> ExitCode {
+/// Opens the window with this scene, until it is closed, and plays the script in it.
+pub fn run(scene: SceneSource, script: Option<Script>) -> ExitCode {
     let mut app = App::new();
     app.add_plugins(DefaultPlugins.set(WindowPlugin {
         primary_window: Some(Window {
@@ -45,6 +52,13 @@ pub fn run(scene: SceneSource) -> ExitCode {
         HistoryPlugin,
         EditsPlugin,
         PanelsPlugin,
+    ))
+    .add_plugins((
+        NavigationPlugin,
+        PointerPlugin,
+        KeysPlugin,
+        HandlesPlugin,
+        PacePlugin,
     ))
     .add_message::<Action>()
     .init_resource::<Selection>()
@@ -63,6 +77,10 @@ pub fn run(scene: SceneSource) -> ExitCode {
     if let Err(problem) = open(world, &scene, OpenOptions::default()) {
         world.resource_mut::<Notices>().fault(problem.to_string());
     }
+    super::navigation::start(world);
+    if let Some(script) = script {
+        script.play_in(&mut app);
+    }
     match app.run() {
         AppExit::Success => ExitCode::SUCCESS,
         AppExit::Error(code) => ExitCode::from(code.get()),
@@ -73,6 +91,7 @@ pub fn run(scene: SceneSource) -> ExitCode {
 fn spawn_cameras(mut commands: Commands) {
     commands.spawn((
         EditorCamera,
+        TransformGizmoCamera,
         TracedView::default(),
         Msaa::Off,
         raster::exposure(),
@@ -85,7 +104,8 @@ fn spawn_cameras(mut commands: Commands) {
         Msaa::Off,
         RenderLayers::layer(UI_LAYER),
         Camera {
-            order: 1,
+            // The handles' camera is between the two.
+            order: 2,
             clear_color: ClearColorConfig::None,
             ..Camera::default()
         },

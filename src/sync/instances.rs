@@ -59,6 +59,8 @@ impl Row {
 }
 
 type Moved = (
+    // What has a mesh and no number is no part of the scene: handles, for example.
+    With<SceneId>,
     With<Mesh3d>,
     Or<(
         Changed<Mesh3d>,

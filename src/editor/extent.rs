@@ -1,0 +1,211 @@
+//! How much room things take: for framing them, for pivots and for box selection.
+
+use crate::scene::{
+    DirectionalLamp, ParallelogramLamp, PointLamp, SceneCamera, SceneId, SegmentLamp,
+};
+use bevy::camera::primitives::Aabb;
+use bevy::ecs::entity::Entity;
+use bevy::ecs::hierarchy::ChildOf;
+use bevy::ecs::world::{EntityRef, World};
+use bevy::math::Vec3;
+use bevy::mesh::Mesh3d;
+use bevy::transform::components::{GlobalTransform, Transform};
+
+/// An axis-parallel box in the world's space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Extent {
+    pub least: Vec3,
+    pub most: Vec3,
+}
+
+impl Extent {
+    fn of_points(points: impl IntoIterator<Item = Vec3>) -> Option<Self> {
+        let mut extent: Option<Self> = None;
+        for point in points.into_iter().filter(|point| point.is_finite()) {
+            let so_far = extent.unwrap_or(Self {
+                least: point,
+                most: point,
+            });
+            extent = Some(Self {
+                least: so_far.least.min(point),
+                most: so_far.most.max(point),
+            });
+        }
+        extent
+    }
+
+    fn and(self, other: Self) -> Self {
+        Self {
+            least: self.least.min(other.least),
+            most: self.most.max(other.most),
+        }
+    }
+
+    /// The middle of the box.
+    pub fn centre(self) -> Vec3 {
+        0.5 * (self.least + self.most)
+    }
+
+    /// Half of the box's diagonal.
+    pub fn radius(self) -> f32 {
+        0.5 * (self.most - self.least).length()
+    }
+}
+
+/// The points that the lines of a lamp run between, in its own space; none for what is no area.
+pub(super) fn lamp_points(entity: EntityRef) -> Vec<Vec3> {
+    if let Some(lamp) = entity.get::<SegmentLamp>() {
+        return lamp.ends.to_vec();
+    }
+    let Some(lamp) = entity.get::<ParallelogramLamp>() else {
+        return Vec::new();
+    };
+    let [along, across] = lamp.edges;
+    [Vec3::ZERO, along, across, along + across]
+        .map(|offset| lamp.corner + offset)
+        .to_vec()
+}
+
+/// The room that an entity itself takes, without its children. `None` for what stands nowhere, and
+/// for an object whose mesh is not there yet.
+pub(super) fn own_extent(entity: EntityRef) -> Option<Extent> {
+    let world_from_own = entity.get::<GlobalTransform>()?.affine();
+    if let Some(aabb) = entity.get::<Aabb>().filter(|_| entity.contains::<Mesh3d>()) {
+        let corners = (0..8).map(|corner: u32| {
+            let side = |axis: u32| if corner >> axis & 1 == 1 { 1.0 } else { -1.0 };
+            let sides = Vec3::new(side(0), side(1), side(2));
+            Vec3::from(aabb.center) + sides * Vec3::from(aabb.half_extents)
+        });
+        return Extent::of_points(corners.map(|corner| world_from_own.transform_point3(corner)));
+    }
+    let points = lamp_points(entity);
+    if points.is_empty() {
+        return Extent::of_points([world_from_own.translation.into()]);
+    }
+    let points = points.into_iter();
+    Extent::of_points(points.map(|point| world_from_own.transform_point3(point)))
+}
+
+/// The room that these entities take with all that hangs on them. `None` where that is nothing.
+pub(super) fn extent_of(world: &mut World, ids: &[SceneId]) -> Option<Extent> {
+    let mut query = world.query::<(Entity, &SceneId)>();
+    let named: Vec<Entity> = query
+        .iter(world)
+        .filter(|(_, id)| ids.contains(id))
+        .map(|(entity, _)| entity)
+        .collect();
+    let mut all = world.query_filtered::<Entity, bevy::prelude::With<SceneId>>();
+    let entities: Vec<Entity> = all.iter(world).collect();
+    let hangs_on = |mut entity: Entity| {
+        loop {
+            if named.contains(&entity) {
+                return true;
+            }
+            match world.get::<ChildOf>(entity) {
+                Some(parent) => entity = parent.parent(),
+                None => return false,
+            }
+        }
+    };
+    let extents = entities
+        .iter()
+        .filter(|&&entity| hangs_on(entity))
+        .filter_map(|&entity| own_extent(world.get_entity(entity).ok()?));
+    extents.reduce(Extent::and)
+}
+
+/// The room that the scene's objects and area lights take; where there are none, that of the other
+/// lights and the cameras.
+pub(super) fn scene_extent(world: &mut World) -> Option<Extent> {
+    let mut all = world.query_filtered::<Entity, bevy::prelude::With<SceneId>>();
+    let entities: Vec<Entity> = all.iter(world).collect();
+    let refs = || entities.iter().filter_map(|&e| world.get_entity(e).ok());
+    let solid = |entity: &EntityRef| {
+        entity.contains::<Mesh3d>()
+            || entity.contains::<SegmentLamp>()
+            || entity.contains::<ParallelogramLamp>()
+    };
+    let other = |entity: &EntityRef| {
+        entity.contains::<PointLamp>()
+            || entity.contains::<DirectionalLamp>()
+            || entity.contains::<SceneCamera>()
+    };
+    let solids = refs().filter(solid).filter_map(own_extent);
+    solids.reduce(Extent::and).or_else(|| {
+        refs()
+            .filter(other)
+            .filter_map(own_extent)
+            .reduce(Extent::and)
+    })
+}
+
+/// From the space of an entity's parent to the world's, as the transforms are now.
+pub(super) fn world_from_parent(world: &World, entity: Entity) -> GlobalTransform {
+    let mut all = GlobalTransform::IDENTITY;
+    let mut next = world.get::<ChildOf>(entity).map(ChildOf::parent);
+    while let Some(parent) = next {
+        if let Some(transform) = world.get::<Transform>(parent) {
+            all = *transform * all;
+        }
+        next = world.get::<ChildOf>(parent).map(ChildOf::parent);
+    }
+    all
+}
+
+/// From an entity's space to the world's, as the transforms are now, not as they were when they
+/// were last propagated.
+pub(super) fn world_from_entity(world: &World, entity: Entity) -> Option<GlobalTransform> {
+    let own = *world.get::<Transform>(entity)?;
+    Some(world_from_parent(world, entity) * own)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_hangs_on_an_entity_counts_as_it() {
+        let mut world = World::new();
+        let at = |x: f32| {
+            let transform = Transform::from_xyz(x, 0.0, 0.0);
+            (transform, GlobalTransform::from(transform))
+        };
+        let parent = world
+            .spawn((SceneId(1), PointLamp::default(), at(1.0)))
+            .id();
+        world.spawn((SceneId(2), PointLamp::default(), at(5.0), ChildOf(parent)));
+        world.spawn((SceneId(3), PointLamp::default(), at(-9.0)));
+        let extent = extent_of(&mut world, &[SceneId(1)]).unwrap();
+        assert_eq!((extent.least.x, extent.most.x), (1.0, 5.0));
+        assert_eq!(extent_of(&mut world, &[SceneId(7)]), None);
+        let all = scene_extent(&mut world).unwrap();
+        assert_eq!((all.least.x, all.most.x), (-9.0, 5.0));
+    }
+
+    #[test]
+    fn a_segment_takes_the_room_between_its_ends() {
+        let mut world = World::new();
+        let transform = Transform::from_xyz(0.0, 2.0, 0.0).with_scale(Vec3::splat(4.0));
+        let lamp = world
+            .spawn((
+                SegmentLamp::default(),
+                transform,
+                GlobalTransform::from(transform),
+            ))
+            .id();
+        let extent = own_extent(world.entity(lamp)).unwrap();
+        assert_eq!(extent.centre(), Vec3::new(0.0, 2.0, 0.0));
+        assert_eq!(extent.radius(), 2.0);
+    }
+
+    #[test]
+    fn places_are_those_of_now_and_not_of_the_last_frame() {
+        let mut world = World::new();
+        let parent = world.spawn(Transform::from_xyz(1.0, 0.0, 0.0)).id();
+        let child = world
+            .spawn((Transform::from_xyz(0.0, 2.0, 0.0), ChildOf(parent)))
+            .id();
+        let place = world_from_entity(&world, child).unwrap().translation();
+        assert_eq!(place, Vec3::new(1.0, 2.0, 0.0));
+    }
+}

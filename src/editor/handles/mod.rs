@@ -1,0 +1,126 @@
+//! Handles: arrows, rings and cubes on what is selected, and points on the ends of segments and the
+//! corners of parallelograms.
+//!
+//! The arrows, rings and cubes are Bevy's own gizmo, which moves one transform: that of a
+//! stand-in. What the stand-in does, the selection does.
+
+mod bodies;
+mod gizmo;
+mod grips;
+mod overlay;
+
+pub(super) use gizmo::cancel;
+pub(super) use grips::{Grip, GripDrag, grip_at, grips_of_selection};
+
+use super::action::Action;
+use super::pointer::use_pointer;
+use bevy::app::{App, Plugin, PostStartup, PostUpdate, Startup, Update};
+use bevy::ecs::message::{MessageCursor, Messages};
+use bevy::ecs::resource::Resource;
+use bevy::ecs::system::Local;
+use bevy::ecs::world::World;
+use bevy::gizmos::transform_gizmo::{TransformGizmoPlugin, TransformGizmoSystems};
+use bevy::prelude::IntoScheduleConfigs;
+use bevy_egui::EguiPrimaryContextPass;
+use std::f32::consts::PI;
+
+/// What dragging the gizmo does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Tool {
+    /// Arrows.
+    #[default]
+    Move,
+    /// Rings.
+    Turn,
+    /// Cubes.
+    Scale,
+}
+
+/// How handles behave.
+#[derive(Resource, Clone, Debug, PartialEq)]
+pub struct Tools {
+    /// What dragging the gizmo does.
+    pub tool: Tool,
+    /// The gizmo follows the active object's axes instead of the world's.
+    pub local: bool,
+    /// Drags go in steps.
+    pub snap: bool,
+    /// Metres of a step.
+    pub move_step: f32,
+    /// Radians of a step.
+    pub turn_step: f32,
+    /// A step of the factor.
+    pub scale_step: f32,
+    /// The selection turns and scales around the middle of its places, instead of the active one's.
+    pub around_middle: bool,
+}
+
+impl Default for Tools {
+    fn default() -> Self {
+        Self {
+            tool: Tool::Move,
+            local: false,
+            snap: false,
+            move_step: 0.1,
+            turn_step: PI / 12.0,
+            scale_step: 0.1,
+            around_middle: true,
+        }
+    }
+}
+
+/// The point that the gizmo moves instead of the selected entities.
+#[derive(Resource, Default)]
+pub(super) struct ActiveGrip(pub Option<Grip>);
+
+/// Draws handles and lets them be dragged.
+pub(super) struct HandlesPlugin;
+
+impl Plugin for HandlesPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_plugins(TransformGizmoPlugin)
+            .init_resource::<Tools>()
+            .init_resource::<ActiveGrip>()
+            .init_resource::<gizmo::GizmoDrag>()
+            .add_systems(Startup, gizmo::spawn_stand_in)
+            .add_systems(PostStartup, overlay::leave_untraced)
+            .add_systems(
+                Update,
+                (
+                    obey,
+                    grips::forget_grips,
+                    gizmo::carry,
+                    gizmo::place_stand_in,
+                    gizmo::set_up,
+                )
+                    .chain()
+                    .after(use_pointer),
+            )
+            .configure_sets(
+                PostUpdate,
+                TransformGizmoSystems.run_if(gizmo::has_the_pointer),
+            )
+            .add_systems(
+                PostUpdate,
+                (gizmo::forget_hover, overlay::fit_overlay)
+                    .before(bevy::camera::CameraUpdateSystems),
+            )
+            .add_systems(EguiPrimaryContextPass, grips::draw_grips);
+    }
+}
+
+fn obey(world: &mut World, mut cursor: Local<MessageCursor<Action>>) {
+    let messages = world.resource::<Messages<Action>>();
+    let actions: Vec<Action> = cursor.read(messages).cloned().collect();
+    for action in actions {
+        let mut tools = world.resource_mut::<Tools>();
+        match action {
+            Action::Move => tools.tool = Tool::Move,
+            Action::Turn => tools.tool = Tool::Turn,
+            Action::Scale => tools.tool = Tool::Scale,
+            Action::ToggleLocal => tools.local = !tools.local,
+            Action::ToggleSnap => tools.snap = !tools.snap,
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! How often the window is drawn: as often as it can while a hand moves something, and seldom while
+//! there is nothing to see. On a machine without a graphics card each frame takes its time from the
+//! tracer.
+
+use super::history::Gesture;
+use super::pointer::PointerUse;
+use super::script::is_playing;
+use super::viewport::EditorCamera;
+use crate::film::State;
+use crate::view::TracedRender;
+use bevy::app::{App, Last, Plugin};
+use bevy::ecs::query::With;
+use bevy::ecs::world::World;
+use bevy::winit::{UpdateMode, WinitSettings};
+use std::time::{Duration, Instant};
+
+/// While the tracer has something new to show several times a second.
+const RENDERING: Duration = Duration::from_millis(50);
+/// While nothing changes: what works in the background is looked at this often.
+const RESTING: Duration = Duration::from_millis(250);
+/// How long a render counts as a new one: its first pictures come quickly.
+const FRESH: f64 = 0.5;
+/// How long after the start everything is drawn as often as it can be: shaders are compiled, sizes
+/// settle.
+const START: Duration = Duration::from_secs(2);
+
+/// Sets how often frames are drawn.
+pub(super) struct PacePlugin;
+
+impl Plugin for PacePlugin {
+    fn build(&self, app: &mut App) {
+        let started = Instant::now();
+        app.add_systems(Last, move |world: &mut World| set_pace(world, started));
+    }
+}
+
+fn set_pace(world: &mut World, started: Instant) {
+    let busy = world.resource::<Gesture>().active()
+        || !matches!(world.resource::<PointerUse>(), PointerUse::Free)
+        || is_playing(world)
+        || started.elapsed() < START;
+    let mut renders = world.query_filtered::<&TracedRender, With<EditorCamera>>();
+    let render = renders.iter(world).find_map(TracedRender::status);
+    let state = render.map(|status| (status.state, status.seconds));
+    let mode = mode(busy, state);
+    let mut settings = world.resource_mut::<WinitSettings>();
+    if settings.focused_mode != mode {
+        settings.focused_mode = mode;
+        // A window that is watched but not typed into is drawn alike.
+        settings.unfocused_mode = mode;
+    }
+}
+
+fn mode(busy: bool, render: Option<(State, f64)>) -> UpdateMode {
+    match render {
+        _ if busy => UpdateMode::Continuous,
+        Some((State::Running, seconds)) if seconds < FRESH => UpdateMode::Continuous,
+        Some((State::Running, _)) => UpdateMode::reactive_low_power(RENDERING),
+        _ => UpdateMode::reactive_low_power(RESTING),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::Ending;
+
+    #[test]
+    fn a_hand_or_a_new_render_is_shown_at_once_and_rest_costs_little() {
+        assert_eq!(mode(true, None), UpdateMode::Continuous);
+        assert_eq!(
+            mode(false, Some((State::Running, 0.1))),
+            UpdateMode::Continuous
+        );
+        let calm = mode(false, Some((State::Running, 3.0)));
+        assert_eq!(calm, UpdateMode::reactive_low_power(RENDERING));
+        let ended = mode(false, Some((State::Ended(Ending::Samples), 3.0)));
+        assert_eq!(ended, UpdateMode::reactive_low_power(RESTING));
+    }
+}

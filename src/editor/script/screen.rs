@@ -1,0 +1,49 @@
+//! Pictures of the window.
+
+use crate::io::replace_file;
+use bevy::ecs::observer::On;
+use bevy::ecs::resource::Resource;
+use bevy::ecs::system::ResMut;
+use bevy::ecs::world::World;
+use bevy::image::Image;
+use bevy::render::view::window::screenshot::{Screenshot, ScreenshotCaptured};
+use std::path::{Path, PathBuf};
+
+/// What became of the picture that was asked for last.
+#[derive(Resource, Default)]
+pub(super) struct Shot(Option<Result<(), String>>);
+
+impl Shot {
+    /// Once it is written, or cannot be.
+    pub fn take(&mut self) -> Option<Result<(), String>> {
+        self.0.take()
+    }
+}
+
+/// Writes what the window shows with the next frame.
+pub(super) fn shoot(world: &mut World, path: PathBuf) {
+    world.resource_mut::<Shot>().0 = None;
+    world.spawn(Screenshot::primary_window()).observe(
+        move |captured: On<ScreenshotCaptured>, mut shot: ResMut<Shot>| {
+            shot.0 = Some(write(&captured.image, &path));
+        },
+    );
+}
+
+fn write(image: &Image, path: &Path) -> Result<(), String> {
+    let picture = image
+        .clone()
+        .try_into_dynamic()
+        .map_err(|e| e.to_string())?;
+    let format = image::ImageFormat::from_path(path).map_err(|e| e.to_string())?;
+    let picture = picture.to_rgb8();
+    let written = replace_file(path, |file| {
+        // The encoders want to seek; a window's picture is small.
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        picture
+            .write_to(&mut bytes, format)
+            .map_err(std::io::Error::other)?;
+        std::io::Write::write_all(file, bytes.get_ref())
+    });
+    written.map_err(|error| error.to_string())
+}

@@ -1,0 +1,37 @@
+//! Scripts themselves: what is wrong in one, and a claim that does not hold.
+
+use super::Display;
+use crate::cli::texts;
+
+#[test]
+fn an_unknown_step_is_named_with_its_file_and_line() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let output = display.play(folder.path(), &[], "[\n  Wait(Frames(1)),\n  Jump(3),\n]");
+    let (_, err) = texts(&output);
+    assert_eq!(output.status.code(), Some(1), "{err}");
+    assert!(err.contains("script.ron:3: "), "{err}");
+    assert!(err.contains("Jump"), "{err}");
+}
+
+#[test]
+fn a_claim_that_does_not_hold_says_what_was_found() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let script = r#"[
+        Assert(path: "RenderSettings.spp", is: 16),
+        Assert(of: Some("Lamp"), path: "PointLamp.intensity", is: 0.5, within: 0.1),
+    ]"#;
+    let output = display.play(folder.path(), &["cornell-box"], script);
+    let (_, err) = texts(&output);
+    assert_eq!(output.status.code(), Some(1), "{err}");
+    assert!(
+        err.contains("script.ron:3: Lamp's PointLamp.intensity is 0.26")
+            && err.contains("0.5 ± 0.1"),
+        "{err}"
+    );
+}
