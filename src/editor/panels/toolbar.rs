@@ -3,6 +3,7 @@
 use super::says::Says;
 use super::state::Panels;
 use crate::editor::action::Action;
+use crate::editor::handles::{Tool, Tools};
 use crate::editor::viewport::{EditorCamera, Show, Viewport};
 use crate::film::views::View;
 use crate::scene::RenderSettings;
@@ -45,14 +46,15 @@ fn action_ui(ui: &mut Ui, world: &mut World, action: &Action, name: &str, on: bo
 }
 
 fn tools_ui(ui: &mut Ui, world: &mut World) {
-    for (action, name) in [
-        (Action::Move, "Move"),
-        (Action::Turn, "Turn"),
-        (Action::Scale, "Scale"),
-        (Action::ToggleLocal, "Local"),
-        (Action::ToggleSnap, "Snap"),
+    let tools = world.get_resource::<Tools>().cloned().unwrap_or_default();
+    for (action, name, on) in [
+        (Action::Move, "Move", tools.tool == Tool::Move),
+        (Action::Turn, "Turn", tools.tool == Tool::Turn),
+        (Action::Scale, "Scale", tools.tool == Tool::Scale),
+        (Action::ToggleLocal, "Local", tools.local),
+        (Action::ToggleSnap, "Snap", tools.snap),
     ] {
-        action_ui(ui, world, &action, name, false);
+        action_ui(ui, world, &action, name, on);
     }
 }
 
