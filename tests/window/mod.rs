@@ -5,6 +5,7 @@
 //! Where they are missing a test says so and passes, unless `GLASSBOX_NEEDS_WINDOW=1` is set.
 
 mod clicks;
+mod handling;
 mod pictures;
 mod scripts;
 mod startup;

@@ -15,7 +15,7 @@ fn without_display(folder: &std::path::Path) -> Command {
 
 fn says_so_and_renders(mut command: Command, folder: &std::path::Path, named: &str) {
     let output = finish({
-        command.arg("single-triangle");
+        command.arg("triangle");
         command
     });
     let (_, err) = texts(&output);
@@ -25,7 +25,7 @@ fn says_so_and_renders(mut command: Command, folder: &std::path::Path, named: &s
     assert!(first.contains(named), "{err}");
     assert!(first.contains("glassbox render"), "{err}");
     assert!(!err.contains("panicked"), "{err}");
-    assert_eq!(files(folder), ["single-triangle.png"]);
+    assert_eq!(files(folder), ["triangle.png"]);
 }
 
 #[test]

@@ -1,8 +1,10 @@
 //! Where the view stands, and the ways in which a hand moves it. Plain arithmetic: no window.
 
 use super::super::action::Axis;
+use bevy::ecs::reflect::ReflectResource;
 use bevy::ecs::resource::Resource;
 use bevy::math::{EulerRot, Quat, Vec2, Vec3};
+use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 use bevy::transform::components::Transform;
 use std::f32::consts::{FRAC_PI_2, PI};
 
@@ -17,7 +19,8 @@ const DISTANCE: [f32; 2] = [1e-4, 1e7];
 ///
 /// Turned about the vertical first, then up or down, then about its own axis, so that the horizon
 /// stays level however it is dragged.
-#[derive(Resource, Clone, Debug, PartialEq)]
+#[derive(Resource, Reflect, Clone, Debug, PartialEq)]
+#[reflect(Resource, Default, Clone, PartialEq, Debug)]
 pub struct Eye {
     /// What the view turns around.
     pub pivot: Vec3,

@@ -25,7 +25,6 @@ use bevy::camera::{
 };
 use bevy::ecs::entity::Entity;
 use bevy::ecs::message::{MessageCursor, Messages};
-use bevy::ecs::name::Name;
 use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Local, Res, ResMut, Single};
@@ -41,6 +40,9 @@ use bevy::window::{PrimaryWindow, Window};
 
 /// How much nearer one notch of the wheel goes.
 const NOTCH: f32 = 0.85;
+/// Frames after which a scene's places and sizes are known: one to resolve its meshes, one to place
+/// them, one to measure them.
+const SETTLE: u32 = 3;
 /// How much faster Shift flies.
 const FAST: f32 = 4.0;
 /// How far the pointer moves over the view before what is rendered first follows it, as a part of
@@ -52,12 +54,13 @@ pub(super) struct NavigationPlugin;
 
 impl Plugin for NavigationPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<Eye>()
+        app.register_type::<Eye>()
+            .init_resource::<Eye>()
             .init_resource::<LookThrough>()
             .init_resource::<FlySpeed>()
             .add_systems(
                 Update,
-                (obey, fly, see_through, aim_additions)
+                (obey, fly, see_through, settle, aim_additions)
                     .chain()
                     .after(super::pointer::use_pointer),
             )
@@ -79,6 +82,10 @@ pub struct LookThrough {
     pub locked: bool,
     /// What the view has taken over last.
     seen: Option<(SceneId, Transform, SceneProjection)>,
+    /// A drag of the locked camera is under way.
+    drags: bool,
+    /// Frames until the scene that was opened last has its places and sizes.
+    settles: u32,
 }
 
 /// How fast flying is, as a factor: the wheel changes it while flying.
@@ -91,25 +98,48 @@ impl Default for FlySpeed {
     }
 }
 
-/// Looks through the scene's first camera, or at all of the scene where it has none.
+/// For a scene that was just opened: looks through its first camera, or at all of it where it has
+/// none. Does nothing in an app that has no view.
 pub fn start(world: &mut World) {
+    if !world.contains_resource::<Eye>() {
+        return;
+    }
     let mut cameras = world.query_filtered::<&SceneId, With<SceneCamera>>();
-    let first = cameras
-        .iter(world)
-        .filter(|id| !id.is_unassigned())
-        .min()
-        .copied();
+    let cameras = cameras.iter(world).filter(|id| !id.is_unassigned());
+    let first = cameras.min().copied();
     *world.resource_mut::<LookThrough>() = LookThrough {
         camera: first,
+        locked: world.resource::<LookThrough>().locked,
+        settles: SETTLE,
         ..LookThrough::default()
     };
-    let aspect = aspect(world);
-    let pivot = scene_extent(world);
-    let mut eye = Eye::default();
-    if let Some(extent) = pivot {
-        eye.frame(extent.centre(), extent.radius(), aspect);
+    *world.resource_mut::<Eye>() = Eye::default();
+}
+
+/// Once the scene that was opened has its places and sizes, the pivot goes into its middle.
+fn settle(world: &mut World) {
+    let settles = world.resource::<LookThrough>().settles;
+    if settles == 0 {
+        return;
     }
-    *world.resource_mut::<Eye>() = eye;
+    world.resource_mut::<LookThrough>().settles = settles - 1;
+    if settles > 1 {
+        return;
+    }
+    let Some(extent) = scene_extent(world) else {
+        return;
+    };
+    if world.resource::<LookThrough>().camera.is_none() {
+        frame(world, true);
+        return;
+    }
+    let mut eye = world.resource_mut::<Eye>();
+    let forward = eye.forward();
+    let ahead = (extent.centre() - eye.position()).dot(forward);
+    if ahead > 1e-3 * extent.radius() && !eye.orthographic {
+        eye.pivot = eye.position() + forward * ahead;
+        eye.distance = ahead;
+    }
 }
 
 fn aspect(world: &World) -> f32 {
@@ -238,18 +268,22 @@ pub(super) fn begin_drag(world: &mut World) {
 /// A locked camera's drag is one step.
 fn begin_gesture(world: &mut World) {
     let through = world.resource::<LookThrough>();
-    let Some(id) = through.camera.filter(|_| through.locked) else {
+    let (Some(id), false) = (through.camera.filter(|_| through.locked), through.drags) else {
         return;
     };
-    let name = entity_of(world, id).and_then(|entity| world.get::<Name>(entity));
-    let name = name.map_or("the camera".to_owned(), |name| name.to_string());
+    if world.resource::<Gesture>().active() {
+        return;
+    }
+    let name = edits::name_of(world, id);
     world
         .resource_mut::<Gesture>()
         .begin(format!("Move {name}"));
+    world.resource_mut::<LookThrough>().drags = true;
 }
 
 fn end_gesture(world: &mut World) {
-    if world.resource::<Gesture>().active() {
+    if world.resource::<LookThrough>().drags {
+        world.resource_mut::<LookThrough>().drags = false;
         world.resource_mut::<Gesture>().end();
     }
 }
@@ -288,15 +322,13 @@ pub(super) fn wheel(world: &mut World, at: Vec2, notches: f32) {
     let ndc = Vec2::new(2.0 * place.x - 1.0, 1.0 - 2.0 * place.y);
     let aspect = aspect(world);
     let hit = super::pick::at(world, at).map(|picked| picked.point);
-    let gesture = world.resource::<Gesture>().active();
-    if !gesture {
-        begin_gesture(world);
-    }
+    let dragging = world.resource::<LookThrough>().drags;
+    begin_gesture(world);
     move_view(world, |eye| {
         let toward = hit.unwrap_or_else(|| eye.on_pivot_plane(ndc, aspect));
         eye.zoom(NOTCH.powf(notches), toward);
     });
-    if !gesture {
+    if !dragging {
         end_gesture(world);
     }
 }
@@ -466,9 +498,6 @@ fn add_bookmark(world: &mut World) {
 
 /// Follows the camera that is looked through.
 fn see_through(world: &mut World) {
-    if world.resource::<LookThrough>().camera.is_none() {
-        return;
-    }
     let Some(id) = world.resource::<LookThrough>().camera else {
         return;
     };

@@ -1,0 +1,136 @@
+//! Moving the view, and taking hold of things in it.
+
+use super::Display;
+
+fn plays(scene: &str, script: &str) {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    display.plays(folder.path(), &[scene], script);
+}
+
+#[test]
+fn the_view_is_turned_moved_and_looked_through_cameras_with() {
+    let script = r#"[
+        Wait(Frames(10)),
+        Assert(path: "Eye.yaw", is: 0, within: 1e-4),
+
+        // Turning leaves the camera, which stays where it was.
+        DragWith(Middle, View(0.5, 0.5), View(0.6, 0.45)),
+        AssertNot(path: "Eye.yaw", is: 0, within: 0.05),
+        Assert(of: Some("Camera"), path: "Transform.rotation", is: [0, 0, 0, 1], within: 1e-5),
+
+        // Along an axis, without perspective; a key toggles that.
+        Key("Numpad7"),
+        Assert(path: "Eye.orthographic", is: true),
+        Assert(path: "Eye.pitch", is: -1.5708, within: 1e-3),
+        Key("5"),
+        Assert(path: "Eye.orthographic", is: false),
+
+        // Through the camera again.
+        Key("0"),
+        Assert(path: "Eye.yaw", is: 0, within: 1e-4),
+        Assert(path: "Eye.pitch", is: 0, within: 1e-4),
+
+        // Locked, the camera comes along, and that is one step.
+        Key("Ctrl+Shift+L"),
+        DragWith(Middle, View(0.5, 0.5), View(0.6, 0.5)),
+        AssertNot(of: Some("Camera"), path: "Transform.rotation", is: [0, 0, 0, 1], within: 0.01),
+        Undoes("Move Camera"),
+        Key("Ctrl+Z"),
+        Assert(of: Some("Camera"), path: "Transform.rotation", is: [0, 0, 0, 1], within: 1e-5),
+        Key("Ctrl+Shift+L"),
+
+        // The wheel goes nearer.
+        Action(LookThrough(None)),
+        Move(View(0.5, 0.5)),
+        Wheel(3),
+        Action(AddBookmark),
+        Exists("Camera 2"),
+        AssertNot(of: Some("Camera 2"), path: "Transform.translation.z", is: 1.0796, within: 0.05),
+        Quit,
+    ]"#;
+    plays("cornell-box", script);
+}
+
+#[test]
+fn corners_of_a_light_are_dragged_one_by_one() {
+    let script = r#"[
+        Wait(Frames(10)),
+        Click(On("Ceiling light")),
+        Selected(["Ceiling light"]),
+        Drag(Grip("Ceiling light", 0), By(Grip("Ceiling light", 0), -30, 0)),
+        Undoes("Move a corner of Ceiling light"),
+        AssertNot(of: Some("Ceiling light"), path: "ParallelogramLamp.corner.x", is: -0.065, within: 0.01),
+        Assert(of: Some("Ceiling light"), path: "Transform.translation", is: [0, 0, 0]),
+        Key("Ctrl+Z"),
+        Assert(of: Some("Ceiling light"), path: "ParallelogramLamp.corner.x", is: -0.065, within: 1e-5),
+
+        // Escape takes a drag back before it ends.
+        Move(Grip("Ceiling light", 3)),
+        Press(Left),
+        Move(By(Grip("Ceiling light", 3), 40, 0)),
+        AssertNot(of: Some("Ceiling light"), path: "ParallelogramLamp.edges[0].x", is: 0, within: 0.005),
+        Key("Escape"),
+        Release(Left),
+        Assert(of: Some("Ceiling light"), path: "ParallelogramLamp.edges[0].x", is: 0, within: 1e-5),
+        Quit,
+    ]"#;
+    plays("cornell-box-parallelogram-light", script);
+}
+
+#[test]
+fn things_are_selected_by_clicks_and_boxes_and_moved_together() {
+    let script = r#"[
+        Wait(Frames(10)),
+        Click(On("Short block")),
+        Selected(["Short block"]),
+        Hold("Ctrl"),
+        Click(On("Mirror block")),
+        LetGo("Ctrl"),
+        Selected(["Short block", "Mirror block"]),
+
+        // Both at once, one step.
+        Drag(Handle(Y), By(Handle(Y), 0, -40)),
+        Undoes("Move 2 objects"),
+        AssertNot(of: Some("Short block"), path: "Transform.translation.y", is: 0, within: 0.01),
+        AssertNot(of: Some("Mirror block"), path: "Transform.translation.y", is: 0, within: 0.01),
+        Assert(of: Some("Mirror block"), path: "Transform.translation.x", is: 0, within: 1e-5),
+        Key("Ctrl+Z"),
+        Assert(of: Some("Short block"), path: "Transform.translation.y", is: 0),
+        Assert(of: Some("Mirror block"), path: "Transform.translation.y", is: 0),
+
+        // Turning and scaling.
+        Click(On("Short block")),
+        Key("E"),
+        Drag(Handle(Y), By(Handle(Y), 30, 0)),
+        Undoes("Turn Short block"),
+        Key("T"),
+        Drag(Handle(Y), By(Handle(Y), 0, -30)),
+        Undoes("Scale Short block"),
+        AssertNot(of: Some("Short block"), path: "Transform.scale.y", is: 1, within: 0.05),
+        Assert(of: Some("Short block"), path: "Transform.scale.x", is: 1, within: 1e-5),
+
+        Key("Escape"),
+        Selected([]),
+        Quit,
+    ]"#;
+    plays("cornell-box", script);
+}
+
+#[test]
+fn keys_that_are_typed_into_a_field_are_not_meant_for_the_scene() {
+    let script = r#"[
+        Wait(Frames(10)),
+        Select(["Short block"]),
+        Click(Text("Search")),
+        Type("xh"),
+        Exists("Short block"),
+        Assert(of: Some("Short block"), path: "Visibility", is: "Inherited"),
+        Key("Delete"),
+        Exists("Short block"),
+        Quit,
+    ]"#;
+    plays("cornell-box", script);
+}
