@@ -8,6 +8,7 @@
 //! | module | does |
 //! |---|---|
 //! | [`action`] | what can be asked for, with names, keys and explanations in one table |
+//! | [`document`] | the open scene as a file: open, save, recover |
 //! | [`edits`] | what can be done to the scene |
 //! | [`history`] | undo and redo |
 //! | [`selection`] | which entities are meant |
@@ -16,6 +17,7 @@
 //! | `panels` | everything that egui draws |
 
 pub mod action;
+pub mod document;
 pub mod edits;
 mod headless;
 pub mod history;
