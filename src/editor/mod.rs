@@ -11,6 +11,7 @@
 //! | [`document`] | the open scene as a file: open, save, recover |
 //! | [`edits`] | what can be done to the scene |
 //! | [`history`] | undo and redo |
+//! | [`render_job`] | pictures to files while the editing goes on |
 //! | [`selection`] | which entities are meant |
 //! | [`viewport`] | the part of the window that shows the scene, and how |
 //! | `window` | the app: plugins, window, cameras |
@@ -24,6 +25,7 @@ pub mod history;
 pub mod notice;
 mod panels;
 pub mod preferences;
+pub mod render_job;
 pub mod selection;
 pub mod viewport;
 mod window;

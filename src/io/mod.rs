@@ -46,7 +46,7 @@ pub use import::{Imported, import};
 pub use limits::Limits;
 pub use open::{OpenOptions, Opened, SceneSource, open, open_empty};
 pub use part::{Merge, MergeError, Part, read_part, write_part};
-pub use picture::{PictureFormat, check_size, write_picture};
+pub use picture::{PictureFormat, check_size, write_picture, write_picture_with_notes};
 pub use problems::{LoadProblem, LoadProblems};
 #[cfg(feature = "editor")]
 pub(crate) use reload::{Reloaded, SourceFile, source_files};
