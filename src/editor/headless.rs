@@ -1,12 +1,19 @@
 //! The editor without a window, for whoever drives it by program.
 
+use super::document::DocumentPlugin;
 use super::edits::EditsPlugin;
 use super::history::HistoryPlugin;
+use super::render_job::RenderJobPlugin;
 use crate::app::headless_app_with;
 use bevy::app::App;
 
 /// Scenes, files, edits and undo, without a renderer, a window or an event loop: send
 /// [`Action`](super::Action)s and call `update`.
 pub fn headless_editor() -> App {
-    headless_app_with((HistoryPlugin, EditsPlugin))
+    headless_app_with((
+        HistoryPlugin,
+        EditsPlugin,
+        DocumentPlugin::default(),
+        RenderJobPlugin,
+    ))
 }

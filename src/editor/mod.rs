@@ -8,8 +8,10 @@
 //! | module | does |
 //! |---|---|
 //! | [`action`] | what can be asked for, with names, keys and explanations in one table |
+//! | [`document`] | the open scene as a file: open, save, recover |
 //! | [`edits`] | what can be done to the scene |
 //! | [`history`] | undo and redo |
+//! | [`render_job`] | pictures to files while the editing goes on |
 //! | [`selection`] | which entities are meant |
 //! | [`viewport`] | the part of the window that shows the scene, and how |
 //! | `window` | the app: plugins, window, cameras |
@@ -22,6 +24,7 @@
 //! | `startup` | whether there can be a window at all |
 
 pub mod action;
+pub mod document;
 pub mod edits;
 mod extent;
 pub mod handles;
@@ -35,6 +38,7 @@ mod panels;
 mod pick;
 mod pointer;
 pub mod preferences;
+pub mod render_job;
 mod script;
 pub mod selection;
 mod startup;

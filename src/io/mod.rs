@@ -32,6 +32,8 @@ mod part;
 mod picture;
 pub(crate) mod place;
 mod problems;
+#[cfg(feature = "editor")]
+mod reload;
 mod replace;
 mod save;
 mod scene_file;
@@ -44,8 +46,10 @@ pub use import::{Imported, import};
 pub use limits::Limits;
 pub use open::{OpenOptions, Opened, SceneSource, open, open_empty};
 pub use part::{Merge, MergeError, Part, read_part, write_part};
-pub use picture::{PictureFormat, check_size, write_picture};
+pub use picture::{PictureFormat, check_size, write_picture, write_picture_with_notes};
 pub use problems::{LoadProblem, LoadProblems};
+#[cfg(feature = "editor")]
+pub(crate) use reload::{Reloaded, SourceFile, source_files};
 pub use replace::check_writable;
 pub(crate) use replace::replace_file;
 pub use save::save;

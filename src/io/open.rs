@@ -371,3 +371,30 @@ pub(super) fn resolve(world: &mut World) {
         }
     }
 }
+
+/// Tries again what could not be loaded.
+#[cfg(feature = "editor")]
+pub(super) fn retry(world: &mut World) {
+    use bevy::ecs::change_detection::DetectChangesMut;
+    let mut failed: Vec<(Option<Entity>, &str)> = Vec::new();
+    if let Some(problems) = world.get_resource::<LoadProblems>() {
+        failed.extend(problems.problems.iter().map(|p| (p.entity, p.what)));
+    }
+    for (entity, _) in failed {
+        match entity {
+            Some(entity) => {
+                if let Some(mut source) = world.get_mut::<MeshSource>(entity) {
+                    source.set_changed();
+                }
+                if let Some(mut phong) = world.get_mut::<Phong>(entity) {
+                    phong.set_changed();
+                }
+            }
+            None => {
+                if let Some(mut environment) = world.get_resource_mut::<Environment>() {
+                    environment.set_changed();
+                }
+            }
+        }
+    }
+}

@@ -113,10 +113,7 @@ fn broken_text_on_the_clipboard_leaves_the_scene_as_it_was() {
     let mut app = editor("cornell-box");
     let before = SceneCopy::of(&mut app);
     for text in ["(", "", "hello", "(resources: {}, entities: {})"] {
-        let clipboard = Clipboard {
-            text: text.into(),
-            ..Clipboard::default()
-        };
+        let clipboard = Clipboard::of_text(app.world(), text);
         let pasted = edits::paste(app.world_mut(), &clipboard);
         assert!(pasted.is_err() || text.is_empty(), "{text}");
         app.update();

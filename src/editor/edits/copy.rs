@@ -32,6 +32,22 @@ pub struct Clipboard {
     shared: Vec<(SceneId, Phong)>,
 }
 
+impl Clipboard {
+    /// Text from elsewhere; its paths start from the open scene's folder.
+    pub fn of_text(world: &World, text: impl Into<String>) -> Self {
+        Self {
+            text: text.into(),
+            folder: scene_folder(world),
+            shared: Vec::new(),
+        }
+    }
+}
+
+fn scene_folder(world: &World) -> Folder {
+    let files = world.get_resource::<SceneFiles>();
+    files.map(|files| files.folder.clone()).unwrap_or_default()
+}
+
 /// Adds copies of entities and of what is below them, beside the originals. They share the
 /// originals' materials. Returns the new roots.
 pub fn duplicate(world: &mut World, ids: &[SceneId]) -> Vec<SceneId> {
@@ -120,13 +136,9 @@ pub fn copy(world: &mut World, ids: &[SceneId]) -> Result<Clipboard, FileError> 
         .collect();
     let text =
         SceneContent::of_entities(world, &entities, &placed)?.to_text(Path::new("clipboard"))?;
-    let folder = world
-        .get_resource::<SceneFiles>()
-        .map(|files| files.folder.clone())
-        .unwrap_or_default();
     Ok(Clipboard {
         text,
-        folder,
+        folder: scene_folder(world),
         shared,
     })
 }

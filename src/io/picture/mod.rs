@@ -6,7 +6,7 @@ mod write;
 
 pub(crate) use read::{PictureUse, decode_picture, read_picture};
 pub(crate) use write::encode_png;
-pub use write::write_picture;
+pub use write::{write_picture, write_picture_with_notes};
 
 use super::Limits;
 use super::error::{FileError, Problem};

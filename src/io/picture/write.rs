@@ -21,6 +21,19 @@ pub fn write_picture(
     height: u32,
     pixels: &[[f32; 3]],
 ) -> Result<(), FileError> {
+    write_picture_with_notes(path, width, height, pixels, &[])
+}
+
+/// The same with notes, a name and a text each: a PNG keeps them as international text, an OpenEXR
+/// file as attributes; JPEG and HDR have no place for them. A name is 1 to 79 letters, a text has no
+/// zeros in it.
+pub fn write_picture_with_notes(
+    path: &Path,
+    width: u32,
+    height: u32,
+    pixels: &[[f32; 3]],
+    notes: &[(&str, String)],
+) -> Result<(), FileError> {
     let format = PictureFormat::of(path)?;
     check_size(path, width.into(), height.into(), &Limits::default())?;
     let wrong_size = || {
@@ -46,11 +59,73 @@ pub fn write_picture(
     .ok_or_else(wrong_size)?;
     replace_file(path, |writer| {
         io_result(match format {
+            PictureFormat::Png if !notes.is_empty() => {
+                return write_png(writer, &picture, notes);
+            }
+            PictureFormat::Exr if !notes.is_empty() => {
+                return write_exr(writer, width, height, pixels, notes);
+            }
             PictureFormat::Jpeg => {
                 picture.write_with_encoder(JpegEncoder::new_with_quality(writer, JPEG_QUALITY))
             }
             _ => picture.write_to(writer, format.image_format()),
         })
+    })
+}
+
+fn write_png(
+    writer: impl io::Write,
+    picture: &DynamicImage,
+    notes: &[(&str, String)],
+) -> io::Result<()> {
+    let mut encoder = png::Encoder::new(writer, picture.width(), picture.height());
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    for (name, text) in notes {
+        encoder
+            .add_itxt_chunk((*name).to_owned(), text.clone())
+            .map_err(io::Error::other)?;
+    }
+    let mut writer = encoder.write_header().map_err(io::Error::other)?;
+    writer
+        .write_image_data(picture.as_bytes())
+        .and_then(|()| writer.finish())
+        .map_err(|error| match error {
+            png::EncodingError::IoError(error) => error,
+            other => io::Error::other(other),
+        })
+}
+
+fn write_exr(
+    writer: impl io::Write + io::Seek,
+    width: u32,
+    height: u32,
+    pixels: &[[f32; 3]],
+    notes: &[(&str, String)],
+) -> io::Result<()> {
+    use exr::prelude::*;
+    let mut attributes = LayerAttributes::default();
+    for (name, text) in notes {
+        let no_text = || io::Error::other(format!("the note {name} is no plain text"));
+        let name = Text::new_or_none(name).ok_or_else(no_text)?;
+        let text = Text::new_or_none(text).ok_or_else(no_text)?;
+        attributes.other.insert(name, AttributeValue::Text(text));
+    }
+    let size = (width as usize, height as usize);
+    let pixel = |at: Vec2<usize>| {
+        let [r, g, b] = pixels[at.y() * size.0 + at.x()];
+        (r, g, b)
+    };
+    let layer = Layer::new(
+        size,
+        attributes,
+        Encoding::FAST_LOSSLESS,
+        SpecificChannels::rgb(pixel),
+    );
+    let written = Image::from_layer(layer).write().to_buffered(writer);
+    written.map_err(|error| match error {
+        exr::error::Error::Io(error) => error,
+        other => io::Error::other(other.to_string()),
     })
 }
 
@@ -124,6 +199,43 @@ mod tests {
                     );
                 }
             }
+        }
+    }
+
+    #[test]
+    fn notes_are_kept_and_the_pixels_are_the_same() {
+        let folder = tempfile::tempdir().unwrap();
+        let notes = [
+            ("Software", "Glassbox".to_owned()),
+            ("Settings", "größe=4 a=b".into()),
+        ];
+        for name in ["a.png", "a.exr"] {
+            let (with, without) = (
+                folder.path().join(name),
+                folder.path().join(format!("b{name}")),
+            );
+            let pixels = PIXELS.map(|pixel| pixel.map(|v| if v.is_nan() { 0.0 } else { v }));
+            write_picture_with_notes(&with, 2, 2, &pixels, &notes).unwrap();
+            write_picture(&without, 2, 2, &pixels).unwrap();
+            let read = |path| image::open(path).unwrap().into_rgb32f();
+            assert_eq!(read(&with), read(&without), "{name}");
+        }
+        let png = png::Decoder::new(io::BufReader::new(
+            std::fs::File::open(folder.path().join("a.png")).unwrap(),
+        ));
+        let reader = png.read_info().unwrap();
+        let text: Vec<_> = reader
+            .info()
+            .utf8_text
+            .iter()
+            .map(|t| t.get_text().unwrap())
+            .collect();
+        assert_eq!(text, notes.clone().map(|(_, text)| text));
+        let exr = exr::meta::MetaData::read_from_file(folder.path().join("a.exr"), false).unwrap();
+        let kept = &exr.headers[0].own_attributes.other;
+        for (name, text) in notes {
+            let value = kept.get(&exr::meta::attribute::Text::from(name)).unwrap();
+            assert_eq!(value.to_text().unwrap().to_string(), text);
         }
     }
 

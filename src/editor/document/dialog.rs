@@ -1,0 +1,107 @@
+//! Asking for a file, without making the frame wait.
+
+use super::question::{Purpose, Question, chosen};
+use super::{Document, dialog_native, files};
+use bevy::ecs::resource::Resource;
+use bevy::ecs::world::World;
+use std::path::PathBuf;
+use std::sync::Mutex;
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// Nobody reads a dialog and closes it within this time: where one is gone so soon, there was none.
+const NO_DIALOG: Duration = Duration::from_millis(400);
+
+/// The native dialog that is open.
+#[derive(Resource, Default)]
+pub(super) struct Dialogs {
+    open: Option<OpenDialog>,
+    /// A native dialog was tried and did not appear.
+    broken: bool,
+}
+
+struct OpenDialog {
+    purpose: Purpose,
+    since: Instant,
+    choice: Mutex<Receiver<Option<PathBuf>>>,
+}
+
+/// Asks for a file: with the desktop's own dialog where there is one, else by a typed path.
+pub(super) fn ask(world: &mut World, purpose: Purpose) {
+    let suggestion = suggestion(world, purpose);
+    let mut dialogs = world.resource_mut::<Dialogs>();
+    if dialogs.open.is_some() {
+        return;
+    }
+    if !dialogs.broken && dialog_native::is_available() {
+        let (sender, receiver) = channel();
+        let start = suggestion.clone();
+        let thread = thread::Builder::new()
+            .name("file dialog".into())
+            .spawn(move || {
+                // It fails only where the editor has gone meanwhile.
+                let _ = sender.send(dialog_native::choose(purpose, &start));
+            });
+        if thread.is_ok() {
+            dialogs.open = Some(OpenDialog {
+                purpose,
+                since: Instant::now(),
+                choice: Mutex::new(receiver),
+            });
+            return;
+        }
+    }
+    ask_for_path(world, purpose, suggestion);
+}
+
+fn ask_for_path(world: &mut World, purpose: Purpose, suggestion: PathBuf) {
+    world.resource_mut::<Document>().question = Some(Question::Path {
+        purpose,
+        suggestion,
+    });
+}
+
+/// What a path is likely to begin with.
+fn suggestion(world: &World, purpose: Purpose) -> PathBuf {
+    let document = world.resource::<Document>();
+    match (purpose, &document.path) {
+        (Purpose::SaveAs, Some(path)) => path.clone(),
+        (Purpose::SaveAs, None) => {
+            let stem = document.name.split('.').next().unwrap_or("scene");
+            PathBuf::from(format!("{stem}.scn.ron"))
+        }
+        (_, Some(path)) => path
+            .parent()
+            .map(|folder| folder.join(""))
+            .unwrap_or_default(),
+        (_, None) => PathBuf::new(),
+    }
+}
+
+/// Goes on when a choice was made.
+pub(super) fn take_choices(world: &mut World) {
+    let mut dialogs = world.resource_mut::<Dialogs>();
+    let Some(open) = &mut dialogs.open else {
+        return;
+    };
+    let choice = match open.choice.get_mut() {
+        Ok(receiver) => receiver.try_recv(),
+        Err(_) => Err(TryRecvError::Disconnected),
+    };
+    if choice == Err(TryRecvError::Empty) {
+        return;
+    }
+    let (purpose, was_short) = (open.purpose, open.since.elapsed() < NO_DIALOG);
+    dialogs.open = None;
+    match choice {
+        // The desktop's dialog has asked whether to replace a file.
+        Ok(Some(path)) => files::request(world, &chosen(purpose, &path)),
+        _ if was_short => {
+            dialogs.broken = true;
+            let suggestion = suggestion(world, purpose);
+            ask_for_path(world, purpose, suggestion);
+        }
+        _ => world.resource_mut::<Document>().then = None,
+    }
+}

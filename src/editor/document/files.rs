@@ -1,0 +1,161 @@
+//! New, open, save, quit.
+
+use super::question::{Purpose, Question};
+use super::{Document, adopt, dialog, note_state_now};
+use crate::editor::action::Action;
+use crate::editor::edits;
+use crate::editor::history::{Gesture, History};
+use crate::editor::notice::Notices;
+use crate::editor::preferences::Preferences;
+use crate::editor::selection::Selection;
+use crate::io::{OpenOptions, Problem, SceneSource, open, open_empty, save};
+use bevy::app::AppExit;
+use bevy::ecs::world::World;
+use std::path::Path;
+
+/// Does what an action asks for, if it is about files, or asks first.
+pub(super) fn perform(world: &mut World, action: &Action) {
+    match action {
+        Action::New | Action::Open(_) | Action::Quit => request(world, action),
+        Action::OpenDialog => dialog::ask(world, Purpose::Open),
+        Action::ImportDialog => dialog::ask(world, Purpose::Import),
+        Action::SaveAsDialog => dialog::ask(world, Purpose::SaveAs),
+        Action::Save | Action::SaveAs(_) => perform_now(world, action),
+        _ => {}
+    }
+}
+
+/// Does it, unless unsaved changes would be lost: then that is asked.
+pub(super) fn request(world: &mut World, action: &Action) {
+    let loses = matches!(action, Action::New | Action::Open(_) | Action::Quit);
+    world.resource_mut::<Gesture>().end();
+    note_state_now(world);
+    if loses && world.resource::<Document>().unsaved {
+        let then = action.clone();
+        world.resource_mut::<Document>().question = Some(Question::Unsaved { then });
+    } else {
+        perform_now(world, action);
+    }
+}
+
+/// Does it.
+pub(super) fn perform_now(world: &mut World, action: &Action) {
+    match action {
+        Action::New => {
+            open_empty(world);
+            finish_opening(world, "Untitled".into(), None);
+        }
+        Action::Open(path) => open_file(world, path, false),
+        Action::Import(_) => {
+            edits::perform(world, action);
+        }
+        Action::Save => match world.resource::<Document>().path.clone() {
+            Some(path) => save_to(world, &path),
+            None => dialog::ask(world, Purpose::SaveAs),
+        },
+        Action::SaveAs(path) => save_to(world, path),
+        Action::Quit => {
+            world.write_message(AppExit::Success);
+        }
+        _ => {}
+    }
+}
+
+/// Whether saving writes back to such a file: a model's would lose most of a scene.
+pub(super) fn is_scene(path: &Path) -> bool {
+    let name = path
+        .file_name()
+        .map(|name| name.to_string_lossy().to_lowercase());
+    name.is_some_and(|name| name.ends_with(".scn.ron"))
+}
+
+/// Opens a file or a built-in scene; what is open stays open where that fails.
+pub(super) fn open_file(world: &mut World, path: &Path, allow_outside: bool) {
+    let source = SceneSource::named(path);
+    let is_file = matches!(source, SceneSource::File(_));
+    let options = OpenOptions {
+        allow_outside,
+        ..OpenOptions::default()
+    };
+    match open(world, &source, options) {
+        Ok(opened) => {
+            finish_opening(world, opened.name.clone(), is_file.then_some(path));
+            let mut notices = world.resource_mut::<Notices>();
+            for note in opened.notes {
+                notices.tell(format!("{}: {note}", opened.name));
+            }
+        }
+        Err(error)
+            if matches!(
+                error.problem,
+                Problem::RefersOutside { .. } | Problem::Outside
+            ) && !allow_outside =>
+        {
+            world.resource_mut::<Document>().question = Some(Question::Outside {
+                file: path.to_path_buf(),
+                says: error.to_string(),
+            });
+        }
+        Err(error) => {
+            if matches!(error.problem, Problem::NotFound)
+                && let Some(mut preferences) = world.get_resource_mut::<Preferences>()
+            {
+                preferences.forget(path);
+            }
+            world.resource_mut::<Notices>().fault(error.to_string());
+        }
+    }
+}
+
+fn finish_opening(world: &mut World, name: String, path: Option<&Path>) {
+    world.resource_mut::<Selection>().set([]);
+    adopt(world, name, path);
+    if let Some(path) = path {
+        remember(world, path);
+    }
+}
+
+fn remember(world: &mut World, path: &Path) {
+    if let Some(mut preferences) = world.get_resource_mut::<Preferences>() {
+        preferences.remember(path);
+    }
+}
+
+/// Writes the scene, and then does what was waiting for that. A model file is an export: the
+/// document stays the scene it was. Where writing fails the old file stays, and so does the
+/// document.
+pub(super) fn save_to(world: &mut World, path: &Path) {
+    world.resource_mut::<Gesture>().end();
+    note_state_now(world);
+    let then = world.resource_mut::<Document>().then.take();
+    let notes = match save(world, path) {
+        Ok(notes) => notes,
+        Err(error) => {
+            world.resource_mut::<Notices>().fault(error.to_string());
+            return;
+        }
+    };
+    let name = path
+        .file_name()
+        .map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let is_scene = is_scene(path);
+    let mut notices = world.resource_mut::<Notices>();
+    let verb = if is_scene { "Saved" } else { "Exported" };
+    notices.tell(format!("{verb} {}", path.display()));
+    for note in notes {
+        notices.tell(format!("{name}: {note}"));
+    }
+    if !is_scene {
+        return;
+    }
+    // Saving numbers what has no number yet.
+    note_state_now(world);
+    let state = world.resource::<History>().state();
+    world
+        .resource_mut::<Document>()
+        .opened(name, Some(path.to_path_buf()), state);
+    remember(world, path);
+    if let Some(then) = then {
+        perform_now(world, &then);
+    }
+}

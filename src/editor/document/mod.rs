@@ -1,0 +1,170 @@
+//! The open scene as a file: where it lies, whether it has changed, and what is asked before
+//! changes are lost.
+//!
+//! | module | does |
+//! |---|---|
+//! | `files` | new, open, save |
+//! | `question` | what a person has to decide, and what follows from the answer |
+//! | `dialog` | asks for a file: natively where that works, else by a typed path |
+//! | `recovery` | copies of unsaved work, and offering them after a crash |
+//! | `watch` | meshes and textures that change on disk |
+//! | `window` | the title, closing, and files dropped on it |
+
+mod dialog;
+mod dialog_native;
+mod files;
+mod question;
+mod recovery;
+mod watch;
+mod window;
+
+pub use question::{Answer, Purpose, Question, answer};
+pub use recovery::{Recovered, RecoveryFolder};
+
+use super::action::Action;
+use super::history::{History, commit};
+use super::notice::Notices;
+use crate::io::LoadProblems;
+use bevy::app::{App, Last, Plugin, Update};
+use bevy::ecs::change_detection::{DetectChanges, DetectChangesMut};
+use bevy::ecs::message::{MessageCursor, Messages};
+use bevy::ecs::resource::Resource;
+use bevy::ecs::schedule::IntoScheduleConfigs;
+use bevy::ecs::system::{Local, Res, ResMut};
+use bevy::ecs::world::World;
+use std::path::{Path, PathBuf};
+
+/// The open scene as a file.
+#[derive(Resource, Debug)]
+pub struct Document {
+    /// What the scene is called: its file's name, or the built-in scene's.
+    pub name: String,
+    /// Where saving writes. `None` for built-in scenes, models, and what was never saved.
+    pub path: Option<PathBuf>,
+    /// What has to be decided before anything else goes on.
+    pub question: Option<Question>,
+    /// [`History::state`] when it was last saved; `None` where no state of it was.
+    saved: Option<u64>,
+    unsaved: bool,
+    /// What was waiting for the scene to be saved.
+    then: Option<Action>,
+}
+
+impl Default for Document {
+    fn default() -> Self {
+        Self {
+            name: "Untitled".into(),
+            path: None,
+            question: None,
+            saved: None,
+            unsaved: false,
+            then: None,
+        }
+    }
+}
+
+impl Document {
+    /// Whether anything would be lost if it were closed now.
+    pub fn unsaved(&self) -> bool {
+        self.unsaved
+    }
+
+    /// For the window's title: the name, with an asterisk where something is unsaved.
+    pub fn title(&self) -> String {
+        let star = if self.unsaved { "*" } else { "" };
+        format!("{}{star} – Glassbox", self.name)
+    }
+
+    /// Another scene was opened, from this file or from none.
+    fn opened(&mut self, name: String, path: Option<PathBuf>, state: u64) {
+        self.name = name;
+        self.path = path;
+        self.saved = Some(state);
+        self.unsaved = false;
+        self.then = None;
+    }
+}
+
+/// New, open, save, quit; autosave, recovery, reloading, and what a window does with files. Needs
+/// [`HistoryPlugin`](super::history::HistoryPlugin) and [`EditsPlugin`](super::edits::EditsPlugin).
+#[derive(Default)]
+pub struct DocumentPlugin {
+    /// Where copies of unsaved work are kept; `None` keeps none.
+    pub recovery: Option<PathBuf>,
+}
+
+impl Plugin for DocumentPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<Document>()
+            .init_resource::<Notices>()
+            .init_resource::<dialog::Dialogs>()
+            .add_systems(Update, (dialog::take_choices, act).chain())
+            .add_systems(Last, (note_state, tell_load_problems));
+        if let Some(folder) = &self.recovery {
+            recovery::add_to(app, folder);
+        }
+        watch::add_to(app);
+        window::add_to(app);
+    }
+}
+
+fn act(world: &mut World, mut cursor: Local<MessageCursor<Action>>) {
+    let actions: Vec<Action> = {
+        let messages = world.resource::<Messages<Action>>();
+        cursor.read(messages).cloned().collect()
+    };
+    for action in &actions {
+        files::perform(world, action);
+    }
+}
+
+/// Says that the scene came from somewhere: for who opened it with [`io::open`](crate::io::open()).
+pub fn adopt(world: &mut World, name: impl Into<String>, path: Option<&Path>) {
+    super::history::reset(world);
+    let state = world.resource::<History>().state();
+    let path = path
+        .filter(|path| files::is_scene(path))
+        .map(Path::to_path_buf);
+    let mut document = world.resource_mut::<Document>();
+    document.opened(name.into(), path, state);
+    document.question = None;
+}
+
+/// Brings [`Document::unsaved`] up to date with the history.
+fn note_state(history: Res<History>, mut document: ResMut<Document>) {
+    let unsaved = document.saved != Some(history.state());
+    if document.unsaved != unsaved {
+        document.unsaved = unsaved;
+    }
+}
+
+/// The same at once.
+fn note_state_now(world: &mut World) {
+    commit(world);
+    let state = world.resource::<History>().state();
+    let mut document = world.resource_mut::<Document>();
+    let document = document.bypass_change_detection();
+    document.unsaved = document.saved != Some(state);
+}
+
+/// What could not be loaded is said once.
+fn tell_load_problems(
+    problems: Option<Res<LoadProblems>>,
+    mut told: Local<Vec<String>>,
+    mut notices: ResMut<Notices>,
+) {
+    let Some(problems) = problems.filter(|problems| problems.is_changed()) else {
+        return;
+    };
+    let now: Vec<String> = problems
+        .problems
+        .iter()
+        .map(|problem| format!("{}: {}", problem.what, problem.error))
+        .collect();
+    for text in &now {
+        if !told.contains(text) {
+            notices.fault(text.clone());
+        }
+    }
+    *told = now;
+}

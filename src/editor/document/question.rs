@@ -1,0 +1,126 @@
+//! What a person has to decide, and what follows.
+
+use super::files::{self, perform_now, save_to};
+use super::{Document, dialog, recovery};
+use crate::editor::action::Action;
+use bevy::ecs::world::World;
+use std::path::{Path, PathBuf};
+
+/// What has to be decided before anything else goes on.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Question {
+    /// Unsaved changes would be lost by this. Answers: `Yes` saves first, `No` loses them, `Cancel`.
+    Unsaved {
+        /// What was asked for.
+        then: Action,
+    },
+    /// A path to type, where there is no native dialog. Answers: `Path`, `Cancel`.
+    Path {
+        /// What for.
+        purpose: Purpose,
+        /// What to begin with.
+        suggestion: PathBuf,
+    },
+    /// Whether a file that exists is to be replaced. Answers: `Yes`, `Cancel`.
+    Replace {
+        /// The file.
+        file: PathBuf,
+        /// What writes it.
+        then: Action,
+    },
+    /// Whether a scene may refer to files outside its folder. Answers: `Yes`, `Cancel`.
+    Outside {
+        /// The scene.
+        file: PathBuf,
+        /// What it refers to.
+        says: String,
+    },
+    /// Whether work that was not saved before a crash is to be opened. Answers: `Yes`, `No` deletes
+    /// it, `Cancel` asks again next time.
+    Recover(recovery::Recovered),
+}
+
+/// What a path is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    /// A scene or a model to open.
+    Open,
+    /// Where to save the scene.
+    SaveAs,
+    /// A model to add to the scene.
+    Import,
+}
+
+/// What a person decided.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Answer {
+    /// Save, replace, allow, recover.
+    Yes,
+    /// Go on without saving; delete what could be recovered.
+    No,
+    /// Leave everything as it is.
+    Cancel,
+    /// This file.
+    Path(PathBuf),
+}
+
+/// Answers the question that is open, if the answer fits it.
+pub fn answer(world: &mut World, answer: Answer) {
+    let Some(question) = world.resource_mut::<Document>().question.take() else {
+        return;
+    };
+    match (question, answer) {
+        (Question::Unsaved { then }, Answer::Yes) => {
+            let path = world.resource::<Document>().path.clone();
+            world.resource_mut::<Document>().then = Some(then);
+            match path {
+                Some(path) => save_to(world, &path),
+                None => dialog::ask(world, Purpose::SaveAs),
+            }
+        }
+        (Question::Unsaved { then }, Answer::No) => perform_now(world, &then),
+        (Question::Path { purpose, .. }, Answer::Path(path)) => {
+            typed(world, purpose, &path);
+        }
+        (Question::Replace { then, .. }, Answer::Yes) => perform_now(world, &then),
+        (Question::Outside { file, .. }, Answer::Yes) => files::open_file(world, &file, true),
+        (Question::Recover(found), Answer::Yes) => recovery::recover(world, &found),
+        (Question::Recover(found), Answer::No) => found.delete(),
+        (_, Answer::Cancel) => world.resource_mut::<Document>().then = None,
+        // An answer to another question.
+        (question, _) => world.resource_mut::<Document>().question = Some(question),
+    }
+}
+
+/// A path that was typed: nothing has checked yet whether it is there.
+fn typed(world: &mut World, purpose: Purpose, path: &Path) {
+    if path.as_os_str().is_empty() {
+        world.resource_mut::<Document>().then = None;
+        return;
+    }
+    let action = chosen(purpose, path);
+    let file = match &action {
+        Action::SaveAs(file) => file.clone(),
+        _ => return files::request(world, &action),
+    };
+    let own = world.resource::<Document>().path.as_deref() == Some(&file);
+    if file.exists() && !own {
+        world.resource_mut::<Document>().question = Some(Question::Replace { file, then: action });
+    } else {
+        perform_now(world, &action);
+    }
+}
+
+/// What a chosen path asks for. A scene without an extension gets ours.
+pub(super) fn chosen(purpose: Purpose, path: &Path) -> Action {
+    match purpose {
+        Purpose::Open => Action::Open(path.to_path_buf()),
+        Purpose::Import => Action::Import(path.to_path_buf()),
+        Purpose::SaveAs if path.extension().is_none() => {
+            let mut name = path.as_os_str().to_owned();
+            name.push(".scn.ron");
+            Action::SaveAs(name.into())
+        }
+        Purpose::SaveAs => Action::SaveAs(path.to_path_buf()),
+    }
+}

@@ -1,0 +1,277 @@
+//! Copies of unsaved work, for when the editor does not end as it should.
+//!
+//! While there are unsaved changes a copy of the scene is written every minute, under a temporary
+//! name that is then changed, so that it is complete at any time. Beside it lies a file that this
+//! process holds locked: the lock goes with the process, however that ends, so the next editor
+//! knows which copies nobody is working on. An editor that ends as it should takes its copy away.
+
+use super::question::Question;
+use super::{Document, adopt};
+use crate::editor::history::History;
+use crate::editor::notice::Notices;
+use crate::editor::selection::Selection;
+use crate::io::{OpenOptions, SceneContent, SceneSource, open, replace_file};
+use bevy::app::{App, AppExit, Last, Startup};
+use bevy::ecs::message::MessageReader;
+use bevy::ecs::resource::Resource;
+use bevy::ecs::schedule::IntoScheduleConfigs;
+use bevy::ecs::system::ResMut;
+use bevy::ecs::world::{Mut, World};
+use serde::{Deserialize, Serialize};
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+/// How often unsaved work is copied.
+const EVERY: Duration = Duration::from_secs(60);
+
+/// Where copies are kept, and which is this editor's.
+#[derive(Resource, Debug)]
+pub struct RecoveryFolder {
+    folder: PathBuf,
+    /// Held as long as the editor runs.
+    lock: Option<File>,
+    /// How often unsaved work is copied.
+    pub every: Duration,
+    next: Instant,
+    /// The state that the copy holds.
+    copied: Option<u64>,
+    writing: Option<JoinHandle<Result<(), String>>>,
+    failed: bool,
+}
+
+/// Unsaved work of an editor that did not end as it should.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recovered {
+    /// What the scene was called.
+    pub name: String,
+    /// Where it lay.
+    pub path: Option<PathBuf>,
+    /// How old the copy is.
+    pub age: Duration,
+    copy: PathBuf,
+}
+
+/// What is said about a copy in the file beside it.
+#[derive(Serialize, Deserialize)]
+struct Label {
+    name: String,
+    path: Option<PathBuf>,
+}
+
+const COPY: &str = "scn.ron";
+const LABEL: &str = "label.ron";
+const LOCK: &str = "lock";
+
+impl Recovered {
+    /// Takes the copy away.
+    pub fn delete(&self) {
+        for extension in [COPY, LABEL, LOCK] {
+            // What cannot be deleted is offered again; nothing is lost by that.
+            let _ = fs::remove_file(beside(&self.copy, extension));
+        }
+    }
+}
+
+/// The file of the same editor with another extension.
+fn beside(copy: &Path, extension: &str) -> PathBuf {
+    let name = copy.file_name().unwrap_or_default().to_string_lossy();
+    let stem = name.split('.').next().unwrap_or_default();
+    copy.with_file_name(format!("{stem}.{extension}"))
+}
+
+pub(super) fn add_to(app: &mut App, folder: &Path) {
+    app.insert_resource(RecoveryFolder {
+        folder: folder.to_path_buf(),
+        lock: None,
+        every: EVERY,
+        next: Instant::now() + EVERY,
+        copied: None,
+        writing: None,
+        failed: false,
+    })
+    .add_systems(Startup, offer)
+    .add_systems(Last, (copy_unsaved, clear_at_exit).chain());
+}
+
+/// Looks for work that nobody is doing any more.
+fn offer(world: &mut World) {
+    let folder = world.resource::<RecoveryFolder>().folder.clone();
+    let mut found: Vec<Recovered> = abandoned(&folder);
+    found.sort_by_key(|found| found.age);
+    if let Some(newest) = found.into_iter().next() {
+        world.resource_mut::<Document>().question = Some(Question::Recover(newest));
+    }
+}
+
+/// Copies whose editor is gone.
+fn abandoned(folder: &Path) -> Vec<Recovered> {
+    let Ok(entries) = fs::read_dir(folder) else {
+        return Vec::new();
+    };
+    let read = |copy: PathBuf| -> Option<Recovered> {
+        if !copy.file_name()?.to_str()?.ends_with(".scn.ron") {
+            return None;
+        }
+        let lock = beside(&copy, LOCK);
+        if let Ok(lock) = File::open(lock)
+            && lock.try_lock().is_err()
+        {
+            return None;
+        }
+        let age = fs::metadata(&copy).ok()?.modified().ok()?.elapsed();
+        let label = fs::read_to_string(beside(&copy, LABEL)).ok();
+        let label = label.and_then(|text| ron::from_str::<Label>(&text).ok());
+        let (name, path) = label.map_or(("a scene".into(), None), |label| (label.name, label.path));
+        Some(Recovered {
+            name,
+            path,
+            age: age.unwrap_or_default(),
+            copy,
+        })
+    };
+    entries
+        .flatten()
+        .filter_map(|entry| read(entry.path()))
+        .collect()
+}
+
+/// Opens what was recovered: unsaved, and called what it was called.
+pub(super) fn recover(world: &mut World, found: &Recovered) {
+    let source = SceneSource::File(found.copy.clone());
+    // Its paths lead from our folder to wherever the files lie.
+    let options = OpenOptions {
+        allow_outside: true,
+        ..OpenOptions::default()
+    };
+    if let Err(error) = open(world, &source, options) {
+        world.resource_mut::<Notices>().fault(error.to_string());
+        return;
+    }
+    world.resource_mut::<Selection>().set([]);
+    adopt(world, found.name.clone(), found.path.as_deref());
+    let mut document = world.resource_mut::<Document>();
+    document.saved = None;
+    document.unsaved = true;
+    if let Some(mut folder) = world.get_resource_mut::<RecoveryFolder>() {
+        // The copy is deleted: until it is saved this editor needs one of its own.
+        folder.next = Instant::now();
+        folder.copied = None;
+    }
+    copy_unsaved(world);
+    if let Some(writing) = world
+        .get_resource_mut::<RecoveryFolder>()
+        .and_then(|mut folder| folder.writing.take())
+        && !matches!(writing.join(), Ok(Ok(())))
+    {
+        return;
+    }
+    found.delete();
+}
+
+/// Writes a copy where there is something that no file and no copy holds.
+fn copy_unsaved(world: &mut World) {
+    let Some(recovery) = world.get_resource::<RecoveryFolder>() else {
+        return;
+    };
+    let writing = recovery
+        .writing
+        .as_ref()
+        .is_some_and(|writing| !writing.is_finished());
+    if writing || recovery.next > Instant::now() {
+        return;
+    }
+    world.resource_scope(|world, mut recovery: Mut<RecoveryFolder>| {
+        if let Some(writing) = recovery.writing.take() {
+            let why = match writing.join() {
+                Ok(Ok(())) => None,
+                Ok(Err(why)) => Some(why),
+                Err(_) => Some("a bug".to_owned()),
+            };
+            if let Some(why) = why {
+                recovery.complain(world, &why);
+            }
+        }
+        recovery.next = Instant::now() + recovery.every;
+        let state = world.resource::<History>().state();
+        let document = world.resource::<Document>();
+        if !document.unsaved {
+            recovery.remove();
+            return;
+        }
+        if recovery.copied == Some(state) {
+            return;
+        }
+        let label = Label {
+            name: document.name.clone(),
+            path: document.path.clone(),
+        };
+        match recovery.begin(world, label) {
+            Ok(()) => recovery.copied = Some(state),
+            Err(why) => recovery.complain(world, &why),
+        }
+    });
+}
+
+impl RecoveryFolder {
+    fn file(&self, extension: &str) -> PathBuf {
+        self.folder
+            .join(format!("{}.{extension}", std::process::id()))
+    }
+
+    /// Takes the scene's content, and writes it on a thread of its own.
+    fn begin(&mut self, world: &mut World, label: Label) -> Result<(), String> {
+        if self.lock.is_none() {
+            fs::create_dir_all(&self.folder)
+                .map_err(|error| format!("{}: {error}", self.folder.display()))?;
+            let file = self.file(LOCK);
+            let lock =
+                File::create(&file).map_err(|error| format!("{}: {error}", file.display()))?;
+            lock.try_lock()
+                .map_err(|error| format!("{}: {error}", file.display()))?;
+            self.lock = Some(lock);
+        }
+        let (copy, beside) = (self.file(COPY), self.file(LABEL));
+        let content = SceneContent::of_scene(world, &copy).map_err(|error| error.to_string())?;
+        let write = move || {
+            let label = ron::to_string(&label).map_err(|error| error.to_string())?;
+            replace_file(&beside, |out| out.write_all(label.as_bytes()))
+                .and_then(|()| content.write(&copy))
+                .map_err(|error| error.to_string())
+        };
+        let thread = thread::Builder::new().name("autosave".into()).spawn(write);
+        self.writing = Some(thread.map_err(|error| error.to_string())?);
+        Ok(())
+    }
+
+    fn complain(&mut self, world: &mut World, why: &str) {
+        if !self.failed {
+            // Once: what cannot be written now will not be written a minute later.
+            self.failed = true;
+            let text = format!("unsaved work is not copied: {why}");
+            world.resource_mut::<Notices>().fault(text);
+        }
+    }
+
+    /// Takes this editor's copy away.
+    fn remove(&mut self) {
+        if let Some(writing) = self.writing.take() {
+            // What it wrote is deleted.
+            let _ = writing.join();
+        }
+        if self.lock.take().is_some() {
+            for extension in [COPY, LABEL, LOCK] {
+                let _ = fs::remove_file(self.file(extension));
+            }
+        }
+        self.copied = None;
+    }
+}
+
+fn clear_at_exit(mut exits: MessageReader<AppExit>, mut recovery: ResMut<RecoveryFolder>) {
+    if exits.read().next().is_some() {
+        recovery.remove();
+    }
+}

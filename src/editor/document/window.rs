@@ -1,0 +1,132 @@
+//! What a window has to do with the document: its title, closing it, and files dropped on it.
+
+use super::Document;
+use crate::editor::action::Action;
+use crate::editor::edits::scene_entity;
+use crate::editor::history::History;
+use crate::editor::notice::Notices;
+use crate::editor::selection::Selection;
+use crate::io::SceneFiles;
+use crate::scene::{Environment, Phong, TextureSource, UsesMaterial};
+use bevy::app::{App, PreUpdate, Update};
+use bevy::ecs::message::{MessageCursor, Messages};
+use bevy::ecs::query::With;
+use bevy::ecs::system::{Local, Query, Res};
+use bevy::ecs::world::World;
+use bevy::window::{FileDragAndDrop, PrimaryWindow, Window, WindowCloseRequested};
+use std::path::Path;
+
+pub(super) fn add_to(app: &mut App) {
+    app.add_message::<FileDragAndDrop>()
+        .add_message::<WindowCloseRequested>()
+        .add_systems(PreUpdate, (take_dropped, take_closing))
+        .add_systems(Update, show_title);
+}
+
+fn show_title(document: Res<Document>, mut windows: Query<&mut Window, With<PrimaryWindow>>) {
+    let title = document.title();
+    for mut window in &mut windows {
+        if window.title != title {
+            window.title.clone_from(&title);
+        }
+    }
+}
+
+/// The window's own button asks as the menu's item does. `WindowPlugin::close_when_requested` has
+/// to be off.
+fn take_closing(
+    mut requests: bevy::ecs::message::MessageReader<WindowCloseRequested>,
+    mut actions: bevy::ecs::message::MessageWriter<Action>,
+) {
+    if requests.read().next().is_some() {
+        actions.write(Action::Quit);
+    }
+}
+
+fn take_dropped(world: &mut World, mut cursor: Local<MessageCursor<FileDragAndDrop>>) {
+    let dropped: Vec<std::path::PathBuf> = cursor
+        .read(world.resource::<Messages<FileDragAndDrop>>())
+        .filter_map(|message| match message {
+            FileDragAndDrop::DroppedFile { path_buf, .. } => Some(path_buf.clone()),
+            _ => None,
+        })
+        .collect();
+    for file in dropped {
+        drop_file(world, &file);
+    }
+}
+
+/// A scene is opened, a model added, a picture put on what is selected; a picture with more than a
+/// screen's range, or with nothing selected, becomes the environment.
+fn drop_file(world: &mut World, file: &Path) {
+    let extension = file
+        .extension()
+        .map(|extension| extension.to_string_lossy().to_lowercase())
+        .unwrap_or_default();
+    match extension.as_str() {
+        "ron" => {
+            world.write_message(Action::Open(file.to_path_buf()));
+        }
+        "obj" | "gltf" | "glb" => {
+            world.write_message(Action::Import(file.to_path_buf()));
+        }
+        "png" | "jpg" | "jpeg" | "hdr" | "exr" => {
+            let on_objects = matches!(extension.as_str(), "png" | "jpg" | "jpeg");
+            drop_picture(world, file, on_objects);
+        }
+        _ => {
+            let text = format!(
+                "{}: neither a scene (.scn.ron), a model (.obj, .gltf, .glb) nor a picture (.png, .jpg, .hdr, .exr)",
+                file.display()
+            );
+            world.resource_mut::<Notices>().fault(text);
+        }
+    }
+}
+
+fn drop_picture(world: &mut World, file: &Path, on_objects: bool) {
+    let source = {
+        let Some(mut files) = world.get_resource_mut::<SceneFiles>() else {
+            return;
+        };
+        let path = files.folder.name_of(file);
+        if path.starts_with("..") {
+            files.folder.allow_outside = true;
+        }
+        TextureSource { path }
+    };
+    let name = file
+        .file_name()
+        .unwrap_or(file.as_os_str())
+        .to_string_lossy()
+        .into_owned();
+    let selected = world.resource::<Selection>().ids().to_vec();
+    let mut materials: Vec<_> = selected
+        .into_iter()
+        .filter(|_| on_objects)
+        .filter_map(|id| scene_entity(world, id))
+        .map(|entity| {
+            world
+                .get::<UsesMaterial>(entity)
+                .map_or(entity, |uses| uses.0)
+        })
+        .filter(|&entity| world.get::<Phong>(entity).is_some())
+        .collect();
+    materials.sort_unstable();
+    materials.dedup();
+    if materials.is_empty() {
+        world
+            .resource_mut::<History>()
+            .name_next(format!("Environment {name}"));
+        world.resource_mut::<Environment>().map = Some(source);
+        return;
+    }
+    world
+        .resource_mut::<History>()
+        .name_next(format!("Texture {name}"));
+    for material in materials {
+        if let Some(mut phong) = world.get_mut::<Phong>(material) {
+            phong.diffuse_map = Some(source.clone());
+        }
+    }
+}

@@ -1,0 +1,289 @@
+//! Rendering to a file while the editing goes on.
+//!
+//! The job takes the scene as it is when it begins; edits that follow do not reach it. It shares the
+//! processor with the traced view, and stops by the rules of its own settings: samples, error, time.
+
+use super::notice::Notices;
+use crate::film::{Ending, Progressive, State, Status, develop};
+use crate::io::{FileError, PictureFormat, check_size, check_writable, write_picture_with_notes};
+use crate::scene::{RenderSettings, SETTINGS, SceneId, SettingProblem, setting_problems};
+use crate::sync::{Traced, TracedCameras};
+use crate::trace;
+use bevy::app::{App, Plugin, Update};
+use bevy::ecs::resource::Resource;
+use bevy::ecs::world::{Mut, World};
+use std::path::{Path, PathBuf};
+use std::thread::{self, JoinHandle};
+
+/// What is to be rendered.
+#[derive(Clone, Debug)]
+pub struct RenderRequest {
+    /// `.png` or `.jpg` as a screen shows it, `.exr` or `.hdr` as linear light, before bloom,
+    /// exposure and view transform.
+    pub file: PathBuf,
+    /// From where.
+    pub camera: RenderFrom,
+    /// Size, samples and when to stop.
+    pub settings: RenderSettings,
+}
+
+/// Where a picture is rendered from.
+#[derive(Clone, Debug)]
+pub enum RenderFrom {
+    /// The scene's first camera.
+    FirstCamera,
+    /// A camera of the scene.
+    Camera(SceneId),
+    /// Where the view stands.
+    View(Box<trace::Camera>),
+}
+
+/// Why a render does not begin.
+#[derive(Debug, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages say it")]
+pub enum RenderRefused {
+    #[error("{} is being rendered; wait for it, or cancel it", .0.display())]
+    Busy(PathBuf),
+    #[error("the scene has no such camera; add one, or render what the view shows")]
+    NoCamera,
+    #[error("{0}")]
+    Setting(SettingProblem),
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error("the system has no more threads: {0}")]
+    Threads(#[from] std::io::Error),
+}
+
+/// The render to a file that is under way, if one is.
+#[derive(Resource, Default)]
+pub struct RenderJob {
+    job: Option<Job>,
+}
+
+/// How far a render to a file is.
+#[derive(Clone, Debug)]
+pub struct RenderProgress {
+    /// What it will write.
+    pub file: PathBuf,
+    /// The render's numbers; `None` until it has begun, which it does when all trees are built.
+    pub status: Option<Status>,
+    /// 0 to 1, as far as can be told.
+    pub fraction: f32,
+    /// It is rendered, and being written.
+    pub writing: bool,
+}
+
+struct Job {
+    request: RenderRequest,
+    camera: trace::Camera,
+    name: String,
+    stage: Stage,
+}
+
+enum Stage {
+    /// For the trees of meshes that are being built.
+    Waiting,
+    Rendering(Progressive),
+    Writing(JoinHandle<Result<(), FileError>>, Status),
+}
+
+impl RenderJob {
+    /// How far it is; `None` where nothing is being rendered.
+    pub fn progress(&self) -> Option<RenderProgress> {
+        let job = self.job.as_ref()?;
+        let (status, fraction) = match &job.stage {
+            Stage::Waiting => (None, 0.0),
+            Stage::Rendering(render) => {
+                let status = render.status();
+                let fraction = fraction(&status, &job.request.settings);
+                (Some(status), fraction)
+            }
+            Stage::Writing(_, status) => (Some(status.clone()), 1.0),
+        };
+        Some(RenderProgress {
+            file: job.request.file.clone(),
+            status,
+            fraction,
+            writing: matches!(job.stage, Stage::Writing(..)),
+        })
+    }
+
+    /// Stops rendering, and writes nothing. What is already being written is written.
+    pub fn cancel(&mut self) {
+        if !matches!(&self.job, Some(job) if matches!(job.stage, Stage::Writing(..))) {
+            self.job = None;
+        }
+    }
+}
+
+/// Of the rule that ends it first.
+fn fraction(status: &Status, settings: &RenderSettings) -> f32 {
+    let samples = status.samples / status.samples_wanted.max(1.0);
+    let time = match settings.sampling.time {
+        limit if limit > 0.0 => status.seconds / f64::from(limit),
+        _ => 0.0,
+    };
+    let left = status
+        .seconds_left
+        .map(|left| status.seconds / (status.seconds + left).max(f64::MIN_POSITIVE));
+    samples.max(time).max(left.unwrap_or(0.0)).clamp(0.0, 1.0) as f32
+}
+
+/// Begins to render to a file. What can be refused is refused before anything is rendered.
+pub fn start_render(world: &mut World, request: RenderRequest) -> Result<(), RenderRefused> {
+    if let Some(job) = &world.resource::<RenderJob>().job {
+        return Err(RenderRefused::Busy(job.request.file.clone()));
+    }
+    if let Some(problem) = setting_problems(&request.settings).into_iter().next() {
+        return Err(RenderRefused::Setting(problem));
+    }
+    PictureFormat::of(&request.file)?;
+    let size = request.settings.size;
+    check_size(
+        &request.file,
+        size.x.into(),
+        size.y.into(),
+        &Default::default(),
+    )?;
+    check_writable(&request.file)?;
+    let cameras = &world.resource::<TracedCameras>().0;
+    let (camera, name) = match &request.camera {
+        RenderFrom::View(camera) => ((**camera).clone(), "the view".to_owned()),
+        RenderFrom::FirstCamera => {
+            let camera = cameras.first().ok_or(RenderRefused::NoCamera)?;
+            (camera.camera.clone(), camera.name.clone())
+        }
+        RenderFrom::Camera(id) => {
+            let camera = cameras.iter().find(|camera| camera.id == *id);
+            let camera = camera.ok_or(RenderRefused::NoCamera)?;
+            (camera.camera.clone(), camera.name.clone())
+        }
+    };
+    world.resource_mut::<RenderJob>().job = Some(Job {
+        request,
+        camera,
+        name,
+        stage: Stage::Waiting,
+    });
+    Ok(())
+}
+
+/// Carries a [`RenderJob`] on.
+pub struct RenderJobPlugin;
+
+impl Plugin for RenderJobPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<RenderJob>()
+            .init_resource::<Notices>()
+            .add_systems(Update, carry_on);
+    }
+}
+
+fn carry_on(world: &mut World) {
+    if world.resource::<RenderJob>().job.is_none() {
+        return;
+    }
+    world.resource_scope(|world, mut jobs: Mut<RenderJob>| {
+        let Some(job) = jobs.job.take() else { return };
+        jobs.job = step(world, job);
+    });
+}
+
+/// The job as it goes on; `None` where it has ended.
+fn step(world: &mut World, job: Job) -> Option<Job> {
+    let file = job.request.file.clone();
+    let fault = |world: &mut World, why: String| {
+        let text = format!("{}: not rendered: {why}", file.display());
+        world.resource_mut::<Notices>().fault(text);
+        None
+    };
+    let stage = match job.stage {
+        Stage::Waiting => {
+            let traced = world.resource::<Traced>();
+            if traced.pending > 0 {
+                return Some(job);
+            }
+            let scene = (*traced.world).clone();
+            let settings = job.request.settings.clone();
+            match Progressive::start(scene, job.camera.clone(), settings) {
+                Ok(render) => Stage::Rendering(render),
+                Err(error) => return fault(world, error.to_string()),
+            }
+        }
+        Stage::Rendering(render) => {
+            let status = render.status();
+            match status.state {
+                State::Ended(Ending::Cancelled) => return None,
+                State::Ended(_) => {
+                    let (file, settings) = (file.clone(), job.request.settings.clone());
+                    let notes = notes(&job.name, &settings, &status);
+                    let write = move || write(&file, &render, &settings, &notes);
+                    match thread::Builder::new().name("write".into()).spawn(write) {
+                        Ok(writing) => Stage::Writing(writing, status),
+                        Err(error) => return fault(world, error.to_string()),
+                    }
+                }
+                _ => Stage::Rendering(render),
+            }
+        }
+        Stage::Writing(writing, status) if writing.is_finished() => {
+            match writing.join() {
+                Ok(Ok(())) => {
+                    let text = format!(
+                        "Rendered {} in {:.1} s, {:.0} samples a pixel",
+                        file.display(),
+                        status.seconds,
+                        status.samples,
+                    );
+                    world.resource_mut::<Notices>().tell(text);
+                }
+                Ok(Err(error)) => world.resource_mut::<Notices>().fault(error.to_string()),
+                Err(_) => return fault(world, "writing it failed by a bug".into()),
+            }
+            return None;
+        }
+        writing @ Stage::Writing(..) => writing,
+    };
+    Some(Job { stage, ..job })
+}
+
+fn write(
+    file: &Path,
+    render: &Progressive,
+    settings: &RenderSettings,
+    notes: &[(&str, String)],
+) -> Result<(), FileError> {
+    let picture = render.snapshot().picture;
+    let pixels = if PictureFormat::of(file)?.is_linear() {
+        picture
+            .pixels
+            .iter()
+            .map(|pixel| pixel.to_array())
+            .collect()
+    } else {
+        develop(&picture, &settings.output)
+    };
+    write_picture_with_notes(file, picture.width, picture.height, &pixels, notes)
+}
+
+/// What the file says about itself: enough to render the same picture again.
+fn notes(camera: &str, settings: &RenderSettings, status: &Status) -> Vec<(&'static str, String)> {
+    let words: Vec<String> = SETTINGS
+        .iter()
+        .map(|setting| format!("{}={}", setting.path, setting.value_text(settings)))
+        .collect();
+    let mut notes = vec![
+        (
+            "Software",
+            format!("Glassbox {}", env!("CARGO_PKG_VERSION")),
+        ),
+        ("Camera", camera.to_owned()),
+        ("Settings", words.join(" ")),
+        ("Samples", format!("{}", status.samples)),
+        ("Seconds", format!("{:.3}", status.seconds)),
+    ];
+    if let Some(error) = status.error() {
+        notes.push(("Error", format!("{:.3e}", error.relative())));
+    }
+    notes
+}
