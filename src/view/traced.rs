@@ -110,6 +110,8 @@ pub struct PrintInfo {
     pub size: UVec2,
     /// What a heatmap's colours mean.
     pub scale: Option<Scale>,
+    /// As it stands on the screen, encoded. It stays as it is while the handle is held.
+    pub picture: Handle<Image>,
     /// From the edit to this render's first picture on the screen.
     pub first_picture: Duration,
     of: usize,
@@ -381,7 +383,8 @@ fn show_prints(
         else {
             continue;
         };
-        material.picture = images.add(picture_image(size.x, size.y, bytes));
+        let picture = images.add(picture_image(size.x, size.y, bytes));
+        material.picture = picture.clone();
         if let Some((size, depths)) = depths {
             material.depth = images.add(depth_image(size.x, size.y, &depths));
         }
@@ -394,6 +397,7 @@ fn show_prints(
             render.shown = Some(PrintInfo {
                 size,
                 scale,
+                picture,
                 first_picture,
                 of,
             });

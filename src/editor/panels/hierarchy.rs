@@ -5,6 +5,7 @@ use super::says::Says;
 use super::state::{Panels, Renaming};
 use super::theme::accent;
 use crate::editor::action::Action;
+use crate::editor::history::History;
 use crate::editor::selection::Selection;
 use crate::scene::SceneId;
 use bevy::camera::visibility::Visibility;
@@ -266,6 +267,9 @@ fn perform(ui: &Ui, world: &mut World, panels: &mut Panels, rows: &[usize], deed
         Deed::Hide(at) => {
             let item = &world.resource::<Outline>().items[at];
             let (entity, hidden) = (item.entity, item.hidden);
+            let verb = if hidden { "Show" } else { "Hide" };
+            let name = format!("{verb} {}", item.name);
+            world.resource_mut::<History>().name_next(name);
             let visibility = match hidden {
                 true => Visibility::Inherited,
                 false => Visibility::Hidden,

@@ -3,6 +3,7 @@
 use super::says::Says;
 use super::state::{Dialog, Panels};
 use crate::editor::action::{Action, Addition, Axis, shapes};
+use crate::editor::history::History;
 use crate::editor::preferences::Preferences;
 use crate::editor::selection::Selection;
 use crate::scene::{SceneCamera, SceneId};
@@ -13,7 +14,7 @@ use bevy_egui::egui::{self, Button, Ui};
 pub(super) fn menu_bar_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     egui::MenuBar::new().ui(ui, |ui| {
         ui.menu_button("File", |ui| file_ui(ui, world, panels));
-        ui.menu_button("Edit", |ui| edit_ui(ui, world));
+        ui.menu_button("Edit", |ui| edit_ui(ui, world, panels));
         ui.menu_button("Add", |ui| add_ui(ui, world));
         ui.menu_button("View", |ui| view_ui(ui, world));
         ui.menu_button("Help", |ui| help_ui(ui, world, panels));
@@ -91,10 +92,21 @@ fn file_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     entry_ui(ui, world, &Action::Quit);
 }
 
-fn edit_ui(ui: &mut Ui, world: &mut World) {
+fn edit_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     let selected = !world.resource::<Selection>().is_empty();
-    entry_ui(ui, world, &Action::Undo);
-    entry_ui(ui, world, &Action::Redo);
+    let history = world.resource::<History>();
+    let undo = history.undo_text().map(|text| format!("Undo: {text}"));
+    let redo = history.redo_text().map(|text| format!("Redo: {text}"));
+    entry_if(ui, world, &Action::Undo, undo.is_some(), undo);
+    entry_if(ui, world, &Action::Redo, redo.is_some(), redo);
+    if ui
+        .button("History…")
+        .says("All steps, to go back and forth between")
+        .clicked()
+    {
+        panels.dialog = Some(Dialog::History);
+        ui.close();
+    }
     ui.separator();
     entry_if(ui, world, &Action::Copy, selected, None);
     entry_ui(ui, world, &Action::Paste);

@@ -11,11 +11,13 @@
 //! | [`hierarchy`] | the list of entities, from the [`outline`] |
 //! | [`inspector`] | the tabs Object, Render, Debug and BVH |
 //! | [`status`] | the line below |
-//! | [`overlays`] | divider, legend, region, messages over the picture |
+//! | [`overlays`], [`compare`] | divider, legend, region, messages, a kept picture over the picture |
 //! | [`dialogs`] | what is in front of everything |
 
+mod compare;
 mod dialogs;
 mod fields;
+mod gesture;
 mod hierarchy;
 mod inspector;
 mod menu_bar;
@@ -27,6 +29,9 @@ mod state;
 mod status;
 mod theme;
 mod toolbar;
+
+#[cfg(test)]
+mod tests;
 
 use super::preferences::{Preferences, PreferencesPlugin};
 use super::viewport::Viewport;
@@ -78,8 +83,10 @@ fn panels_ui(context: &egui::Context, world: &mut World) {
         let panels = &mut *panels;
         dialogs::answer_actions(world, panels);
         let free = around_ui(&mut ui, world, panels, &preferences);
+        compare::compare_ui(&mut ui, free, world, panels);
         let over_overlay = overlays::overlays_ui(&mut ui, free, world, panels);
         dialogs::dialogs_ui(context, world, panels);
+        gesture::note_gesture(context, world, panels);
         note_viewport(context, free, over_overlay, world);
     });
 }

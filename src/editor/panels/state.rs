@@ -1,5 +1,6 @@
 //! What the panels remember between two frames, and forget when the editor is closed.
 
+use super::compare::Kept;
 use super::dialogs::Gallery;
 use super::inspector::{ErrorCurve, Thumbnails, Trees, Turns};
 use super::status::{Memory, Numbers};
@@ -32,6 +33,7 @@ pub(super) enum Dialog {
     About,
     Preferences,
     Scenes,
+    History,
 }
 
 /// A name that is being typed.
@@ -48,6 +50,8 @@ pub(super) struct Renaming {
 pub(super) struct Panels {
     pub tab: Tab,
     pub dialog: Option<Dialog>,
+    /// The one that was open in the frame before.
+    pub dialog_before: Option<Dialog>,
     /// How far actions were read.
     pub heard: MessageCursor<Action>,
     pub gallery: Gallery,
@@ -64,6 +68,10 @@ pub(super) struct Panels {
     pub drags_region: bool,
     /// Where such a drag began.
     pub region_start: Option<Pos2>,
+    /// A field is being dragged or typed into, and the gesture that this makes is the panels' own.
+    pub in_gesture: bool,
+    /// A picture that was kept to compare with.
+    pub kept: Option<Kept>,
     /// A name that is being typed in the inspector.
     pub naming: Option<Renaming>,
     pub turns: Turns,

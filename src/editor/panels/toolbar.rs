@@ -1,8 +1,10 @@
 //! Below the menu: handles, what the view shows, and how the traced picture is developed.
 
+use super::compare::keep_ui;
 use super::says::Says;
 use super::state::Panels;
 use crate::editor::action::Action;
+use crate::editor::preferences::Preferences;
 use crate::editor::handles::{Tool, Tools};
 use crate::editor::viewport::{EditorCamera, Show, Viewport};
 use crate::film::views::View;
@@ -65,6 +67,7 @@ fn traced_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
         return;
     };
     let mut view = before.clone();
+    view.pixel_size = world.resource::<Preferences>().pixel_size;
     ComboBox::from_id_salt("view of the film")
         .selected_text(view_name(view.view))
         .width(104.0)
@@ -93,6 +96,7 @@ fn traced_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
         panels.region_start = None;
         view.region = None;
     }
+    keep_ui(ui, world, panels);
     if view != before {
         let mut query = world.query_filtered::<&mut TracedView, With<EditorCamera>>();
         if let Ok(mut traced) = query.single_mut(world) {

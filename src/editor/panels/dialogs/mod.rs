@@ -1,6 +1,7 @@
 //! What is in front of everything else, and takes keys and clicks until it is answered.
 
 mod about;
+mod history;
 mod keys;
 mod preferences;
 mod scenes;
@@ -31,27 +32,34 @@ pub(super) fn answer_actions(world: &World, panels: &mut Panels) {
 
 pub(super) fn dialogs_ui(context: &egui::Context, world: &mut World, panels: &mut Panels) {
     let Some(dialog) = panels.dialog else {
+        panels.dialog_before = None;
         return;
     };
     let (title, width) = match dialog {
         Dialog::Keys => ("Keys and mouse", 560.0),
         Dialog::About => ("About Glassbox", 440.0),
         Dialog::Preferences => ("Preferences", 380.0),
-        Dialog::Scenes => ("Built-in scenes", 700.0),
+        Dialog::Scenes => ("Built-in scenes", 790.0),
+        Dialog::History => ("History", 420.0),
     };
     let stays = modal_ui(context, title, width, |ui| match dialog {
         Dialog::Keys => keys::keys_ui(ui),
         Dialog::About => about::about_ui(ui),
         Dialog::Preferences => preferences::preferences_ui(ui, world),
         Dialog::Scenes => scenes::scenes_ui(ui, world, panels),
+        Dialog::History => history::history_ui(ui, world),
     });
-    if !stays && panels.dialog == Some(dialog) {
+    // The press that opened it does not close it again.
+    let f1 = context.input(|input| input.key_pressed(egui::Key::F1));
+    let again = f1 && panels.dialog_before == Some(dialog);
+    if (!stays || again) && panels.dialog == Some(dialog) {
         panels.dialog = None;
     }
+    panels.dialog_before = panels.dialog;
 }
 
-/// A dialog with a title and a way out; false where it was closed: by its button, by Escape, by F1
-/// again, or by a click beside it.
+/// A dialog with a title and a way out; false where it was closed: by its button, by Escape, or by a
+/// click beside it.
 fn modal_ui(context: &egui::Context, title: &str, width: f32, body: impl FnOnce(&mut Ui)) -> bool {
     let screen = context.content_rect().size();
     let mut stays = true;
@@ -71,6 +79,5 @@ fn modal_ui(context: &egui::Context, title: &str, width: f32, body: impl FnOnce(
             .auto_shrink([false, true])
             .show(ui, body);
     });
-    let f1 = context.input(|input| input.key_pressed(egui::Key::F1));
-    stays && !response.should_close() && !f1
+    stays && !response.should_close()
 }

@@ -119,6 +119,7 @@ impl Preset {
 mod tests {
     use super::*;
     use crate::scene::TextureSource;
+    use bevy::color::ColorToComponents;
 
     #[test]
     fn every_preset_is_within_the_ranges_of_a_material_and_keeps_the_maps() {

@@ -148,7 +148,7 @@ fn number_of(path: &str, least: f32, most: f32) -> Number {
 }
 
 /// One of an enum's variants by name.
-fn choice_ui(
+pub(super) fn choice_ui(
     ui: &mut Ui,
     label: &str,
     says: &str,
