@@ -238,8 +238,12 @@ impl Engine {
         if self.mode.samples.start > 0 {
             return None;
         }
-        let moves = self.tiles.iter().flat_map(|tile| lock(tile).moves);
-        ErrorEstimate::of(moves)
+        let moves: Vec<_> = self
+            .tiles
+            .iter()
+            .flat_map(|tile| lock(tile).moves)
+            .collect();
+        ErrorEstimate::of(&moves)
     }
 
     fn note_error(&self) {

@@ -1,6 +1,6 @@
 //! What a film knows of each pixel beside its colour.
 
-use super::error::Moves;
+use super::error::{Decline, Moves};
 use super::tiles::{Tile, TileGrid};
 use super::{Film, TILE};
 use glam::UVec2;
@@ -20,13 +20,17 @@ impl Film {
 
     /// The estimated relative error of each pixel, row by row from the top: 0.01 is one percent. Its
     /// 4 × 4 pixels' part of their tile's error, so that the mean square is the picture's
-    /// ([`ErrorEstimate::relative_mse`](super::ErrorEstimate)); NaN where a pixel has less than two
-    /// samples.
+    /// ([`ErrorEstimate::relative_mse`](super::ErrorEstimate)); NaN where it is not known: of
+    /// less than two samples, of samples without the first ones, and of a merged film.
     pub fn relative_errors(&self) -> Vec<f32> {
         let size = self.size();
         let mut errors = vec![f32::NAN; size.x as usize * size.y as usize];
-        for tile in TileGrid::new(size).tiles() {
-            let whole = [0, 1].map(|half| self.moves(tile, half));
+        let tiles: Vec<(Tile, [Moves; 2])> = TileGrid::new(size)
+            .tiles()
+            .map(|tile| (tile, [0, 1].map(|half| self.moves(tile, half))))
+            .collect();
+        let decline = Decline::of(tiles.iter().flat_map(|(_, moves)| moves));
+        for (tile, whole) in tiles {
             for (y, x) in (0..TILE)
                 .step_by(SQUARE as usize)
                 .flat_map(|y| (0..TILE).step_by(SQUARE as usize).map(move |x| (y, x)))
@@ -37,7 +41,7 @@ impl Film {
                 }
                 let extent = (size - origin).min(UVec2::splat(SQUARE));
                 let square = Tile { origin, extent };
-                let error = self.square_error(square, &whole);
+                let error = self.square_error(square, &whole, &decline);
                 for (pixel, _) in square.pixels() {
                     errors[pixel.y as usize * size.x as usize + pixel.x as usize] = error;
                 }
@@ -47,14 +51,14 @@ impl Film {
     }
 
     /// Of the square's share of what its tile's halves moved.
-    fn square_error(&self, square: Tile, whole: &[Moves; 2]) -> f32 {
+    fn square_error(&self, square: Tile, whole: &[Moves; 2], decline: &Decline) -> f32 {
         let (mut sum, mut pixels) = (0.0, 0);
         for (half, whole) in whole.iter().enumerate() {
             let part = self.moves(square, half as u32);
             if part.pixels == 0 {
                 continue;
             }
-            let Some(expected) = whole.expected() else {
+            let Some(expected) = whole.expected(decline) else {
                 return f32::NAN;
             };
             if part.relative[0] > 0.0 {
@@ -79,7 +83,7 @@ impl Film {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::film::{Rendered, render, test_scene};
+    use crate::film::{Rendered, render, render_samples, test_scene};
 
     fn rendered(spp: u32) -> Rendered {
         let settings = test_scene::settings(UVec2::new(36, 28), spp);
@@ -117,6 +121,30 @@ mod tests {
             most > 4.0 * least,
             "from {least} to {most}: it does not tell places apart"
         );
+    }
+
+    #[test]
+    fn the_error_of_a_merged_film_and_of_a_later_part_is_not_known() {
+        let settings = test_scene::settings(UVec2::new(36, 28), 1);
+        let part = |samples| {
+            let (world, camera) = (test_scene::world(), test_scene::camera());
+            render_samples(&world, &camera, &settings, samples, &|_| {}).film
+        };
+        let known = |film: &Film| {
+            let errors = film.relative_errors();
+            errors.iter().filter(|error| error.is_finite()).count()
+        };
+        let (mut film, later) = (part(0..8), part(8..16));
+        assert_eq!((known(&film), known(&later)), (36 * 28, 0));
+        // Nothing added changes nothing, and what is added to nothing stays what it is.
+        assert!(film.merge(&Film::new(film.size())));
+        assert_eq!(known(&film), 36 * 28);
+        let mut same = Film::new(film.size());
+        assert!(same.merge(&film));
+        assert_eq!(same, film);
+        assert!(film.merge(&later));
+        assert_eq!(known(&film), 0);
+        assert!(film.relative_errors().iter().all(|error| error.is_nan()));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //! is known of its error.
 
 use super::error::Moves;
-use super::tiles::{FilmPixel, Tile};
+use super::tiles::{FilmPixel, NOT_KNOWN, Tile};
 use super::{Sum, TILE};
 use std::ops::Range;
 
@@ -161,6 +161,8 @@ impl TileState {
                 let moved = pixel.sum.half_difference(&sums[at], pixel.count);
                 let squared = moved.iter().map(|m| m * m).sum::<f64>() / 3.0;
                 pixel.moved = [squared as f32, pixel.moved[0], pixel.moved[1]];
+            } else if pixel.count == 0 && count > 1 {
+                pixel.moved = NOT_KNOWN;
             }
             pixel.sum.merge(&sums[at]);
             pixel.count += count as u32;
