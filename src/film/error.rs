@@ -13,7 +13,9 @@
 //! one stratum of N is cut by it, so the squared error goes like f(1-f)/N² with f the fraction of pN, which
 //! may fall by ten at one doubling and by two at the next.
 
+use super::TILE;
 use super::tiles::FilmPixel;
+use glam::UVec2;
 
 /// Added to a pixel's squared value before its squared error is divided by it, so that black pixels
 /// count too: a tenth of full white, squared (Rousselle, Knaus and Zwicker 2011 use the same).
@@ -53,12 +55,32 @@ pub(super) struct Moves {
     pub pixels: u32,
 }
 
-impl Moves {
-    pub fn of<'a>(pixels: impl Iterator<Item = &'a FilmPixel>) -> Self {
-        let mut moves = Self::default();
-        for pixel in pixels {
-            let mean = f64::from(pixel.sum.mean(pixel.count).element_sum()) / 3.0;
-            let weight = 1.0 / (mean * mean + RELATIVE_FLOOR);
+/// A tile's pixels with their means.
+pub(super) struct Means<'a> {
+    pixels: &'a [FilmPixel],
+    /// How much of the tile lies in the picture.
+    extent: UVec2,
+    /// Averaged over the channels.
+    means: Vec<f64>,
+}
+
+impl<'a> Means<'a> {
+    pub fn of(pixels: &'a [FilmPixel], extent: UVec2) -> Self {
+        let mean = |pixel: &FilmPixel| f64::from(pixel.sum.mean(pixel.count).element_sum()) / 3.0;
+        Self {
+            pixels,
+            extent,
+            means: pixels.iter().map(mean).collect(),
+        }
+    }
+
+    /// How far the pixels at these places of the tile's memory have moved.
+    pub fn moves(&self, places: impl Iterator<Item = usize>) -> Moves {
+        let mut moves = Moves::default();
+        for at in places {
+            let pixel = &self.pixels[at];
+            let value = self.likely_value(at);
+            let weight = 1.0 / (value * value + RELATIVE_FLOOR);
             for (i, moved) in pixel.moved.into_iter().enumerate() {
                 moves.absolute[i] += f64::from(moved);
                 moves.relative[i] += f64::from(moved) * weight;
@@ -67,6 +89,31 @@ impl Moves {
             moves.pixels += 1;
         }
         moves
+    }
+
+    /// What a pixel's value is likely to be, by which its squared error is divided. Where one rare,
+    /// bright sample has moved a dark pixel far, its mean is far above its value, and dividing by the
+    /// mean would hide nearly all of the error: so a pixel that stands out from its neighbours counts
+    /// as their mean. But not as much less than its own: a small highlight stands out and is there.
+    fn likely_value(&self, at: usize) -> f64 {
+        let (x, y) = (at as u32 % TILE, at as u32 / TILE);
+        let beside = [
+            (x > 0).then(|| at - 1),
+            (x + 1 < self.extent.x).then(|| at + 1),
+            (y > 0).then(|| at - TILE as usize),
+            (y + 1 < self.extent.y).then(|| at + TILE as usize),
+        ];
+        let (mut sum, mut count) = (0.0, 0.0);
+        for i in beside.into_iter().flatten() {
+            sum += self.means[i];
+            count += 1.0;
+        }
+        let own = self.means[at];
+        let moved = f64::from(self.pixels[at].moved[0]).sqrt();
+        if own * count <= sum || !moved.is_finite() {
+            return own;
+        }
+        (sum / count).max(own - MOST_ABOVE * moved)
     }
 }
 
@@ -94,13 +141,18 @@ const INDEPENDENT: f64 = 0.5;
 /// The least r that is believed: a smooth light has 0.16 (its error falls like N^-1.3).
 const LEAST: f64 = 0.125;
 /// What r is before anything is measured. Edges have 2^-1.5 = 0.35, edges behind a lens, in motion or
-/// in a penumbra up to 0.5. Over twelve scenes, 4 to 8 seeds and 16 to 128 samples (96 x 96 and 64 x 64
-/// pixels, against the mean of the other seeds' 256 to 512 samples) this puts the middle of the
-/// estimated error at 1.1 times the true one.
-const USUAL: f64 = 0.45;
+/// in a penumbra up to 0.5. Over the built-in scenes, six seeds and 16 to 64 samples (64 × 64 pixels,
+/// against the mean of the other seeds' 256 samples) this puts the middle of the estimated error at
+/// 1.1 times the true one.
+const USUAL: f64 = 0.44;
 /// The exponent of the measured r in the geometric mean of both. A few pixels make most of a picture's
-/// error, so the measured r is noisy: with 1, twice as many estimates are too small as with 0.3.
-const MEASURED: f64 = 0.3;
+/// error, so the measured r is noisy: with 1, many more estimates are too small than with 0.2.
+const MEASURED: f64 = 0.2;
+/// As a multiple of the measured r, the largest that is believed: one so low is not chance.
+const BEYOND_MEASURED: f64 = 1.6;
+/// How far a pixel's value lies below its mean at most, as a part of how far the mean moved. With 0.5
+/// estimates are too small where bright samples are rare, with 1 too large where highlights are small.
+const MOST_ABOVE: f64 = 0.7;
 /// The sequence's length; after it another begins, independent of the first.
 const SEQUENCE: u32 = 1 << 16;
 
@@ -124,7 +176,8 @@ impl Decline {
             } else {
                 USUAL
             };
-            measured.powf(MEASURED) * USUAL.powf(1.0 - MEASURED)
+            let mean = measured.powf(MEASURED) * USUAL.powf(1.0 - MEASURED);
+            mean.min(BEYOND_MEASURED * measured)
         });
         Self { absolute, relative }
     }
@@ -178,6 +231,7 @@ impl ErrorEstimate {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Vec3;
 
     fn moves(squares: [f64; 3], count: u32) -> Moves {
         Moves {
@@ -192,6 +246,35 @@ mod tests {
     fn alone(squares: [f64; 3], count: u32) -> Expected {
         let moves = moves(squares, count);
         moves.expected(&Decline::of([&moves])).unwrap()
+    }
+
+    #[test]
+    fn one_bright_sample_in_a_dark_place_does_not_hide_its_own_error() {
+        // 16 × 16 pixels of value 0.1; one of them has met a light of 160 once in 16 samples.
+        let mut tile = vec![FilmPixel::default(); 256];
+        for pixel in &mut tile {
+            for _ in 0..16 {
+                pixel.sum.add(Vec3::splat(0.1));
+            }
+            pixel.count = 16;
+        }
+        let moves =
+            |tile: &[FilmPixel], size| Means::of(tile, UVec2::splat(size)).moves(0..tile.len());
+        tile[100].sum.add(Vec3::splat(160.0));
+        tile[100].moved = [100.0; 3];
+        // Its mean is 10.1, which has moved by 10.
+        let relative = moves(&tile, 16).relative[0];
+        assert!(
+            (relative / (100.0 / 3.1_f64.powi(2)) - 1.0).abs() < 0.05,
+            "{relative}"
+        );
+        // Where the halves agree it is a bright pixel.
+        tile[100].moved = [0.01; 3];
+        let relative = moves(&tile, 16).relative[0];
+        assert!((relative / (0.01 / 100.0) - 1.0).abs() < 0.1, "{relative}");
+        // Alone in the picture it has no neighbours.
+        let relative = moves(&tile[100..101], 1).relative[0];
+        assert!((relative / (0.01 / 102.0) - 1.0).abs() < 0.1, "{relative}");
     }
 
     #[test]

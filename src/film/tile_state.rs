@@ -1,7 +1,7 @@
 //! What a tile holds while it is rendered: its pixels, what has arrived of its next pass, and what
 //! is known of its error.
 
-use super::error::Moves;
+use super::error::{Means, Moves};
 use super::tiles::{FilmPixel, NOT_KNOWN, Tile};
 use super::{Sum, TILE};
 use std::ops::Range;
@@ -167,14 +167,11 @@ impl TileState {
             pixel.sum.merge(&sums[at]);
             pixel.count += count as u32;
         }
+        let means = Means::of(&self.pixels, self.tile.extent);
         for half in 0..2 {
             if pixels.has_half(half) {
-                self.moves[half] = Moves::of(
-                    self.tile
-                        .pixels()
-                        .filter(|(_, at)| half_of(*at) == half)
-                        .map(|(_, at)| &self.pixels[at]),
-                );
+                let places = self.tile.pixels().map(|(_, at)| at);
+                self.moves[half] = means.moves(places.filter(|at| half_of(*at) == half));
             }
         }
         self.version = self.version.wrapping_add(1);

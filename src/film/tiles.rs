@@ -86,7 +86,7 @@ impl Film {
 
     /// The sum of a pixel's samples.
     pub fn sum(&self, x: u32, y: u32) -> &Sum {
-        &self.pixel(x, y).sum
+        &self.pixels[self.place(x, y)].sum
     }
 
     /// Adds the samples of another film of the same size. False, and nothing done, for another size.
@@ -112,8 +112,10 @@ impl Film {
         self.pixels[self.place(x, y)].count
     }
 
-    pub(super) fn pixel(&self, x: u32, y: u32) -> &FilmPixel {
-        &self.pixels[self.place(x, y)]
+    /// The memory of the tile with this number.
+    pub(super) fn tile(&self, number: usize) -> &[FilmPixel] {
+        const PIXELS: usize = (TILE * TILE) as usize;
+        &self.pixels[number * PIXELS..(number + 1) * PIXELS]
     }
 
     fn place(&self, x: u32, y: u32) -> usize {
