@@ -94,18 +94,18 @@ impl<'a> Means<'a> {
     /// What a pixel's value is likely to be, by which its squared error is divided. Where one rare,
     /// bright sample has moved a dark pixel far, its mean is far above its value, and dividing by the
     /// mean would hide nearly all of the error: so a pixel that stands out from its neighbours counts
-    /// as their mean. But not as much less than its own: a small highlight stands out and is there.
+    /// as their mean. (Those across its corners: they are of the same half as it, and what a half says
+    /// must not depend on the other.) But not as much less than its own: a small highlight stands out and is there.
     fn likely_value(&self, at: usize) -> f64 {
         let (x, y) = (at as u32 % TILE, at as u32 / TILE);
-        let beside = [
-            (x > 0).then(|| at - 1),
-            (x + 1 < self.extent.x).then(|| at + 1),
-            (y > 0).then(|| at - TILE as usize),
-            (y + 1 < self.extent.y).then(|| at + TILE as usize),
-        ];
         let (mut sum, mut count) = (0.0, 0.0);
-        for i in beside.into_iter().flatten() {
-            sum += self.means[i];
+        for (dx, dy) in [(-1, -1), (1, -1), (-1, 1), (1, 1)] {
+            let beside = x.checked_add_signed(dx).zip(y.checked_add_signed(dy));
+            let Some((x, y)) = beside.filter(|&(x, y)| x < self.extent.x && y < self.extent.y)
+            else {
+                continue;
+            };
+            sum += self.means[(y * TILE + x) as usize];
             count += 1.0;
         }
         let own = self.means[at];

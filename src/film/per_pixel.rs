@@ -23,16 +23,29 @@ impl Film {
     /// ([`ErrorEstimate::relative_mse`](super::ErrorEstimate)); NaN where it is not known: of
     /// less than two samples, of samples without the first ones, and of a merged film.
     pub fn relative_errors(&self) -> Vec<f32> {
-        let size = self.size();
-        let mut errors = vec![f32::NAN; size.x as usize * size.y as usize];
-        let tiles: Vec<HalfTile> = TileGrid::new(size)
+        let tiles = self.half_tiles();
+        self.errors_of(&tiles, &Decline::of(tiles.iter().map(|half| &half.whole)))
+    }
+
+    /// The same where this film is a part of one whose errors decline so.
+    pub(super) fn relative_errors_in(&self, decline: &Decline) -> Vec<f32> {
+        self.errors_of(&self.half_tiles(), decline)
+    }
+
+    /// Two for each tile.
+    fn half_tiles(&self) -> Vec<HalfTile> {
+        TileGrid::new(self.size())
             .tiles()
             .enumerate()
             .flat_map(|(number, tile)| HalfTile::both(tile, self.tile(number)))
-            .collect();
-        let decline = Decline::of(tiles.iter().map(|half| &half.whole));
+            .collect()
+    }
+
+    fn errors_of(&self, tiles: &[HalfTile], decline: &Decline) -> Vec<f32> {
+        let size = self.size();
+        let mut errors = vec![f32::NAN; size.x as usize * size.y as usize];
         for halves in tiles.chunks_exact(2) {
-            let squares = square_errors(halves, &decline);
+            let squares = square_errors(halves, decline);
             for (pixel, at) in halves[0].tile.pixels() {
                 let place = pixel.y as usize * size.x as usize + pixel.x as usize;
                 errors[place] = squares[square_of(at)];
