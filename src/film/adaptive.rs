@@ -6,7 +6,7 @@
 //! to be small, so the error estimate stays what it is with the same samples for all. (What is left
 //! is of second order: the other half's samples were as many as this half's asked for.)
 
-use super::error::Moves;
+use super::error::{Decline, Moves};
 use super::tile_state::Pixels;
 use std::cmp::Ordering;
 use std::ops::Range;
@@ -54,17 +54,18 @@ struct Step {
 pub(super) fn choose(cells: &[Cell], most: u64, goal: f64) -> Vec<Task> {
     let (mut error, mut spent) = (0.0, 0.0);
     let mut steps = Vec::new();
+    let decline = Decline::of(cells.iter().map(|cell| &cell.own));
     for (i, cell) in cells.iter().enumerate() {
         let count = u64::from(cell.own.count);
         let pixels = f64::from(cell.own.pixels);
-        let (expected, ratio) = foreseen(cell);
+        let expected = foreseen(cell, &decline);
         error += expected;
         spent += pixels * count as f64 * cell.rays;
         let next = (2 * count).min(most);
         if next > count {
             steps.push(Step {
                 cell: i,
-                gain: expected * (1.0 - ratio),
+                gain: expected * (1.0 - decline.relative),
                 rays: pixels * (next - count) as f64 * cell.rays,
                 range: count..next,
             });
@@ -95,21 +96,20 @@ pub(super) fn choose(cells: &[Cell], most: u64, goal: f64) -> Vec<Task> {
     together(chosen)
 }
 
-/// What the other half says of this one: its relative squared error, and what doubling makes of it.
-fn foreseen(cell: &Cell) -> (f64, f64) {
+/// What the other half says of this one: its relative squared error.
+fn foreseen(cell: &Cell, decline: &Decline) -> f64 {
     // A picture of one column may have a half without pixels: then the own ones must do.
     let source = if cell.other.pixels > 0 {
         &cell.other
     } else {
         &cell.own
     };
-    let Some(expected) = source.expected() else {
-        return (0.0, 0.5);
+    let Some(expected) = source.expected(decline) else {
+        return 0.0;
     };
     let doublings = f64::from(cell.own.count).log2() - f64::from(source.count).log2();
     let per_pixel = expected.relative / f64::from(source.pixels);
-    let now = per_pixel * f64::from(cell.own.pixels) * expected.ratio.powf(doublings);
-    (now, expected.ratio)
+    per_pixel * f64::from(cell.own.pixels) * decline.relative.powf(doublings)
 }
 
 /// Both halves of a tile with the same samples become one task.

@@ -1,7 +1,7 @@
 //! A render: what it reads, what it has, and the passes that add samples until a rule ends it.
 
 use super::control::{Control, Signal};
-use super::error::ErrorEstimate;
+use super::error::{Decline, ErrorEstimate, Moves};
 use super::lock;
 use super::preview::Preview;
 use super::queue::Queue;
@@ -238,8 +238,18 @@ impl Engine {
         if self.mode.samples.start > 0 {
             return None;
         }
-        let moves = self.tiles.iter().flat_map(|tile| lock(tile).moves);
-        ErrorEstimate::of(moves)
+        ErrorEstimate::of(&self.moves())
+    }
+
+    /// How the errors of the whole picture decline.
+    pub fn decline(&self) -> Decline {
+        Decline::of(&self.moves())
+    }
+
+    /// Of each half of each tile.
+    fn moves(&self) -> Vec<Moves> {
+        let tiles = self.tiles.iter();
+        tiles.flat_map(|tile| lock(tile).moves).collect()
     }
 
     fn note_error(&self) {

@@ -1,9 +1,9 @@
 //! What a film knows of each pixel beside its colour.
 
-use super::error::Moves;
-use super::tiles::{Tile, TileGrid};
+use super::error::{Decline, Means, Moves};
+use super::tile_state::half_of;
+use super::tiles::{FilmPixel, Tile, TileGrid};
 use super::{Film, TILE};
-use glam::UVec2;
 
 /// Edge in pixels of the square whose pixels are estimated together: the means of a single pixel
 /// moved too much by chance.
@@ -20,66 +20,98 @@ impl Film {
 
     /// The estimated relative error of each pixel, row by row from the top: 0.01 is one percent. Its
     /// 4 × 4 pixels' part of their tile's error, so that the mean square is the picture's
-    /// ([`ErrorEstimate::relative_mse`](super::ErrorEstimate)); NaN where a pixel has less than two
-    /// samples.
+    /// ([`ErrorEstimate::relative_mse`](super::ErrorEstimate)); NaN where it is not known: of
+    /// less than two samples, of samples without the first ones, and of a merged film.
     pub fn relative_errors(&self) -> Vec<f32> {
+        let tiles = self.half_tiles();
+        self.errors_of(&tiles, &Decline::of(tiles.iter().map(|half| &half.whole)))
+    }
+
+    /// The same where this film is a part of one whose errors decline so.
+    pub(super) fn relative_errors_in(&self, decline: &Decline) -> Vec<f32> {
+        self.errors_of(&self.half_tiles(), decline)
+    }
+
+    /// Two for each tile.
+    fn half_tiles(&self) -> Vec<HalfTile> {
+        TileGrid::new(self.size())
+            .tiles()
+            .enumerate()
+            .flat_map(|(number, tile)| HalfTile::both(tile, self.tile(number)))
+            .collect()
+    }
+
+    fn errors_of(&self, tiles: &[HalfTile], decline: &Decline) -> Vec<f32> {
         let size = self.size();
         let mut errors = vec![f32::NAN; size.x as usize * size.y as usize];
-        for tile in TileGrid::new(size).tiles() {
-            let whole = [0, 1].map(|half| self.moves(tile, half));
-            for (y, x) in (0..TILE)
-                .step_by(SQUARE as usize)
-                .flat_map(|y| (0..TILE).step_by(SQUARE as usize).map(move |x| (y, x)))
-            {
-                let origin = tile.origin + UVec2::new(x, y);
-                if origin.x >= size.x || origin.y >= size.y {
-                    continue;
-                }
-                let extent = (size - origin).min(UVec2::splat(SQUARE));
-                let square = Tile { origin, extent };
-                let error = self.square_error(square, &whole);
-                for (pixel, _) in square.pixels() {
-                    errors[pixel.y as usize * size.x as usize + pixel.x as usize] = error;
-                }
+        for halves in tiles.chunks_exact(2) {
+            let squares = square_errors(halves, decline);
+            for (pixel, at) in halves[0].tile.pixels() {
+                let place = pixel.y as usize * size.x as usize + pixel.x as usize;
+                errors[place] = squares[square_of(at)];
             }
         }
         errors
     }
+}
 
-    /// Of the square's share of what its tile's halves moved.
-    fn square_error(&self, square: Tile, whole: &[Moves; 2]) -> f32 {
+/// Squares along a tile's edge.
+const SQUARES: usize = (TILE / SQUARE) as usize;
+
+/// The number of the square that a place of a tile's memory lies in.
+fn square_of(at: usize) -> usize {
+    let (x, y) = (at as u32 % TILE, at as u32 / TILE);
+    (y / SQUARE) as usize * SQUARES + (x / SQUARE) as usize
+}
+
+/// Half of a tile's pixels, as adaptive sampling halves them: the two may have different numbers of
+/// samples.
+struct HalfTile {
+    tile: Tile,
+    /// How far they moved.
+    whole: Moves,
+    /// How far those of each square did.
+    squares: [Moves; SQUARES * SQUARES],
+}
+
+impl HalfTile {
+    fn both(tile: Tile, pixels: &[FilmPixel]) -> [Self; 2] {
+        let means = Means::of(pixels, tile.extent);
+        let moves = |half: usize, which: &dyn Fn(usize) -> bool| {
+            let places = tile.pixels().map(|(_, at)| at);
+            means.moves(places.filter(|&at| half_of(at) == half && which(at)))
+        };
+        [0, 1].map(|half| Self {
+            tile,
+            whole: moves(half, &|_| true),
+            squares: std::array::from_fn(|i| moves(half, &|at| square_of(at) == i)),
+        })
+    }
+}
+
+/// The relative error of each square: its share of what its tile's halves err by.
+fn square_errors(halves: &[HalfTile], decline: &Decline) -> [f32; SQUARES * SQUARES] {
+    std::array::from_fn(|i| {
         let (mut sum, mut pixels) = (0.0, 0);
-        for (half, whole) in whole.iter().enumerate() {
-            let part = self.moves(square, half as u32);
-            if part.pixels == 0 {
-                continue;
-            }
-            let Some(expected) = whole.expected() else {
+        for half in halves.iter().filter(|half| half.squares[i].pixels > 0) {
+            let Some(expected) = half.whole.expected(decline) else {
                 return f32::NAN;
             };
-            if part.relative[0] > 0.0 {
-                sum += expected.relative * part.relative[0] / whole.relative[0];
+            let part = half.squares[i].relative[0];
+            if part > 0.0 {
+                sum += expected.relative * part / half.whole.relative[0];
             }
-            pixels += part.pixels;
+            pixels += half.squares[i].pixels;
         }
         (sum / f64::from(pixels.max(1))).sqrt() as f32
-    }
-
-    /// Of the pixels with x + y even, or odd: the two may have different numbers of samples.
-    fn moves(&self, pixels: Tile, half: u32) -> Moves {
-        let places = pixels.pixels().map(|(pixel, _)| pixel);
-        Moves::of(
-            places
-                .filter(|pixel| (pixel.x + pixel.y) % 2 == half)
-                .map(|pixel| self.pixel(pixel.x, pixel.y)),
-        )
-    }
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::film::{Rendered, render, test_scene};
+    use crate::film::{Rendered, render, render_samples, test_scene};
+    use glam::UVec2;
 
     fn rendered(spp: u32) -> Rendered {
         let settings = test_scene::settings(UVec2::new(36, 28), spp);
@@ -117,6 +149,30 @@ mod tests {
             most > 4.0 * least,
             "from {least} to {most}: it does not tell places apart"
         );
+    }
+
+    #[test]
+    fn the_error_of_a_merged_film_and_of_a_later_part_is_not_known() {
+        let settings = test_scene::settings(UVec2::new(36, 28), 1);
+        let part = |samples| {
+            let (world, camera) = (test_scene::world(), test_scene::camera());
+            render_samples(&world, &camera, &settings, samples, &|_| {}).film
+        };
+        let known = |film: &Film| {
+            let errors = film.relative_errors();
+            errors.iter().filter(|error| error.is_finite()).count()
+        };
+        let (mut film, later) = (part(0..8), part(8..16));
+        assert_eq!((known(&film), known(&later)), (36 * 28, 0));
+        // Nothing added changes nothing, and what is added to nothing stays what it is.
+        assert!(film.merge(&Film::new(film.size())));
+        assert_eq!(known(&film), 36 * 28);
+        let mut same = Film::new(film.size());
+        assert!(same.merge(&film));
+        assert_eq!(same, film);
+        assert!(film.merge(&later));
+        assert_eq!(known(&film), 0);
+        assert!(film.relative_errors().iter().all(|error| error.is_nan()));
     }
 
     #[test]

@@ -117,7 +117,7 @@ impl Progressive {
     /// `None` outside the picture. Cheap: for what is under a pointer.
     pub fn pixel(&self, pixel: UVec2) -> Option<(u32, f32)> {
         let (film, place) = self.engine.tile_film(pixel)?;
-        let errors = film.relative_errors();
+        let errors = film.relative_errors_in(&self.engine.decline());
         let error = errors[(place.y * film.size().x + place.x) as usize];
         Some((film.count(place.x, place.y), error))
     }

@@ -1,8 +1,8 @@
 //! What a tile holds while it is rendered: its pixels, what has arrived of its next pass, and what
 //! is known of its error.
 
-use super::error::Moves;
-use super::tiles::{FilmPixel, Tile};
+use super::error::{Means, Moves};
+use super::tiles::{FilmPixel, NOT_KNOWN, Tile};
 use super::{Sum, TILE};
 use std::ops::Range;
 
@@ -161,18 +161,17 @@ impl TileState {
                 let moved = pixel.sum.half_difference(&sums[at], pixel.count);
                 let squared = moved.iter().map(|m| m * m).sum::<f64>() / 3.0;
                 pixel.moved = [squared as f32, pixel.moved[0], pixel.moved[1]];
+            } else if pixel.count == 0 && count > 1 {
+                pixel.moved = NOT_KNOWN;
             }
             pixel.sum.merge(&sums[at]);
             pixel.count += count as u32;
         }
+        let means = Means::of(&self.pixels, self.tile.extent);
         for half in 0..2 {
             if pixels.has_half(half) {
-                self.moves[half] = Moves::of(
-                    self.tile
-                        .pixels()
-                        .filter(|(_, at)| half_of(*at) == half)
-                        .map(|(_, at)| &self.pixels[at]),
-                );
+                let places = self.tile.pixels().map(|(_, at)| at);
+                self.moves[half] = means.moves(places.filter(|at| half_of(*at) == half));
             }
         }
         self.version = self.version.wrapping_add(1);

@@ -20,9 +20,13 @@ pub(super) struct FilmPixel {
     pub sum: Sum,
     pub count: u32,
     /// How far the mean moved when its samples doubled, the last time first: squared, averaged over
-    /// the channels. They fill what the sum's alignment leaves.
+    /// the channels; or [`NOT_KNOWN`]. They fill what the sum's alignment leaves.
     pub moved: [f32; 3],
 }
+
+/// Of samples that did not arrive by doublings from the first one on. Infinite and not NaN, so that
+/// equal films are equal.
+pub(super) const NOT_KNOWN: [f32; 3] = [f32::INFINITY; 3];
 
 impl Film {
     /// An empty film of `size` pixels.
@@ -75,24 +79,30 @@ impl Film {
             let place = film.place((i % columns) as u32, (i / columns) as u32);
             film.pixels[place].sum = *sum;
             film.pixels[place].count = count;
+            film.pixels[place].moved = NOT_KNOWN;
         }
         Some(film)
     }
 
     /// The sum of a pixel's samples.
     pub fn sum(&self, x: u32, y: u32) -> &Sum {
-        &self.pixel(x, y).sum
+        &self.pixels[self.place(x, y)].sum
     }
 
     /// Adds the samples of another film of the same size. False, and nothing done, for another size.
+    /// Of the sum of two parts the error is not known: neither part tells how far it would have moved.
     pub fn merge(&mut self, other: &Self) -> bool {
         if self.size != other.size {
             return false;
         }
         for (pixel, other) in self.pixels.iter_mut().zip(&other.pixels) {
+            pixel.moved = match (pixel.count, other.count) {
+                (0, _) => other.moved,
+                (_, 0) => pixel.moved,
+                _ => NOT_KNOWN,
+            };
             pixel.sum.merge(&other.sum);
             pixel.count += other.count;
-            pixel.moved = [0.0; 3];
         }
         true
     }
@@ -102,8 +112,10 @@ impl Film {
         self.pixels[self.place(x, y)].count
     }
 
-    pub(super) fn pixel(&self, x: u32, y: u32) -> &FilmPixel {
-        &self.pixels[self.place(x, y)]
+    /// The memory of the tile with this number.
+    pub(super) fn tile(&self, number: usize) -> &[FilmPixel] {
+        const PIXELS: usize = (TILE * TILE) as usize;
+        &self.pixels[number * PIXELS..(number + 1) * PIXELS]
     }
 
     fn place(&self, x: u32, y: u32) -> usize {

@@ -4,6 +4,7 @@
 mod failures;
 mod pictures;
 mod statistics;
+mod views;
 
 use std::path::Path;
 use std::process::{Command, Output};

@@ -17,6 +17,7 @@ fn sixty_four_samples_have_at_most_two_thirds_of_the_error_of_random_numbers() {
         ("knot", false),
         ("spheres", false),
         ("spheres", true),
+        ("marbles", true),
         ("showcase", true),
     ] {
         let mut app = headless_app();

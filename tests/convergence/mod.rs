@@ -116,6 +116,10 @@ fn smooth_light_converges_with_slope_one_point_three_and_random_numbers_with_a_h
         None,
     );
     assert!(ours <= -1.3, "slope {ours:.2}");
+    let area = slope(&world, &camera, PixelSampling::Area, Sequence::Sobol, None);
+    println!("smooth light at a point: N^{ours:.2}, over the pixel: N^{area:.2}");
+    // The pixel's two numbers and the light's two are padded: four dimensions that are not one net.
+    assert!(area <= -0.6, "slope {area:.2} over the pixel");
     assert!(
         (-0.6..-0.4).contains(&random),
         "slope of random numbers {random:.2}"
@@ -135,6 +139,7 @@ fn a_penumbra_converges_with_slope_zero_point_seven() {
     assert!(ours <= -0.7, "slope {ours:.2}");
     let area = slope(&world, &camera, PixelSampling::Area, Sequence::Sobol, None);
     println!("penumbra at a point: N^{ours:.2}, over the pixel: N^{area:.2}");
+    assert!(area <= -0.5, "slope {area:.2} over the pixel");
 }
 
 /// A dark half-plane before a bright background; its edge crosses the pixel. With its coverage.
@@ -179,6 +184,18 @@ fn an_edge_converges_with_slope_zero_point_seven() {
         Some(truth),
     );
     assert!(ours <= -0.7, "slope {ours:.2}");
+    // An edge has no width at a point; the pixel is all there is. Over edges of other angles and
+    // places, whose slopes differ:
+    let slopes: Vec<f64> = (0..6)
+        .map(|i| {
+            let (world, camera, truth) = half_plane(0.1 + 0.23 * i as f32, -0.5 + 0.17 * i as f32);
+            let (pixel, sequence) = (PixelSampling::Area, Sequence::Sobol);
+            slope(&world, &camera, pixel, sequence, Some(truth))
+        })
+        .collect();
+    let mean = slopes.iter().sum::<f64>() / slopes.len() as f64;
+    println!("an edge over the pixel: N^{ours:.2}; six others: {slopes:.2?}, mean N^{mean:.2}");
+    assert!(mean <= -0.7, "mean slope {mean:.2}");
 }
 
 #[test]

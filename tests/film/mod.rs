@@ -7,7 +7,7 @@ mod parts;
 
 use glam::UVec2;
 use glassbox::app::headless_app;
-use glassbox::film::{Film, Picture, RELATIVE_FLOOR, render_samples};
+use glassbox::film::{Film, render_samples};
 use glassbox::io::{OpenOptions, SceneSource, builtin, open};
 use glassbox::scene::RenderSettings;
 use glassbox::sync::{Traced, TracedCameras};
@@ -48,19 +48,4 @@ impl Scene {
     fn film(&self, samples: std::ops::Range<u64>) -> Film {
         render_samples(&self.world, &self.camera, &self.settings, samples, &|_| {}).film
     }
-}
-
-/// Root of the mean of squared differences, each divided by the reference's squared value + floor.
-fn relative_error(picture: &Picture, reference: &Picture) -> f64 {
-    let sum: f64 = picture
-        .pixels
-        .iter()
-        .zip(&reference.pixels)
-        .map(|(p, r)| {
-            let value = f64::from(r.element_sum()) / 3.0;
-            let square = (*p - *r).as_dvec3().length_squared() / 3.0;
-            square / (value * value + RELATIVE_FLOOR)
-        })
-        .sum();
-    (sum / picture.pixels.len() as f64).sqrt()
 }

@@ -13,6 +13,9 @@ pub struct Scale {
     pub low_is_bright: bool,
 }
 
+/// What is drawn where a value is not known: no colour of the palette, and not a miss's black.
+pub const UNKNOWN: [f32; 3] = [0.76, 0.09, 0.20];
+
 /// Where an automatic range begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Beginning {
@@ -27,9 +30,12 @@ pub(super) enum Beginning {
 const BEYOND: f64 = 0.01;
 
 impl Scale {
-    /// The colour of a value, sRGB; one that is not finite (a miss) is black.
+    /// The colour of a value, sRGB; an infinite one (a miss) is black, NaN is [`UNKNOWN`].
     pub fn color(&self, value: f32) -> [f32; 3] {
-        if !value.is_finite() {
+        if value.is_nan() {
+            return UNKNOWN;
+        }
+        if value.is_infinite() {
             return [0.0; 3];
         }
         let place = (value - self.low) / (self.high - self.low);
@@ -81,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn values_beyond_the_ends_are_shown_as_the_ends_and_misses_as_black() {
+    fn values_beyond_the_ends_are_shown_as_the_ends_misses_as_black_and_what_is_unknown_apart() {
         let mut scale = Scale {
             low: 2.0,
             high: 4.0,
@@ -92,6 +98,12 @@ mod tests {
         assert_eq!(scale.color(3.0), viridis(0.5));
         assert_eq!(scale.color(9.0), viridis(1.0));
         assert_eq!(scale.color(f32::INFINITY), [0.0; 3]);
+        assert_eq!(scale.color(f32::NAN), UNKNOWN);
+        for i in 0..=100 {
+            let palette = viridis(i as f32 / 100.0);
+            let distance: f32 = (0..3).map(|c| (palette[c] - UNKNOWN[c]).powi(2)).sum();
+            assert!(distance > 0.1, "{palette:?} looks like what is not known");
+        }
         scale.low_is_bright = true;
         assert_eq!(scale.color(2.0), viridis(1.0));
         assert_eq!(scale.color(-1.0), viridis(1.0));

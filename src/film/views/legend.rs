@@ -1,7 +1,8 @@
 //! A bar with the palette, the values at its ends and the unit, written into a heatmap.
 
 use super::font::{ADVANCE, HEIGHT, WIDTH, glyph};
-use super::{Scale, Shown};
+use super::{Scale, Shown, UNKNOWN};
+use glam::UVec2;
 
 /// Width of the bar in units of a font pixel.
 const BAR_WIDTH: u32 = 160;
@@ -20,6 +21,9 @@ const DIMMED: f32 = 0.15;
 
 const INK: [f32; 3] = [1.0; 3];
 
+/// What the colour of values that are not known is called.
+const UNKNOWN_TEXT: &str = "unknown";
+
 /// Writes the legend into the lower left corner; false where the view is no heatmap and has none.
 /// What a small picture has no room for is cut off.
 pub fn burn_legend(shown: &mut Shown) -> bool {
@@ -32,7 +36,13 @@ pub fn burn_legend(shown: &mut Shown) -> bool {
     let text_width = |text: &str| text.chars().count() as u32 * ADVANCE - 1;
     // Both numbers, with a gap between them, or the bar: whichever is wider.
     let inner = BAR_WIDTH.max(text_width(&low) + 2 * ADVANCE + text_width(&high));
-    let (width, height) = (inner + 2 * MARGIN, BAR_HEIGHT + HEIGHT + 3 * MARGIN);
+    // A line more where some values are not known: a square of their colour, and what it means.
+    let line = if shown.has_unknown {
+        HEIGHT + MARGIN
+    } else {
+        0
+    };
+    let (width, height) = (inner + 2 * MARGIN, BAR_HEIGHT + HEIGHT + 3 * MARGIN + line);
     let mut canvas = Canvas {
         left: MARGIN * unit,
         top: shown.height.saturating_sub((height + MARGIN) * unit),
@@ -40,9 +50,13 @@ pub fn burn_legend(shown: &mut Shown) -> bool {
         shown,
     };
     canvas.dim(width, height);
-    canvas.text(MARGIN, MARGIN, &low);
-    canvas.text(MARGIN + inner - text_width(&high), MARGIN, &high);
-    canvas.bar(MARGIN, 2 * MARGIN + HEIGHT, inner, &scale);
+    if line > 0 {
+        canvas.fill(MARGIN, MARGIN, UVec2::splat(HEIGHT), UNKNOWN);
+        canvas.text(MARGIN + HEIGHT + MARGIN, MARGIN, UNKNOWN_TEXT);
+    }
+    canvas.text(MARGIN, MARGIN + line, &low);
+    canvas.text(MARGIN + inner - text_width(&high), MARGIN + line, &high);
+    canvas.bar(MARGIN, 2 * MARGIN + HEIGHT + line, inner, &scale);
     true
 }
 
@@ -123,10 +137,15 @@ impl Canvas<'_> {
 
     /// One pixel of the font.
     fn dot(&mut self, x: u32, y: u32) {
-        for dy in 0..self.unit {
-            for dx in 0..self.unit {
+        self.fill(x, y, UVec2::ONE, INK);
+    }
+
+    /// A rectangle whose top left corner is at (x, y).
+    fn fill(&mut self, x: u32, y: u32, extent: UVec2, color: [f32; 3]) {
+        for dy in 0..extent.y * self.unit {
+            for dx in 0..extent.x * self.unit {
                 if let Some(pixel) = self.pixel(x * self.unit + dx, y * self.unit + dy) {
-                    *pixel = INK;
+                    *pixel = color;
                 }
             }
         }
@@ -138,7 +157,6 @@ mod tests {
     use super::*;
     use crate::film::views::{Sources, View, show};
     use crate::scene::Output;
-    use glam::UVec2;
 
     fn heatmap(size: UVec2) -> Shown {
         let values = vec![5; (size.x * size.y) as usize];
@@ -182,7 +200,7 @@ mod tests {
         let numbers = "0123456789.-e";
         for text in units
             .into_iter()
-            .chain(["m", "nodes", "triangles", numbers])
+            .chain(["m", "nodes", "triangles", UNKNOWN_TEXT, numbers])
         {
             for character in text.chars() {
                 assert!(glyph(character).is_some(), "no `{character}` for `{text}`");
@@ -212,6 +230,30 @@ mod tests {
         let at = |x: u32, y: u32| after.pixels[(y * 300 + x) as usize];
         assert_eq!(at(6, 190), scale.color(scale.low));
         assert_eq!(at(165, 190), scale.color(scale.high));
+    }
+
+    #[test]
+    fn what_is_not_known_gets_a_line_with_its_colour() {
+        let size = UVec2::new(300, 200);
+        let mut values = vec![0.5; 300 * 200];
+        values[0] = f32::NAN;
+        let sources = Sources {
+            errors: Some((size, &values)),
+            ..Sources::default()
+        };
+        let mut shown = show(View::Error, &sources, &Output::default(), None).unwrap();
+        assert!(burn_legend(&mut shown));
+        let of_unknown = |shown: &Shown| shown.pixels.iter().filter(|p| **p == UNKNOWN).count();
+        assert_eq!(of_unknown(&shown), 1 + (HEIGHT * HEIGHT) as usize);
+        // The legend is a line higher: 7 pixels of text and 3 between the lines.
+        let top = |shown: &Shown| {
+            let dimmed = |y: &usize| shown.pixels[y * 300 + 100] != shown.pixels[100];
+            (0..200).find(dimmed).unwrap()
+        };
+        let mut known = heatmap(size);
+        burn_legend(&mut known);
+        assert_eq!(top(&shown) + 10, top(&known));
+        assert_eq!(of_unknown(&known), 0);
     }
 
     #[test]

@@ -10,7 +10,7 @@
 //! | nodes | nodes of the trees that the ray entered | first hits | central ray, heatmap |
 //! | triangles | triangles tested | first hits | central ray, heatmap |
 //! | samples | samples of the pixel | the film | heatmap |
-//! | error | estimated error of the pixel | the film | heatmap |
+//! | error | estimated error of the pixel | the film | heatmap; what is not known has a colour of its own |
 //! | bloom-threshold | what passes bloom's threshold | the picture | exposure, view transform |
 //! | bloom-layer | what bloom adds | the picture | exposure, view transform |
 //!
@@ -25,7 +25,7 @@ mod object_color;
 mod show;
 mod viridis;
 
-pub use heatmap::Scale;
+pub use heatmap::{Scale, UNKNOWN};
 pub use legend::burn_legend;
 pub use object_color::object_color;
 pub use show::{Shown, Sources, ViewError, show};

@@ -15,8 +15,8 @@ pub struct Sources<'a> {
     pub first_hits: Option<&'a FirstHits>,
     /// Columns and rows, and the number of each pixel's samples, row by row from the top.
     pub samples: Option<(UVec2, &'a [u32])>,
-    /// Columns and rows, and the estimated error of each pixel, row by row from the top; one that is
-    /// not finite is not known.
+    /// Columns and rows, and the estimated error of each pixel, row by row from the top; NaN where it
+    /// is not known.
     pub errors: Option<(UVec2, &'a [f32])>,
 }
 
@@ -31,6 +31,8 @@ pub struct Shown {
     pub pixels: Vec<[f32; 3]>,
     /// What a heatmap's colours mean; `None` for the other views.
     pub scale: Option<Scale>,
+    /// Some of a heatmap's values are not known and drawn in [`UNKNOWN`](super::UNKNOWN).
+    pub has_unknown: bool,
 }
 
 /// Why a view cannot be shown.
@@ -89,7 +91,11 @@ pub fn show(
     let heatmap = |size: UVec2, values: &[f32]| {
         let scale = scale(view, values, range);
         let pixels = values.par_iter().map(|&value| scale.color(value)).collect();
-        shown(view, size, pixels, Some(scale))
+        let shown = shown(view, size, pixels, Some(scale))?;
+        Ok(Shown {
+            has_unknown: values.iter().any(|value| value.is_nan()),
+            ..shown
+        })
     };
     match view.source() {
         Source::Picture => {
@@ -138,6 +144,7 @@ fn shown(
         height: size.y,
         pixels,
         scale,
+        has_unknown: false,
     })
 }
 
@@ -206,7 +213,7 @@ fn scale(view: View, values: &[f32], range: Option<[f32; 2]>) -> Scale {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::film::views::viridis;
+    use crate::film::views::{UNKNOWN, viridis};
     use crate::scene::ViewTransform;
 
     const SIZE: UVec2 = UVec2::new(2, 1);
@@ -248,7 +255,7 @@ mod tests {
     fn samples_and_errors_become_heatmaps_from_zero_or_over_the_range_asked_for() {
         let sources = Sources {
             samples: Some((SIZE, &[8, 16])),
-            errors: Some((SIZE, &[0.5, f32::INFINITY])),
+            errors: Some((SIZE, &[0.5, f32::NAN])),
             ..Sources::default()
         };
         let show = |view, range| show(view, &sources, &output(), range).unwrap();
@@ -256,7 +263,8 @@ mod tests {
         assert_eq!(samples.pixels, [viridis(0.5), viridis(1.0)]);
         assert_eq!(samples.scale.map(|s| (s.low, s.high)), Some((0.0, 16.0)));
         let errors = show(View::Error, Some([0.0, 2.0]));
-        assert_eq!(errors.pixels, [viridis(0.25), [0.0; 3]]);
+        assert_eq!(errors.pixels, [viridis(0.25), UNKNOWN]);
+        assert_eq!((samples.has_unknown, errors.has_unknown), (false, true));
     }
 
     #[test]

@@ -4,6 +4,7 @@
 
 mod cornell;
 mod first;
+mod marbles;
 mod meshes;
 mod showcase;
 mod spheres;
@@ -74,6 +75,11 @@ pub const SCENES: &[BuiltinScene] = &[
         name: "spheres",
         sentence: "Spheres from matte to mirror under the sky.",
         spawn: spheres::spheres,
+    },
+    BuiltinScene {
+        name: "marbles",
+        sentence: "Marbles through a lens while one rolls past: blur by depth and by motion, brushed steel, tinted glass.",
+        spawn: marbles::marbles,
     },
     BuiltinScene {
         name: "showcase",

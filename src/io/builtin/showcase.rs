@@ -116,7 +116,7 @@ fn add_lights(stage: &mut Stage) {
     let at = from_to(Vec3::new(2.6, 4.0, 2.2), Vec3::new(0.8, 0.0, 1.4));
     stage.add("Spot", (spot, at));
     let tube = SegmentLamp {
-        ends: [Vec3::NEG_X * 0.9, Vec3::X * 0.9],
+        ends: [Vec3::NEG_X * 0.8, Vec3::X * 0.8],
         colors: [
             LinearRgba::rgb(1.0, 0.25, 0.55),
             LinearRgba::rgb(0.2, 0.55, 1.0),
@@ -124,7 +124,8 @@ fn add_lights(stage: &mut Stage) {
         intensity: 1.4,
         samples: 2,
     };
-    stage.add("Neon tube", (tube, Transform::from_xyz(-0.4, 0.2, -0.6)));
+    // Clear of the mirror sphere: where a light touches a surface, its light there has no bound.
+    stage.add("Neon tube", (tube, Transform::from_xyz(-0.6, 0.2, -0.6)));
     let softbox = ParallelogramLamp {
         corner: Vec3::new(-0.5, 7.0, 1.0),
         edges: [Vec3::X * 2.5, Vec3::Z * 2.5],

@@ -39,6 +39,7 @@ fn scenes_have_the_listed_triangles_objects_and_lights() {
         ("teapot", 16_258, 2, [0, 1, 0, 1], 1),
         ("knot", 87_042, 2, [0, 1, 0, 1], 1),
         ("spheres", 96_770, 9, [0, 1, 0, 1], 1),
+        ("marbles", 23_810, 7, [0, 1, 0, 1], 1),
         ("showcase", 87_694, 8, [1, 1, 1, 1], 2),
     ];
     assert_eq!(SCENES.len(), listed.len());
