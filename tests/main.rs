@@ -10,4 +10,5 @@ mod effects;
 mod files;
 mod film;
 mod hard_cases;
+mod inspect;
 mod trees;

@@ -4,6 +4,7 @@ use super::color::of_radiance;
 use super::line_set::{LineSet, Stands};
 use super::{Subject, System};
 use crate::trace::{ParallelogramLight, PointLight};
+use bevy::color::LinearRgba;
 use glam::Vec3;
 
 /// Pieces of a gradient; between them colours are linear.
@@ -48,9 +49,10 @@ pub(super) fn lights(subject: &Subject) -> LineSet {
     }
     for light in &lights.segments {
         let along = |i: usize| i as f32 / PIECES as f32;
+        let shown = one_scale(&light.colors);
         for i in 0..PIECES {
             let ends = [i, i + 1].map(|i| light.ends[0].lerp(light.ends[1], along(i)));
-            let colors = [i, i + 1].map(|i| color(light.colors[0].lerp(light.colors[1], along(i))));
+            let colors = [i, i + 1].map(|i| shown(light.colors[0].lerp(light.colors[1], along(i))));
             set.gradient(ends, colors, Stands::Light(light.id));
         }
     }
@@ -60,17 +62,22 @@ pub(super) fn lights(subject: &Subject) -> LineSet {
     set
 }
 
+/// Colours of one light, so that its ends or corners can be compared.
+fn one_scale(colors: &[Vec3]) -> impl Fn(Vec3) -> LinearRgba + use<> {
+    let brightest = colors
+        .iter()
+        .fold(0.0_f32, |most, color| most.max(color.max_element()));
+    let scale = if brightest > 0.0 {
+        1.0 / brightest
+    } else {
+        1.0
+    };
+    move |color| of_radiance(scale * color, 0.0)
+}
+
 /// A light's hue, as bright as a screen shows it: strengths of lights have different units.
-fn color(strength: Vec3) -> bevy::color::LinearRgba {
-    let largest = strength.max_element();
-    of_radiance(
-        if largest > 0.0 {
-            strength / largest
-        } else {
-            strength
-        },
-        0.0,
-    )
+fn color(strength: Vec3) -> LinearRgba {
+    one_scale(&[strength])(strength)
 }
 
 fn draw_point(set: &mut LineSet, light: &PointLight, size: f32) {
@@ -101,12 +108,7 @@ fn draw_point(set: &mut LineSet, light: &PointLight, size: f32) {
 /// A grid over the light, each line with its gradient, and its front's normal.
 fn draw_parallelogram(set: &mut LineSet, light: &ParallelogramLight) {
     let stands = Stands::Light(light.id);
-    // One scale for the whole light, so that its corners can be compared.
-    let brightest = light
-        .colors
-        .iter()
-        .fold(0.0_f32, |most, c| most.max(c.max_element()));
-    let shown = |c: Vec3| of_radiance(if brightest > 0.0 { c / brightest } else { c }, 0.0);
+    let shown = one_scale(&light.colors);
     let place = |i: usize| i as f32 / PIECES as f32;
     let at = |u: f32, v: f32| light.corner + u * light.edges[0] + v * light.edges[1];
     for line in (0..=PIECES).step_by(2) {

@@ -59,6 +59,6 @@ pub use settings::{
 pub use subject::Subject;
 pub use system::{System, lines};
 pub use table::aligned;
-pub use traversal::{Step, StepKind, Traversal};
+pub use traversal::{StackEntry, Step, StepKind, Traversal};
 pub use trees::{NodeFacts, TreeView, trees};
 pub use visits::Visits;
