@@ -213,7 +213,7 @@ fn the_facts_of_a_node_are_those_of_the_walk_and_costs_add_up_to_the_trees() {
     for (node, _, places) in walk.parts.iter().step_by(37) {
         let facts = view.facts(*node as u32).unwrap();
         assert_eq!(facts.primitives as usize, places.len());
-        assert_eq!(view.path(places[0]).contains(&(*node as u32)), true);
+        assert!(view.path(places[0]).contains(&(*node as u32)));
         assert_eq!(view.path(places[0])[facts.depth as usize], *node as u32);
     }
     for node in 0..view.tree.nodes.len() {

@@ -153,12 +153,14 @@ fn s10_split_planes_lie_halfway_between_the_centroids_or_the_boxes() {
 fn a_builder_without_planes_says_so_where_boxes_overlap() {
     let mut scene = Scene::open("head", UVec2::ONE);
     scene.settings.spp = 1;
-    let mut inspect = InspectSettings::default();
-    inspect.boxes = BoxSettings {
-        on: true,
-        split_planes: true,
-        to_level: 40,
-        ..BoxSettings::default()
+    let inspect = InspectSettings {
+        boxes: BoxSettings {
+            on: true,
+            split_planes: true,
+            to_level: 40,
+            ..BoxSettings::default()
+        },
+        ..InspectSettings::default()
     };
     let set = scene.lines(System::Boxes, &inspect);
     assert!(!set.planes.is_empty());
@@ -261,8 +263,10 @@ fn leaf_sizes_costs_and_visits_colour_the_boxes() {
 fn more_boxes_than_there_is_room_for_are_thinned_by_level_and_it_says_so() {
     let mut scene = Scene::open("teapot", UVec2::ONE);
     scene.settings.spp = 1;
-    let mut inspect = InspectSettings::default();
-    inspect.max_lines = 12 * 100;
+    let mut inspect = InspectSettings {
+        max_lines: 12 * 100,
+        ..InspectSettings::default()
+    };
     inspect.boxes.on = true;
     inspect.boxes.to_level = 40;
     let set = scene.lines(System::Boxes, &inspect);
