@@ -11,6 +11,7 @@
 //! | [`bvh`] | triangles, builders, traversal, statistics; knows no scene |
 //! | [`trace`] | the world that rays read, camera, lights, textures, sampler, radiance |
 //! | [`film`] | pixels: samples become a picture, the picture becomes a screen's |
+//! | [`inspect`] | what the tracer did, as lines and figures: rays, nodes, normals, samples, motion |
 //! | [`sync`] | entities to the tracer's world: what changed, and only that |
 //! | [`io`] | scene files, OBJ, glTF, pictures, shapes, built-in scenes |
 //! | `view` | the traced picture in a Bevy camera, gizmos; the only room that knows Bevy's renderer |
@@ -26,6 +27,7 @@ pub mod cli;
 #[cfg(feature = "editor")]
 pub mod editor;
 pub mod film;
+pub mod inspect;
 pub mod io;
 pub mod scene;
 pub mod sync;

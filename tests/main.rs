@@ -10,6 +10,7 @@ mod effects;
 mod files;
 mod film;
 mod hard_cases;
+mod inspect;
 mod trees;
 #[cfg(feature = "editor")]
 mod window;

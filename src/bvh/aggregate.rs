@@ -47,6 +47,20 @@ pub(super) enum Places {
     Triangles(Vec<(u32, u32)>),
 }
 
+/// What a leaf of the top tree holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Primitive {
+    /// Two levels: an instance, by its number.
+    Instance(u32),
+    /// One level: a triangle of an instance's mesh.
+    Triangle {
+        /// Index into [`Aggregate::instances`].
+        instance: u32,
+        /// Index into the mesh's [`super::Triangles::indices`].
+        triangle: u32,
+    },
+}
+
 impl Default for Places {
     fn default() -> Self {
         Self::Instances(Vec::new())
@@ -154,6 +168,33 @@ impl Aggregate {
     /// The top tree: over instances, or over all triangles.
     pub fn tree(&self) -> &Bvh2 {
         &self.tree
+    }
+
+    /// What stands at a place of the top tree's leaf order (`first_index ..` of a leaf).
+    pub fn primitive(&self, place: usize) -> Option<Primitive> {
+        match &self.places {
+            Places::Instances(places) => places.get(place).map(|&i| Primitive::Instance(i)),
+            Places::Triangles(places) => places.get(place).map(|&(instance, place)| {
+                let triangle = self.instances[instance as usize]
+                    .mesh
+                    .triangle_at(place as usize);
+                Primitive::Triangle { instance, triangle }
+            }),
+        }
+    }
+
+    /// The world box of what stands at a place of the top tree's leaf order.
+    pub(crate) fn box_at(&self, place: usize) -> Option<Aabb> {
+        match &self.places {
+            Places::Instances(places) => {
+                self.instances[*places.get(place)? as usize].world_bounds()
+            }
+            Places::Triangles(places) => {
+                let &(number, place) = places.get(place)?;
+                let instance = &self.instances[number as usize];
+                Some(instance.to_world_box(&instance.mesh.box_at(place as usize)))
+            }
+        }
     }
 
     /// Statistics of the top tree.

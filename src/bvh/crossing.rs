@@ -2,15 +2,37 @@
 
 use glam::Vec3;
 
-use super::{Aggregate, Hit, Ray};
+use super::{Aggregate, Hit, Ray, Visitor};
 
 impl Aggregate {
     /// The next crossing behind `after`, a hit of the same ray: the ray goes straight on through what it met. Every
     /// layer is met once, however close layers lie, and also where the ray passes through an edge or a corner that
     /// triangles of one mesh share: the same corners in both, with nothing else in between.
     pub fn next_crossing(&self, ray: &Ray, after: &Hit) -> Option<Hit> {
+        self.crossing_behind(after, |last| self.closest_hit_after(ray, last))
+    }
+
+    /// The next crossing behind `after`, watched: found in the binary trees.
+    pub fn next_crossing_with<V: Visitor>(
+        &self,
+        ray: &Ray,
+        after: &Hit,
+        visitor: &mut V,
+    ) -> Option<Hit> {
+        self.crossing_behind(after, |last| {
+            self.closest_hit_after_with(ray, last, visitor)
+        })
+    }
+
+    /// The first of the hits behind `after`, one found `behind` the other, that is a crossing of its own.
+    #[inline(always)]
+    fn crossing_behind(
+        &self,
+        after: &Hit,
+        mut behind: impl FnMut(&Hit) -> Option<Hit>,
+    ) -> Option<Hit> {
         let mut last = *after;
-        while let Some(hit) = self.closest_hit_after(ray, &last) {
+        while let Some(hit) = behind(&last) {
             if !self.same_crossing(&last, &hit) {
                 return Some(hit);
             }

@@ -52,6 +52,25 @@ pub fn split_plane(tree: &Bvh2, node: usize, box_of: impl Fn(u32) -> Aabb) -> Op
         .max_by(|a, b| extent[a.axis].total_cmp(&extent[b.axis]))
 }
 
+/// The plane halfway between the boxes of a node's children, on the axis on which they lie farthest apart
+/// (touching counts as 0); `None` for a leaf, and where the boxes overlap. What can be said of a tree whose
+/// builder knows no planes.
+pub fn gap_plane(tree: &Bvh2, node: usize) -> Option<SplitPlane> {
+    let parent = tree.nodes.get(node).filter(|node| !node.is_leaf())?;
+    let child = parent.first_index as usize;
+    let (left, right) = (&tree.nodes[child], &tree.nodes[child + 1]);
+    let gap =
+        |axis: usize| (right.min[axis] - left.max[axis]).max(left.min[axis] - right.max[axis]);
+    let axis = (0..3).max_by(|&a, &b| gap(a).total_cmp(&gap(b)))?;
+    let (below, above) = if left.max[axis] <= right.min[axis] {
+        (left.max[axis], right.min[axis])
+    } else {
+        (right.max[axis], left.min[axis])
+    };
+    let position = below * 0.5 + above * 0.5;
+    (gap(axis) >= 0.0).then_some(SplitPlane { axis, position })
+}
+
 /// The part of `primitive_indices` that holds the primitives of a subtree. O(depth).
 pub fn primitives_below(tree: &Bvh2, node: usize) -> Range<usize> {
     let end_leaf = |side: usize| {
@@ -111,6 +130,26 @@ mod tests {
                 .count();
             assert_eq!(without, 0, "{builder:?}: of {} inner nodes", inner.len());
         }
+    }
+
+    #[test]
+    fn boxes_that_do_not_overlap_have_a_plane_between_them_and_overlapping_ones_none() {
+        let options = BuildOptions {
+            max_leaf_size: 1,
+            ..BuildOptions::default()
+        };
+        let apart = [(0.0, 1.0), (3.0, 4.0)]
+            .map(|(min, max)| Aabb::new(Vec3A::new(0.0, min, 0.0), Vec3A::new(1.0, max, 1.0)));
+        let tree = build_tree(&apart, &options);
+        let plane = SplitPlane {
+            axis: 1,
+            position: 2.0,
+        };
+        assert_eq!(gap_plane(&tree, 0), Some(plane));
+        assert_eq!(gap_plane(&tree, 1), None);
+        let over = [(0.0, 2.0), (1.0, 4.0)]
+            .map(|(min, max)| Aabb::new(Vec3A::splat(min), Vec3A::splat(max)));
+        assert_eq!(gap_plane(&build_tree(&over, &options), 0), None);
     }
 
     #[test]

@@ -95,6 +95,21 @@ pub fn sah_cost(tree: &Bvh2) -> f64 {
         }
 }
 
+/// A node's own term of [`sah_cost`]; those of all nodes add up to it. 0 where there is no such node.
+pub fn node_cost(tree: &Bvh2, node: usize) -> f64 {
+    let (Some(root), Some(below)) = (tree.nodes.first(), tree.nodes.get(node)) else {
+        return 0.0;
+    };
+    let root_area = half_area(root);
+    if node == 0 {
+        own_cost(root)
+    } else if root_area > 0.0 {
+        half_area(below) * own_cost(below) / root_area
+    } else {
+        0.0
+    }
+}
+
 /// What a ray pays in a node that it visits, below it excepted.
 pub(super) fn own_cost(node: &Bvh2Node) -> f64 {
     if node.is_leaf() {

@@ -1,4 +1,4 @@
-//! The nearest hit and occlusion from the binary trees, with a [`Visitor`] who sees every node and triangle. They find
+//! The nearest hit, the next one behind a hit, and occlusion from the binary trees, with a [`Visitor`] who sees every node and triangle. They find
 //! what [`super::queries`] find, bit for bit.
 
 use super::{
@@ -17,6 +17,26 @@ impl Aggregate {
         let ray = SafeRay::new(ray)?;
         let mut best = Best::NONE;
         self.watch(&ray, visitor, |hit, limit| {
+            let new = best.offer(hit, limit);
+            (best.is(&hit), new)
+        });
+        best.found(&ray)
+    }
+
+    /// The next hit behind `after`, watched.
+    pub fn closest_hit_after_with<V: Visitor>(
+        &self,
+        ray: &Ray,
+        after: &Hit,
+        visitor: &mut V,
+    ) -> Option<Hit> {
+        let ray = SafeRay::new(ray)?;
+        let after = ray.unscaled(*after);
+        let mut best = Best::NONE;
+        self.watch(&ray, visitor, |hit, limit| {
+            if !after.beats(&hit) {
+                return (false, limit);
+            }
             let new = best.offer(hit, limit);
             (best.is(&hit), new)
         });

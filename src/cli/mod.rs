@@ -8,6 +8,8 @@ mod bench;
 mod bvh;
 mod convert;
 mod failure;
+mod gizmos;
+mod inspect;
 mod merge;
 mod output;
 mod progress;
@@ -51,6 +53,8 @@ enum Command {
     Merge(merge::Merge),
     /// Build a scene's tree with each builder and print its statistics
     Bvh(bvh::Bvh),
+    /// Evaluate a pixel's samples again and show every ray: as text, JSON, or over the picture
+    Inspect(inspect::Inspect),
     /// List the built-in scenes: name, triangles, lights, and what they show
     Scenes,
     /// Convert a scene: .scn.ron, .obj, .gltf, .glb or a built-in one to .scn.ron, .obj or .glb
@@ -77,6 +81,7 @@ fn execute(arguments: impl IntoIterator<Item = OsString>) -> Result<ExitCode, Fa
         Some(Command::Render(render)) => render::run(render)?,
         Some(Command::Merge(merge)) => merge::run(merge)?,
         Some(Command::Bvh(bvh)) => bvh::run(bvh)?,
+        Some(Command::Inspect(inspect)) => inspect::run(inspect)?,
         Some(Command::Scenes) => scenes::run()?,
         Some(Command::Convert(convert)) => convert::run(convert)?,
         Some(Command::Bench(bench)) => bench::run(bench)?,

@@ -188,31 +188,14 @@ fn write_stats(file: &Path, stats: &Stats) -> Result<(), FileError> {
 
 /// The cameras that the command line asks for.
 fn chosen(stage: &Stage, args: &Render) -> Result<Vec<TracedCamera>, Failure> {
-    let cameras = &stage.cameras().0;
-    let Some(first) = cameras.first() else {
-        return Err(Failure::Scene(format!(
-            "{}: has no camera to render from; add a SceneCamera",
-            stage.name
-        )));
-    };
-    if args.all_cameras {
-        return Ok(cameras.clone());
+    if args.all_cameras && !stage.cameras().0.is_empty() {
+        return Ok(stage.cameras().0.clone());
     }
     if args.camera.is_empty() {
-        return Ok(vec![first.clone()]);
+        return Ok(vec![stage.camera(None)?]);
     }
-    let find = |name: &String| {
-        let camera = cameras.iter().find(|camera| camera.name == *name);
-        camera.cloned().ok_or_else(|| {
-            let known: Vec<&str> = cameras.iter().map(|camera| camera.name.as_str()).collect();
-            Failure::Scene(format!(
-                "{}: has no camera `{name}`; it has {}",
-                stage.name,
-                known.join(", ")
-            ))
-        })
-    };
-    args.camera.iter().map(find).collect()
+    let names = args.camera.iter();
+    names.map(|name| stage.camera(Some(name))).collect()
 }
 
 /// One camera writes the file itself, several write `out-NAME.png`. Names are made fit for files;

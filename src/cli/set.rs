@@ -1,10 +1,12 @@
-//! `--set key=value`: any render setting by its reflected path.
+//! `--set key=value`: any setting by its reflected path.
 
 use super::Failure;
-use crate::scene::{RenderSettings, SETTINGS, Setting};
+use super::gizmos::gizmo_settings;
+use crate::inspect::InspectSettings;
+use crate::scene::{RenderSettings, SETTINGS};
 use bevy::math::UVec2;
 use bevy::reflect::enums::{DynamicEnum, DynamicVariant};
-use bevy::reflect::{GetPath, PartialReflect, TypeInfo};
+use bevy::reflect::{GetPath, PartialReflect, Reflect, TypeInfo};
 use std::str::FromStr;
 
 /// `key=value` as it stands on the command line.
@@ -31,19 +33,37 @@ impl FromStr for Assignment {
 impl Assignment {
     /// Writes the value into the settings. Ranges are checked afterwards, all together.
     pub fn apply(&self, settings: &mut RenderSettings) -> Result<(), Failure> {
+        let paths = SETTINGS.iter().map(|setting| setting.path);
+        self.write_into(settings, "--set", paths, "glassbox render --help")
+    }
+
+    /// Writes the value into what is drawn.
+    pub fn apply_gizmo(&self, settings: &mut InspectSettings) -> Result<(), Failure> {
+        let all = gizmo_settings(settings);
+        let paths = all.iter().map(|(path, _)| path.as_str());
+        self.write_into(settings, "--gizmo", paths, "glassbox inspect --help")
+    }
+
+    fn write_into<'a, T: Reflect>(
+        &self,
+        settings: &mut T,
+        flag: &str,
+        paths: impl Iterator<Item = &'a str>,
+        help: &str,
+    ) -> Result<(), Failure> {
         let Self { key, value } = self;
         let Ok(field) = settings.reflect_path_mut(key.as_str()) else {
-            return Err(Failure::Usage(unknown(key)));
+            return Err(Failure::Usage(unknown(flag, key, paths, help)));
         };
         if let TypeInfo::Struct(info) = type_info(field)?
             && field.try_downcast_ref::<UVec2>().is_none()
         {
             let fields = info.field_names().join(", ");
-            let text = format!("--set {key}: it is a group; choose one of its settings: {fields}");
+            let text = format!("{flag} {key}: it is a group; choose one of its settings: {fields}");
             return Err(Failure::Usage(text));
         }
         write(field, value)
-            .map_err(|wanted| Failure::Usage(format!("--set {key}={value}: wanted {wanted}")))
+            .map_err(|wanted| Failure::Usage(format!("{flag} {key}={value}: wanted {wanted}")))
     }
 }
 
@@ -64,6 +84,9 @@ fn write(field: &mut dyn PartialReflect, value: &str) -> Result<(), String> {
     }
     if let Some(place) = field.try_downcast_mut::<u32>() {
         return parsed(place, value, "a whole number from 0 to 4294967295");
+    }
+    if let Some(place) = field.try_downcast_mut::<u64>() {
+        return parsed(place, value, "a whole number");
     }
     if let Some(place) = field.try_downcast_mut::<f32>() {
         return parsed(place, value, "a number");
@@ -98,15 +121,12 @@ pub(super) fn parse_size(text: &str) -> Result<UVec2, String> {
 }
 
 /// Says that there is no such setting, and which ones have a similar name.
-fn unknown(key: &str) -> String {
-    let last = |path: &'static str| path.rsplit('.').next().unwrap_or(path);
-    let distance = |setting: &&Setting| {
-        edit_distance(key, setting.path).min(edit_distance(key, last(setting.path)))
+fn unknown<'a>(flag: &str, key: &str, paths: impl Iterator<Item = &'a str>, help: &str) -> String {
+    let distance = |path: &str| {
+        let last = path.rsplit('.').next().unwrap_or(path);
+        edit_distance(key, path).min(edit_distance(key, last))
     };
-    let mut near: Vec<(usize, &str)> = SETTINGS
-        .iter()
-        .map(|setting| (distance(&setting), setting.path))
-        .collect();
+    let mut near: Vec<(usize, &str)> = paths.map(|path| (distance(path), path)).collect();
     near.sort_by_key(|(distance, _)| *distance);
     // The nearest in any case, two more where they are mistakes of a few letters.
     let close = |i: usize, distance: usize| i == 0 || (i < 3 && distance <= key.len() / 3);
@@ -117,7 +137,7 @@ fn unknown(key: &str) -> String {
         .map(|(_, (_, path))| *path)
         .collect();
     format!(
-        "--set {key}: no such setting; did you mean {}? (all: glassbox render --help)",
+        "{flag} {key}: no such setting; did you mean {}? (all: {help})",
         names.join(" or ")
     )
 }

@@ -43,6 +43,16 @@ pub(super) enum BuilderArg {
 impl BuilderArg {
     pub const ALL: [Self; 4] = [Self::None, Self::Median, Self::Sah, Self::Ploc];
 
+    /// As `bvh` calls it.
+    pub fn of_tree(self) -> crate::bvh::Builder {
+        match self {
+            Self::None => crate::bvh::Builder::None,
+            Self::Median => crate::bvh::Builder::Median,
+            Self::Sah => crate::bvh::Builder::Sah,
+            Self::Ploc => crate::bvh::Builder::Ploc,
+        }
+    }
+
     /// The setting's value.
     pub fn builder(self) -> Builder {
         match self {

@@ -5,7 +5,7 @@ use super::output::tell;
 use crate::app::headless_app;
 use crate::io::{LoadProblems, OpenOptions, SceneSource, open};
 use crate::scene::RenderSettings;
-use crate::sync::{Traced, TracedCameras};
+use crate::sync::{Traced, TracedCamera, TracedCameras};
 use bevy::app::App;
 use clap::Args;
 use std::path::PathBuf;
@@ -75,6 +75,29 @@ impl Stage {
         }
         self.warned = self.warned.max(traced.problems.len());
         traced
+    }
+
+    /// The camera of that name, or the first, as the last sync left it.
+    pub fn camera(&self, name: Option<&str>) -> Result<TracedCamera, Failure> {
+        let cameras = &self.cameras().0;
+        let Some(first) = cameras.first() else {
+            return Err(Failure::Scene(format!(
+                "{}: has no camera to render from; add a SceneCamera",
+                self.name
+            )));
+        };
+        let Some(name) = name else {
+            return Ok(first.clone());
+        };
+        let camera = cameras.iter().find(|camera| camera.name == *name);
+        camera.cloned().ok_or_else(|| {
+            let known: Vec<&str> = cameras.iter().map(|camera| camera.name.as_str()).collect();
+            Failure::Scene(format!(
+                "{}: has no camera `{name}`; it has {}",
+                self.name,
+                known.join(", ")
+            ))
+        })
     }
 
     /// The cameras of the last sync.

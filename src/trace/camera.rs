@@ -159,6 +159,24 @@ impl Camera {
         }
     }
 
+    /// Where a point of the world lies in a picture of `size` pixels, seen through the pinhole (or the
+    /// middle of the lens) at `time`: the inverse of [`Self::ray`]. Columns and rows from the top left
+    /// corner, and metres along the view axis; a perspective camera sees nothing that is not ahead.
+    pub fn project(&self, point: Vec3, size: UVec2, time: f32) -> Option<(Vec2, f32)> {
+        let offset = point - (self.position + self.optics.velocity * time);
+        let ahead = offset.dot(self.forward);
+        let at = Vec2::new(offset.dot(self.right), offset.dot(self.up));
+        let at = match self.projection {
+            Projection::Perspective { fov_y } if ahead > 0.0 => at / (ahead * (0.5 * fov_y).tan()),
+            Projection::Perspective { .. } => return None,
+            Projection::Orthographic { height } => at / (0.5 * height),
+        };
+        let size = size.as_vec2();
+        let ndc = Vec2::new(at.x * (size.y / size.x), at.y);
+        let place = 0.5 * Vec2::new(ndc.x + 1.0, 1.0 - ndc.y) * size;
+        place.is_finite().then_some((place, ahead))
+    }
+
     /// Shutter time for the number `u` in [0, 1).
     pub fn time(&self, u: f32) -> f32 {
         let [open, close] = self.optics.shutter;
@@ -196,6 +214,31 @@ mod tests {
         let right = camera.ray(Vec2::new(640.0, 240.0), SIZE, [0.0; 2], 0.0);
         let slope = right.direction.dot(camera.right) / right.direction.dot(camera.forward);
         assert!((slope - 0.45_f32.tan() * 640.0 / 480.0).abs() < 1e-5);
+    }
+
+    #[test]
+    fn a_point_on_a_pixels_ray_is_projected_to_its_place() {
+        let perspective = camera(Optics {
+            velocity: Vec3::new(0.3, -0.2, 0.1),
+            ..Optics::default()
+        });
+        let orthographic = Camera {
+            projection: Projection::Orthographic { height: 2.0 },
+            ..perspective.clone()
+        };
+        for camera in [perspective, orthographic] {
+            for place in [Vec2::new(3.0, 4.0), Vec2::new(600.5, 17.25)] {
+                let ray = camera.ray(place, SIZE, [0.5; 2], 0.7);
+                let (found, ahead) = camera.project(ray.at(5.0), SIZE, 0.7).unwrap();
+                assert!((found - place).length() < 1e-2, "{place} became {found}");
+                assert!((ahead - 5.0 * ray.direction.dot(camera.forward)).abs() < 1e-4);
+            }
+        }
+        let behind = camera(Optics::default());
+        assert_eq!(
+            behind.project(behind.position - behind.forward, SIZE, 0.0),
+            None
+        );
     }
 
     #[test]

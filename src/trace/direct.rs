@@ -2,11 +2,12 @@
 
 use super::lights::{LightPoint, sample_count};
 use super::radiance::{Batch, Path, Shadow, Workspace};
+use super::recorder::{LightKind, Recorder};
 use super::sampler::Purpose;
 use super::shading::reflected;
 use super::{Lights, Surface};
 use crate::bvh::{Hit, Ray};
-use crate::scene::Lighting;
+use crate::scene::{Lighting, RenderSettings};
 use glam::Vec3;
 
 /// A shadow ray ends this much before its light, as a fraction of the distance: a light that lies
@@ -16,7 +17,7 @@ const SHORT_OF_THE_LIGHT: f32 = 1.0 - 64.0 * f32::EPSILON;
 /// The middle of a light, in the numbers that choose its points.
 const MIDDLE: [f32; 2] = [0.5, 0.5];
 
-impl Batch<'_> {
+impl<R: Recorder> Batch<'_, R> {
     /// Adds a shadow ray for every light point that can add something; `weight` is the path's
     /// throughput times the surface's opacity.
     pub(super) fn gather_direct_light(
@@ -38,9 +39,11 @@ impl Batch<'_> {
         }
         let at = surface.point.position;
         for light in &lights.points {
+            self.recorder.light(LightKind::Point, light.id);
             self.gather_point(path, surface, light.point(at, lighting), weight, workspace);
         }
         for light in &lights.directionals {
+            self.recorder.light(LightKind::Directional, light.id);
             let count = if light.tan_half_angle > 0.0 {
                 light.samples
             } else {
@@ -58,6 +61,7 @@ impl Batch<'_> {
             );
         }
         for light in &lights.segments {
+            self.recorder.light(LightKind::Segment, light.id);
             let size = (light.ends[1] - light.ends[0]).length();
             let count = (light.samples, size);
             self.gather_area(path, surface, light.id, count, weight, workspace, |u| {
@@ -65,6 +69,7 @@ impl Batch<'_> {
             });
         }
         for light in &lights.parallelograms {
+            self.recorder.light(LightKind::Parallelogram, light.id);
             let count = (light.samples, light.area_normal().length());
             self.gather_area(path, surface, light.id, count, weight, workspace, |u| {
                 light.point(at, u, lighting)
@@ -103,6 +108,7 @@ impl Batch<'_> {
         for i in 0..u64::from(count) {
             let index = index * u64::from(count) + i;
             let [u, v, ..] = sampler.block(index, Purpose::Light(id), path.name);
+            self.recorder.light_place([u, v], count);
             self.gather_point(path, surface, point([u, v]), weight, workspace);
         }
     }
@@ -117,6 +123,7 @@ impl Batch<'_> {
     ) {
         let Some(point) = point else { return };
         let value = weight * reflected(surface, &point, self.settings.lighting);
+        self.recorder.light_sample(surface, &point);
         if value == Vec3::ZERO {
             return;
         }
@@ -128,9 +135,9 @@ impl Batch<'_> {
             sample: path.sample,
             value,
         });
-        workspace
-            .shadow_rays
-            .push(shadow_ray(surface, &point, path.time));
+        let ray = shadow_ray(surface, &point, path.time);
+        self.recorder.shadow_ray(&ray);
+        workspace.shadow_rays.push(ray);
     }
 
     /// Traces all shadow rays of the batch and adds what arrives.
@@ -138,7 +145,10 @@ impl Batch<'_> {
         self.counts.shadow += workspace.shadow_rays.len() as u64;
         if self.settings.features.transparency && self.world.needs.transparency {
             for (shadow, ray) in workspace.shadows.iter().zip(&workspace.shadow_rays) {
-                let value = shadow.value * self.transmittance(ray);
+                self.recorder.next_shadow();
+                let transmittance = self.transmittance(ray);
+                self.recorder.arrived(transmittance);
+                let value = shadow.value * transmittance;
                 self.add(shadow.sample, value);
             }
             return;
@@ -146,14 +156,16 @@ impl Batch<'_> {
         let aggregate = &self.world.aggregate;
         aggregate.occlusions(&workspace.shadow_rays, &mut workspace.occluded);
         for (shadow, occluded) in workspace.shadows.iter().zip(&workspace.occluded) {
+            self.recorder.next_shadow();
             if !occluded {
+                self.recorder.arrived(Vec3::ONE);
                 self.add(shadow.sample, shadow.value);
             }
         }
     }
 
     /// What a shadow ray lets through: the product of `(1-d) · lerp(1, kd, d)` over its crossings.
-    fn transmittance(&self, ray: &Ray) -> Vec3 {
+    fn transmittance(&mut self, ray: &Ray) -> Vec3 {
         let mut transmittance = Vec3::ONE;
         let mut after: Option<Hit> = None;
         loop {
@@ -165,6 +177,7 @@ impl Batch<'_> {
             let Some(hit) = hit else { return transmittance };
             // The finest level: a shadow ray's own width is not known.
             let surface = Surface::at(self.world, self.settings, ray, 0.0, &hit);
+            self.recorder.crossed(&hit, &surface);
             let d = surface.opacity;
             transmittance *= (1.0 - d) * Vec3::ONE.lerp(surface.diffuse, d);
             if transmittance == Vec3::ZERO {
@@ -197,6 +210,34 @@ fn shadow_ray(surface: &Surface, point: &LightPoint, time: f32) -> Ray {
 }
 
 impl Lights {
+    /// How many shadow rays the area light with this `SceneId` gets at a first hit; `None` where there
+    /// is no such light.
+    pub fn samples_of(&self, id: u64, settings: &RenderSettings) -> Option<u32> {
+        let directional = self.directionals.iter().map(|light| {
+            let radius = light.tan_half_angle;
+            (
+                light.id,
+                light.samples,
+                std::f32::consts::PI * radius * radius,
+            )
+        });
+        let segments = self.segments.iter().map(|light| {
+            let length = (light.ends[1] - light.ends[0]).length();
+            (light.id, light.samples, length)
+        });
+        let parallelograms = self.parallelograms.iter().map(|light| {
+            let area = light.area_normal().length();
+            (light.id, light.samples, area)
+        });
+        let mut all = directional.chain(segments).chain(parallelograms);
+        let (_, samples, size) = all.find(|(of, ..)| *of == id)?;
+        Some(sample_count(
+            samples,
+            size,
+            settings.features.scale_light_samples,
+        ))
+    }
+
     /// How many there are of all kinds.
     pub fn count(&self) -> usize {
         self.points.len()

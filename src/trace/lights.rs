@@ -16,7 +16,7 @@ use crate::scene::Lighting;
 use glam::Vec3;
 
 /// The lights of a world, one array per kind, each sorted by id.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Serialize)]
 #[expect(missing_docs, reason = "the names say it all")]
 pub struct Lights {
     pub points: Vec<PointLight>,
@@ -26,7 +26,7 @@ pub struct Lights {
 }
 
 /// A point that shines in all directions, or within a cone.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize)]
 pub struct PointLight {
     /// The entity's `SceneId`.
     pub id: u64,
@@ -39,7 +39,7 @@ pub struct PointLight {
 }
 
 /// Full strength where the cosine to `axis` exceeds `cos_inner`, none below `cos_outer`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Serialize)]
 pub struct SpotCone {
     /// Unit vector along which the spot shines.
     pub axis: Vec3,
@@ -50,7 +50,7 @@ pub struct SpotCone {
 }
 
 /// Light from infinitely far.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize)]
 pub struct DirectionalLight {
     /// The entity's `SceneId`.
     pub id: u64,
@@ -65,7 +65,7 @@ pub struct DirectionalLight {
 }
 
 /// A glowing line.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize)]
 pub struct SegmentLight {
     /// The entity's `SceneId`.
     pub id: u64,
@@ -78,7 +78,7 @@ pub struct SegmentLight {
 }
 
 /// A glowing parallelogram.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize)]
 pub struct ParallelogramLight {
     /// The entity's `SceneId`.
     pub id: u64,

@@ -8,6 +8,9 @@
 //! A sample's randomness depends on its pixel, its index and the seed alone ([`Sampler`]), so a
 //! sample can be evaluated again by itself, in any order, on any thread, with the same result.
 //!
+//! [`probe`](probe()) evaluates samples again and keeps every ray of theirs, for those who want to see why
+//! a pixel has its colour.
+//!
 //! Formulas: the module docs of [`lights`], [`shading`] and [`camera`].
 
 pub mod camera;
@@ -21,7 +24,10 @@ pub mod lights;
 mod material;
 mod mipmap;
 mod needs;
+mod probe;
 mod radiance;
+mod ray_tree;
+mod recorder;
 mod sampler;
 mod scatter;
 pub mod shading;
@@ -40,7 +46,12 @@ pub use lights::{
 };
 pub use material::Material;
 pub use needs::{Needs, samples_per_pixel};
+pub use probe::{MOST_RAYS, ProbeError, Samples, probe};
 pub use radiance::{RayCounts, SampleId, Workspace, radiance};
+pub use ray_tree::{
+    Crossing, LightSample, ProbedSample, RayCost, RayEnd, RayHit, RayKind, RayTree, TracedRay,
+};
+pub use recorder::LightKind;
 pub use sampler::{Purpose, Sampler};
 pub use surface::Surface;
 pub use texture::{Texels, Texture, TextureError};

@@ -1,5 +1,6 @@
 //! The value of samples: a batch at a time, bounce by bounce.
 
+use super::recorder::Recorder;
 use super::sampler::{Purpose, Sampler};
 use super::{Camera, Cone, Surface, World};
 use crate::bvh::{Hit, Ray};
@@ -131,6 +132,19 @@ pub fn radiance(
     values: &mut [Vec3],
     workspace: &mut Workspace,
 ) -> RayCounts {
+    radiance_with(world, camera, settings, samples, values, workspace, &mut ())
+}
+
+/// The same, watched: what [`probe`](super::probe()) reads is what happened.
+pub(super) fn radiance_with<R: Recorder>(
+    world: &World,
+    camera: &Camera,
+    settings: &RenderSettings,
+    samples: &[SampleId],
+    values: &mut [Vec3],
+    workspace: &mut Workspace,
+    recorder: &mut R,
+) -> RayCounts {
     assert_eq!(samples.len(), values.len(), "one value for each sample");
     values.fill(Vec3::ZERO);
     let mut batch = Batch {
@@ -139,6 +153,7 @@ pub fn radiance(
         samples,
         values,
         counts: RayCounts::default(),
+        recorder,
     };
     batch.start(camera, workspace);
     while !workspace.paths.is_empty() {
@@ -146,20 +161,22 @@ pub fn radiance(
         batch.shade(workspace);
         batch.add_arriving_light(workspace);
         std::mem::swap(&mut workspace.paths, &mut workspace.next);
+        batch.recorder.next_bounce();
     }
     batch.counts
 }
 
 /// What the steps of a batch share.
-pub(super) struct Batch<'a> {
+pub(super) struct Batch<'a, R> {
     pub world: &'a World,
     pub settings: &'a RenderSettings,
     samples: &'a [SampleId],
     pub values: &'a mut [Vec3],
     pub counts: RayCounts,
+    pub recorder: &'a mut R,
 }
 
-impl Batch<'_> {
+impl<R: Recorder> Batch<'_, R> {
     /// The random numbers of a sample of the batch, and its index in its pixel.
     pub(super) fn sampler(&self, sample: u32) -> (Sampler, u64) {
         let sample = self.samples[sample as usize];
@@ -172,7 +189,7 @@ impl Batch<'_> {
         let cone = Cone::of_pixel(camera, self.settings.size);
         for (i, &sample) in self.samples.iter().enumerate() {
             let ray = sample_ray(self.world, camera, self.settings, sample);
-            workspace.paths.push(Path {
+            let path = Path {
                 origin: ray.origin,
                 direction: ray.direction,
                 throughput: Vec3::ONE,
@@ -184,7 +201,9 @@ impl Batch<'_> {
                 scatterings: 0,
                 first: true,
                 after: None,
-            });
+            };
+            self.recorder.camera_ray(&path);
+            workspace.paths.push(path);
         }
         self.counts.camera += self.samples.len() as u64;
     }
@@ -224,17 +243,18 @@ impl Batch<'_> {
         let hits = std::mem::take(&mut workspace.hits);
         let rays = std::mem::take(&mut workspace.rays);
         for ((path, ray), hit) in paths.iter().zip(&rays).zip(&hits) {
+            self.recorder.next_path();
             if let Some(light) = self.visible_light(path, hit.as_ref()) {
                 self.add(path.sample, path.throughput * light);
             } else if let Some(hit) = hit {
                 let width = path.cone.width_at(hit.t);
                 let surface = Surface::at(self.world, self.settings, ray, width, hit);
+                self.recorder.met_surface(hit, &surface);
                 self.shade_surface(path, hit, &surface, workspace);
             } else {
-                self.add(
-                    path.sample,
-                    path.throughput * self.background(path.direction),
-                );
+                let background = self.background(path.direction);
+                self.recorder.met_background(background);
+                self.add(path.sample, path.throughput * background);
             }
         }
         workspace.paths = paths;
@@ -252,11 +272,13 @@ impl Batch<'_> {
         let opaque = path.throughput * surface.opacity;
         if self.settings.features.shading {
             if self.settings.lighting == Lighting::Physical {
+                self.recorder.shines(surface.opacity * surface.emission);
                 self.add(path.sample, opaque * surface.emission);
             }
             self.gather_direct_light(path, surface, opaque, workspace);
             self.continue_paths(path, hit, surface, workspace);
         } else {
+            self.recorder.shines(surface.opacity * surface.diffuse);
             self.add(path.sample, opaque * surface.diffuse);
             self.transmit(path, hit, surface, 1.0, workspace);
         }
@@ -264,6 +286,7 @@ impl Batch<'_> {
 
     pub(super) fn add(&mut self, sample: u32, value: Vec3) {
         self.values[sample as usize] += value;
+        self.recorder.added(value);
     }
 
     fn background(&self, direction: Vec3) -> Vec3 {
@@ -275,14 +298,14 @@ impl Batch<'_> {
     }
 
     /// Radiance of the nearest visible light that the path's ray meets before its hit.
-    fn visible_light(&self, path: &Path, hit: Option<&Hit>) -> Option<Vec3> {
+    fn visible_light(&mut self, path: &Path, hit: Option<&Hit>) -> Option<Vec3> {
         // Classic lights are nowhere to be seen, as in the original program.
         if !self.world.needs.visible_lights || self.settings.lighting == Lighting::Classic {
             return None;
         }
         let behind = path.after.map_or(0.0, |hit| hit.t);
         let mut nearest = hit.map_or(f32::INFINITY, |hit| hit.t * LIGHT_BEFORE_SURFACE);
-        let mut radiance = None;
+        let mut met = None;
         for light in self
             .world
             .lights
@@ -295,9 +318,11 @@ impl Batch<'_> {
                 && t < nearest
             {
                 nearest = t;
-                radiance = Some(value);
+                met = Some((light.id, value));
             }
         }
-        radiance
+        let (id, radiance) = met?;
+        self.recorder.met_light(id, nearest, radiance);
+        Some(radiance)
     }
 }

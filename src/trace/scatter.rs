@@ -3,6 +3,7 @@
 use super::Surface;
 use super::disc::offset_direction;
 use super::radiance::{Batch, Path, Workspace};
+use super::recorder::{Recorder, Way};
 use super::sampler::{Purpose, mix};
 use crate::bvh::Hit;
 use glam::Vec3;
@@ -15,7 +16,7 @@ const SPLIT_ABOVE: f32 = 0.125;
 /// scattering walls it would go on for ever.
 const MAX_SCATTERINGS: u32 = 256;
 
-impl Batch<'_> {
+impl<R: Recorder> Batch<'_, R> {
     /// Adds the paths that leave a hit: what it reflects and what it lets through.
     pub(super) fn continue_paths(
         &mut self,
@@ -74,7 +75,7 @@ impl Batch<'_> {
             } else {
                 mirrored
             };
-            workspace.next.push(Path {
+            let next = Path {
                 origin: surface.point.leave(direction),
                 direction,
                 throughput: throughput / count as f32,
@@ -86,7 +87,10 @@ impl Batch<'_> {
                 first: false,
                 after: None,
                 ..*path
-            });
+            };
+            let way = if glossy { Way::Gloss } else { Way::Mirror };
+            self.recorder.continued(&next, way, count, weight);
+            workspace.next.push(next);
         }
         self.counts.mirror += u64::from(count);
     }
@@ -107,13 +111,15 @@ impl Batch<'_> {
         if !self.settings.features.translucency {
             // The same ray, from behind its hit: nothing is spawned, so no layer is met twice or
             // missed, however thin.
-            workspace.next.push(Path {
+            let next = Path {
                 throughput,
                 name: child(path.name, 2, 0),
                 first: false,
                 after: Some(*hit),
                 ..*path
-            });
+            };
+            self.recorder.continued(&next, Way::Straight, 1, weight);
+            workspace.next.push(next);
             self.counts.transmission += 1;
             return;
         }
@@ -131,7 +137,7 @@ impl Batch<'_> {
             let radius = 1.0 / surface.shininess;
             let direction = offset_direction(straight, -surface.geometric_normal, radius, u)
                 .unwrap_or(straight);
-            workspace.next.push(Path {
+            let next = Path {
                 origin: surface.point.leave(direction),
                 direction,
                 throughput: throughput / count as f32,
@@ -141,7 +147,10 @@ impl Batch<'_> {
                 first: false,
                 after: None,
                 ..*path
-            });
+            };
+            self.recorder
+                .continued(&next, Way::Translucent, count, weight);
+            workspace.next.push(next);
         }
         self.counts.transmission += u64::from(count);
     }

@@ -13,9 +13,8 @@ use std::f32::consts::{FRAC_1_PI, PI};
 ///
 /// Zero in all channels where the light stands behind the surface: no shadow ray is needed then.
 pub fn reflected(surface: &Surface, light: &LightPoint, lighting: Lighting) -> Vec3 {
-    let n = surface.normal;
     let l = light.direction;
-    let cosine = n.dot(l);
+    let cosine = surface.normal.dot(l);
     match lighting {
         Lighting::Physical => {
             // A smooth normal may face a light that the triangle itself turns its back to.
@@ -39,10 +38,17 @@ pub fn reflected(surface: &Surface, light: &LightPoint, lighting: Lighting) -> V
     }
 }
 
+/// `n·l` and `r·v`, as [`reflected`] takes them for a light along the unit vector `l`.
+pub fn cosines(surface: &Surface, l: Vec3) -> [f32; 2] {
+    let n_dot_l = surface.normal.dot(l);
+    let r = 2.0 * n_dot_l * surface.normal - l;
+    [n_dot_l, r.dot(surface.to_viewer)]
+}
+
 /// `max(r·v, 0)^s`.
 fn lobe(surface: &Surface, l: Vec3) -> f32 {
-    let r = 2.0 * surface.normal.dot(l) * surface.normal - l;
-    r.dot(surface.to_viewer).max(0.0).powf(surface.shininess)
+    let [_, r_dot_v] = cosines(surface, l);
+    r_dot_v.max(0.0).powf(surface.shininess)
 }
 
 #[cfg(test)]

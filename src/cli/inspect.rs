@@ -1,0 +1,420 @@
+//! `glassbox inspect`: why a pixel has its colour, as text, JSON or lines over a picture.
+
+use super::Failure;
+use super::gizmos::{Gizmos, PresetArg, gizmo_list};
+use super::output::{say, tell};
+use super::progress::Progress;
+use super::set::{Assignment, parse_size};
+use super::settings::{BuilderArg, SettingArgs, check_scene};
+use super::stage::{SceneArgs, Stage, with_threads};
+use crate::film::{FirstHits, develop, render};
+use crate::inspect::{
+    Document, InspectSettings, LineSet, Overlay, Pattern, RayLine, StepKind, Subject, Traversal,
+    aligned, draw_over, draw_pattern, explanation, lines, pattern, sources,
+};
+use crate::io::{PictureFormat, check_writable, write_picture};
+use crate::scene::{RenderSettings, SceneId};
+use crate::sync::TracedCamera;
+use crate::trace::{Camera, RayTree, Samples, World, probe};
+use bevy::ecs::name::Name;
+use bevy::math::{UVec2, Vec3};
+use clap::Args;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+#[derive(Args)]
+#[command(after_help = gizmo_list())]
+pub(super) struct Inspect {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Pixel whose samples are evaluated again, with every ray; 0,0 is the top left one
+    #[arg(long, value_name = "X,Y", value_parser = parse_pixel)]
+    pixel: Option<UVec2>,
+    /// Which of the pixel's samples: a number from 0, or all
+    #[arg(long, value_name = "N|all", default_value = "all", requires = "pixel")]
+    sample: SampleArg,
+    /// Print all that is known as JSON: samples, rays, lights, lines
+    #[arg(long)]
+    json: bool,
+    /// Write the picture with lines drawn over it: .png or .jpg
+    #[arg(long, value_name = "OUT.png")]
+    picture: Option<PathBuf>,
+    /// Print this ray's way through the trees, step by step with the stack (with --json: add it)
+    #[arg(long, value_name = "RAY", requires = "pixel")]
+    steps: Option<u32>,
+    /// Ready-made choice of what is drawn
+    #[arg(long, value_enum)]
+    preset: Option<PresetArg>,
+    /// What is drawn, one setting of the list below; may be given several times
+    #[arg(long, value_name = "KEY=VALUE")]
+    gizmo: Vec<Assignment>,
+    /// Camera to look through, by its name (default: the first)
+    #[arg(long, value_name = "NAME")]
+    camera: Option<String>,
+    /// Draw the picture from here instead of from the camera, to see its rays from the side
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_point, requires = "target")]
+    eye: Option<Vec3>,
+    /// With --eye: where to look
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_point, requires = "eye")]
+    target: Option<Vec3>,
+    /// How trees are built
+    #[arg(long, value_enum)]
+    builder: Option<BuilderArg>,
+    #[command(flatten)]
+    settings: SettingArgs,
+    /// Print nothing but errors, and what was asked for
+    #[arg(long)]
+    quiet: bool,
+}
+
+/// `3` or `all`.
+#[derive(Clone, Debug)]
+struct SampleArg(Samples);
+
+impl FromStr for SampleArg {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "all" => Ok(Self(Samples::All)),
+            _ => text
+                .parse()
+                .map(|index| Self(Samples::One(index)))
+                .map_err(|_| "a sample's number, counted from 0, or `all`".into()),
+        }
+    }
+}
+
+fn parse_pixel(text: &str) -> Result<UVec2, String> {
+    parse_size(text).map_err(|_| "column,row of a pixel, for example 400,300".into())
+}
+
+fn parse_point(text: &str) -> Result<Vec3, String> {
+    let numbers: Option<Vec<f32>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[x, y, z]) if [x, y, z].iter().all(|n| n.is_finite()) => Ok(Vec3::new(x, y, z)),
+        _ => Err("three numbers, for example 0,1.5,4".into()),
+    }
+}
+
+pub(super) fn run(args: Inspect) -> Result<(), Failure> {
+    args.settings.check()?;
+    let gizmos = Gizmos::new(args.preset, &args.gizmo)?;
+    if args.pixel.is_none() && args.picture.is_none() {
+        return Err(Failure::Usage(
+            "nothing is asked for: give --pixel X,Y or --picture OUT.png".into(),
+        ));
+    }
+    if let Some(file) = &args.picture {
+        if PictureFormat::of(file)?.is_linear() {
+            return Err(Failure::Usage(format!(
+                "{}: lines are drawn for screens: write a .png or .jpg",
+                file.display()
+            )));
+        }
+        check_writable(file)?;
+    }
+    with_threads(args.settings.threads, || inspect(&args, &gizmos.0))
+}
+
+fn inspect(args: &Inspect, gizmos: &InspectSettings) -> Result<(), Failure> {
+    let mut stage = Stage::open(&args.scene, args.quiet || args.json)?;
+    let settings = stage.settings();
+    args.settings.apply(settings)?;
+    if let Some(builder) = args.builder {
+        settings.tree.builder = builder.builder();
+    }
+    let settings = settings.clone();
+    check_scene(&stage.name, &settings)?;
+    let world = stage.sync().world.clone();
+    let names = names(&mut stage);
+    let camera = stage.camera(args.camera.as_deref())?;
+    let usage = |error: crate::trace::ProbeError| {
+        Failure::Usage(format!("{}: {error}", args.scene.scene.display()))
+    };
+    let rays = match args.pixel {
+        None => None,
+        Some(pixel) => {
+            let tree = probe(&world, &camera.camera, &settings, pixel, &args.sample.0);
+            Some(tree.map_err(usage)?)
+        }
+    };
+    let picked = Picked {
+        world: &world,
+        camera: &camera,
+        settings: &settings,
+        names: &names,
+        rays: rays.as_ref(),
+    };
+    let traversal = picked.traversal(args.steps)?;
+    let eye = args.eye.zip(args.target);
+    let watching = eye.map(|(eye, target)| watching(&camera.camera, eye, target));
+    let subject = Subject::new(&world, &camera.camera, &settings, gizmos, rays.as_ref());
+    let subject = match &watching {
+        Some(watching) => subject.seen_by(watching),
+        None => subject,
+    };
+    let sets = lines(&subject);
+    let pattern = picked.pattern(gizmos);
+    if let Some(file) = &args.picture {
+        draw(
+            file,
+            &subject,
+            &sets,
+            pattern.as_ref(),
+            args.quiet || args.json,
+        )?;
+    }
+    if args.json {
+        let empty = RayTree::default();
+        let scene = args.scene.scene.display().to_string();
+        let rays = picked.rays.unwrap_or(&empty);
+        let document = Document {
+            lines: &sets,
+            pattern: pattern.as_ref(),
+            traversal: traversal.as_ref(),
+            ..Document::new((&scene, &camera.name), &world, &settings, rays, &names)
+        };
+        let text =
+            serde_json::to_string(&document).map_err(|error| Failure::System(error.to_string()))?;
+        return say(text);
+    }
+    if !args.quiet {
+        tell_of_lines(&sets);
+    }
+    match traversal {
+        Some(traversal) => say(steps_text(&traversal).trim_end()),
+        None => picked.print(),
+    }
+}
+
+/// A pixel that was picked, and what it is part of.
+struct Picked<'a> {
+    world: &'a World,
+    camera: &'a TracedCamera,
+    settings: &'a RenderSettings,
+    names: &'a BTreeMap<u64, String>,
+    rays: Option<&'a RayTree>,
+}
+
+impl Picked<'_> {
+    fn traversal(&self, ray: Option<u32>) -> Result<Option<Traversal>, Failure> {
+        let (Some(index), Some(rays)) = (ray, self.rays) else {
+            return Ok(None);
+        };
+        if index as usize >= rays.rays.len() {
+            return Err(Failure::Usage(format!(
+                "--steps {index}: there is no such ray; there are {}, counted from 0",
+                rays.rays.len()
+            )));
+        }
+        Ok(Some(Traversal::of(self.world, self.settings, rays, index)))
+    }
+
+    fn pattern(&self, gizmos: &InspectSettings) -> Option<Pattern> {
+        let choice = &gizmos.pattern;
+        if !(gizmos.on && choice.on) {
+            return None;
+        }
+        let count = crate::trace::samples_per_pixel(self.world, &self.camera.camera, self.settings);
+        let pixel = self.rays.map_or(UVec2::ZERO, |rays| rays.pixel);
+        Some(pattern(
+            self.world,
+            self.settings,
+            choice,
+            pixel,
+            count.into(),
+        ))
+    }
+
+    /// What the pixel is made of, and the rays of its first sample.
+    fn print(&self) -> Result<(), Failure> {
+        let Some(rays) = self.rays else { return Ok(()) };
+        let value = rays.mean();
+        let count = rays.samples.len();
+        say(format_args!(
+            "pixel {},{} of `{}`: {:.5} {:.5} {:.5}, the mean of {count} sample{}",
+            rays.pixel.x,
+            rays.pixel.y,
+            self.camera.name,
+            value.x,
+            value.y,
+            value.z,
+            if count == 1 { "" } else { "s" }
+        ))?;
+        for sentence in explanation(rays, self.names) {
+            say(format_args!("  {sentence}"))?;
+        }
+        let mut rows =
+            vec![["from", "mean r", "g", "b", "deviation", "variance"].map(String::from)];
+        rows.extend(sources(rays).iter().map(|source| {
+            let [r, g, b] = source
+                .mean
+                .to_array()
+                .map(|channel| format!("{channel:.5}"));
+            [
+                source.cause.name(self.names),
+                r,
+                g,
+                b,
+                format!("{:.5}", source.deviation),
+                format!("{:.1} %", 100.0 * source.share),
+            ]
+        }));
+        let rows: Vec<Vec<String>> = rows.into_iter().map(Vec::from).collect();
+        say(format_args!("\n{}", aligned(&rows)))?;
+        let equal = (0..count as u32).all(|i| rays.sum(i) == rays.samples[i as usize].value);
+        let first = rays.samples.first().map_or(0, |sample| sample.index);
+        say(format_args!(
+            "rays of sample {first} ({} the sum of all that rays add {} the value, bit for bit; \
+             counters are the single-ray traversal's):",
+            if count == 1 {
+                "it is the only one;"
+            } else {
+                "of all samples"
+            },
+            if equal { "is" } else { "IS NOT" },
+        ))?;
+        let mut rows = vec![RayLine::HEADER.map(String::from).to_vec()];
+        rows.extend(
+            RayLine::of(rays, 0, self.names)
+                .into_iter()
+                .map(|line| line.cells.to_vec()),
+        );
+        say(aligned(&rows).trim_end())
+    }
+}
+
+/// What was left out of lines, and why there are none.
+fn tell_of_lines(sets: &[LineSet]) {
+    for set in sets {
+        if let Some(thinned) = &set.thinned {
+            tell(
+                "note",
+                format_args!(
+                    "{:?}: {} of {} {} are drawn: {}",
+                    set.system, thinned.drawn, thinned.of, thinned.what, thinned.rule
+                ),
+            );
+        }
+        for note in &set.notes {
+            tell("note", format_args!("{:?}: {note}", set.system));
+        }
+    }
+}
+
+/// A pinhole with the camera's field of view, somewhere else.
+fn watching(camera: &Camera, eye: Vec3, target: Vec3) -> Camera {
+    Camera {
+        projection: camera.projection,
+        ..Camera::looking_at(eye, target, Vec3::Y, 1.0)
+    }
+}
+
+/// Names of everything that has a number.
+fn names(stage: &mut Stage) -> BTreeMap<u64, String> {
+    let world = stage.app.world_mut();
+    let mut named = world.query::<(&SceneId, &Name)>();
+    named
+        .iter(world)
+        .map(|(id, name)| (id.0, name.to_string()))
+        .collect()
+}
+
+fn draw(
+    file: &Path,
+    subject: &Subject,
+    sets: &[LineSet],
+    pattern: Option<&Pattern>,
+    quiet: bool,
+) -> Result<(), Failure> {
+    let Subject {
+        world,
+        camera,
+        settings,
+        ..
+    } = *subject;
+    let progress = Progress::new(quiet, "picture");
+    let rendered = render(world, camera, settings, &|done, all| {
+        progress.show(done, all)
+    });
+    drop(progress);
+    let mut pixels = develop(&rendered.picture, &settings.output);
+    let hits = FirstHits::trace(
+        world,
+        camera,
+        &RenderSettings {
+            spp: 1,
+            jitter: 1,
+            ..settings.clone()
+        },
+    );
+    let depths: Vec<f32> = hits.centers.iter().map(|hit| hit.depth).collect();
+    let mut overlay = Overlay {
+        camera,
+        size: settings.size,
+        depths: &depths,
+        pixels: &mut pixels,
+    };
+    draw_over(&mut overlay, sets);
+    if let Some(pattern) = pattern {
+        draw_pattern(&mut pixels, settings.size, pattern);
+    }
+    write_picture(file, settings.size.x, settings.size.y, &pixels)?;
+    Ok(())
+}
+
+fn steps_text(traversal: &Traversal) -> String {
+    let node = |(instance, node): (Option<u32>, u32)| match instance {
+        None => format!("top:{node}"),
+        Some(instance) => format!("{instance}:{node}"),
+    };
+    let mut rows = vec![
+        ["step", "what", "node", "t", "stack (next last)"]
+            .map(String::from)
+            .to_vec(),
+    ];
+    for (i, step) in traversal.steps.iter().enumerate() {
+        let what = match step.triangle {
+            Some([_, triangle]) => format!("{} triangle {triangle}", step.kind.name()),
+            None => step.kind.name().into(),
+        };
+        let stack: Vec<String> = traversal.stack_after(i).iter().map(|&e| node(e)).collect();
+        rows.push(vec![
+            i.to_string(),
+            what,
+            node((step.instance, step.node)),
+            step.t.map_or_else(String::new, |t| format!("{t:.4}")),
+            stack.join(" "),
+        ]);
+    }
+    let count = |kind: StepKind| traversal.steps.iter().filter(|s| s.kind == kind).count();
+    format!(
+        "{}{} nodes entered, {} boxes missed, {} pruned, {} triangles tested; \
+         single-ray traversal of the binary trees\n",
+        aligned(&rows),
+        count(StepKind::Entered),
+        count(StepKind::Missed),
+        count(StepKind::Pruned),
+        count(StepKind::Hit) + count(StepKind::NotHit),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_pixels_and_points_are_read_and_others_refused() {
+        assert_eq!("all".parse::<SampleArg>().map(|s| s.0), Ok(Samples::All));
+        assert_eq!("7".parse::<SampleArg>().map(|s| s.0), Ok(Samples::One(7)));
+        assert!("-1".parse::<SampleArg>().is_err());
+        assert_eq!(parse_pixel("3,4"), Ok(UVec2::new(3, 4)));
+        assert!(parse_pixel("3").is_err());
+        assert_eq!(parse_point("1, -2,3.5"), Ok(Vec3::new(1.0, -2.0, 3.5)));
+        for text in ["1,2", "1,2,3,4", "1,2,nan", "a,b,c"] {
+            assert!(parse_point(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! Where a pixel's value comes from, and where its noise: the same sum of rays, sorted by what they
+//! were for.
+
+use super::document::named;
+use crate::trace::{RayEnd, RayKind, RayTree, TracedRay};
+use glam::{DVec3, Vec3};
+use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A part of a pixel's value: what one cause adds to each sample at its first hit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Source {
+    /// What it is.
+    pub cause: Cause,
+    /// The mean of what it adds over the samples, linear RGB.
+    pub mean: Vec3,
+    /// Standard deviation over the samples, root of the mean square over the channels.
+    pub deviation: f64,
+    /// Its share of the sum of all sources' variances, in [0, 1]. Sources that depend on each other
+    /// make this a guide, not a decomposition.
+    pub share: f64,
+}
+
+/// What adds to a sample at its first hit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Cause {
+    /// What the camera ray itself met: emission, a visible light, the background, kd without shading.
+    Seen,
+    /// Direct light of this light.
+    Light(u64),
+    /// What is reflected.
+    Reflection,
+    /// What shines through.
+    Transmission,
+}
+
+impl Cause {
+    fn of(ray: &TracedRay) -> Self {
+        match (ray.kind, ray.light) {
+            (_, Some(light)) => Self::Light(light.id),
+            (RayKind::Mirror | RayKind::Gloss, _) => Self::Reflection,
+            (RayKind::Transmission | RayKind::Translucency, _) => Self::Transmission,
+            _ => Self::Seen,
+        }
+    }
+
+    /// In words.
+    pub fn name(self, names: &BTreeMap<u64, String>) -> String {
+        match self {
+            Self::Seen => "seen directly".into(),
+            Self::Light(id) => format!("light {}", named(names, id)),
+            Self::Reflection => "reflection".into(),
+            Self::Transmission => "transmission".into(),
+        }
+    }
+}
+
+/// The parts of a pixel's value, the largest spread first. Their means add up to the value.
+pub fn sources(tree: &RayTree) -> Vec<Source> {
+    let samples = tree.samples.len();
+    let mut parts: BTreeMap<Cause, Vec<DVec3>> = BTreeMap::new();
+    let mut add = |cause, sample: u32, value: DVec3| {
+        parts
+            .entry(cause)
+            .or_insert_with(|| vec![DVec3::ZERO; samples])[sample as usize] += value;
+    };
+    for ray in &tree.rays {
+        match ray.parent {
+            None => add(Cause::Seen, ray.sample, ray.radiance.as_dvec3()),
+            Some(parent) if tree.rays[parent as usize].parent.is_none() => {
+                let carried = ray.carried.as_dvec3();
+                add(Cause::of(ray), ray.sample, carried);
+                // The camera ray's radiance holds all of its children's.
+                add(Cause::Seen, ray.sample, -carried);
+            }
+            Some(_) => {}
+        }
+    }
+    let count = samples.max(1) as f64;
+    let mut sources: Vec<Source> = parts
+        .into_iter()
+        .map(|(cause, values)| {
+            let mean = values.iter().sum::<DVec3>() / count;
+            let squares: f64 = values.iter().map(|v| (*v - mean).length_squared()).sum();
+            Source {
+                cause,
+                mean: mean.as_vec3(),
+                deviation: (squares / count / 3.0).sqrt(),
+                share: 0.0,
+            }
+        })
+        .collect();
+    let total: f64 = sources.iter().map(|s| s.deviation * s.deviation).sum();
+    if total > 0.0 {
+        for source in &mut sources {
+            source.share = source.deviation * source.deviation / total;
+        }
+    }
+    sources.sort_by(|a, b| b.deviation.total_cmp(&a.deviation));
+    sources
+}
+
+/// A few sentences on why the pixel has its value: what the camera rays met, and what became of each
+/// light there.
+pub fn explanation(tree: &RayTree, names: &BTreeMap<u64, String>) -> Vec<String> {
+    let mut sentences = Vec::new();
+    let cameras: Vec<(u32, &TracedRay)> = (0..)
+        .zip(&tree.rays)
+        .filter(|(_, ray)| ray.parent.is_none())
+        .collect();
+    let objects: BTreeSet<u64> = cameras
+        .iter()
+        .filter_map(|(_, r)| Some(r.hit?.object))
+        .collect();
+    let missed = cameras
+        .iter()
+        .filter(|(_, r)| r.end == RayEnd::Background)
+        .count();
+    if !objects.is_empty() {
+        let list: Vec<String> = objects.iter().map(|&id| named(names, id)).collect();
+        sentences.push(format!("the camera meets {}", list.join(", ")));
+    }
+    if missed > 0 {
+        sentences.push(format!(
+            "{missed} of {} camera rays meet nothing",
+            cameras.len()
+        ));
+    }
+    let mut lights: BTreeMap<u64, Fate> = BTreeMap::new();
+    for ray in &tree.rays {
+        let at_first_hit = ray
+            .parent
+            .is_some_and(|parent| tree.rays[parent as usize].parent.is_none());
+        if let (true, Some(light)) = (at_first_hit, ray.light) {
+            lights.entry(light.id).or_default().count(ray);
+        }
+    }
+    for (id, fate) in &lights {
+        sentences.push(fate.sentence(&named(names, *id), names));
+    }
+    if lights.is_empty() && !objects.is_empty() {
+        sentences.push(
+            "no light is asked: there is none, shading is off, or the surface is fully transparent"
+                .into(),
+        );
+    }
+    sentences
+}
+
+/// What became of the samples of one light at first hits.
+#[derive(Default)]
+struct Fate {
+    samples: u32,
+    arrived: u32,
+    tinted: u32,
+    unlit: u32,
+    behind: u32,
+    blocked: u32,
+    blockers: BTreeSet<u64>,
+}
+
+impl Fate {
+    fn count(&mut self, ray: &TracedRay) {
+        self.samples += 1;
+        match ray.end {
+            RayEnd::Blocked => {
+                self.blocked += 1;
+                self.blockers.extend(ray.hit.map(|hit| hit.object));
+            }
+            RayEnd::Unlit => {
+                self.unlit += 1;
+                let behind = ray.light.is_some_and(|light| light.n_dot_l <= 0.0);
+                self.behind += u32::from(behind);
+            }
+            _ => {
+                self.arrived += 1;
+                self.tinted += u32::from(ray.transmittance != Vec3::ONE);
+            }
+        }
+    }
+
+    fn sentence(&self, light: &str, names: &BTreeMap<u64, String>) -> String {
+        let mut parts = Vec::new();
+        if self.arrived > 0 {
+            parts.push(format!("{} arrive", self.arrived));
+        }
+        if self.tinted > 0 {
+            parts.push(format!(
+                "{} of them through something transparent",
+                self.tinted
+            ));
+        }
+        if self.blocked > 0 {
+            let list: Vec<String> = self.blockers.iter().map(|&id| named(names, id)).collect();
+            parts.push(format!(
+                "{} are blocked by {}",
+                self.blocked,
+                list.join(", ")
+            ));
+        }
+        if self.behind > 0 {
+            parts.push(format!("{} come from behind the surface", self.behind));
+        }
+        if self.unlit > self.behind {
+            let others = self.unlit - self.behind;
+            parts.push(format!("{others} are of a colour that the surface does not reflect, or from behind its triangle"));
+        }
+        let plural = if self.samples == 1 { "" } else { "s" };
+        format!(
+            "{light}: of {} sample{plural} {}",
+            self.samples,
+            parts.join(", ")
+        )
+    }
+}

@@ -1,0 +1,64 @@
+//! What the tracer did, as lines: plain data for gizmos, files, pictures and tests.
+//!
+//! [`lines`] looks at a [`Subject`]: the world that rays read, the camera, the settings, what is to be
+//! shown, and the rays of a pixel that [`probe`](crate::trace::probe()) evaluated again. Each
+//! [`System`] gives a [`LineSet`]: segments, points, planes and labels with their colours and with
+//! what they stand for. Nothing here keeps anything or changes anything, so what is drawn is what is
+//! traced, now. [`System::key`] tells when a set has to be made again.
+//!
+//! | system | shows |
+//! |---|---|
+//! | boxes | nodes of the trees: levels, a leaf, the way to a triangle; split planes |
+//! | visits | nodes that the debug rays entered (white) and those they pruned (red) |
+//! | rays | the debug rays, each in the colour that it carries; hit triangles and normals |
+//! | lobes | the discs of blurred reflections, and where each ray passed them |
+//! | normals | at vertices and between them |
+//! | lights | the lights with their gradients |
+//! | lens | aperture, focus plane, what the picture holds of it |
+//! | motion | where moving things stand when the shutter opens and closes |
+//!
+//! Beside lines: [`pattern`], where the samples of a pixel lie; [`Traversal`], the way of a ray
+//! through the trees step by step; [`compare_builders`], each builder's tree in numbers;
+//! [`draw_over`], lines over a picture without a GPU; [`Document`], all of it as one file.
+
+mod boxes;
+mod builders;
+mod color;
+mod document;
+mod explain;
+mod lens;
+mod lights;
+mod line_set;
+mod lobes;
+mod motion;
+mod normals;
+mod overlay;
+mod pattern;
+mod pattern_inset;
+mod rays;
+mod settings;
+mod subject;
+mod system;
+mod table;
+mod traversal;
+mod trees;
+mod visits;
+
+pub use builders::{BuilderFigures, BuilderRates, compare_builders, csv, markdown};
+pub use document::{Document, RayLine};
+pub use explain::{Cause, Source, explanation, sources};
+pub use line_set::{CIRCLE_SEGMENTS, Dot, Label, LineSet, Panel, Segment, Stands, Thinned};
+pub use overlay::{FAINT, Overlay, draw_over};
+pub use pattern::{Pattern, pattern};
+pub use pattern_inset::draw_pattern;
+pub use rays::is_shown;
+pub use settings::{
+    BoxChoice, BoxColor, BoxSettings, Dimension, InspectPreset, InspectSettings, MissColor,
+    NormalSettings, PatternSettings, RaySettings, TreeChoice,
+};
+pub use subject::Subject;
+pub use system::{System, lines};
+pub use table::aligned;
+pub use traversal::{StackEntry, Step, StepKind, Traversal};
+pub use trees::{NodeFacts, TreeView, trees};
+pub use visits::Visits;

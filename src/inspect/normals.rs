@@ -1,0 +1,133 @@
+//! Normals at the vertices of meshes, and between them.
+
+use super::color::of_scale;
+use super::line_set::{LineSet, Stands, Thinned};
+use super::{Subject, System};
+use crate::trace::Cone;
+use bevy::color::LinearRgba;
+use bevy::platform::collections::HashMap;
+use glam::{IVec2, Vec3};
+
+/// Levels between the vertices: each halves the edges.
+const MOST_BETWEEN: u32 = 2;
+
+/// A place on a surface with its normal.
+struct Placed {
+    at: Vec3,
+    normal: Vec3,
+    stands: Stands,
+    ahead: f32,
+    between: bool,
+}
+
+/// Normals, as long as `length` pixels, and not denser than one in `spacing` pixels.
+pub(super) fn normals(subject: &Subject) -> LineSet {
+    let mut set = LineSet::new(System::Normals);
+    let settings = &subject.inspect.normals;
+    let world = subject.world;
+    let chosen = |id: u64| settings.object == 0 || settings.object == id;
+    if !world.objects.iter().any(|object| chosen(object.id)) {
+        set.notes.push(match settings.object {
+            0 => "there is no object".into(),
+            id => format!("object {id} is not in the scene"),
+        });
+        return set;
+    }
+    let n = 1 << settings.between.min(MOST_BETWEEN);
+    let mut cells: HashMap<IVec2, Placed> = HashMap::default();
+    let mut of = 0;
+    let spacing = settings.spacing.max(1.0);
+    for (number, object) in (0..).zip(world.objects.iter()) {
+        if !chosen(object.id) {
+            continue;
+        }
+        if object.mesh.normals.is_empty() {
+            set.notes
+                .push(format!("object {} has no vertex normals", object.id));
+            continue;
+        }
+        let triangles = object.mesh.tree.triangles().len() as u32;
+        for triangle in 0..triangles {
+            for placed in on_triangle(subject, number, triangle, n) {
+                of += 1;
+                let camera = subject.camera;
+                let time = camera.optics.shutter[0];
+                let Some((place, ahead)) = camera.project(placed.at, subject.settings.size, time)
+                else {
+                    continue;
+                };
+                let outside = place.cmplt(glam::Vec2::ZERO).any()
+                    || place.cmpgt(subject.settings.size.as_vec2()).any();
+                if outside {
+                    continue;
+                }
+                let placed = Placed { ahead, ..placed };
+                let cell = (place / spacing).as_ivec2();
+                let nearest = cells.entry(cell).or_insert(Placed {
+                    ahead: f32::INFINITY,
+                    ..placed
+                });
+                if placed.ahead < nearest.ahead {
+                    *nearest = placed;
+                }
+            }
+        }
+    }
+    let mut kept: Vec<_> = cells.into_iter().collect();
+    kept.sort_unstable_by_key(|(cell, _)| (cell.y, cell.x));
+    kept.truncate(subject.inspect.max_lines as usize);
+    let cone = Cone::of_pixel(subject.camera, subject.settings.size);
+    for (_, placed) in &kept {
+        let length = settings.length * cone.width_at(placed.ahead);
+        let color = if placed.between {
+            BETWEEN
+        } else {
+            of_scale(0.75)
+        };
+        let tip = placed.at + length * placed.normal;
+        set.line([placed.at, tip], color, placed.stands);
+    }
+    if kept.len() < of {
+        set.thinned = Some(Thinned {
+            what: "normals",
+            drawn: kept.len(),
+            of,
+            rule: "the nearest in each square of `spacing` pixels of the picture",
+        });
+    }
+    set
+}
+
+/// Normals that stand between vertices.
+const BETWEEN: LinearRgba = LinearRgba::rgb(0.05, 0.25, 0.3);
+
+/// The interpolated normals at a triangle's places with barycentric weights i/n.
+fn on_triangle(
+    subject: &Subject,
+    instance: u32,
+    triangle: u32,
+    n: u32,
+) -> impl Iterator<Item = Placed> {
+    let of = &subject.world.aggregate.instances()[instance as usize];
+    let mesh = &subject.world.objects[instance as usize].mesh;
+    let triangles = mesh.tree.triangles();
+    let corners = triangles.corners(triangle);
+    let normals = triangles.indices()[triangle as usize].map(|i| mesh.normals[i as usize]);
+    (0..=n)
+        .flat_map(move |u| (0..=n - u).map(move |v| [n - u - v, u, v]))
+        .filter_map(move |weights| {
+            let weighted = |values: [Vec3; 3]| -> Vec3 {
+                (0..3)
+                    .map(|i| values[i] * (weights[i] as f32 / n as f32))
+                    .sum()
+            };
+            let normal = of.to_world_normal(weighted(normals)).try_normalize()?;
+            Some(Placed {
+                at: of.to_world_point(weighted(corners)),
+                normal,
+                stands: Stands::Triangle { instance, triangle },
+                ahead: 0.0,
+                between: !weights.contains(&n),
+            })
+        })
+}

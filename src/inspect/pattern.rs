@@ -1,0 +1,100 @@
+//! Where the samples of a pixel lie, as points of a square: the pixel itself, the lens, a light, or
+//! any two of a sample's numbers.
+
+use super::settings::{Dimension, PatternSettings};
+use crate::scene::{PixelSampling, RenderSettings};
+use crate::trace::{Purpose, Sampler, World};
+use glam::{UVec2, Vec2};
+use serde::Serialize;
+
+/// Points of the unit square, x to the right, y downwards, one for each sample.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Pattern {
+    /// What x is.
+    pub x: Dimension,
+    /// What y is.
+    pub y: Dimension,
+    /// The samples' points, sample 0 first.
+    pub points: Vec<Vec2>,
+}
+
+/// The numbers that `count` samples of a pixel use, two of each: those of the camera ray and of the
+/// first hit.
+///
+/// At a first hit a sample may use several numbers of a kind, one for each ray to the light or each
+/// ray of the blurred reflection. Where x and y are of one such kind there is a point for each of
+/// them; else one for each sample, with the first of them.
+pub fn pattern(
+    world: &World,
+    settings: &RenderSettings,
+    choice: &PatternSettings,
+    pixel: UVec2,
+    count: u64,
+) -> Pattern {
+    let sampler = Sampler::new(pixel.x, pixel.y, settings.seed, settings.sequence);
+    let number = |dimension, index| number(settings, sampler, choice.light, dimension, index);
+    let [x_rays, y_rays] =
+        [choice.x, choice.y].map(|dimension| rays_of(world, settings, choice.light, dimension));
+    let same = kind(choice.x) == kind(choice.y);
+    let point = |index| {
+        let [x, y] = if same {
+            [index; 2]
+        } else {
+            [index * x_rays, index * y_rays]
+        };
+        Vec2::new(number(choice.x, x), number(choice.y, y))
+    };
+    let points = if same { count * x_rays } else { count };
+    Pattern {
+        x: choice.x,
+        y: choice.y,
+        points: (0..points).map(point).collect(),
+    }
+}
+
+/// Dimensions of one kind stand in the same block of random numbers.
+fn kind(dimension: Dimension) -> u32 {
+    use Dimension::*;
+    match dimension {
+        PixelX | PixelY | LensU | LensV => 0,
+        Time => 1,
+        LightU | LightV => 2,
+        GlossU | GlossV => 3,
+    }
+}
+
+/// How many numbers of a kind a sample uses at its first hit.
+fn rays_of(world: &World, settings: &RenderSettings, light: u64, dimension: Dimension) -> u64 {
+    match kind(dimension) {
+        2 => u64::from(world.lights.samples_of(light, settings).unwrap_or(1)),
+        3 if settings.features.glossy => u64::from(settings.gloss_samples.clamp(1, 1000)),
+        _ => 1,
+    }
+}
+
+fn number(
+    settings: &RenderSettings,
+    sampler: Sampler,
+    light: u64,
+    dimension: Dimension,
+    index: u64,
+) -> f32 {
+    use Dimension::*;
+    let (purpose, component) = match dimension {
+        PixelX => (Purpose::Camera, 0),
+        PixelY => (Purpose::Camera, 1),
+        LensU => (Purpose::Camera, 2),
+        LensV => (Purpose::Camera, 3),
+        Time => (Purpose::Time, 0),
+        LightU => (Purpose::Light(light), 0),
+        LightV => (Purpose::Light(light), 1),
+        GlossU => (Purpose::Gloss, 0),
+        GlossV => (Purpose::Gloss, 1),
+    };
+    match (settings.pixel, dimension) {
+        (PixelSampling::Center, PixelX | PixelY) => 0.5,
+        (PixelSampling::Corner, PixelX) => 0.0,
+        (PixelSampling::Corner, PixelY) => 1.0,
+        _ => sampler.block(index, purpose, 0)[component],
+    }
+}

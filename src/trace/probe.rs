@@ -1,0 +1,412 @@
+//! Samples evaluated again, with every ray written down, by the very code that renders.
+
+use super::radiance::{Path, radiance_with};
+use super::ray_tree::{
+    Crossing, LightSample, ProbedSample, RayEnd, RayHit, RayKind, RayTree, TracedRay,
+};
+use super::recorder::{LightKind, Recorder, Way};
+use super::shading::{cosines, reflected};
+use super::{Camera, LightPoint, SampleId, Surface, Workspace, World, samples_per_pixel};
+use crate::bvh::{Counters, Hit, Ray};
+use crate::scene::{Lighting, RenderSettings};
+use glam::{UVec2, Vec3};
+use std::ops::Range;
+
+/// No more samples are evaluated once there are this many rays: some hundred megabytes.
+pub const MOST_RAYS: usize = 1 << 19;
+
+/// Which samples of a pixel.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Samples {
+    /// This one.
+    One(u64),
+    /// All that a render takes.
+    All,
+}
+
+/// Why there is nothing to see.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ProbeError {
+    /// The picture has no such pixel.
+    #[error(
+        "pixel {},{} is outside the picture: columns go from 0 to {}, rows from 0 to {}",
+        pixel.x, pixel.y, size.x.saturating_sub(1), size.y.saturating_sub(1)
+    )]
+    Outside {
+        /// What was asked for.
+        pixel: UVec2,
+        /// Columns and rows.
+        size: UVec2,
+    },
+    /// The pixel has no such sample.
+    #[error("there is no sample {index}: a pixel has {count}, counted from 0")]
+    NoSuchSample {
+        /// What was asked for.
+        index: u64,
+        /// How many there are.
+        count: u64,
+    },
+}
+
+/// Evaluates samples of a pixel again and writes down every ray. The values are those that the film
+/// adds, bit for bit: it is the same function, and a sample depends on nothing but itself.
+pub fn probe(
+    world: &World,
+    camera: &Camera,
+    settings: &RenderSettings,
+    pixel: UVec2,
+    samples: &Samples,
+) -> Result<RayTree, ProbeError> {
+    let size = settings.size;
+    if pixel.cmpge(size).any() {
+        return Err(ProbeError::Outside { pixel, size });
+    }
+    let count = u64::from(samples_per_pixel(world, camera, settings));
+    let indices: Range<u64> = match *samples {
+        Samples::All => 0..count,
+        Samples::One(index) if index < count => index..index + 1,
+        Samples::One(index) => return Err(ProbeError::NoSuchSample { index, count }),
+    };
+    let mut recording = Recording::new(world, settings);
+    let mut workspace = Workspace::default();
+    let mut tree = RayTree {
+        pixel,
+        ..RayTree::default()
+    };
+    for index in indices.clone() {
+        if recording.rays.len() > MOST_RAYS {
+            tree.left_out = indices.end - index;
+            break;
+        }
+        recording.start_sample(tree.samples.len() as u32);
+        let mut value = [Vec3::ZERO];
+        let sample = [SampleId { pixel, index }];
+        radiance_with(
+            world,
+            camera,
+            settings,
+            &sample,
+            &mut value,
+            &mut workspace,
+            &mut recording,
+        );
+        let [value] = value;
+        tree.samples.push(ProbedSample { index, value });
+    }
+    Ok(recording.finish(tree))
+}
+
+/// What a recorder has written so far, and where the batch is.
+struct Recording<'a> {
+    world: &'a World,
+    settings: &'a RenderSettings,
+    rays: Vec<TracedRay>,
+    order: Vec<u32>,
+    sample: u32,
+    /// Rays of this bounce's paths, of the next one's, and of this bounce's shadow rays.
+    paths: Vec<u32>,
+    next: Vec<u32>,
+    shadows: Vec<u32>,
+    next_path: usize,
+    next_shadow: usize,
+    /// The path that is being shaded.
+    path: u32,
+    /// Whatever adds something next.
+    adding: u32,
+    light: (LightKind, u64),
+    place: [f32; 2],
+    /// Light samples that share the light; 0 where it is taken for a point.
+    count: u32,
+}
+
+impl<'a> Recording<'a> {
+    fn new(world: &'a World, settings: &'a RenderSettings) -> Self {
+        Self {
+            world,
+            settings,
+            rays: Vec::new(),
+            order: Vec::new(),
+            sample: 0,
+            paths: Vec::new(),
+            next: Vec::new(),
+            shadows: Vec::new(),
+            next_path: 0,
+            next_shadow: 0,
+            path: 0,
+            adding: 0,
+            light: (LightKind::Point, 0),
+            place: [0.5; 2],
+            count: 0,
+        }
+    }
+
+    fn start_sample(&mut self, sample: u32) {
+        self.sample = sample;
+        self.paths.clear();
+        self.next.clear();
+        self.shadows.clear();
+        (self.next_path, self.next_shadow) = (0, 0);
+    }
+
+    /// A ray that leaves the surface that is being shaded, or the camera.
+    fn push(&mut self, ray: &Ray, kind: RayKind, from_camera: bool) -> u32 {
+        let parent = (!from_camera).then_some(self.path);
+        let before = parent.map(|parent| &self.rays[parent as usize]);
+        let ray = TracedRay {
+            sample: self.sample,
+            parent,
+            kind,
+            depth: before.map_or(0, |before| before.depth + 1),
+            from: before.and_then(|before| before.hit).map(|hit| hit.object),
+            origin: ray.origin,
+            direction: ray.direction,
+            after: 0.0,
+            t_max: ray.t_max,
+            time: ray.time,
+            t: ray.t_max,
+            end: RayEnd::Background,
+            hit: None,
+            met_light: None,
+            light: None,
+            crossings: Vec::new(),
+            transmittance: Vec3::ONE,
+            count: 1,
+            chance: 1.0,
+            weight: Vec3::ONE,
+            radiance: Vec3::ZERO,
+            carried: Vec3::ZERO,
+            added: Vec3::ZERO,
+            cost: Default::default(),
+        };
+        self.rays.push(ray);
+        self.rays.len() as u32 - 1
+    }
+
+    /// What is written down of a hit.
+    fn hit(&self, hit: &Hit, surface: &Surface) -> RayHit {
+        let object = &self.world.objects[hit.instance as usize];
+        RayHit {
+            object: object.id,
+            instance: hit.instance,
+            triangle: hit.triangle,
+            t: hit.t,
+            barycentric: [hit.u, hit.v],
+            position: surface.point.position,
+            geometric_normal: surface.geometric_normal,
+            normal: surface.normal,
+            to_viewer: surface.to_viewer,
+            material: object.material,
+            diffuse: surface.diffuse,
+            specular: surface.specular,
+            shininess: surface.shininess,
+            opacity: surface.opacity,
+            emission: surface.emission,
+        }
+    }
+
+    /// Adds up what comes back along each ray, and looks up what the tracer did not have to know.
+    fn finish(mut self, mut tree: RayTree) -> RayTree {
+        for i in (0..self.rays.len()).rev() {
+            let ray = &mut self.rays[i];
+            ray.carried = match &ray.light {
+                Some(light) => ray.weight * light.reflected * ray.transmittance,
+                None => ray.weight * ray.radiance,
+            };
+            let (parent, carried) = (ray.parent, ray.carried);
+            if let Some(parent) = parent {
+                self.rays[parent as usize].radiance += carried;
+            }
+        }
+        tree.rays = std::mem::take(&mut self.rays);
+        tree.order = std::mem::take(&mut self.order);
+        for i in 0..tree.rays.len() {
+            let mut cost = Counters::default();
+            let found = tree.retrace(self.world, self.settings, i as u32, &mut cost);
+            tree.rays[i].cost = cost.into();
+            if tree.rays[i].end == RayEnd::Blocked
+                && let Some(hit) = found
+            {
+                let ray = tree.rays[i].ray();
+                let surface = Surface::at(self.world, self.settings, &ray, 0.0, &hit);
+                tree.rays[i].t = hit.t;
+                tree.rays[i].hit = Some(self.hit(&hit, &surface));
+            }
+        }
+        tree
+    }
+}
+
+impl Recorder for Recording<'_> {
+    fn camera_ray(&mut self, path: &Path) {
+        let ray = self.push(&ray_of(path), RayKind::Camera, true);
+        self.paths.push(ray);
+    }
+
+    fn next_bounce(&mut self) {
+        std::mem::swap(&mut self.paths, &mut self.next);
+        self.next.clear();
+        self.shadows.clear();
+        (self.next_path, self.next_shadow) = (0, 0);
+    }
+
+    fn next_path(&mut self) {
+        self.path = self.paths[self.next_path];
+        self.adding = self.path;
+        self.next_path += 1;
+    }
+
+    fn met_background(&mut self, radiance: Vec3) {
+        self.rays[self.path as usize].radiance = radiance;
+    }
+
+    fn met_light(&mut self, id: u64, t: f32, radiance: Vec3) {
+        let ray = &mut self.rays[self.path as usize];
+        ray.end = RayEnd::Light;
+        ray.t = t;
+        ray.radiance = radiance;
+        ray.met_light = Some(id);
+    }
+
+    fn met_surface(&mut self, hit: &Hit, surface: &Surface) {
+        let hit = self.hit(hit, surface);
+        let ray = &mut self.rays[self.path as usize];
+        ray.end = RayEnd::Surface;
+        ray.t = hit.t;
+        ray.hit = Some(hit);
+    }
+
+    fn shines(&mut self, radiance: Vec3) {
+        self.rays[self.path as usize].radiance = radiance;
+    }
+
+    fn light(&mut self, kind: LightKind, id: u64) {
+        self.light = (kind, id);
+        self.place = [0.5; 2];
+        self.count = 0;
+    }
+
+    fn light_place(&mut self, place: [f32; 2], count: u32) {
+        self.place = place;
+        self.count = count;
+    }
+
+    fn light_sample(&mut self, surface: &Surface, point: &LightPoint) {
+        let kind = match self.count {
+            0 => RayKind::Shadow,
+            _ => RayKind::LightSample,
+        };
+        let ray = Ray {
+            origin: surface.point.position,
+            direction: point.direction,
+            t_max: point.distance,
+            time: self.rays[self.path as usize].time,
+        };
+        let index = self.push(&ray, kind, false);
+        let lighting = self.settings.lighting;
+        let lights = match lighting {
+            Lighting::Physical => 1,
+            Lighting::Classic => self.world.lights.count().max(1),
+        };
+        let count = self.count.max(1);
+        let [n_dot_l, r_dot_v] = cosines(surface, point.direction);
+        let light = LightSample {
+            kind: self.light.0,
+            id: self.light.1,
+            place: self.place,
+            direction: point.direction,
+            distance: point.distance,
+            arriving: point.arriving,
+            n_dot_l,
+            r_dot_v,
+            reflected: reflected(surface, point, lighting),
+        };
+        let ray = &mut self.rays[index as usize];
+        ray.light = Some(light);
+        ray.end = RayEnd::Unlit;
+        ray.count = count;
+        ray.weight = Vec3::splat(surface.opacity / lights as f32 / count as f32);
+        ray.transmittance = Vec3::ZERO;
+        self.adding = index;
+    }
+
+    fn shadow_ray(&mut self, shadow: &Ray) {
+        let ray = &mut self.rays[self.adding as usize];
+        ray.origin = shadow.origin;
+        ray.direction = shadow.direction;
+        ray.t_max = shadow.t_max;
+        ray.t = shadow.t_max;
+        ray.end = RayEnd::Blocked;
+        self.shadows.push(self.adding);
+    }
+
+    fn continued(&mut self, next: &Path, way: Way, count: u32, weight: f32) {
+        let kind = match way {
+            Way::Mirror => RayKind::Mirror,
+            Way::Gloss => RayKind::Gloss,
+            Way::Straight => RayKind::Transmission,
+            Way::Translucent => RayKind::Translucency,
+        };
+        let index = self.push(&ray_of(next), kind, false);
+        let share = weight / count as f32;
+        let surface = self.rays[self.path as usize].hit;
+        let ray = &mut self.rays[index as usize];
+        ray.count = count;
+        ray.chance = 1.0 / weight;
+        if let Some(surface) = surface {
+            ray.weight = match way {
+                Way::Mirror | Way::Gloss => surface.specular * (surface.opacity * share),
+                Way::Straight | Way::Translucent => Vec3::splat((1.0 - surface.opacity) * share),
+            };
+        }
+        ray.after = next.after.map_or(0.0, |hit| hit.t);
+        self.next.push(index);
+    }
+
+    fn next_shadow(&mut self) {
+        self.adding = self.shadows[self.next_shadow];
+        self.next_shadow += 1;
+    }
+
+    fn crossed(&mut self, hit: &Hit, surface: &Surface) {
+        let object = self.world.objects[hit.instance as usize].id;
+        self.rays[self.adding as usize].crossings.push(Crossing {
+            object,
+            triangle: hit.triangle,
+            t: hit.t,
+            diffuse: surface.diffuse,
+            opacity: surface.opacity,
+        });
+    }
+
+    fn arrived(&mut self, transmittance: Vec3) {
+        let ray = &mut self.rays[self.adding as usize];
+        ray.transmittance = transmittance;
+        if transmittance != Vec3::ZERO {
+            ray.end = RayEnd::Arrived;
+        }
+        ray.radiance = ray
+            .light
+            .map_or(Vec3::ZERO, |light| light.arriving * transmittance);
+    }
+
+    fn added(&mut self, value: Vec3) {
+        let ray = &mut self.rays[self.adding as usize];
+        if ray.end == RayEnd::Unlit {
+            // Only what is not shadowed adds something without having been traced.
+            ray.end = RayEnd::Unshadowed;
+            ray.transmittance = Vec3::ONE;
+            ray.radiance = ray.light.map_or(Vec3::ZERO, |light| light.arriving);
+        }
+        ray.added += value;
+        self.order.push(self.adding);
+    }
+}
+
+fn ray_of(path: &Path) -> Ray {
+    Ray {
+        origin: path.origin,
+        direction: path.direction,
+        t_max: f32::INFINITY,
+        time: path.time,
+    }
+}
