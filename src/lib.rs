@@ -13,6 +13,7 @@
 //! | [`film`] | pixels: samples become a picture, the picture becomes a screen's |
 //! | [`sync`] | entities to the tracer's world: what changed, and only that |
 //! | [`io`] | scene files, OBJ, glTF, pictures, shapes, built-in scenes |
+//! | [`report`] | speed against error: kernels, sampling, features, stability |
 //! | `view` | the traced picture in a Bevy camera, gizmos; the only room that knows Bevy's renderer |
 //! | `editor` | the window: panels, gestures, undo, files; the only room that knows egui |
 //! | [`app`] | the rooms up to `io` as one app without a window |
@@ -27,6 +28,7 @@ pub mod cli;
 pub mod editor;
 pub mod film;
 pub mod io;
+pub mod report;
 pub mod scene;
 pub mod sync;
 pub mod trace;

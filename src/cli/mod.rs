@@ -12,6 +12,7 @@ mod merge;
 mod output;
 mod progress;
 mod render;
+mod report;
 mod scenes;
 mod set;
 mod settings;
@@ -53,6 +54,8 @@ enum Command {
     Convert(convert::Convert),
     /// Time a scene with each builder and print a table in Markdown
     Bench(bench::Bench),
+    /// Measure speed against error and write a report
+    Report(report::Report),
 }
 
 /// Runs the command line of this process.
@@ -73,5 +76,6 @@ fn execute(arguments: impl IntoIterator<Item = OsString>) -> Result<(), Failure>
         Some(Command::Scenes) => scenes::run(),
         Some(Command::Convert(convert)) => convert::run(convert),
         Some(Command::Bench(bench)) => bench::run(bench),
+        Some(Command::Report(report)) => report::run(report),
     }
 }

@@ -6,9 +6,8 @@ mod instances;
 mod leaks;
 mod magnitude;
 mod malformed;
-mod meshes;
-mod oracle;
-mod random;
 mod spawned;
 mod trees;
 mod wide;
+
+use super::hard_cases::{meshes, oracle, random};

@@ -18,7 +18,7 @@
 //! whatever kernel the picture was traced with. Showing traces no ray: what a view reads was traced
 //! before, by [`render`](super::render()) or [`FirstHits::trace`](super::FirstHits::trace).
 
-mod font;
+pub(crate) mod font;
 mod heatmap;
 mod legend;
 mod object_color;
