@@ -9,5 +9,5 @@ mod editor;
 mod effects;
 mod files;
 mod film;
-mod hard_cases;
+mod mutation;
 mod trees;

@@ -22,6 +22,7 @@ mod pareto;
 mod plot;
 pub mod sampling;
 mod section;
+pub mod stability;
 mod subject;
 mod table;
 mod timing;

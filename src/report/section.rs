@@ -1,6 +1,6 @@
 //! What a report is made of, and which parts are asked for.
 
-use super::{Machine, Plot, Subject, Table, features, kernels, sampling};
+use super::{Machine, Plot, Subject, Table, features, kernels, sampling, stability};
 use crate::film::views::Shown;
 
 /// A part of the report.
@@ -10,11 +10,17 @@ pub enum Part {
     Kernels,
     Sampling,
     Features,
+    Stability,
 }
 
 impl Part {
     /// All of them, in the report's order.
-    pub const ALL: [Self; 3] = [Self::Kernels, Self::Sampling, Self::Features];
+    pub const ALL: [Self; 4] = [
+        Self::Kernels,
+        Self::Sampling,
+        Self::Features,
+        Self::Stability,
+    ];
 
     /// As the command line names it.
     pub fn name(self) -> &'static str {
@@ -22,6 +28,7 @@ impl Part {
             Self::Kernels => "kernels",
             Self::Sampling => "sampling",
             Self::Features => "features",
+            Self::Stability => "stability",
         }
     }
 }
@@ -116,6 +123,7 @@ pub fn run(subjects: &[Subject], options: &Options, watch: Watch) -> Report {
             Part::Kernels => kernels::measure(subjects, options, watch),
             Part::Sampling => sampling::measure(subjects, options, watch),
             Part::Features => features::measure(subjects, options, watch),
+            Part::Stability => stability::measure(options, watch),
         })
         .collect();
     Report {

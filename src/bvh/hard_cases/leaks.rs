@@ -6,7 +6,7 @@ use super::{
     meshes::{alone, cube, knot, knot_centre, moved, sphere},
     random::Random,
 };
-use crate::bvh::{BuildOptions, Ray, Triangles};
+use crate::bvh::{Aggregate, BuildOptions, Ray, Triangles};
 
 /// Where on a triangle a ray is aimed.
 #[derive(Clone, Copy, Debug)]
@@ -53,22 +53,21 @@ pub(crate) fn closed() -> [(&'static str, Triangles, Inside); 4] {
     ]
 }
 
-/// How many rays find nothing, and the first of them.
+/// How many rays from inside a mesh, which stands alone in `aggregate` moved by `offset`, find nothing; and the first.
 pub(crate) fn leaks(
-    mesh: &Triangles,
+    aggregate: &Aggregate,
     inside: Inside,
     offset: Vec3,
     aim: Aim,
     rays: usize,
+    random: &mut Random,
 ) -> (usize, Option<Ray>) {
-    let aggregate = alone(moved(mesh, |p| p + offset), &BuildOptions::default());
     let triangles = aggregate.instances()[0].mesh.triangles();
-    let mut random = Random::new(rays as u64 + aim as u64);
     let mut lost = 0;
     let mut first = None;
     for _ in 0..rays {
-        let origin = inside(&mut random) + offset;
-        let ray = Ray::new(origin, target(aim, triangles, origin, &mut random) - origin);
+        let origin = inside(random) + offset;
+        let ray = Ray::new(origin, target(aim, triangles, origin, random) - origin);
         if ray.direction != Vec3::ZERO && aggregate.closest_hit(&ray).is_none() {
             lost += 1;
             first.get_or_insert(ray);
@@ -76,3 +75,11 @@ pub(crate) fn leaks(
     }
     (lost, first)
 }
+
+/// A mesh moved away from the origin, alone.
+pub(crate) fn away(mesh: &Triangles, offset: Vec3) -> Aggregate {
+    alone(moved(mesh, |p| p + offset), &BuildOptions::default())
+}
+
+/// Where far from the origin is: coordinates there are multiples of 1/64.
+pub(crate) const FAR: Vec3 = Vec3::new(148_376.0, 1_234.0, -223_423.0);

@@ -189,11 +189,28 @@ pub(crate) struct Tally {
     /// Answers of the tree that are not those of [`brute`], bit for bit.
     pub(crate) unlike_brute_force: usize,
     pub(crate) first_wrong: Option<String>,
+    /// The largest relative error of a `t` outside the band.
+    pub(crate) worst_t: f64,
+    /// The largest part of its running bound that an error of `t` took up.
+    pub(crate) worst_of_bound: f64,
 }
 
 impl Tally {
     /// Compares what was found with the truth in f64.
     pub(crate) fn judge(&mut self, aggregate: &Aggregate, ray: &Ray, found: Option<Hit>) {
+        let all =
+            |instance: usize| 0..aggregate.instances()[instance].mesh.triangles().len() as u32;
+        self.judge_among(aggregate, ray, found, all);
+    }
+
+    /// The same, where only these triangles of each instance can be hit.
+    pub(crate) fn judge_among<I: Iterator<Item = u32>>(
+        &mut self,
+        aggregate: &Aggregate,
+        ray: &Ray,
+        found: Option<Hit>,
+        candidates: impl Fn(usize) -> I,
+    ) {
         self.rays += 1;
         self.hits += usize::from(found.is_some());
         let mut wrong = |why: String| {
@@ -210,7 +227,7 @@ impl Tally {
         for (number, instance) in aggregate.instances().iter().enumerate() {
             let exact_ray = ExactRay::new(instance, ray);
             let triangles = instance.mesh.triangles();
-            for triangle in (0..triangles.len() as u32).filter(|&t| triangles.is_traced(t)) {
+            for triangle in candidates(number).filter(|&t| triangles.is_traced(t)) {
                 let exact = exact_ray.cross(triangles.corners(triangle));
                 if found.is_some_and(|h| (h.instance, h.triangle) == (number as u32, triangle)) {
                     of_found = Some(exact);
@@ -236,6 +253,11 @@ impl Tally {
             }
             (Some(hit), Some(exact)) => {
                 let t = f64::from(hit.t);
+                if exact.verdict == Verdict::Hit {
+                    let off = (t - exact.t).abs();
+                    self.worst_t = self.worst_t.max(off / exact.t.abs());
+                    self.worst_of_bound = self.worst_of_bound.max(off / exact.t_bound);
+                }
                 if exact.verdict == Verdict::Hit && (t - exact.t).abs() > exact.t_bound {
                     return wrong(format!("t is {} off, bound {}", t - exact.t, exact.t_bound));
                 }
@@ -263,6 +285,18 @@ impl Tally {
             tally.judge(aggregate, &ray, found);
         }
         tally
+    }
+
+    /// Adds what another tally counted.
+    pub(crate) fn add(&mut self, other: Self) {
+        self.rays += other.rays;
+        self.hits += other.hits;
+        self.in_band += other.in_band;
+        self.wrong += other.wrong;
+        self.unlike_brute_force += other.unlike_brute_force;
+        self.first_wrong = self.first_wrong.take().or(other.first_wrong);
+        self.worst_t = self.worst_t.max(other.worst_t);
+        self.worst_of_bound = self.worst_of_bound.max(other.worst_of_bound);
     }
 
     /// Whether nothing is wrong.

@@ -1,5 +1,6 @@
 //! The hard cases of ray tracing, each against two oracles that know no tree.
 
+mod any_triangles;
 mod directions;
 mod identity;
 mod instances;
@@ -10,4 +11,4 @@ mod spawned;
 mod trees;
 mod wide;
 
-use super::hard_cases::{meshes, oracle, random};
+use super::hard_cases::{broken, meshes, oracle, random, rays, transforms};

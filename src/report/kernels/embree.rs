@@ -8,6 +8,7 @@ use crate::bvh::Ray;
 use glam::Vec3;
 use libloading::{Library, Symbol};
 use std::ffi::{c_char, c_int, c_uint, c_void};
+use std::mem::ManuallyDrop;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
@@ -114,8 +115,8 @@ pub(super) struct Embree4Or3 {
     attach_geometry: unsafe extern "C" fn(Scene, Geometry) -> c_uint,
     release_geometry: unsafe extern "C" fn(Geometry),
     queries: Queries,
-    /// Last, so that it is unloaded last.
-    _library: Library,
+    /// Never unloaded: threads that Embree has started may still be in its code when its device is gone.
+    _library: ManuallyDrop<Library>,
 }
 
 impl Drop for Embree4Or3 {
@@ -210,7 +211,7 @@ fn load(path: &Path) -> Option<Embree4Or3> {
         attach_geometry: function!(b"rtcAttachGeometry"),
         release_geometry: function!(b"rtcReleaseGeometry"),
         queries,
-        _library: library,
+        _library: ManuallyDrop::new(library),
     })
 }
 

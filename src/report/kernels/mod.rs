@@ -252,32 +252,42 @@ fn front_plot(
     leaks: &[Leaks],
     front: &[bool],
 ) -> Plot {
+    let mut traversals: Vec<&str> = Vec::new();
     let mut series: Vec<Series> = Vec::new();
     for row in rows {
         let candidate = &candidates[row.candidate];
-        let number = series.iter().position(|s| s.name == candidate.traversal);
-        let number = number.unwrap_or_else(|| {
-            let marker = Marker::ALL[series.len() % Marker::ALL.len()];
-            series.push(Series::new(&candidate.traversal, Vec::new()).marked(marker));
-            series.len() - 1
+        let known = traversals
+            .iter()
+            .position(|name| *name == candidate.traversal);
+        let traversal = known.unwrap_or_else(|| {
+            traversals.push(&candidate.traversal);
+            traversals.len() - 1
         });
+        let number = row.candidate + 1;
         let tight = leaks[row.candidate].edges + leaks[row.candidate].vertices == 0.0;
-        let series = &mut series[number];
-        series.points.push((row.speed(), row.errors.t_mean));
-        let tight = if tight { ", no leak" } else { "" };
-        series.labels.push(format!("{}{tight}", candidate.test));
+        let name = format!(
+            "{number} {}{}",
+            candidate.name(),
+            if tight { " *" } else { "" }
+        );
+        let point = (row.speed(), row.errors.t_mean);
+        let mut one =
+            Series::new(&name, vec![point]).marked(Marker::ALL[traversal % Marker::ALL.len()]);
+        one.labels = vec![number.to_string()];
+        series.push(one);
     }
     let mut best: Vec<(f64, f64)> = (rows.iter().zip(front))
         .filter(|(_, on_front)| **on_front)
         .map(|(row, _)| (row.speed(), row.errors.t_mean))
         .collect();
     best.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut front = Series::new("Pareto front", best).joined(Dash::Short);
-    front.marker = None;
-    series.insert(0, front);
+    series.insert(0, Series::new("Pareto front", best).joined(Dash::Short));
     Plot {
         file: format!("kernels-{}", subject.file()),
-        title: format!("{}: kernels, speed against error of t", subject.name),
+        title: format!(
+            "{}: kernels, speed against error of t (* no leak)",
+            subject.name
+        ),
         x: Axis::linear("million rays a second, one thread"),
         y: Axis::logarithmic("mean relative error of t"),
         series,

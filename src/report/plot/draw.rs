@@ -10,7 +10,9 @@ use plotters_backend::text_anchor::{HPos, Pos, VPos};
 use plotters_backend::{BackendCoord, DrawingErrorKind};
 
 /// Pixels of the SVG; the raster has two for each.
-const SIZE: (u32, u32) = (960, 600);
+const SIZE: (u32, u32) = (1200, 600);
+/// Columns that the legend gets, beside the plot so that it covers nothing.
+const LEGEND: u32 = 380;
 /// Height of letters.
 const LETTERS: i32 = 17;
 /// Half of a marker.
@@ -55,11 +57,12 @@ pub(super) fn raster(plot: &Plot) -> Shown {
 
 fn draw<B: DrawingBackend>(area: &Area<B>, plot: &Plot) -> Result<(), Fault<B>> {
     area.fill(&WHITE)?;
+    let (area, legend) = area.split_horizontally(SIZE.0 - LEGEND);
     let all = || plot.series.iter().flat_map(|series| &series.points);
     let x = Scale::over(&plot.x, all().map(|point| point.0));
     let y = Scale::over(&plot.y, all().map(|point| point.1));
     let font = ("sans-serif", LETTERS);
-    let mut chart: Chart<B> = ChartBuilder::on(area)
+    let mut chart: Chart<B> = ChartBuilder::on(&area)
         .caption(&plot.title, ("sans-serif", LETTERS + 3))
         .margin(14)
         .x_label_area_size(56)
@@ -85,31 +88,40 @@ fn draw<B: DrawingBackend>(area: &Area<B>, plot: &Plot) -> Result<(), Fault<B>> 
         draw_series(&mut chart, series, &points, color)?;
         let labelled = series.points.iter().zip(&series.labels);
         for (point, label) in labelled.filter_map(|(p, l)| Some((place(p)?, l))) {
-            // To the left where there is no room to the right.
-            let right = point.0 < x.low + 0.75 * (x.high - x.low);
-            let (side, offset) = if right {
-                (HPos::Left, RADIUS + 4)
-            } else {
-                (HPos::Right, -RADIUS - 4)
-            };
             let style = font
                 .into_font()
                 .color(&BLACK)
-                .pos(Pos::new(side, VPos::Center));
+                .pos(Pos::new(HPos::Center, VPos::Bottom));
             chart.draw_series(std::iter::once(
-                EmptyElement::at(point) + Text::new(label.clone(), (offset, 0), style),
+                EmptyElement::at(point) + Text::new(label.clone(), (0, -RADIUS - 3), style),
             ))?;
         }
     }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .label_font(font)
-        .legend_area_size(44)
-        .background_style(WHITE.mix(0.85))
-        .border_style(BLACK.mix(0.3))
-        .draw()?;
-    area.present()
+    draw_legend(&legend, plot)?;
+    legend.present()
+}
+
+fn draw_legend<B: DrawingBackend>(area: &Area<B>, plot: &Plot) -> Result<(), Fault<B>> {
+    let style = ("sans-serif", LETTERS)
+        .into_font()
+        .color(&BLACK)
+        .pos(Pos::new(HPos::Left, VPos::Center));
+    for (number, series) in plot.series.iter().enumerate() {
+        let at = (4, 60 + 30 * number as i32);
+        area.draw(&Mark {
+            at,
+            marker: series.marker,
+            line: series.line,
+            in_legend: true,
+            color: COLORS[number % COLORS.len()],
+        })?;
+        area.draw(&Text::new(
+            series.name.clone(),
+            (at.0 + LEGEND_LINE + 8, at.1),
+            style.clone(),
+        ))?;
+    }
+    Ok(())
 }
 
 fn draw_series<B: DrawingBackend>(
@@ -133,19 +145,9 @@ fn draw_series<B: DrawingBackend>(
         at,
         marker: series.marker,
         line: None,
+        in_legend: false,
         color,
     }))?;
-    let (line, marker) = (series.line, series.marker);
-    // A series of its own, so that the legend shows dash and marker together.
-    chart
-        .draw_series(std::iter::empty::<PathElement<(f64, f64)>>())?
-        .label(&series.name)
-        .legend(move |at| Mark {
-            at,
-            marker,
-            line,
-            color,
-        });
     Ok(())
 }
 
@@ -154,6 +156,8 @@ struct Mark<C> {
     at: C,
     marker: Option<Marker>,
     line: Option<Dash>,
+    /// Leaves room for the line whether there is one or not.
+    in_legend: bool,
     color: RGBColor,
 }
 
@@ -186,6 +190,8 @@ impl<C, B: DrawingBackend> Drawable<B> for Mark<C> {
                 let end = (start + on).min(LEGEND_LINE);
                 backend.draw_line((x + start, y), (x + end, y), &style)?;
             }
+        }
+        if self.in_legend {
             x += LEGEND_LINE / 2;
         }
         let Some(marker) = self.marker else {
