@@ -6,7 +6,7 @@ use super::progress::Progress;
 use super::settings::check_scene;
 use super::stage::{SceneArgs, Stage, with_threads};
 use crate::io::SceneSource;
-use crate::report::{self, Options, Part, Subject, write_report};
+use crate::report::{self, Options, Part, Subject, Table, write_report};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -37,6 +37,9 @@ pub(super) struct Report {
     /// Threads to render pictures on (default: all of the machine's); kernels are timed on one
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
     threads: Option<u32>,
+    /// Table (CSV) of an editing benchmark, to be part of the report
+    #[arg(long, value_name = "FILE.csv")]
+    editing: Option<PathBuf>,
     /// Let scenes refer to files outside their own folder
     #[arg(long)]
     allow_outside: bool,
@@ -78,7 +81,9 @@ fn measure(args: &Report, parts: Vec<Part>, scenes: &[PathBuf]) -> Result<(), Fa
         .iter()
         .map(|scene| subject(scene, args))
         .collect::<Result<Vec<Subject>, Failure>>()?;
+    let editing = args.editing.as_deref().map(table).transpose()?;
     let options = Options {
+        editing,
         parts,
         quick: args.quick,
         seed: args.seed,
@@ -142,6 +147,14 @@ fn subject(scene: &Path, args: &Report) -> Result<Subject, Failure> {
         camera: camera.camera,
         settings,
     })
+}
+
+/// A table that another program wrote.
+fn table(file: &Path) -> Result<Table, Failure> {
+    let text = std::fs::read_to_string(file)
+        .map_err(|error| Failure::System(format!("{}: {error}", file.display())))?;
+    Table::from_csv("editing", "Edits", &text)
+        .map_err(|error| Failure::System(format!("{}: {error}", file.display())))
 }
 
 /// This process' own command line, as one would type it.

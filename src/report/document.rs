@@ -108,6 +108,7 @@ mod tests {
                 quick: true,
                 seed: 7,
                 command: "glassbox report kernels".into(),
+                editing: None,
             },
             machine: super::super::Machine::here(),
             scenes: vec!["teapot".into()],

@@ -34,7 +34,7 @@ impl Part {
 }
 
 /// How a report is made.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub struct Options {
     /// What it holds.
     pub parts: Vec<Part>,
@@ -44,6 +44,8 @@ pub struct Options {
     pub seed: u32,
     /// The command that makes the same report again.
     pub command: String,
+    /// What edits cost, where that was measured elsewhere: the figures of an editing benchmark.
+    pub editing: Option<Table>,
 }
 
 /// One part's results.
@@ -85,11 +87,16 @@ pub struct Report {
 impl Report {
     /// What was found, in three sentences (fewer where fewer parts were asked for).
     pub fn findings(&self) -> Vec<String> {
+        let sections = || {
+            self.sections
+                .iter()
+                .filter(|section| !section.findings.is_empty())
+        };
         let found = |section: usize, sentence: usize| {
-            let section = self.sections.get(section)?;
+            let section = sections().nth(section)?;
             section.findings.get(sentence).cloned()
         };
-        let chosen: &[(usize, usize)] = match self.sections.len() {
+        let chosen: &[(usize, usize)] = match sections().count() {
             1 => &[(0, 0), (0, 1), (0, 2)],
             2 => &[(0, 0), (0, 1), (1, 0)],
             _ => &[(0, 0), (1, 0), (2, 0)],
@@ -116,7 +123,7 @@ pub type Watch<'a> = &'a (dyn Fn(&str, u64, u64) + Sync);
 pub fn run(subjects: &[Subject], options: &Options, watch: Watch) -> Report {
     let start = std::time::Instant::now();
     let machine = Machine::here();
-    let sections = options
+    let mut sections: Vec<Section> = options
         .parts
         .iter()
         .map(|part| match part {
@@ -126,6 +133,7 @@ pub fn run(subjects: &[Subject], options: &Options, watch: Watch) -> Report {
             Part::Stability => stability::measure(options, watch),
         })
         .collect();
+    sections.extend(options.editing.clone().map(editing));
     Report {
         options: options.clone(),
         machine,
@@ -135,6 +143,17 @@ pub fn run(subjects: &[Subject], options: &Options, watch: Watch) -> Report {
             .collect(),
         sections,
         seconds: start.elapsed().as_secs_f64(),
+    }
+}
+
+/// The figures of an editing benchmark as a section.
+fn editing(table: Table) -> Section {
+    Section {
+        title: "Editing: what is redone, and how soon it is seen".into(),
+        method: vec!["Figures of a benchmark of its own, as it wrote them.".into()],
+        tables: vec![table],
+        summary: Some(0),
+        ..Section::default()
     }
 }
 
@@ -154,6 +173,7 @@ mod tests {
                 quick: true,
                 seed: 0,
                 command: String::new(),
+                editing: None,
             },
             machine: Machine::here(),
             scenes: Vec::new(),

@@ -74,6 +74,15 @@ impl Cell {
         }
     }
 
+    fn of_field(field: &str) -> Self {
+        match (field, field.parse(), field.parse()) {
+            ("", ..) => Self::Empty,
+            (_, Ok(count), _) => Self::Count(count),
+            (_, _, Ok(number)) => Self::Number(number),
+            _ => Self::Text(field.to_owned()),
+        }
+    }
+
     fn exact(&self) -> String {
         match self {
             Self::Text(text) if text.contains([',', '"', '\n']) => {
@@ -157,9 +166,55 @@ impl Table {
         text
     }
 
+    /// Reads what [`Self::csv`] writes: a header, then rows of as many fields (RFC 4180). The error names the line.
+    pub fn from_csv(file: &str, title: &str, text: &str) -> Result<Self, String> {
+        let mut lines = text
+            .lines()
+            .enumerate()
+            .filter(|(_, line)| !line.trim().is_empty());
+        let (_, header) = lines.next().ok_or("is empty; a header is the least")?;
+        let mut table = Self::new(file, title, &[]);
+        table.columns = fields(header);
+        for (number, line) in lines {
+            let row: Vec<Cell> = fields(line)
+                .iter()
+                .map(|field| Cell::of_field(field))
+                .collect();
+            if row.len() != table.columns.len() {
+                let (found, wanted) = (row.len(), table.columns.len());
+                return Err(format!(
+                    "line {}: {found} fields instead of {wanted}",
+                    number + 1
+                ));
+            }
+            table.rows.push(row);
+        }
+        Ok(table)
+    }
+
     fn is_words(&self, column: usize) -> bool {
         (self.rows.iter()).any(|row| matches!(row[column], Cell::Text(_)))
     }
+}
+
+/// The fields of a line; quotes keep commas together, and two of them are one.
+fn fields(line: &str) -> Vec<String> {
+    let mut fields = vec![String::new()];
+    let mut quoted = false;
+    let mut characters = line.chars().peekable();
+    while let Some(character) = characters.next() {
+        let last = fields.len() - 1;
+        match character {
+            '"' if quoted && characters.peek() == Some(&'"') => {
+                characters.next();
+                fields[last].push('"');
+            }
+            '"' => quoted = !quoted,
+            ',' if !quoted => fields.push(String::new()),
+            _ => fields[last].push(character),
+        }
+    }
+    fields
 }
 
 fn line(cells: &[Cell]) -> String {

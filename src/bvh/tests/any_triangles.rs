@@ -1,6 +1,6 @@
 //! Any triangles, any parameters: the tree holds exactly those that can be traced, each once, inside its boxes.
 
-use glam::{Vec3, Vec3A};
+use glam::Vec3;
 use proptest::prelude::*;
 
 use super::meshes::mesh;
@@ -78,12 +78,11 @@ fn fault(built: &MeshTree) -> Option<String> {
             return Some(format!("node {index} is {depth} deep"));
         }
         let first = node.first_index as usize;
-        let inside =
-            |min: Vec3A, max: Vec3A| node.min.cmple(min).all() && node.max.cmpge(max).all();
+        let inside = |min: Vec3, max: Vec3| node.min.cmple(min).all() && node.max.cmpge(max).all();
         if node.is_leaf() {
             for place in first..first + node.prim_count as usize {
                 let triangle = built.triangle_at(place);
-                let corners = triangles.corners(triangle).map(Vec3A::from);
+                let corners = triangles.corners(triangle);
                 if !corners.iter().all(|&corner| inside(corner, corner)) {
                     return Some(format!("leaf {index} does not contain triangle {triangle}"));
                 }

@@ -125,6 +125,9 @@ pub(super) fn lens(_: &Effort) -> Outcome {
     .require(bent == 0, format!("{bent} rays are not parallel"))
 }
 
+/// A setting, how it is set, and whether 0, 1 and 2^31 work.
+type Change = (&'static str, fn(&mut RenderSettings, u32), [bool; 3]);
+
 pub(super) fn limits(_: &Effort) -> Outcome {
     let with = |change: fn(&mut RenderSettings, u32), value: u32| {
         let mut settings = RenderSettings {
@@ -135,7 +138,7 @@ pub(super) fn limits(_: &Effort) -> Outcome {
         change(&mut settings, value);
         settings
     };
-    let changes: [(&str, fn(&mut RenderSettings, u32), [bool; 3]); 3] = [
+    let changes: [Change; 3] = [
         ("spp", |s, value| s.spp = value, [false, true, false]),
         (
             "max_depth",
