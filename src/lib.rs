@@ -14,6 +14,7 @@
 //! | [`inspect`] | what the tracer did, as lines and figures: rays, nodes, normals, samples, motion |
 //! | [`sync`] | entities to the tracer's world: what changed, and only that |
 //! | [`io`] | scene files, OBJ, glTF, pictures, shapes, built-in scenes |
+//! | [`report`] | speed against error: kernels, sampling, features, stability |
 //! | `view` | the traced picture in a Bevy camera, gizmos; the only room that knows Bevy's renderer |
 //! | `editor` | the window: panels, gestures, undo, files; the only room that knows egui |
 //! | [`app`] | the rooms up to `io` as one app without a window |
@@ -29,6 +30,7 @@ pub mod editor;
 pub mod film;
 pub mod inspect;
 pub mod io;
+pub mod report;
 pub mod scene;
 pub mod sync;
 pub mod trace;

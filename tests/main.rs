@@ -9,8 +9,8 @@ mod editor;
 mod effects;
 mod files;
 mod film;
-mod hard_cases;
 mod inspect;
+mod mutation;
 mod trees;
 #[cfg(feature = "editor")]
 mod window;

@@ -39,6 +39,7 @@ mod boxes;
 mod build;
 mod crossing;
 mod epo;
+pub(crate) mod hard_cases;
 mod instance;
 mod layout;
 mod levels;

@@ -14,6 +14,7 @@ mod merge;
 mod output;
 mod progress;
 mod render;
+mod report;
 mod scenes;
 mod set;
 mod settings;
@@ -61,6 +62,8 @@ enum Command {
     Convert(convert::Convert),
     /// Time a scene with each builder and print a table in Markdown
     Bench(bench::Bench),
+    /// Measure speed against error and write a report
+    Report(report::Report),
 }
 
 /// Runs the command line of this process.
@@ -85,6 +88,7 @@ fn execute(arguments: impl IntoIterator<Item = OsString>) -> Result<ExitCode, Fa
         Some(Command::Scenes) => scenes::run()?,
         Some(Command::Convert(convert)) => convert::run(convert)?,
         Some(Command::Bench(bench)) => bench::run(bench)?,
+        Some(Command::Report(report)) => report::run(report)?,
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -27,6 +27,14 @@ impl Progress {
         }
     }
 
+    /// Shows how much of how much is done of something else than before.
+    pub fn show_step(&self, what: &str, done: u64, all: u64) {
+        if let Some(bar) = &self.0 {
+            bar.set_message(what.to_owned());
+        }
+        self.show(done, all);
+    }
+
     /// Shows samples, rays a second, error and time left of a rendering.
     pub fn show_status(&self, status: &Status) {
         if let Some(bar) = &self.0 {

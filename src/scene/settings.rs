@@ -111,6 +111,9 @@ pub enum Sequence {
     Sobol,
     /// Independent random numbers, to compare with.
     Independent,
+    /// Random numbers in the cells of the `jitter` × `jitter` grid, pair by pair and each cell once: what
+    /// distributed ray tracing began with (Cook, Porter, Carpenter 1984), to compare with.
+    Jittered,
 }
 
 /// When a render stops before it has `spp` samples of each pixel, and in which order they come.

@@ -1,6 +1,6 @@
 use super::{Camera, Mesh, Object, Texels, Texture, World};
 use crate::bvh::Instance;
-use crate::scene::{Output, RenderSettings, Sampling, TreeSettings};
+use crate::scene::{Output, RenderSettings, Sampling, Sequence, TreeSettings};
 use std::collections::HashMap;
 use std::fmt::{self, Debug, Write};
 use std::sync::Arc;
@@ -31,7 +31,11 @@ pub fn digest(world: &World, camera: &Camera, settings: &RenderSettings) -> Dige
     hash.text(camera);
     hash.text(&RenderSettings {
         spp: 0,
-        jitter: 0,
+        // It asks for samples; of one sequence it also decides where they lie.
+        jitter: match settings.sequence {
+            Sequence::Jittered => settings.jitter,
+            _ => 0,
+        },
         sampling: Sampling::default(),
         tree: TreeSettings::default(),
         output: Output::default(),

@@ -20,7 +20,7 @@ impl SampleId {
     /// The random numbers of the sample's pixel.
     pub(super) fn sampler(self, settings: &RenderSettings) -> Sampler {
         let UVec2 { x, y } = self.pixel;
-        Sampler::new(x, y, settings.seed, settings.sequence)
+        Sampler::new(x, y, settings.seed, settings.sequence).on_grid(settings.jitter)
     }
 }
 

@@ -11,6 +11,8 @@ use sobol_burley::sample_4d;
 pub struct Sampler {
     seed: u32,
     sequence: Sequence,
+    /// Cells a side of the grid that [`Sequence::Jittered`] fills.
+    side: u32,
 }
 
 /// What a block of four numbers is used for.
@@ -52,6 +54,15 @@ impl Sampler {
         Self {
             seed: mix(mix(mix(0x9e37_79b9, seed), x), y),
             sequence,
+            side: 1,
+        }
+    }
+
+    /// The same numbers, those of [`Sequence::Jittered`] in the cells of a grid of `side` × `side`.
+    pub fn on_grid(self, side: u32) -> Self {
+        Self {
+            side: side.clamp(1, 1 << 12),
+            ..self
         }
     }
 
@@ -59,16 +70,57 @@ impl Sampler {
     /// (0 at the camera and at the first hit).
     pub fn block(self, index: u64, purpose: Purpose, path: u32) -> [f32; 4] {
         let mut seed = mix(mix(self.seed, purpose.key()), path);
-        if self.sequence == Sequence::Independent {
-            let of_sample = mix(mix(seed, index as u32), (index >> 32) as u32);
-            // 24 bits, as many as a float in [0, 1) holds evenly.
-            return [0, 1, 2, 3].map(|i| (mix(of_sample, i) >> 8) as f32 / (1 << 24) as f32);
+        match self.sequence {
+            Sequence::Sobol => {}
+            Sequence::Independent => return independent(seed, index),
+            Sequence::Jittered => return jittered(seed, index, self.side),
         }
         let beyond = (index >> LENGTH_BITS) as u32;
         if beyond != 0 {
             seed = mix(seed, beyond);
         }
         sample_4d((index & ((1 << LENGTH_BITS) - 1)) as u32, 0, seed)
+    }
+}
+
+/// Random numbers.
+fn independent(seed: u32, index: u64) -> [f32; 4] {
+    let of_sample = mix(mix(seed, index as u32), (index >> 32) as u32);
+    // 24 bits, as many as a float in [0, 1) holds evenly.
+    [0, 1, 2, 3].map(|i| (mix(of_sample, i) >> 8) as f32 / (1 << 24) as f32)
+}
+
+/// Random places in random cells of a grid, for the first and the second pair: each cell once in side² samples.
+fn jittered(seed: u32, index: u64, side: u32) -> [f32; 4] {
+    let cells = side * side;
+    let (round, within) = (index / u64::from(cells), (index % u64::from(cells)) as u32);
+    let seed = mix(mix(seed, round as u32), (round >> 32) as u32);
+    let mut numbers = independent(seed, u64::from(within));
+    for (pair, numbers) in (0..).zip(numbers.as_chunks_mut::<2>().0) {
+        let cell = shuffled(within, cells, mix(seed, 0x51ab_0000 + pair));
+        for (number, column) in numbers.iter_mut().zip([cell % side, cell / side]) {
+            // Rounding may reach 1, which belongs to the next cell.
+            *number = ((column as f32 + *number) / side as f32).min(1.0_f32.next_down());
+        }
+    }
+    numbers
+}
+
+/// Where `i` of `count` things stands in an order that the seed chooses. Steps that can be undone shuffle the next
+/// power of two; what falls beyond the count walks on until it does not (Black and Rogaway 2002, "Ciphers with
+/// Arbitrary Finite Domains").
+fn shuffled(mut i: u32, count: u32, seed: u32) -> u32 {
+    let bits = (count - 1).checked_ilog2().map_or(0, |bits| bits + 1);
+    let mask = ((1u64 << bits) - 1) as u32;
+    loop {
+        for step in 0..4 {
+            i = (i ^ mix(seed, step)) & mask;
+            i = i.wrapping_mul(0x9e37_79b1) & mask;
+            i ^= i >> (bits / 2).max(1);
+        }
+        if i < count {
+            return i;
+        }
     }
 }
 
@@ -106,6 +158,32 @@ mod tests {
             }
             assert!(cells.iter().all(|&n| n == 1), "{columns}x{rows}: {cells:?}");
         }
+    }
+
+    #[test]
+    fn jittered_pairs_have_one_point_in_each_cell_of_their_grid_whatever_its_side() {
+        for side in [1, 2, 3, 4, 7, 16] {
+            let sampler = Sampler::new(3, 5, 7, Sequence::Jittered).on_grid(side);
+            let cells = u64::from(side * side);
+            // In the first round, and in a later one.
+            for first in [0, 5 * cells] {
+                for pair in [0, 2] {
+                    let mut seen = vec![0; cells as usize];
+                    for i in first..first + cells {
+                        let block = sampler.block(i, Purpose::Gloss, 0);
+                        let [u, v] =
+                            [block[pair], block[pair + 1]].map(|x| (x * side as f32) as u32);
+                        seen[(v * side + u) as usize] += 1;
+                    }
+                    assert!(
+                        seen.iter().all(|&n| n == 1),
+                        "side {side}, pair {pair}: {seen:?}"
+                    );
+                }
+            }
+        }
+        let order = |seed| [0, 1, 2, 3, 4, 5, 6, 7, 8].map(|i| shuffled(i, 9, seed));
+        assert_ne!(order(1), order(2), "the seed does not matter");
     }
 
     #[test]

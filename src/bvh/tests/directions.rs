@@ -3,34 +3,21 @@
 use glam::{Affine3A, Quat, Vec3};
 
 use super::{
-    meshes::{alone, cube, joined, moved, placed, scatter, soup},
+    meshes::{alone, cube, moved, placed},
     oracle::{brute, check, same},
     random::Random,
+    rays::{
+        at_thin_target, boxed, flat_square, in_faces, in_plane, is_ray, not_numbers, signed_zeros,
+        thin_targets,
+    },
 };
 use crate::bvh::{BuildOptions, Ray};
 
 #[test]
 fn signed_zeros_and_tiny_components_are_ordinary_directions() {
-    let mesh = joined(&[scatter(120, 0.6, 3), cube()]);
-    let aggregate = alone(mesh, &BuildOptions::default());
+    let aggregate = alone(boxed(), &BuildOptions::default());
     let mut random = Random::new(5);
-    let parts = [-0.0, 0.0, 1e-9, -1e-9, 1e-38, -1e-38, 1e-45, 1.0, -1.0, 0.3];
-    // On the cube's faces, edges and corners too.
-    let places = [-2.0, -1.0, 0.0, 1.0, 2.0];
-    let rays: Vec<Ray> = std::iter::repeat_with(|| {
-        let three = |choices: &[f32], random: &mut Random| {
-            Vec3::new(random.of(choices), random.of(choices), random.of(choices))
-        };
-        let origin = if random.unit() < 0.5 {
-            three(&places, &mut random)
-        } else {
-            random.cube()
-        };
-        Ray::new(origin, three(&parts, &mut random))
-    })
-    .filter(|ray| ray.direction != Vec3::ZERO)
-    .take(100_000)
-    .collect();
+    let rays: Vec<Ray> = (0..100_000).map(|_| signed_zeros(&mut random)).collect();
     let tally = check("signed zeros", &aggregate, rays.iter().copied());
     assert!(
         tally.hits > 10_000,
@@ -92,59 +79,24 @@ fn directions_of_any_length_find_the_same_triangles() {
 
 #[test]
 fn axis_parallel_rays_find_a_target_of_a_hundred_thousandth_at_ten_thousand() {
-    let (half, far) = (0.5e-5, 1e4);
-    let square = |right: Vec3, up: Vec3, ahead: Vec3| {
-        let corner = |x: f32, y: f32| right * (x * half) + up * (y * half) + ahead * far;
-        let [a, b, c, d] = [
-            corner(-1.0, -1.0),
-            corner(1.0, -1.0),
-            corner(1.0, 1.0),
-            corner(-1.0, 1.0),
-        ];
-        [[a, b, c], [a, c, d]]
-    };
-    let axes = [Vec3::X, Vec3::Y, Vec3::Z];
-    let directions: Vec<Vec3> = axes.iter().flat_map(|&a| [a, -a]).collect();
-    let faces = directions.iter().flat_map(|&d| {
-        let right = axes[(0..3).find(|&i| d[i] == 0.0).expect("an axis has zeros")];
-        square(right, right.cross(d), d)
-    });
-    let aggregate = alone(soup(faces), &BuildOptions::default());
+    let aggregate = alone(thin_targets(), &BuildOptions::default());
     let mut random = Random::new(2);
-    let mut misses = 0;
-    for i in 0..100_000 {
-        let direction = directions[i % 6];
-        let within = random.cube() * half * (Vec3::ONE - direction.abs());
-        misses += usize::from(
-            aggregate
-                .closest_hit(&Ray::new(within, direction))
-                .is_none(),
-        );
-    }
+    let hit = |_: &u32| {
+        aggregate
+            .closest_hit(&at_thin_target(&mut random))
+            .is_some()
+    };
+    let misses = 100_000 - (0..100_000).filter(hit).count();
     assert_eq!(misses, 0, "{misses} of 100000 rays missed the target");
 }
 
 #[test]
 fn a_ray_in_the_plane_of_a_triangle_misses_it_and_nothing_is_nan() {
-    let square = |height: f32| {
-        let [a, b, c, d] = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
-            .map(|(x, y)| Vec3::new(x, y, height));
-        soup([[a, b, c], [a, c, d]])
-    };
     let mut random = Random::new(4);
     for height in [0.0, 0.3, -1e5] {
-        let alone_there = alone(square(height), &BuildOptions::default());
+        let alone_there = alone(flat_square(height), &BuildOptions::default());
         for _ in 0..50_000 {
-            let mut flat = |scale: f32| {
-                let v = random.cube() * scale;
-                Vec3::new(
-                    random.of(&[v.x, 0.0, 1.0, -1.0]),
-                    random.of(&[v.y, 0.0, 1.0, -1.0]),
-                    0.0,
-                )
-            };
-            let (origin, direction) = (flat(2.0) + Vec3::Z * height, flat(1.0));
-            let ray = Ray::new(origin, direction);
+            let ray = in_plane(height, &mut random);
             let hit = alone_there.closest_hit(&ray);
             assert_eq!(hit, None, "a ray in the plane z = {height} hit: {ray:?}");
         }
@@ -156,18 +108,7 @@ fn a_ray_in_the_plane_of_a_triangle_misses_it_and_nothing_is_nan() {
         .closest_hit(&along_the_top)
         .expect("the side's upper edge is hit");
     assert_eq!((hit.t, hit.t.is_nan()), (2.0, false), "{hit:?}");
-    let rays = (0..25_000).map(|_| {
-        let place = |random: &mut Random| random.of(&[-2.0, -1.0, 1.0, 0.5]);
-        let origin = Vec3::new(place(&mut random), place(&mut random), place(&mut random));
-        let towards = [
-            Vec3::X,
-            Vec3::Y,
-            Vec3::Z,
-            Vec3::new(1.0, 1.0, 0.0),
-            Vec3::new(0.0, 1.0, -1.0),
-        ];
-        Ray::new(origin, random.of(&towards) * random.of(&[1.0, -1.0]))
-    });
+    let rays = (0..25_000).map(|_| in_faces(&mut random));
     check("in the faces of a box", &boxed, rays);
 }
 
@@ -178,30 +119,15 @@ fn rays_that_are_not_numbers_miss() {
         &[(cube(), Affine3A::IDENTITY), (cube(), turned)],
         &BuildOptions::default(),
     );
-    let odd = [
-        f32::NAN,
-        f32::INFINITY,
-        f32::NEG_INFINITY,
-        f32::MAX,
-        0.0,
-        1.0,
-    ];
     let mut random = Random::new(6);
     for _ in 0..100_000 {
-        let mut three = || Vec3::new(random.of(&odd), random.of(&odd), random.of(&odd));
-        let ray = Ray {
-            origin: three(),
-            direction: three(),
-            t_max: random.of(&odd),
-            time: random.of(&odd),
-        };
+        let ray = not_numbers(&mut random);
         let hit = aggregate.closest_hit(&ray);
         assert!(same(hit, brute(&aggregate, &ray)), "{ray:?}");
         assert_eq!(aggregate.occluded(&ray), hit.is_some(), "{ray:?}");
         if let Some(hit) = hit {
-            let sane = ray.origin.is_finite() && ray.direction.is_finite() && ray.t_max > 0.0;
             assert!(
-                sane && hit.t > 0.0 && hit.t < ray.t_max,
+                is_ray(&ray) && hit.t > 0.0 && hit.t < ray.t_max,
                 "{ray:?} hit {hit:?}"
             );
         }

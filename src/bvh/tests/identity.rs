@@ -6,10 +6,10 @@ use glam::{Affine3A, Quat, Vec3};
 use proptest::prelude::*;
 
 use super::{
-    instances::any_transform,
     meshes::{cube, joined, moved, scatter, soup},
     oracle::{brute, same},
     random::Random,
+    transforms::any_transform,
 };
 use crate::bvh::{
     Aggregate, BuildOptions, Builder, Hit, Instance, Levels, MeshTree, Preset, Ray, Triangles,

@@ -8,29 +8,21 @@ use super::{
     meshes::{alone, cube, joined, knot, moved, placed, scatter, soup, sphere},
     oracle::{ExactRay, Verdict, check},
     random::Random,
+    rays::{at_one_of, into_unit, mixed, slivers},
 };
-use crate::bvh::{Aggregate, BuildOptions, Counters, Hit, Instance, MeshTree, Ray, Triangles};
+use crate::bvh::{Aggregate, BuildOptions, Counters, Hit, Instance, MeshTree, Ray};
 
 /// Rays from around a mesh of size 1 to somewhere in it.
 fn rays_into(count: usize, seed: u64) -> Vec<Ray> {
     let mut random = Random::new(seed);
-    (0..count)
-        .map(|_| {
-            let origin = random.cube() * 2.0;
-            Ray::new(origin, random.cube() - origin)
-        })
-        .collect()
-}
-
-fn scene() -> Triangles {
-    joined(&[scatter(90, 0.5, 21), sphere(1), cube()])
+    (0..count).map(|_| into_unit(&mut random)).collect()
 }
 
 #[test]
 fn a_power_of_two_changes_no_bit_of_a_hit() {
     let hits = |exponent: i32| -> Vec<Option<Hit>> {
         let scale = (exponent as f32).exp2();
-        let aggregate = alone(moved(&scene(), |p| p * scale), &BuildOptions::default());
+        let aggregate = alone(moved(&mixed(), |p| p * scale), &BuildOptions::default());
         let ray = |ray: Ray| Ray::new(ray.origin * scale, ray.direction);
         let rays = rays_into(10_000, 1).into_iter().map(ray);
         rays.map(|ray| {
@@ -57,7 +49,7 @@ fn a_power_of_two_changes_no_bit_of_a_hit() {
 #[test]
 fn scales_from_a_millionth_to_a_million_agree_with_both_oracles() {
     for scale in [1e-6, 1e-3, 0.1, 3.0, 1e3, 1e6] {
-        let aggregate = alone(moved(&scene(), |p| p * scale), &BuildOptions::default());
+        let aggregate = alone(moved(&mixed(), |p| p * scale), &BuildOptions::default());
         let ray = |ray: Ray| Ray::new(ray.origin * scale, ray.direction * scale);
         let rays = rays_into(17_000, 2).into_iter().map(ray);
         let tally = check(&format!("scale {scale}"), &aggregate, rays);
@@ -73,7 +65,7 @@ fn scales_from_a_millionth_to_a_million_agree_with_both_oracles() {
 fn far_from_the_origin_t_stays_within_its_running_bound() {
     for distance in [1e2, 1e3, 1e4, 1e5, 1e6] {
         let offset = Vec3::new(1.0, -0.7, 0.4) * distance;
-        let aggregate = alone(moved(&scene(), |p| p + offset), &BuildOptions::default());
+        let aggregate = alone(moved(&mixed(), |p| p + offset), &BuildOptions::default());
         let rays = rays_into(20_000, 3).into_iter();
         let rays = rays.map(|ray| Ray::new(ray.origin + offset, ray.direction));
         let tally = check(&format!("offset {distance}"), &aggregate, rays);
@@ -128,22 +120,9 @@ fn a_sphere_in_a_stadium_a_million_times_larger_is_never_missed_and_costs_no_mor
 #[test]
 fn slivers_a_million_times_longer_than_wide_are_hit_where_they_are() {
     let mut random = Random::new(14);
-    let slivers: Vec<[Vec3; 3]> = (0..300)
-        .map(|_| {
-            let (start, along) = (random.cube(), random.direction());
-            let across = along.cross(random.direction()) * 1e-6;
-            [start, start + along, start + along * random.unit() + across]
-        })
-        .collect();
+    let slivers = slivers(300, &mut random);
     let aggregate = alone(soup(slivers.iter().copied()), &BuildOptions::default());
-    let rays: Vec<Ray> = (0..100_000)
-        .map(|_| {
-            let [a, b, c] = random.of(&slivers);
-            let (u, v) = (random.unit(), random.unit());
-            let origin = random.cube() * 2.0;
-            Ray::new(origin, a + (b - a) * (u * (1.0 - v)) + (c - a) * v - origin)
-        })
-        .collect();
+    let rays = (0..100_000).map(|_| at_one_of(&slivers, &mut random));
     let tally = check("slivers", &aggregate, rays);
     assert!(tally.hits > 1_000, "only {} hits", tally.hits);
 }

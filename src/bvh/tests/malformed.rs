@@ -5,7 +5,8 @@ use std::sync::Arc;
 use glam::{Affine3A, Vec3};
 
 use super::{
-    meshes::{alone, cube, joined, mesh, scatter},
+    broken::{degenerate, not_finite, with_extra},
+    meshes::{alone, cube, mesh},
     oracle::{check, same},
     random::Random,
 };
@@ -25,19 +26,6 @@ fn every_way() -> impl Iterator<Item = BuildOptions> {
     })
 }
 
-/// The same mesh with `extra` triangles in front, which no ray may ever hit.
-fn with_extra(extra: &[[Vec3; 3]]) -> (Triangles, usize) {
-    let mut positions: Vec<Vec3> = extra.iter().flatten().copied().collect();
-    let mut indices: Vec<[u32; 3]> = (0..extra.len() as u32)
-        .map(|i| [3 * i, 3 * i + 1, 3 * i + 2])
-        .collect();
-    let base = positions.len() as u32;
-    let whole = joined(&[cube(), scatter(60, 0.4, 2)]);
-    positions.extend_from_slice(whole.positions());
-    indices.extend(whole.indices().iter().map(|t| t.map(|i| i + base)));
-    (mesh(positions, indices), extra.len())
-}
-
 fn rays(count: usize) -> impl Iterator<Item = Ray> {
     let mut random = Random::new(12);
     (0..count).map(move |_| {
@@ -49,19 +37,7 @@ fn rays(count: usize) -> impl Iterator<Item = Ray> {
 #[test]
 fn degenerate_triangles_are_counted_and_never_hit() {
     let mut random = Random::new(3);
-    let mut extra = Vec::new();
-    for _ in 0..50 {
-        let (p, q) = (random.cube(), random.cube());
-        // Eighths, so that the points lie on one line to the last bit.
-        let (start, step) = ((p * 8.0).round() / 8.0, (q * 8.0).round() / 8.0);
-        extra.extend([
-            [p, p, p],
-            [p, q, q],
-            [p, q, p],
-            [p, p, q],
-            [start, start + step, start + step * 3.0],
-        ]);
-    }
+    let extra = degenerate(&mut random);
     let (broken, count) = with_extra(&extra);
     assert_eq!(
         broken.degenerate() as usize,
@@ -92,21 +68,7 @@ fn degenerate_triangles_are_counted_and_never_hit() {
 #[test]
 fn triangles_that_are_not_finite_are_left_out_counted_and_the_rest_is_intact() {
     let mut random = Random::new(4);
-    let odd = [
-        f32::NAN,
-        f32::INFINITY,
-        f32::NEG_INFINITY,
-        f32::MAX,
-        1e13,
-        -3e38,
-    ];
-    let extra: Vec<[Vec3; 3]> = (0..100)
-        .map(|i| {
-            let mut corners = [random.cube(), random.cube(), random.cube()];
-            corners[i % 3][i / 3 % 3] = odd[i % odd.len()];
-            corners
-        })
-        .collect();
+    let extra = not_finite(&mut random);
     let (broken, count) = with_extra(&extra);
     assert_eq!(broken.left_out() as usize, count, "triangles left out");
     let (intact, none) = with_extra(&[]);

@@ -5,63 +5,18 @@ use std::f32::consts::TAU;
 use glam::{Affine3A, Quat, Vec3};
 
 use super::{
-    meshes::{alone, cube, placed, soup, sphere},
+    meshes::{alone, cube, placed, sphere},
     random::Random,
 };
-use crate::bvh::{Aggregate, BuildOptions, Ray};
-
-/// A unit direction on the side of `normal`, as often grazing (down to 1e-7) as steep.
-fn leaving(normal: Vec3, random: &mut Random) -> Vec3 {
-    let height = (-random.between(0.0, 16.0)).exp();
-    let (sin, cos) = random.between(0.0, TAU).sin_cos();
-    let side = normal.any_orthonormal_vector();
-    let along = side * cos + normal.cross(side) * sin;
-    (normal * height + along).normalize()
-}
-
-/// Rays from everywhere at a scene, and on from where they hit: how many of those hit the very same triangle.
-fn self_hits(
-    aggregate: &Aggregate,
-    targets: &[Vec3],
-    rays: usize,
-    random: &mut Random,
-) -> (usize, usize) {
-    let (mut spawned, mut same) = (0, 0);
-    for _ in 0..rays {
-        let target = random.of(targets);
-        let distance = random.between(-8.0, 8.0).exp();
-        let origin = target + random.direction() * distance;
-        let Some(hit) = aggregate.closest_hit(&Ray::new(origin, target - origin)) else {
-            continue;
-        };
-        let surface = aggregate.instances()[hit.instance as usize].surface_point(&hit, 0.0);
-        for side in [surface.normal, -surface.normal] {
-            let direction = leaving(side, random);
-            let next = aggregate.closest_hit(&Ray::new(surface.leave(direction), direction));
-            spawned += 1;
-            same += usize::from(
-                next.is_some_and(|n| (n.instance, n.triangle) == (hit.instance, hit.triangle)),
-            );
-        }
-    }
-    (spawned, same)
-}
+use crate::bvh::{
+    BuildOptions, Ray,
+    hard_cases::spawned::{self_hits, triangles_of_all_sizes},
+};
 
 #[test]
 fn a_ray_that_leaves_a_triangle_of_any_size_does_not_meet_it_again() {
     let mut random = Random::new(17);
-    let triangles: Vec<[Vec3; 3]> = (0..400)
-        .map(|_| {
-            let size = random.between(-8.0, 8.0).exp();
-            let centre = random.cube() * random.between(-8.0, 8.0).exp();
-            [(); 3].map(|()| centre + random.cube() * size)
-        })
-        .collect();
-    let targets: Vec<Vec3> = triangles
-        .iter()
-        .map(|[a, b, c]| (*a + *b + *c) / 3.0)
-        .collect();
-    let scene = alone(soup(triangles), &BuildOptions::default());
+    let (scene, targets) = triangles_of_all_sizes(&mut random);
     let (spawned, same) = self_hits(&scene, &targets, 100_000, &mut random);
     assert!(spawned > 100_000, "only {spawned} rays");
     assert_eq!(same, 0, "{same} of {spawned} rays hit what they left");

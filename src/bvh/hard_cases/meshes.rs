@@ -7,12 +7,12 @@ use glam::{Affine3A, Vec3};
 use super::random::Random;
 use crate::bvh::{Aggregate, BuildOptions, Instance, MeshTree, Triangles};
 
-pub(super) fn mesh(positions: Vec<Vec3>, indices: Vec<[u32; 3]>) -> Triangles {
+pub(crate) fn mesh(positions: Vec<Vec3>, indices: Vec<[u32; 3]>) -> Triangles {
     Triangles::new(positions, indices).expect("the tests' meshes have indices in range")
 }
 
 /// Triangles that share no vertex.
-pub(super) fn soup(corners: impl IntoIterator<Item = [Vec3; 3]>) -> Triangles {
+pub(crate) fn soup(corners: impl IntoIterator<Item = [Vec3; 3]>) -> Triangles {
     let positions: Vec<Vec3> = corners.into_iter().flatten().collect();
     let indices = (0..positions.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
     let indices = indices.collect();
@@ -20,13 +20,13 @@ pub(super) fn soup(corners: impl IntoIterator<Item = [Vec3; 3]>) -> Triangles {
 }
 
 /// The same mesh with every position mapped.
-pub(super) fn moved(triangles: &Triangles, map: impl Fn(Vec3) -> Vec3) -> Triangles {
+pub(crate) fn moved(triangles: &Triangles, map: impl Fn(Vec3) -> Vec3) -> Triangles {
     let positions = triangles.positions().iter().map(|&p| map(p)).collect();
     mesh(positions, triangles.indices().to_vec())
 }
 
 /// Several meshes as one.
-pub(super) fn joined(meshes: &[Triangles]) -> Triangles {
+pub(crate) fn joined(meshes: &[Triangles]) -> Triangles {
     let (mut positions, mut indices) = (Vec::new(), Vec::new());
     for mesh in meshes {
         let base = positions.len() as u32;
@@ -53,7 +53,7 @@ fn closed_grid(rows: u32, columns: u32, at: impl Fn(f32, f32) -> Vec3) -> Triang
 }
 
 /// The curve that [`knot`]'s tube follows; it stays well inside the tube.
-pub(super) fn knot_centre(turn: f32) -> Vec3 {
+pub(crate) fn knot_centre(turn: f32) -> Vec3 {
     let angle = turn * TAU;
     let (s2, c2) = (2.0 * angle).sin_cos();
     let (s3, c3) = (3.0 * angle).sin_cos();
@@ -61,7 +61,7 @@ pub(super) fn knot_centre(turn: f32) -> Vec3 {
 }
 
 /// A trefoil knot of 2 · rows · columns triangles; closed.
-pub(super) fn knot(rows: u32, columns: u32) -> Triangles {
+pub(crate) fn knot(rows: u32, columns: u32) -> Triangles {
     closed_grid(rows, columns, |u, v| {
         let ahead = (knot_centre(u + 1e-3) - knot_centre(u - 1e-3)).normalize();
         let side = ahead.cross(Vec3::Z).normalize();
@@ -71,7 +71,7 @@ pub(super) fn knot(rows: u32, columns: u32) -> Triangles {
 }
 
 /// A sphere of radius 1 around the origin, closed: an octahedron, `levels` times subdivided. 8 · 4^levels triangles.
-pub(super) fn sphere(levels: u32) -> Triangles {
+pub(crate) fn sphere(levels: u32) -> Triangles {
     let mut positions = vec![Vec3::X, Vec3::Y, Vec3::Z, -Vec3::X, -Vec3::Y, -Vec3::Z];
     let mut faces: Vec<[u32; 3]> = Vec::new();
     for octant in 0..8u32 {
@@ -105,7 +105,7 @@ pub(super) fn sphere(levels: u32) -> Triangles {
 }
 
 /// The box [-1, 1]³: twelve triangles, closed.
-pub(super) fn cube() -> Triangles {
+pub(crate) fn cube() -> Triangles {
     let positions = (0..8)
         .map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) * 2.0 - 1.0)
         .collect();
@@ -124,7 +124,7 @@ pub(super) fn cube() -> Triangles {
 }
 
 /// Random triangles of a given size in [-1, 1]³.
-pub(super) fn scatter(count: usize, size: f32, seed: u64) -> Triangles {
+pub(crate) fn scatter(count: usize, size: f32, seed: u64) -> Triangles {
     let mut random = Random::new(seed);
     soup((0..count).map(|_| {
         let centre = random.cube();
@@ -133,12 +133,12 @@ pub(super) fn scatter(count: usize, size: f32, seed: u64) -> Triangles {
 }
 
 /// One instance of a mesh, where it stands.
-pub(super) fn alone(triangles: Triangles, options: &BuildOptions) -> Aggregate {
+pub(crate) fn alone(triangles: Triangles, options: &BuildOptions) -> Aggregate {
     placed(&[(triangles, Affine3A::IDENTITY)], options)
 }
 
 /// Each mesh placed by its transform.
-pub(super) fn placed(meshes: &[(Triangles, Affine3A)], options: &BuildOptions) -> Aggregate {
+pub(crate) fn placed(meshes: &[(Triangles, Affine3A)], options: &BuildOptions) -> Aggregate {
     let instances = meshes.iter().map(|(triangles, transform)| {
         let mesh = Arc::new(MeshTree::build(triangles.clone(), options));
         Instance::new(mesh, transform).expect("the tests' transforms have an inverse")

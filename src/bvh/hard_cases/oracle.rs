@@ -25,7 +25,7 @@ use crate::bvh::{
 const U: f64 = f32::EPSILON as f64 / 2.0;
 
 /// The nearest hit, by our triangle test, over every triangle of every instance in turn.
-pub(super) fn brute(aggregate: &Aggregate, ray: &Ray) -> Option<Hit> {
+pub(crate) fn brute(aggregate: &Aggregate, ray: &Ray) -> Option<Hit> {
     let safe = SafeRay::new(ray)?;
     let mut best: Option<Hit> = None;
     for (number, instance) in aggregate.instances().iter().enumerate() {
@@ -61,16 +61,16 @@ pub(super) fn brute(aggregate: &Aggregate, ray: &Ray) -> Option<Hit> {
 
 /// What f64 says of one ray and one triangle.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Exact {
-    pub(super) verdict: Verdict,
+pub(crate) struct Exact {
+    pub(crate) verdict: Verdict,
     /// Where the ray meets the triangle's plane; meaningless for a miss.
-    pub(super) t: f64,
+    pub(crate) t: f64,
     /// How far f32 may be from it; infinite inside the band.
-    pub(super) t_bound: f64,
+    pub(crate) t_bound: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Verdict {
+pub(crate) enum Verdict {
     Hit,
     Miss,
     /// f32 may say either.
@@ -78,7 +78,7 @@ pub(super) enum Verdict {
 }
 
 /// A ray as f64 sees it from an instance.
-pub(super) struct ExactRay {
+pub(crate) struct ExactRay {
     origin: DVec3,
     direction: DVec3,
     origin_error: f64,
@@ -86,7 +86,7 @@ pub(super) struct ExactRay {
 }
 
 impl ExactRay {
-    pub(super) fn new(instance: &Instance, ray: &Ray) -> Self {
+    pub(crate) fn new(instance: &Instance, ray: &Ray) -> Self {
         let transform = instance.world_from_object();
         let linear = transform.matrix3;
         let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis].map(|v| v.as_dvec3());
@@ -113,7 +113,7 @@ impl ExactRay {
         }
     }
 
-    pub(super) fn cross(&self, corners: [Vec3; 3]) -> Exact {
+    pub(crate) fn cross(&self, corners: [Vec3; 3]) -> Exact {
         let size = self.direction.abs();
         let z = if size.x == size.max_element() {
             0
@@ -179,19 +179,38 @@ impl ExactRay {
     }
 }
 
-/// How many rays of a test lay inside the band, and how many disagreed outside of it.
+/// How many rays lay inside the band, and how many disagreed outside of it.
 #[derive(Debug, Default)]
-pub(super) struct Tally {
-    pub(super) rays: usize,
-    pub(super) hits: usize,
-    pub(super) in_band: usize,
-    pub(super) wrong: usize,
-    pub(super) first_wrong: Option<String>,
+pub(crate) struct Tally {
+    pub(crate) rays: usize,
+    pub(crate) hits: usize,
+    pub(crate) in_band: usize,
+    pub(crate) wrong: usize,
+    /// Answers of the tree that are not those of [`brute`], bit for bit.
+    pub(crate) unlike_brute_force: usize,
+    pub(crate) first_wrong: Option<String>,
+    /// The largest relative error of a `t` outside the band.
+    pub(crate) worst_t: f64,
+    /// The largest part of its running bound that an error of `t` took up.
+    pub(crate) worst_of_bound: f64,
 }
 
 impl Tally {
     /// Compares what was found with the truth in f64.
-    pub(super) fn judge(&mut self, aggregate: &Aggregate, ray: &Ray, found: Option<Hit>) {
+    pub(crate) fn judge(&mut self, aggregate: &Aggregate, ray: &Ray, found: Option<Hit>) {
+        let all =
+            |instance: usize| 0..aggregate.instances()[instance].mesh.triangles().len() as u32;
+        self.judge_among(aggregate, ray, found, all);
+    }
+
+    /// The same, where only these triangles of each instance can be hit.
+    pub(crate) fn judge_among<I: Iterator<Item = u32>>(
+        &mut self,
+        aggregate: &Aggregate,
+        ray: &Ray,
+        found: Option<Hit>,
+        candidates: impl Fn(usize) -> I,
+    ) {
         self.rays += 1;
         self.hits += usize::from(found.is_some());
         let mut wrong = |why: String| {
@@ -208,7 +227,7 @@ impl Tally {
         for (number, instance) in aggregate.instances().iter().enumerate() {
             let exact_ray = ExactRay::new(instance, ray);
             let triangles = instance.mesh.triangles();
-            for triangle in (0..triangles.len() as u32).filter(|&t| triangles.is_traced(t)) {
+            for triangle in candidates(number).filter(|&t| triangles.is_traced(t)) {
                 let exact = exact_ray.cross(triangles.corners(triangle));
                 if found.is_some_and(|h| (h.instance, h.triangle) == (number as u32, triangle)) {
                     of_found = Some(exact);
@@ -234,6 +253,11 @@ impl Tally {
             }
             (Some(hit), Some(exact)) => {
                 let t = f64::from(hit.t);
+                if exact.verdict == Verdict::Hit {
+                    let off = (t - exact.t).abs();
+                    self.worst_t = self.worst_t.max(off / exact.t.abs());
+                    self.worst_of_bound = self.worst_of_bound.max(off / exact.t_bound);
+                }
                 if exact.verdict == Verdict::Hit && (t - exact.t).abs() > exact.t_bound {
                     return wrong(format!("t is {} off, bound {}", t - exact.t, exact.t_bound));
                 }
@@ -246,46 +270,59 @@ impl Tally {
         self.in_band += usize::from(band);
     }
 
-    pub(super) fn assert(&self, what: &str) {
-        assert_eq!(
-            self.wrong, 0,
-            "{what}: {} of {} rays disagree with f64 outside the band ({} in it); first: {:?}",
-            self.wrong, self.rays, self.in_band, self.first_wrong
-        );
-        println!(
-            "{what}: {} rays, {} hits, {} in the band",
-            self.rays, self.hits, self.in_band
-        );
+    /// Both oracles at once: the tree's answer against brute force's, bit for bit, and against f64's outside the band.
+    pub(crate) fn of(aggregate: &Aggregate, rays: impl IntoIterator<Item = Ray>) -> Self {
+        let mut tally = Self::default();
+        for ray in rays {
+            let found = aggregate.closest_hit(&ray);
+            let truth = brute(aggregate, &ray);
+            if !same(found, truth) || aggregate.occluded(&ray) != truth.is_some() {
+                tally.unlike_brute_force += 1;
+                tally.first_wrong.get_or_insert(format!(
+                    "the tree found {found:?}, brute force {truth:?}, {ray:?}"
+                ));
+            }
+            tally.judge(aggregate, &ray, found);
+        }
+        tally
+    }
+
+    /// Adds what another tally counted.
+    pub(crate) fn add(&mut self, other: Self) {
+        self.rays += other.rays;
+        self.hits += other.hits;
+        self.in_band += other.in_band;
+        self.wrong += other.wrong;
+        self.unlike_brute_force += other.unlike_brute_force;
+        self.first_wrong = self.first_wrong.take().or(other.first_wrong);
+        self.worst_t = self.worst_t.max(other.worst_t);
+        self.worst_of_bound = self.worst_of_bound.max(other.worst_of_bound);
+    }
+
+    /// Whether nothing is wrong.
+    pub(crate) fn is_right(&self) -> bool {
+        self.wrong == 0 && self.unlike_brute_force == 0
     }
 }
 
-/// Both oracles at once: the tree's answer is brute force's to the last bit, and f64's outside the band.
-pub(super) fn check(
+/// [`Tally::of`], where nothing may be wrong.
+#[cfg(test)]
+pub(crate) fn check(
     what: &str,
     aggregate: &Aggregate,
     rays: impl IntoIterator<Item = Ray>,
 ) -> Tally {
-    let mut tally = Tally::default();
-    for ray in rays {
-        let found = aggregate.closest_hit(&ray);
-        let truth = brute(aggregate, &ray);
-        assert!(
-            same(found, truth),
-            "{what}: the tree found {found:?}, brute force {truth:?}, {ray:?}"
-        );
-        assert_eq!(
-            aggregate.occluded(&ray),
-            truth.is_some(),
-            "{what}: occlusion of {ray:?}"
-        );
-        tally.judge(aggregate, &ray, found);
-    }
-    tally.assert(what);
+    let tally = Tally::of(aggregate, rays);
+    assert!(tally.is_right(), "{what}: {tally:?}");
+    println!(
+        "{what}: {} rays, {} hits, {} in the band",
+        tally.rays, tally.hits, tally.in_band
+    );
     tally
 }
 
 /// The same to the last bit.
-pub(super) fn same(a: Option<Hit>, b: Option<Hit>) -> bool {
+pub(crate) fn same(a: Option<Hit>, b: Option<Hit>) -> bool {
     let bits = |h: Hit| {
         (
             h.t.to_bits(),

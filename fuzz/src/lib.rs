@@ -1,0 +1,60 @@
+//! What the fuzz targets and the mutation tests call: one file, read as the program reads it.
+
+use glassbox::app::headless_app;
+use glassbox::io::{Limits, OpenOptions, SceneSource, open};
+use std::fs;
+use std::path::Path;
+
+/// The kinds of files that are read, by the names of their targets: the file that is opened, and the one that gets the
+/// bytes.
+pub const KINDS: [(&str, &str, &str); 5] = [
+    ("obj", "a.obj", "a.obj"),
+    ("mtl", "a.obj", "a.mtl"),
+    ("gltf", "a.gltf", "a.gltf"),
+    ("glb", "a.glb", "a.glb"),
+    ("scene", "a.scn.ron", "a.scn.ron"),
+];
+
+/// An OBJ file that reads the MTL file under test.
+const WITH_MATERIAL: &str = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
+
+/// Reads the bytes as a file of that kind in `folder`, and what was opened once through to the tracer's world. Whatever
+/// they are, nothing may panic; an error is one line. True where they could be opened.
+pub fn read(kind: &str, bytes: &[u8], folder: &Path) -> bool {
+    let known = KINDS.iter().find(|(name, ..)| *name == kind);
+    let (_, opened, written) = known.expect("one of the kinds");
+    if opened != written {
+        fs::write(folder.join(opened), WITH_MATERIAL).expect("a folder that can be written to");
+    }
+    fs::write(folder.join(written), bytes).expect("a folder that can be written to");
+    let mut app = headless_app();
+    // So that what is found are faults, and not how large a file may be.
+    let options = OpenOptions {
+        allow_outside: false,
+        limits: Limits {
+            vertices: 1 << 16,
+            triangles: 1 << 16,
+            pixels: 1 << 16,
+            entities: 1 << 10,
+            ..Limits::default()
+        },
+    };
+    match open(
+        app.world_mut(),
+        &SceneSource::File(folder.join(opened)),
+        options,
+    ) {
+        Ok(_) => {
+            app.update();
+            true
+        }
+        Err(error) => {
+            assert_eq!(
+                error.to_string().lines().count(),
+                1,
+                "an error of several lines: {error}"
+            );
+            false
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! `glassbox report`: speed against error, measured on this machine.
+
+use super::Failure;
+use super::output::say;
+use super::progress::Progress;
+use super::settings::check_scene;
+use super::stage::{SceneArgs, Stage, with_threads};
+use crate::io::SceneSource;
+use crate::report::{self, Options, Part, Subject, Table, write_report};
+use clap::Args;
+use std::path::{Path, PathBuf};
+
+/// Scenes that are measured where none is named: built-in ones that differ in what is hard about them.
+const DEFAULT_SCENES: [&str; 5] = [
+    "cube-segment-light",
+    "cornell-box-parallelogram-light",
+    "teapot",
+    "knot",
+    "showcase",
+];
+
+#[derive(Args)]
+pub(super) struct Report {
+    /// Parts: kernels, sampling, features, stability or all (default: all); then scenes, files or
+    /// built-in ones (default: five built-in ones). A file that is called like a part is ./NAME
+    #[arg(value_name = "PART|SCENE")]
+    what: Vec<PathBuf>,
+    /// Folder for report.md, its tables (CSV) and its plots (SVG and PNG)
+    #[arg(short, long, value_name = "DIR", default_value = "report")]
+    output: PathBuf,
+    /// Fewer rays, rounds and samples: about two minutes for a scene
+    #[arg(long)]
+    quick: bool,
+    /// Chooses the random numbers
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    seed: u32,
+    /// Threads to render pictures on (default: all of the machine's); kernels are timed on one
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    threads: Option<u32>,
+    /// Table (CSV) of an editing benchmark, to be part of the report
+    #[arg(long, value_name = "FILE.csv")]
+    editing: Option<PathBuf>,
+    /// Let scenes refer to files outside their own folder
+    #[arg(long)]
+    allow_outside: bool,
+    /// Print nothing but errors
+    #[arg(long)]
+    quiet: bool,
+}
+
+pub(super) fn run(args: Report) -> Result<(), Failure> {
+    let (parts, scenes) = split(&args.what);
+    with_threads(args.threads, || measure(&args, parts, &scenes))
+}
+
+/// What comes first are parts, the rest are scenes.
+fn split(what: &[PathBuf]) -> (Vec<Part>, Vec<PathBuf>) {
+    let part = |path: &PathBuf| -> Option<Vec<Part>> {
+        if path == Path::new("all") {
+            return Some(Part::ALL.to_vec());
+        }
+        let part = Part::ALL
+            .into_iter()
+            .find(|part| path == Path::new(part.name()));
+        part.map(|part| vec![part])
+    };
+    let named: Vec<Vec<Part>> = what.iter().map_while(part).collect();
+    let scenes = what[named.len()..].to_vec();
+    let asked = |part: &Part| named.is_empty() || named.iter().flatten().any(|n| n == part);
+    let parts = Part::ALL.into_iter().filter(asked).collect();
+    (parts, scenes)
+}
+
+fn measure(args: &Report, parts: Vec<Part>, scenes: &[PathBuf]) -> Result<(), Failure> {
+    let scenes = if scenes.is_empty() {
+        DEFAULT_SCENES.map(PathBuf::from).to_vec()
+    } else {
+        scenes.to_vec()
+    };
+    let subjects = scenes
+        .iter()
+        .map(|scene| subject(scene, args))
+        .collect::<Result<Vec<Subject>, Failure>>()?;
+    let editing = args.editing.as_deref().map(table).transpose()?;
+    let options = Options {
+        editing,
+        parts,
+        quick: args.quick,
+        seed: args.seed,
+        command: command(),
+    };
+    let progress = Progress::new(args.quiet, "report");
+    let report = report::run(&subjects, &options, &|what, done, all| {
+        progress.show_step(what, done, all);
+    });
+    drop(progress);
+    write_report(&report, &args.output)?;
+    if !args.quiet {
+        say(report.findings().join("\n"))?;
+        for section in &report.sections {
+            if let Some(table) = section.summary.and_then(|i| section.tables.get(i)) {
+                say(format_args!(
+                    "\n{}\n{}",
+                    section.title,
+                    table.plain().trim_end()
+                ))?;
+            }
+        }
+        let file = args.output.join("report.md");
+        say(format_args!(
+            "\n{}: {:.0} s",
+            file.display(),
+            report.seconds
+        ))?;
+    }
+    let failures: Vec<&str> = report.failures().map(String::as_str).collect();
+    if failures.is_empty() {
+        Ok(())
+    } else {
+        let failures = failures.join("; ");
+        Err(Failure::Scene(format!(
+            "what should hold does not: {failures}"
+        )))
+    }
+}
+
+fn subject(scene: &Path, args: &Report) -> Result<Subject, Failure> {
+    let source = SceneArgs {
+        scene: scene.to_path_buf(),
+        allow_outside: args.allow_outside,
+    };
+    let mut stage = Stage::open(&source, args.quiet)?;
+    let settings = stage.settings().clone();
+    check_scene(&stage.name, &settings)?;
+    let world = stage.sync().world.clone();
+    let camera = stage.cameras().0.first().cloned();
+    let camera = camera.ok_or_else(|| {
+        Failure::Scene(format!("{}: has no camera; add a SceneCamera", stage.name))
+    })?;
+    let name = match SceneSource::named(scene) {
+        SceneSource::Builtin(scene) => scene.name.to_owned(),
+        SceneSource::File(_) => stage.name.clone(),
+    };
+    Ok(Subject {
+        name,
+        world,
+        camera: camera.camera,
+        settings,
+    })
+}
+
+/// A table that another program wrote.
+fn table(file: &Path) -> Result<Table, Failure> {
+    let text = std::fs::read_to_string(file)
+        .map_err(|error| Failure::System(format!("{}: {error}", file.display())))?;
+    Table::from_csv("editing", "Edits", &text)
+        .map_err(|error| Failure::System(format!("{}: {error}", file.display())))
+}
+
+/// This process' own command line, as one would type it.
+fn command() -> String {
+    let words = std::env::args().skip(1);
+    std::iter::once("glassbox".to_owned())
+        .chain(words)
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_come_first_and_everything_else_is_a_scene() {
+        let split = |words: &[&str]| {
+            let words: Vec<PathBuf> = words.iter().map(PathBuf::from).collect();
+            let (parts, scenes) = split(&words);
+            let scenes: Vec<String> = scenes.iter().map(|s| s.display().to_string()).collect();
+            (parts, scenes)
+        };
+        assert_eq!(split(&[]), (Part::ALL.to_vec(), vec![]));
+        assert_eq!(split(&["all"]), (Part::ALL.to_vec(), vec![]));
+        let one = vec![Part::Kernels];
+        assert_eq!(split(&["kernels", "teapot"]), (one, vec!["teapot".into()]));
+        let two = vec![Part::Kernels, Part::Sampling];
+        assert_eq!(split(&["sampling", "kernels"]), (two, vec![]));
+        let scenes = vec!["a.obj".to_owned(), "sampling".to_owned()];
+        assert_eq!(split(&["a.obj", "sampling"]), (Part::ALL.to_vec(), scenes));
+    }
+}

@@ -1,0 +1,149 @@
+//! A report as files: Markdown, CSV, and plots and pictures that the Markdown shows.
+
+use super::{Report, Section};
+use crate::io::{FileError, replace_file, write_picture};
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::Path;
+
+/// Writes `report.md` and what it refers to into a folder, which is made where it does not exist.
+pub fn write_report(report: &Report, folder: &Path) -> Result<(), FileError> {
+    std::fs::create_dir_all(folder).map_err(|error| FileError::writing(folder, &error))?;
+    for section in &report.sections {
+        for table in &section.tables {
+            write_text(&folder.join(format!("{}.csv", table.file)), &table.csv())?;
+        }
+        for plot in &section.plots {
+            write_text(&folder.join(format!("{}.svg", plot.file)), &plot.svg())?;
+            let shown = plot.raster();
+            let file = folder.join(format!("{}.png", plot.file));
+            write_picture(&file, shown.width, shown.height, &shown.pixels)?;
+        }
+        for (name, _, shown) in &section.pictures {
+            let file = folder.join(format!("{name}.png"));
+            write_picture(&file, shown.width, shown.height, &shown.pixels)?;
+        }
+    }
+    write_text(&folder.join("report.md"), &markdown(report))
+}
+
+fn write_text(file: &Path, text: &str) -> Result<(), FileError> {
+    replace_file(file, |writer| writer.write_all(text.as_bytes()))
+}
+
+/// The whole report as Markdown, its plots and pictures beside it.
+fn markdown(report: &Report) -> String {
+    let mut text = String::from("# Speed against error\n\n");
+    text += &report.findings().join("\n");
+    // Writing to a string cannot fail.
+    let _ = writeln!(
+        text,
+        "\n\n`{}` made this report in {:.0} s on {}.\nSeed {}; scenes: {}. Times are medians of rounds in which everything \
+         that is compared takes turns.",
+        report.options.command,
+        report.seconds,
+        report.machine,
+        report.options.seed,
+        report.scenes.join(", "),
+    );
+    let failures: Vec<&String> = report.failures().collect();
+    if !failures.is_empty() {
+        text += "\n**What should hold and does not:**\n\n";
+        for failure in failures {
+            let _ = writeln!(text, "- {failure}");
+        }
+    }
+    for section in &report.sections {
+        text += &section_text(section);
+    }
+    text
+}
+
+fn section_text(section: &Section) -> String {
+    let mut text = format!("\n## {}\n\n", section.title);
+    text += &section.findings.join("\n");
+    text.push('\n');
+    for paragraph in &section.method {
+        let _ = write!(text, "\n{paragraph}\n");
+    }
+    for plot in &section.plots {
+        let _ = write!(text, "\n![{}]({}.svg)\n", plot.title, plot.file);
+    }
+    for (name, caption, _) in &section.pictures {
+        let _ = write!(text, "\n![{caption}]({name}.png)\n\n{caption}\n");
+    }
+    for table in &section.tables {
+        let _ = write!(
+            text,
+            "\n### {}\n\n[{}.csv]({}.csv)\n\n{}",
+            table.title,
+            table.file,
+            table.file,
+            table.markdown()
+        );
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Axis, Marker, Options, Part, Plot, Series, Table};
+    use super::*;
+
+    #[test]
+    fn every_file_that_the_report_refers_to_is_there() {
+        let mut table = Table::new("speeds", "Speeds", &["kernel", "Mray/s"]);
+        table.push(["ours".into(), 3.5.into()]);
+        let series = Series::new("ours", vec![(1.0, 1e-7), (3.5, 1e-3)]).marked(Marker::Circle);
+        let plot = Plot {
+            file: "front".into(),
+            title: "Speed against error".into(),
+            x: Axis::linear("Mray/s"),
+            y: Axis::logarithmic("relative error"),
+            series: vec![series],
+        };
+        let report = Report {
+            options: Options {
+                parts: vec![Part::Kernels],
+                quick: true,
+                seed: 7,
+                command: "glassbox report kernels".into(),
+                editing: None,
+            },
+            machine: super::super::Machine::here(),
+            scenes: vec!["teapot".into()],
+            sections: vec![Section {
+                title: "Kernels".into(),
+                findings: vec!["Ours is fast.".into()],
+                tables: vec![table],
+                plots: vec![plot],
+                failures: vec!["something".into()],
+                ..Section::default()
+            }],
+            seconds: 1.0,
+        };
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path().join("new");
+        write_report(&report, &folder).unwrap();
+        let text = std::fs::read_to_string(folder.join("report.md")).unwrap();
+        for part in [
+            "Ours is fast.",
+            "Seed 7",
+            "glassbox report kernels",
+            "- something",
+            "rustc",
+        ] {
+            assert!(text.contains(part), "`{part}` is not in:\n{text}");
+        }
+        let links: Vec<&str> = text
+            .split("](")
+            .skip(1)
+            .filter_map(|rest| rest.split(')').next())
+            .collect();
+        assert_eq!(links.len(), 2, "{links:?}");
+        for link in links.into_iter().chain(["front.png"]) {
+            let size = std::fs::metadata(folder.join(link)).unwrap().len();
+            assert!(size > 10, "{link} has {size} bytes");
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! Glassbox' own traversals, through the calls that the tracer uses.
+
+use super::{Found, Kernel};
+use crate::bvh::{Aggregate, BuildOptions, Hit, Instance, MeshTree, Ray, Triangles};
+use glam::{Affine3A, Vec3};
+use std::cell::RefCell;
+use std::sync::Arc;
+
+/// One mesh where it is. Triangles keep their numbers.
+pub(super) fn aggregate(triangles: &[[Vec3; 3]], options: &BuildOptions) -> Aggregate {
+    let indices = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
+    let triangles = Triangles::new(triangles.as_flattened().to_vec(), indices.collect());
+    let triangles = triangles.expect("every index has its position");
+    let mesh = Arc::new(MeshTree::build(triangles, options));
+    let instance = Instance::new(mesh, &Affine3A::IDENTITY).expect("the identity has an inverse");
+    Aggregate::build(vec![instance], options)
+}
+
+fn found(hit: Option<Hit>) -> Option<Found> {
+    hit.map(
+        |Hit {
+             t, triangle, u, v, ..
+         }| Found { t, triangle, u, v },
+    )
+}
+
+/// What pictures are traced with.
+pub(super) struct OursWide {
+    aggregate: Aggregate,
+    hits: RefCell<Vec<Option<Hit>>>,
+}
+
+impl OursWide {
+    pub fn build(triangles: &[[Vec3; 3]]) -> Self {
+        Self::with(aggregate(triangles, &BuildOptions::default()))
+    }
+
+    pub fn with(aggregate: Aggregate) -> Self {
+        Self {
+            aggregate,
+            hits: RefCell::default(),
+        }
+    }
+}
+
+impl Kernel for OursWide {
+    fn closest(&self, rays: &[Ray], all: &mut Vec<Option<Found>>) {
+        let mut hits = self.hits.borrow_mut();
+        self.aggregate.closest_hits(rays, &mut hits);
+        all.clear();
+        all.extend(hits.iter().copied().map(found));
+    }
+
+    fn occluded(&self, rays: &[Ray], occluded: &mut Vec<bool>) {
+        self.aggregate.occlusions(rays, occluded);
+    }
+}
+
+/// The walk of the two-way tree that a visitor can watch, with none.
+pub(super) struct OursBinary(Aggregate);
+
+impl OursBinary {
+    pub fn build(triangles: &[[Vec3; 3]]) -> Self {
+        Self(aggregate(triangles, &BuildOptions::default()))
+    }
+}
+
+impl Kernel for OursBinary {
+    fn closest(&self, rays: &[Ray], all: &mut Vec<Option<Found>>) {
+        all.clear();
+        all.extend((rays.iter()).map(|ray| found(self.0.closest_hit_with(ray, &mut ()))));
+    }
+
+    fn occluded(&self, rays: &[Ray], occluded: &mut Vec<bool>) {
+        occluded.clear();
+        occluded.extend(rays.iter().map(|ray| self.0.occluded_with(ray, &mut ())));
+    }
+}

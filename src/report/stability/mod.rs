@@ -1,0 +1,421 @@
+//! The hard cases: where renderers break, with figures and verdicts.
+//!
+//! Every row is a function of the number of rays; the tests call the same functions with fewer.
+
+mod edits;
+mod hairball;
+mod light;
+mod motion_and_lens;
+mod parallel;
+mod pictures;
+mod rays;
+mod scenes;
+mod transparency;
+mod trees;
+
+use super::{Options, Section, Table, Watch};
+use crate::film::views::Shown;
+
+/// How much is shot.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Effort {
+    /// Rays of a row where rays are counted.
+    pub rays: usize,
+    /// Triangles of the hairball.
+    pub hairball: usize,
+    /// Edits.
+    pub edits: usize,
+    /// Chooses the random numbers.
+    pub seed: u64,
+}
+
+impl Effort {
+    fn of(options: &Options) -> Self {
+        let (rays, hairball, edits) = if options.quick {
+            (100_000, 100_000, 200)
+        } else {
+            (10_000_000, 1_000_000, 1_000)
+        };
+        Self {
+            rays,
+            hairball,
+            edits,
+            seed: u64::from(options.seed),
+        }
+    }
+}
+
+/// What came out of a case.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Outcome {
+    /// Rays, pixels or whatever was counted.
+    pub counted: u64,
+    /// The figures, in words.
+    pub figures: String,
+    /// Why it does not pass; empty where it does.
+    pub faults: Vec<String>,
+}
+
+impl Outcome {
+    /// So many were counted, with these figures.
+    pub fn new(counted: usize, figures: impl Into<String>) -> Self {
+        Self {
+            counted: counted as u64,
+            figures: figures.into(),
+            faults: Vec::new(),
+        }
+    }
+
+    /// Does not pass unless this is true.
+    pub fn require(mut self, holds: bool, what: impl Into<String>) -> Self {
+        if !holds {
+            self.faults.push(what.into());
+        }
+        self
+    }
+}
+
+/// A row of the table of hard cases.
+pub(super) struct Case {
+    pub number: u32,
+    pub name: &'static str,
+    /// What it must do to pass.
+    pub passes: &'static str,
+    pub run: fn(&Effort) -> Outcome,
+}
+
+/// All of them.
+pub(super) static CASES: [Case; 35] = [
+    case(
+        1,
+        "closed meshes, random rays from inside",
+        "0 leaks",
+        rays::leaks_anywhere,
+    ),
+    case(
+        2,
+        "the same, aimed at edges",
+        "0 leaks",
+        rays::leaks_at_edges,
+    ),
+    case(
+        3,
+        "the same, aimed at vertices",
+        "0 leaks",
+        rays::leaks_at_vertices,
+    ),
+    case(
+        4,
+        "1–3 around (148376, 1234, -223423)",
+        "0 leaks",
+        rays::leaks_far_away,
+    ),
+    case(
+        5,
+        "direction components -0.0, 0.0, 1e-9, 1e-38",
+        "both oracles agree",
+        rays::signed_zeros,
+    ),
+    case(
+        6,
+        "axis-parallel rays, target 1e-5 wide at 1e4",
+        "0 misses",
+        rays::thin_targets,
+    ),
+    case(
+        7,
+        "rays in the plane of a triangle or a box's face",
+        "no NaN; a triangle's own plane is a miss",
+        rays::in_planes,
+    ),
+    case(
+        8,
+        "scales 2^-20 … 2^20 and 1e-6 … 1e6",
+        "same bits; both oracles agree",
+        rays::scales,
+    ),
+    case(
+        9,
+        "offsets 1e2 … 1e6",
+        "t within its running bound",
+        rays::offsets,
+    ),
+    case(
+        10,
+        "a teapot in a stadium, 1e6 : 1",
+        "0 misses, no cliff in work",
+        rays::stadium,
+    ),
+    case(
+        11,
+        "slivers, aspect 1e6",
+        "hits as f64 says, t within its running bound",
+        rays::slivers,
+    ),
+    case(
+        12,
+        "degenerate triangles",
+        "counted, never hit",
+        rays::degenerate,
+    ),
+    case(
+        13,
+        "NaN or infinite vertices, indices out of range",
+        "left out and counted, the rest intact; an error",
+        rays::not_finite,
+    ),
+    case(14, "NaN or infinite rays", "a miss", rays::not_numbers),
+    case(
+        15,
+        "nothing: no object, an empty mesh; one triangle",
+        "clean background",
+        rays::nothing,
+    ),
+    case(
+        16,
+        "1e5 identical, 1e5 collinear triangles",
+        "bounded depth and work, the right hits",
+        trees::heaps,
+    ),
+    case(
+        17,
+        "trees deeper than every stack",
+        "0 lost hits",
+        trees::deep,
+    ),
+    case(
+        18,
+        "a light 0.01° above a plane",
+        "0 dark pixels",
+        light::acne,
+    ),
+    case(
+        19,
+        "contact shadow, gap 1e-4 of the scene",
+        "0 light under the object",
+        light::contact,
+    ),
+    case(
+        20,
+        "a light in the receiver's plane",
+        "0, finite",
+        light::in_the_plane,
+    ),
+    case(
+        21,
+        "the shading point on the light, or 1e-45 from it",
+        "finite",
+        light::on_the_light,
+    ),
+    case(
+        22,
+        "rays spawned from triangles of size e^±8",
+        "0 self-hits",
+        rays::spawned,
+    ),
+    case(
+        23,
+        "coplanar surfaces, any threads, any tree",
+        "identical bit for bit",
+        light::coplanar,
+    ),
+    case(
+        24,
+        "a transparent pair sharing an edge",
+        "exactly 1 layer",
+        transparency::shared_edge,
+    ),
+    case(
+        25,
+        "64 transparent layers",
+        "the product, 1e-5 relative",
+        transparency::layers,
+    ),
+    case(
+        26,
+        "two parallel mirrors, depth 50",
+        "the geometric series, 1e-5 relative",
+        transparency::mirrors,
+    ),
+    case(
+        27,
+        "a coarse smooth sphere: its terminator",
+        "the loss stays below sin of the largest angle between normals",
+        light::terminator,
+    ),
+    case(
+        28,
+        "instances: sheared, mirrored, 1e-4 … 1e4, singular",
+        "both oracles agree; singular is an error",
+        rays::instances,
+    ),
+    case(
+        29,
+        "random edits and undo against a fresh build",
+        "identical",
+        edits::edits,
+    ),
+    case(
+        30,
+        "motion across the view; a closed shutter",
+        "coverage within 2/spp; identical",
+        motion_and_lens::motion,
+    ),
+    case(
+        31,
+        "a shadow ray that ends on its own light",
+        "never shadowed",
+        light::own_light,
+    ),
+    case(
+        32,
+        "environment: poles, seam",
+        "no jump",
+        light::environment,
+    ),
+    case(
+        33,
+        "aperture 0; focus at infinity",
+        "the pinhole's rays; parallel rays",
+        motion_and_lens::lens,
+    ),
+    case(
+        34,
+        "samples, depth, size of 0, 1 and 2^31",
+        "a clear error, or it works",
+        motion_and_lens::limits,
+    ),
+    case(
+        35,
+        "hairball of long thin triangles",
+        "0 wrong outside the band",
+        hairball::hairball,
+    ),
+];
+
+const fn case(
+    number: u32,
+    name: &'static str,
+    passes: &'static str,
+    run: fn(&Effort) -> Outcome,
+) -> Case {
+    Case {
+        number,
+        name,
+        passes,
+        run,
+    }
+}
+
+/// Runs all of them.
+pub fn measure(options: &Options, watch: Watch) -> Section {
+    let effort = Effort::of(options);
+    let mut table = Table::new(
+        "stability",
+        "The hard cases",
+        &["#", "case", "counted", "figures", "passes when", "verdict"],
+    );
+    let mut section = Section {
+        title: "Stability: the hard cases".into(),
+        method: method(),
+        ..Section::default()
+    };
+    let mut rays = 0;
+    for (done, case) in CASES.iter().enumerate() {
+        watch(
+            &format!("{} {}", case.number, case.name),
+            done as u64,
+            CASES.len() as u64,
+        );
+        let outcome = (case.run)(&effort);
+        rays += outcome.counted;
+        let passed = outcome.faults.is_empty();
+        table.push([
+            u64::from(case.number).into(),
+            case.name.into(),
+            outcome.counted.into(),
+            outcome.figures.into(),
+            case.passes.into(),
+            (if passed { "passes" } else { "FAILS" }).into(),
+        ]);
+        let faults = outcome.faults.into_iter();
+        section
+            .failures
+            .extend(faults.map(|fault| format!("case {} ({}): {fault}", case.number, case.name)));
+    }
+    let failed = table
+        .rows
+        .iter()
+        .filter(|row| row.last() == Some(&"FAILS".into()))
+        .count();
+    section.findings.push(format!(
+        "{} of the {} hard cases pass, over {} rays, pixels and edits counted.",
+        CASES.len() - failed,
+        CASES.len(),
+        super::table::digits(rays as f64, 3),
+    ));
+    watch("pictures of hard cases", 0, 1);
+    section.pictures = shown();
+    section.summary = Some(0);
+    section.tables.push(table);
+    section
+}
+
+fn method() -> Vec<String> {
+    vec![
+        "Two oracles know no tree: every triangle in turn with the same test in f32, with which the tree must agree to the last \
+         bit; and every triangle in f64, with which it must agree except in a band around edges, where an edge function is \
+         smaller than its own bound of error (band: so many rays crossed one). "
+            .into(),
+        "Bounds that no renderer passes exactly. 9 and 11: t is off by at most Σ (Eᵢ + 4u|Uᵢ|)|zᵢ - z| / (|det| - Σ Eᵢ) / |dz| \
+         and relative roundings of z and dz, where Uᵢ are the edge functions in f64, Eᵢ = δ(|Px| + |Py| + |Qx| + |Qy|) + 2δ² + \
+         2u(|Px Qy| + |Py Qx|) the error of each in f32, δ = 6u · the largest coordinate relative to the ray's origin, u = 2^-24; \
+         it follows from the rounding of every operation of the test. 27: a facet turns dark where its own normal turns away from \
+         the light, while the smooth normal still sees it: so at most sin of the largest angle between the two is lost, of the \
+         value that faces the light; a convex mesh shadows nothing else of itself."
+            .into(),
+    ]
+}
+
+/// Acne, contact, terminator and seam.
+fn shown() -> Vec<(String, String, Shown)> {
+    pictures::all()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FEW: Effort = Effort {
+        rays: 20_000,
+        hairball: 20_000,
+        edits: 150,
+        seed: 3,
+    };
+
+    #[test]
+    fn every_hard_case_passes() {
+        for (index, case) in CASES.iter().enumerate() {
+            assert_eq!(case.number as usize, index + 1);
+            let outcome = (case.run)(&FEW);
+            println!("{} {}: {}", case.number, case.name, outcome.figures);
+            assert!(outcome.counted > 0, "case {} counted nothing", case.number);
+            assert!(
+                outcome.faults.is_empty(),
+                "case {}, {}: {:?}",
+                case.number,
+                case.name,
+                outcome.faults
+            );
+        }
+    }
+
+    #[test]
+    fn the_pictures_of_hard_cases_show_something() {
+        for (name, _, shown) in shown() {
+            let first = shown.pixels[0];
+            let others = shown.pixels.iter().filter(|pixel| **pixel != first).count();
+            assert!(others > shown.pixels.len() / 10, "{name} is blank");
+        }
+    }
+}
