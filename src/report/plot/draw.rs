@@ -44,6 +44,7 @@ pub(super) fn svg(plot: &Plot) -> String {
 pub(super) fn raster(plot: &Plot) -> Shown {
     let (width, height) = (2 * SIZE.0, 2 * SIZE.1);
     let mut shown = Shown {
+        has_unknown: false,
         width,
         height,
         pixels: vec![[1.0; 3]; (width * height) as usize],

@@ -43,6 +43,7 @@ fn shown(world: &World, camera: &Camera, exposure: f32) -> Shown {
     settings.output.exposure = exposure;
     let picture = render(world, camera, &settings, &|_, _| {}).picture;
     Shown {
+        has_unknown: false,
         width: picture.width,
         height: picture.height,
         pixels: develop(&picture, &settings.output),
