@@ -1,15 +1,15 @@
 //! What is at a place of the window: what the tracer sees there, or a light or camera, which it
 //! does not see, by its symbol.
 
-use super::extent::lamp_points;
-use super::navigation::LookThrough;
-use super::viewport::EditorCamera;
+use super::edits::scene_entity;
+use super::extent::own_extent;
+use super::viewport::{EditorCamera, Viewport};
 use crate::bvh::Ray;
 use crate::scene::{
     DirectionalLamp, ParallelogramLamp, PointLamp, SceneCamera, SceneId, SegmentLamp,
 };
 use crate::sync::Traced;
-use crate::view;
+use crate::view::{self, DrawnLines, SymbolOf, nearest_symbol};
 use bevy::camera::Camera;
 use bevy::camera::visibility::InheritedVisibility;
 use bevy::ecs::entity::Entity;
@@ -19,10 +19,8 @@ use bevy::math::{Ray3d, Vec2, Vec3};
 use bevy::transform::components::GlobalTransform;
 use bevy_egui::{EguiContext, PrimaryEguiContext, egui};
 
-/// How near to a symbol the pointer has to be, in logical pixels.
-const SYMBOL: f32 = 10.0;
-/// How near to a line.
-const LINE: f32 = 6.0;
+/// How near to the lines of a symbol the pointer has to be, in logical pixels.
+const SYMBOL: f32 = 8.0;
 
 /// What was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,49 +84,16 @@ pub(super) fn at(world: &mut World, place: Vec2) -> Option<Found> {
     }
 }
 
-/// The light or camera whose symbol is nearest.
+/// The light or camera whose symbol is nearest, and near enough.
 fn symbol_at(world: &mut World, at: Vec2) -> Option<Found> {
     let (camera, place) = camera(world)?;
-    let through = world.resource::<LookThrough>().camera;
-    let on_window = |point: Vec3| camera.world_to_viewport(&place, point).ok();
-    let mut symbols = world.query_filtered::<(Entity, &SceneId), Symbol>();
-    let entities: Vec<(Entity, SceneId)> = symbols.iter(world).map(|(e, id)| (e, *id)).collect();
-    let mut nearest: Option<(f32, Found)> = None;
-    for (entity, id) in entities {
-        if through == Some(id) || !is_shown(world, entity) {
-            continue;
-        }
-        let Ok(entity) = world.get_entity(entity) else {
-            continue;
-        };
-        let Some(own) = entity.get::<GlobalTransform>() else {
-            continue;
-        };
-        let found = if entity.contains::<SegmentLamp>() {
-            let ends: Vec<Vec3> = lamp_points(entity)
-                .into_iter()
-                .map(|end| own.transform_point(end))
-                .collect();
-            let [Some(a), Some(b)] = [ends[0], ends[1]].map(on_window) else {
-                continue;
-            };
-            let along = part_along(at, a, b);
-            let distance = at.distance(a.lerp(b, along)) * SYMBOL / LINE;
-            Some((distance, ends[0].lerp(ends[1], along)))
-        } else if entity.contains::<ParallelogramLamp>() {
-            None
-        } else {
-            let point = own.translation();
-            on_window(point).map(|symbol| (at.distance(symbol), point))
-        };
-        let Some((distance, point)) = found else {
-            continue;
-        };
-        if distance <= SYMBOL && nearest.is_none_or(|(other, _)| distance < other) {
-            nearest = Some((distance, Found { id, point }));
-        }
-    }
-    nearest.map(|(_, found)| found)
+    let in_view = at - world.resource::<Viewport>().rect.min;
+    let mut symbols = world.query::<(&SymbolOf, &DrawnLines)>();
+    let nearest = nearest_symbol(in_view, &camera, &place, symbols.iter(world));
+    let (id, _) = nearest.filter(|(_, distance)| *distance <= SYMBOL)?;
+    let entity = scene_entity(world, id)?;
+    let point = own_extent(world.get_entity(entity).ok()?)?.centre();
+    Some(Found { id, point })
 }
 
 /// The parallelogram light that a ray goes through first.
@@ -171,17 +136,6 @@ fn through_parallelogram(
     let v = edges[0].cross(offset).dot(normal) / area;
     let inside = (0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v);
     inside.then_some(point)
-}
-
-/// Which part of the way from `a` to `b` is nearest to `point`.
-fn part_along(point: Vec2, a: Vec2, b: Vec2) -> f32 {
-    let way = b - a;
-    let length = way.length_squared();
-    if length > 0.0 {
-        ((point - a).dot(way) / length).clamp(0.0, 1.0)
-    } else {
-        0.0
-    }
 }
 
 /// A place of the window in egui's points.
@@ -234,14 +188,5 @@ mod tests {
         }
         let beside = through_parallelogram(Vec3::ZERO, Vec3::X, corner, edges);
         assert_eq!(beside, None, "a ray in its plane");
-    }
-
-    #[test]
-    fn the_nearest_point_of_a_line_is_on_it() {
-        let (a, b) = (Vec2::new(1.0, 1.0), Vec2::new(5.0, 1.0));
-        assert_eq!(part_along(Vec2::new(3.0, 9.0), a, b), 0.5);
-        assert_eq!(part_along(Vec2::new(-3.0, 9.0), a, b), 0.0);
-        assert_eq!(part_along(Vec2::new(9.0, 0.0), a, b), 1.0);
-        assert_eq!(part_along(Vec2::new(9.0, 0.0), a, a), 0.0);
     }
 }

@@ -8,17 +8,19 @@ use super::action::Action;
 use super::extent::own_extent;
 use super::handles::{self, GripDrag, grip_at};
 use super::keys::Modifiers;
-use super::navigation::{self, ViewDrag};
+use super::navigation::{self, LookThrough, ViewDrag};
 use super::pick;
 use super::selection::Selection;
 use super::viewport::Viewport;
 use crate::scene::SceneId;
+use crate::view::{Outlined, Symbols};
 use bevy::app::{App, Plugin, Update};
 use bevy::ecs::entity::Entity;
 use bevy::ecs::message::{MessageCursor, Messages};
 use bevy::ecs::query::{Or, With};
 use bevy::ecs::resource::Resource;
-use bevy::ecs::system::Local;
+use bevy::ecs::schedule::IntoScheduleConfigs;
+use bevy::ecs::system::{Local, Res, ResMut};
 use bevy::ecs::world::World;
 use bevy::gizmos::transform_gizmo::TransformGizmoState;
 use bevy::input::ButtonState;
@@ -43,7 +45,7 @@ impl Plugin for PointerPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<PointerUse>()
             .init_resource::<Pointer>()
-            .add_systems(Update, use_pointer)
+            .add_systems(Update, (use_pointer, outline_selection).chain())
             .add_systems(EguiPrimaryContextPass, draw_box);
     }
 }
@@ -308,6 +310,21 @@ fn select_box(world: &mut World, from: Vec2, to: Vec2) {
         wanted.set(inside);
     }
     select(world, wanted);
+}
+
+/// What is selected is outlined; a camera that is looked through is not drawn.
+fn outline_selection(
+    selection: Res<Selection>,
+    through: Res<LookThrough>,
+    mut outlined: ResMut<Outlined>,
+    mut symbols: ResMut<Symbols>,
+) {
+    if outlined.0 != selection.ids() {
+        outlined.0 = selection.ids().to_vec();
+    }
+    if symbols.hidden_camera != through.camera {
+        symbols.hidden_camera = through.camera;
+    }
 }
 
 fn draw_box(world: &mut World) {
