@@ -4,10 +4,10 @@ use glam::{Affine3A, Vec3, Vec3A};
 use obvhs::{aabb::Aabb, bvh2::Bvh2};
 
 use super::{
-    instances::any_transform,
     meshes::{cube, joined, knot, mesh, placed, scatter, soup},
     oracle::same,
     random::Random,
+    transforms::any_transform,
     trees::chain,
 };
 use crate::bvh::{
