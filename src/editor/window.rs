@@ -1,6 +1,7 @@
 //! The app with a window: its plugins, and the two cameras that draw into it.
 
 use super::action::Action;
+use super::document::{DocumentPlugin, adopt};
 use super::edits::EditsPlugin;
 use super::handles::HandlesPlugin;
 use super::history::HistoryPlugin;
@@ -10,6 +11,8 @@ use super::notice::Notices;
 use super::pace::PacePlugin;
 use super::panels::PanelsPlugin;
 use super::pointer::PointerPlugin;
+use super::preferences::config_folder;
+use super::render_job::RenderJobPlugin;
 use super::script::Script;
 use super::selection::Selection;
 use super::viewport::{EditorCamera, Viewport};
@@ -43,6 +46,8 @@ pub fn run(scene: SceneSource, script: Option<Script>) -> ExitCode {
             resolution: (1280, 720).into(),
             ..Window::default()
         }),
+        // The document asks first, where changes would be lost.
+        close_when_requested: false,
         ..WindowPlugin::default()
     }))
     .add_plugins((
@@ -51,6 +56,10 @@ pub fn run(scene: SceneSource, script: Option<Script>) -> ExitCode {
         SymbolsPlugin,
         HistoryPlugin,
         EditsPlugin,
+        DocumentPlugin {
+            recovery: config_folder().map(|folder| folder.join("recovery")),
+        },
+        RenderJobPlugin,
         PanelsPlugin,
     ))
     .add_plugins((
@@ -74,10 +83,19 @@ pub fn run(scene: SceneSource, script: Option<Script>) -> ExitCode {
     )
     .add_systems(PostUpdate, fit_viewport.before(TransformSystems::Propagate));
     let world = app.world_mut();
-    if let Err(problem) = open(world, &scene, OpenOptions::default()) {
-        world.resource_mut::<Notices>().fault(problem.to_string());
+    let path = match &scene {
+        SceneSource::File(path) => Some(path.clone()),
+        SceneSource::Builtin(_) => None,
+    };
+    match open(world, &scene, OpenOptions::default()) {
+        Ok(opened) => {
+            adopt(world, opened.name, path.as_deref());
+            for note in opened.notes {
+                world.resource_mut::<Notices>().tell(note);
+            }
+        }
+        Err(problem) => world.resource_mut::<Notices>().fault(problem.to_string()),
     }
-    super::navigation::start(world);
     if let Some(script) = script {
         script.play_in(&mut app);
     }

@@ -128,6 +128,7 @@ pub fn adopt(world: &mut World, name: impl Into<String>, path: Option<&Path>) {
     let mut document = world.resource_mut::<Document>();
     document.opened(name.into(), path, state);
     document.question = None;
+    crate::editor::navigation::start(world);
 }
 
 /// Brings [`Document::unsaved`] up to date with the history.
