@@ -1,5 +1,7 @@
-//! No allocation per ray, none per batch after warm-up: counted. A binary of its own, because it
-//! replaces the allocator.
+//! No allocation per ray, none per batch after warm-up: counted. No memory that edits leave behind:
+//! weighed. A binary of its own, because it replaces the allocator.
+
+mod soak;
 
 use glam::{Affine3A, UVec2, Vec3};
 use glassbox::bvh::{Aggregate, BuildOptions, Builder, Instance, Levels, MeshTree, Ray, Triangles};
@@ -10,31 +12,46 @@ use glassbox::trace::{
 };
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
-use std::sync::Arc;
+use std::sync::atomic::{AtomicIsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
-/// The system's allocator, counting what this thread asks of it.
+/// The system's allocator, counting what this thread asks of it, and weighing what all have.
 struct Counting;
+
+static LIVE_BYTES: AtomicIsize = AtomicIsize::new(0);
+
+/// Bytes that are allocated now, by all threads.
+pub fn live_bytes() -> isize {
+    LIVE_BYTES.load(Ordering::Relaxed)
+}
+
+/// Held by each test, since others' memory would be weighed too.
+pub static ALONE: Mutex<()> = Mutex::new(());
 
 thread_local! {
     static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
 }
 
 // SAFETY: every call is handed on to `System` unchanged, which keeps the contract; counting touches
-// a constant-initialised thread-local without a destructor, so it neither allocates nor unwinds.
+// a constant-initialised thread-local without a destructor and an atomic, so it neither allocates nor
+// unwinds.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+        LIVE_BYTES.fetch_add(layout.size() as isize, Ordering::Relaxed);
         // SAFETY: the caller's promise about `layout` is handed on.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        LIVE_BYTES.fetch_sub(layout.size() as isize, Ordering::Relaxed);
         // SAFETY: the pointer came from `alloc` or `realloc` above, that is from `System`.
         unsafe { System.dealloc(pointer, layout) }
     }
 
     unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
         ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+        LIVE_BYTES.fetch_add(size as isize - layout.size() as isize, Ordering::Relaxed);
         // SAFETY: the pointer came from `System`, and the caller's promises are handed on.
         unsafe { System.realloc(pointer, layout, size) }
     }
@@ -79,6 +96,7 @@ fn instances(n: u32, options: &BuildOptions) -> (Arc<MeshTree>, Vec<Instance>) {
 
 #[test]
 fn rays_through_any_tree_allocate_nothing() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     for builder in [Builder::None, Builder::Median, Builder::Sah, Builder::Ploc] {
         for levels in [Levels::One, Levels::Two] {
             let options = BuildOptions {
@@ -104,6 +122,7 @@ fn rays_through_any_tree_allocate_nothing() {
 
 #[test]
 fn a_batch_allocates_nothing_once_its_arrays_have_grown() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let options = BuildOptions::default();
     let (tree, instances) = instances(32, &options);
     let mesh = Arc::new(Mesh {
