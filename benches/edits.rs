@@ -1,0 +1,361 @@
+//! From an edit to what is seen of it: `cargo bench --bench edits`.
+//!
+//! Each edit changes one component of a scene that is being rendered at 1280 × 720, as a gesture does:
+//! the render before it is under way. Per edit, the median and the 95th percentile of the milliseconds
+//! until
+//!
+//! - frame: the edited world is synced, the render before it cancelled, and the new one started: what
+//!   the thread that runs the app's systems is busy with; of several frames the longest;
+//! - picture: the first picture of the edited scene is developed, on a thread of its own. A mesh's tree
+//!   is built in the background, and the picture before goes on meanwhile;
+//! - sample: every pixel has a sample (in every fourth round);
+//!
+//! and what of the tracer's world was redone. Times are wall-clock, on all the machine's cores: on a
+//! machine that is busy with other things they say little.
+
+use bevy::app::App;
+use bevy::asset::Assets;
+use bevy::color::LinearRgba;
+use bevy::ecs::component::{Component, Mutable};
+use bevy::ecs::entity::Entity;
+use bevy::ecs::query::With;
+use bevy::math::{Quat, UVec2, Vec3};
+use bevy::mesh::{Mesh, Mesh3d};
+use bevy::transform::components::Transform;
+use glassbox::app::headless_app;
+use glassbox::film::{Progressive, Snapshot, develop_rgba8};
+use glassbox::io::builtin;
+use glassbox::io::shapes::mesh;
+use glassbox::scene::{
+    MeshSource, ParallelogramLamp, Phong, PointLamp, RenderSettings, SceneCamera, Shape,
+};
+use glassbox::sync::{Changes, Traced, TracedCameras, TreeBuilding};
+use rayon::ThreadPool;
+use std::thread;
+use std::time::{Duration, Instant};
+
+const SIZE: UVec2 = UVec2::new(1280, 720);
+/// Of every edit, after one that is not counted.
+const ROUNDS: usize = 40;
+/// How long a picture is looked at before the next edit: a gesture's edits follow one another.
+const BETWEEN: Duration = Duration::from_millis(20);
+/// Frames follow one another so soon while something is being built.
+const FRAME: Duration = Duration::from_millis(4);
+
+fn main() {
+    println!("{} threads", rayon::current_num_threads());
+    for (scene, instances) in [
+        ("cornell-box", 0),
+        ("knot", 0),
+        ("cornell-box", 1000),
+        ("cornell-box", 4000),
+    ] {
+        let mut session = Session::open(scene, instances);
+        println!(
+            "\n{scene}, {} triangles in {} objects\n{:<18}{:>16}{:>16}{:>16}  redone",
+            session.triangles(),
+            session.traced().world.objects.len(),
+            "p50 / p95 ms",
+            "frame",
+            "picture",
+            "sample"
+        );
+        session.edits(instances > 0);
+    }
+}
+
+/// A scene that is edited.
+struct Session {
+    app: App,
+    render: Option<Progressive>,
+    snapshot: Snapshot,
+    /// Develops pictures: the tracer's threads are busy.
+    show: ThreadPool,
+    object: Entity,
+    light: Entity,
+    camera: Entity,
+    instances: Vec<Entity>,
+}
+
+/// Milliseconds of one round.
+struct Times {
+    frame: f64,
+    picture: f64,
+    sample: Option<f64>,
+}
+
+impl Session {
+    fn open(scene: &str, instances: i32) -> Self {
+        let mut app = headless_app();
+        (builtin::find(scene).expect("a built-in scene").spawn)(app.world_mut());
+        let world = app.world_mut();
+        world.resource_mut::<RenderSettings>().size = SIZE;
+        let object = last_with::<MeshSource>(&mut app);
+        let light = last_with::<ParallelogramLamp>(&mut app)
+            .or_else(|| last_with::<PointLamp>(&mut app))
+            .expect("a lamp");
+        let camera = last_with::<SceneCamera>(&mut app).expect("a camera");
+        let ball = MeshSource::Shape(Shape::Sphere {
+            radius: 0.01,
+            segments: 12,
+            rings: 8,
+        });
+        let instances = (0..instances)
+            .map(|i| {
+                let at = Vec3::new((i % 10) as f32, (i / 10 % 10) as f32, (i / 100) as f32);
+                let place = Transform::from_translation(0.05 * at);
+                app.world_mut().spawn((ball.clone(), place)).id()
+            })
+            .collect();
+        app.update();
+        app.insert_resource(TreeBuilding::InBackground);
+        let show = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+        Self {
+            object: object.expect("an object"),
+            light,
+            camera,
+            instances,
+            app,
+            render: None,
+            snapshot: Snapshot::black(SIZE),
+            show: show.expect("a thread"),
+        }
+    }
+
+    fn traced(&self) -> &Traced {
+        self.app.world().resource::<Traced>()
+    }
+
+    fn triangles(&self) -> usize {
+        let objects = self.traced().world.objects.iter();
+        objects.map(|o| o.mesh.tree.triangles().len()).sum()
+    }
+
+    fn edits(&mut self, many: bool) {
+        let Self {
+            object,
+            light,
+            camera,
+            ..
+        } = *self;
+        self.row("light move", |app, i| {
+            change::<Transform>(app, light, |t| t.translation.x += step(i));
+        });
+        self.row("light colour", |app, i| {
+            let color = LinearRgba::rgb(1.0, 0.9 + step(i), 0.8);
+            if app.world().get::<PointLamp>(light).is_some() {
+                change::<PointLamp>(app, light, |lamp| lamp.color = color);
+            } else {
+                change::<ParallelogramLamp>(app, light, |lamp| lamp.colors = [color; 4]);
+            }
+        });
+        self.row("material", |app, i| {
+            change::<Phong>(app, object, |phong| {
+                phong.shininess = 50.0 + 100.0 * step(i)
+            });
+        });
+        self.row("object move", |app, i| {
+            change::<Transform>(app, object, |t| t.translation.x += step(i));
+        });
+        if many {
+            let instances = self.instances.clone();
+            self.row("all of them move", |app, i| {
+                for &instance in &instances {
+                    change::<Transform>(app, instance, |t| t.translation.y += step(i));
+                }
+            });
+        }
+        self.row("camera move", |app, i| {
+            change::<Transform>(app, camera, |t| {
+                t.rotation *= Quat::from_rotation_y(0.1 * step(i));
+            });
+        });
+        if !many {
+            let shapes = [0.12, 0.16].map(|displacement| {
+                let shape = Shape::Knot {
+                    p: 2,
+                    q: 3,
+                    tube_radius: 0.2,
+                    displacement,
+                    segments: 1088,
+                    sides: 40,
+                };
+                mesh(&shape).expect("a knot")
+            });
+            self.row("mesh swap", |app, i| {
+                let handle = app.world().get::<Mesh3d>(object).expect("a mesh").0.clone();
+                let mut meshes = app.world_mut().resource_mut::<Assets<Mesh>>();
+                meshes
+                    .insert(handle.id(), shapes[i % 2].clone())
+                    .expect("a mesh");
+            });
+        }
+        self.exposure();
+    }
+
+    /// Makes the edit again and again, and prints how long it took.
+    fn row(&mut self, name: &str, mut edit: impl FnMut(&mut App, usize)) {
+        let mut redone = Changes::default();
+        let mut rounds = Vec::new();
+        for i in 0..=ROUNDS {
+            let start = Instant::now();
+            edit(&mut self.app, i);
+            self.app.update();
+            redone = union(redone, self.traced().changes);
+            let mut frame = ms(start);
+            while self.traced().pending > 0 {
+                thread::sleep(FRAME);
+                let start = Instant::now();
+                self.app.update();
+                redone = union(redone, self.traced().changes);
+                frame = ms(start).max(frame);
+            }
+            let before = Instant::now();
+            self.restart();
+            frame += ms(before);
+            self.wait_for(|divider| divider.is_some());
+            self.develop();
+            let picture = ms(start);
+            let sample = i.is_multiple_of(4).then(|| {
+                self.wait_for(|divider| divider == Some(1));
+                ms(start)
+            });
+            if i > 0 {
+                rounds.push(Times {
+                    frame,
+                    picture,
+                    sample,
+                });
+            }
+            thread::sleep(BETWEEN);
+        }
+        print_row(name, &rounds, &names(redone));
+    }
+
+    /// The exposure of a picture that stands: developed again, without a ray.
+    fn exposure(&mut self) {
+        self.render.as_ref().expect("a render").pause();
+        thread::sleep(5 * BETWEEN);
+        let rays = |session: &Self| session.render.as_ref().map(|r| r.status().rays.total());
+        let before = rays(self);
+        let mut rounds = Vec::new();
+        for i in 0..=ROUNDS {
+            let start = Instant::now();
+            let mut settings = self.app.world_mut().resource_mut::<RenderSettings>();
+            settings.output.exposure = step(i);
+            self.app.update();
+            let frame = ms(start);
+            self.develop();
+            let picture = ms(start);
+            if i > 0 {
+                rounds.push(Times {
+                    frame,
+                    picture,
+                    sample: None,
+                });
+            }
+        }
+        let traced = rays(self)
+            .zip(before)
+            .map_or(0, |(after, before)| after - before);
+        print_row("exposure", &rounds, &format!("{traced} rays"));
+    }
+
+    fn restart(&mut self) {
+        let camera = &self.app.world().resource::<TracedCameras>().0[0];
+        let settings = self.app.world().resource::<RenderSettings>().clone();
+        let render = Progressive::start(trace_world(&self.app), camera.camera.clone(), settings);
+        self.render = Some(render.expect("a thread"));
+    }
+
+    fn wait_for(&self, there: impl Fn(Option<u32>) -> bool) {
+        let render = self.render.as_ref().expect("a render");
+        while !there(render.status().divider) {
+            thread::sleep(Duration::from_micros(100));
+        }
+    }
+
+    fn develop(&mut self) {
+        let output = self.app.world().resource::<RenderSettings>().output;
+        let render = self.render.as_ref().expect("a render");
+        let snapshot = &mut self.snapshot;
+        self.show.install(|| {
+            render.refresh(snapshot);
+            std::hint::black_box(develop_rgba8(&snapshot.picture, &output));
+        });
+    }
+}
+
+fn trace_world(app: &App) -> glassbox::trace::World {
+    glassbox::trace::World::clone(&app.world().resource::<Traced>().world)
+}
+
+/// Back and forth.
+fn step(i: usize) -> f32 {
+    if i.is_multiple_of(2) { 0.01 } else { -0.01 }
+}
+
+fn last_with<C: Component>(app: &mut App) -> Option<Entity> {
+    let world = app.world_mut();
+    let mut all = world.query_filtered::<Entity, With<C>>();
+    all.iter(world).last()
+}
+
+fn change<C: Component<Mutability = Mutable>>(
+    app: &mut App,
+    entity: Entity,
+    change: impl FnOnce(&mut C),
+) {
+    let mut component = app.world_mut().get_mut::<C>(entity).expect("the component");
+    change(&mut component);
+}
+
+fn ms(start: Instant) -> f64 {
+    1e3 * start.elapsed().as_secs_f64()
+}
+
+fn union(a: Changes, b: Changes) -> Changes {
+    Changes {
+        meshes: a.meshes | b.meshes,
+        top_level: a.top_level | b.top_level,
+        objects: a.objects | b.objects,
+        materials: a.materials | b.materials,
+        textures: a.textures | b.textures,
+        lights: a.lights | b.lights,
+        environment: a.environment | b.environment,
+        cameras: a.cameras | b.cameras,
+    }
+}
+
+fn names(changes: Changes) -> String {
+    let parts = [
+        (changes.meshes, "meshes"),
+        (changes.top_level, "top level"),
+        (changes.objects, "objects"),
+        (changes.materials, "materials"),
+        (changes.textures, "textures"),
+        (changes.lights, "lights"),
+        (changes.environment, "environment"),
+        (changes.cameras, "cameras"),
+    ];
+    let names: Vec<&str> = parts.iter().filter(|p| p.0).map(|p| p.1).collect();
+    names.join(", ")
+}
+
+fn print_row(name: &str, rounds: &[Times], redone: &str) {
+    let figures = |value: fn(&Times) -> Option<f64>| {
+        let mut values: Vec<f64> = rounds.iter().filter_map(value).collect();
+        values.sort_by(f64::total_cmp);
+        let at = |part: usize| values.get(values.len() * part / 100);
+        match (at(50), at(95)) {
+            (Some(half), Some(most)) => format!("{half:.1} / {most:.1}"),
+            _ => String::new(),
+        }
+    };
+    println!(
+        "{name:<18}{:>16}{:>16}{:>16}  {redone}",
+        figures(|t| Some(t.frame)),
+        figures(|t| Some(t.picture)),
+        figures(|t| t.sample)
+    );
+}
