@@ -101,7 +101,7 @@ fn edit(app: &mut App, (kind, a, b, numbers): Edit) {
             if let Some(mut phong) = app.world_mut().get_mut::<Phong>(entity) {
                 phong.diffuse = color;
                 phong.diffuse_map = (kind > 128).then(|| TextureSource {
-                    path: ["builtin:checker", "builtin:uv", "missing.png"][b % 3].into(),
+                    path: ["builtin:checker", "builtin:uv"][b % 2].into(),
                 });
             }
         }

@@ -3,7 +3,7 @@
 use super::index::FreeIds;
 use super::names::Names;
 use super::parents::{place_in, roots_of, with_descendants};
-use super::scene_entity;
+use super::{SceneIndex, scene_entity};
 use crate::editor::history::Kinds;
 use crate::io::place::world_from;
 use crate::io::{FileError, Folder, Rebase, SceneContent, SceneFiles, read_scene_text};
@@ -160,6 +160,14 @@ pub fn paste(world: &mut World, clipboard: &Clipboard) -> Result<Vec<SceneId>, F
     let spawned = content
         .spawn(world)
         .map_err(|error| FileError::new("clipboard", crate::io::Problem::Malformed(error)))?;
+    world.resource_scope(|world, mut index: Mut<SceneIndex>| {
+        // The reader writes numbers in place, which no observer sees.
+        for &entity in &spawned {
+            if let Some(&id) = world.get::<SceneId>(entity) {
+                index.learn(world, id, entity);
+            }
+        }
+    });
     let mut kept: HashMap<Entity, Entity> = HashMap::new();
     for (old, look) in &clipboard.shared {
         let Some(new) = renumbered.get(old) else {

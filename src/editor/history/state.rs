@@ -44,11 +44,12 @@ pub(super) enum Kept {
 }
 
 impl PartialEq for Kept {
+    // `Arc` is reflected itself, as something that equals nothing: hence the stars.
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Value(a), Self::Value(b)) => {
                 Arc::ptr_eq(a, b)
-                    || a.reflect_partial_eq(b.as_ref().as_partial_reflect()) == Some(true)
+                    || (**a).reflect_partial_eq((**b).as_partial_reflect()) == Some(true)
             }
             (Self::Entity(a), Self::Entity(b)) => a == b,
             _ => false,
@@ -161,7 +162,7 @@ impl Kinds {
                 }
             }
             if let Some(Kept::Value(old)) = before
-                && old.reflect_partial_eq(value.as_partial_reflect()) == Some(true)
+                && (**old).reflect_partial_eq(value.as_partial_reflect()) == Some(true)
             {
                 return Some(Kept::Value(old.clone()));
             }
