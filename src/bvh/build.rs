@@ -12,10 +12,6 @@ use obvhs::{
     bvh2::{Bvh2, node::Bvh2Node},
 };
 
-/// No leaf of any tree is deeper (the root's depth is 0), so the stack of a traversal that keeps one child for
-/// later on every level can be an array of this many entries.
-pub const MAX_DEPTH: usize = 96;
-
 /// Builds a tree over primitives of which `boxes[i]` bounds the `i`th. Boxes are finite with min ≤ max, and
 /// at most 2^31 of them; callers leave out what is not. (A box that is not finite is placed at the origin and
 /// spoils the boxes of its ancestors, nothing more.)
@@ -74,7 +70,7 @@ fn finish(nodes: &[Bvh2Node], primitives: &[u32], boxes: &[Aabb], options: &Buil
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bvh::{Preset, TreeStats, sah_cost, specimens};
+    use crate::bvh::{MAX_DEPTH, Preset, TreeStats, sah_cost, specimens};
     use glam::{Vec3, Vec3A, vec3a};
     use proptest::prelude::*;
 

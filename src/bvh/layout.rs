@@ -1,6 +1,6 @@
 //! The last step of every builder: nodes in depth-first order, exact boxes, a bounded depth.
 
-use super::{boxes, build::MAX_DEPTH, median, options::BuildOptions, top_down};
+use super::{boxes, depth::MAX_DEPTH, median, options::BuildOptions, top_down};
 use obvhs::{
     aabb::Aabb,
     bvh2::{Bvh2, DEFAULT_MAX_STACK_DEPTH, node::Bvh2Node},

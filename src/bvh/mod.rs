@@ -16,6 +16,7 @@
 //!    ([`Levels::One`]). Moving an instance rebuilds this one only.
 //! 5. A [`Ray`] asks it for the nearest hit ([`Aggregate::closest_hit`]), for any ([`Aggregate::occluded`]), for the next
 //!    one behind a hit, for all; one ray at a time or in batches. A [`Visitor`] may watch every node and triangle.
+//!    They walk a wide form of the trees, many boxes and triangles at once (`wide`); a visitor sees the binary form.
 //! 6. [`Instance::surface_point`] tells where a [`Hit`] lies, and how far off a new ray must start.
 //!
 //! # What is promised
@@ -38,6 +39,7 @@ mod aggregate;
 mod boxes;
 mod build;
 mod crossing;
+mod depth;
 mod epo;
 pub(crate) mod hard_cases;
 mod instance;
@@ -69,7 +71,8 @@ mod watched;
 mod wide;
 
 pub use aggregate::{Aggregate, Primitive};
-pub use build::{MAX_DEPTH, build_tree};
+pub use build::build_tree;
+pub use depth::MAX_DEPTH;
 pub use epo::{EPO_SAMPLES, epo};
 pub use instance::{Instance, SingularTransform};
 pub use mesh_tree::MeshTree;

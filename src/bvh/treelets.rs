@@ -4,7 +4,7 @@
 //! tree's cost is; a top-down build is at its best there. (Ganestam et al., "Bonsai: Rapid Bounding Volume
 //! Hierarchy Generation using Mini Trees", 2015, join the same two ideas the other way round.)
 
-use super::{boxes, build::MAX_DEPTH, median, options::BuildOptions, sah, stats, top_down};
+use super::{boxes, depth::MAX_DEPTH, median, options::BuildOptions, sah, stats, top_down};
 use obvhs::{
     aabb::Aabb,
     bvh2::{Bvh2, node::Bvh2Node},

