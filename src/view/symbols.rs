@@ -7,6 +7,8 @@ use super::lines::{DrawnLines, Line};
 use crate::scene::{
     DirectionalLamp, ParallelogramLamp, PointLamp, Projection, SceneCamera, SceneId, SegmentLamp,
 };
+use crate::sync::Traced;
+use crate::trace;
 use bevy::camera::Camera;
 use bevy::camera::primitives::Aabb;
 use bevy::camera::visibility::InheritedVisibility;
@@ -78,16 +80,49 @@ mod colors {
 
 /// Sides of circles.
 const SIDES: u32 = 32;
-/// Metres: the symbol of a light without an extent.
-const SIZE: f32 = 0.08;
+/// Radius of the symbol of a light without an extent, as a part of the scene's extent.
+const SIZE: f32 = 0.025;
+/// Metres, where the scene has no extent.
+const SIZE_ALONE: f32 = 0.08;
+/// How much the scene's extent has to change before symbols change theirs.
+const NEW_SIZE: f32 = 1.3;
 /// Pieces of a line that is as long as a light, so that its colours are seen.
 const PIECES: u32 = 8;
 /// Logical pixels.
 const WIDTH: f32 = 1.5;
 
 /// The lines of each entity that has a symbol.
-#[derive(Resource, Default)]
-struct SymbolsOf(HashMap<Entity, Entity>);
+#[derive(Resource)]
+struct SymbolsOf {
+    lines: HashMap<Entity, Entity>,
+    /// Metres: the radius of a light without an extent.
+    size: f32,
+}
+
+impl Default for SymbolsOf {
+    fn default() -> Self {
+        Self {
+            lines: HashMap::default(),
+            size: SIZE_ALONE,
+        }
+    }
+}
+
+/// The radius of symbols for this scene.
+fn symbol_size(world: &trace::World) -> f32 {
+    let mut bounds: Option<obvhs::aabb::Aabb> = None;
+    for instance in world.aggregate.instances() {
+        if let Some(more) = instance.world_bounds() {
+            bounds = Some(bounds.map_or(more, |bounds| bounds.union(&more)));
+        }
+    }
+    let extent = bounds.map_or(0.0, |bounds| Vec3::from(bounds.diagonal()).length());
+    if extent.is_finite() && extent > 0.0 {
+        SIZE * extent
+    } else {
+        SIZE_ALONE
+    }
+}
 
 /// On an entity with the lines of another one.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
@@ -175,6 +210,7 @@ fn draw_symbols(
     mut commands: Commands,
     switches: Res<Symbols>,
     outlined: Res<Outlined>,
+    traced: Res<Traced>,
     mut symbols: ResMut<SymbolsOf>,
     things: Anything,
     lasting: Query<Entity, HasSymbol>,
@@ -184,14 +220,22 @@ fn draw_symbols(
     mut drawn: Query<&mut DrawnLines, With<SymbolOf>>,
 ) {
     for entity in gone.read() {
-        if let Some(lines) = symbols.0.remove(&entity) {
+        if let Some(lines) = symbols.lines.remove(&entity) {
             commands.entity(lines).despawn();
         }
     }
     let mut redo: HashSet<Entity> = HashSet::default();
-    let other = switches.is_changed() || outlined.is_changed();
+    let mut other = switches.is_changed() || outlined.is_changed();
+    if traced.is_changed() && traced.changes.top_level {
+        let size = symbol_size(&traced.world);
+        let ratio = size / symbols.size;
+        if !(1.0 / NEW_SIZE..NEW_SIZE).contains(&ratio) {
+            symbols.size = size;
+            other = true;
+        }
+    }
     if other {
-        redo.extend(symbols.0.keys());
+        redo.extend(symbols.lines.keys());
         redo.extend(&lasting);
         if !outlined.0.is_empty() {
             let wanted: HashSet<SceneId> = outlined.0.iter().copied().collect();
@@ -200,7 +244,7 @@ fn draw_symbols(
         }
     }
     for entity in &edited {
-        if symbols.0.contains_key(&entity) || lasting.contains(entity) {
+        if symbols.lines.contains_key(&entity) || lasting.contains(entity) {
             redo.insert(entity);
         }
     }
@@ -211,7 +255,10 @@ fn draw_symbols(
             continue;
         };
         let place = place.affine();
-        let mut sketch = Sketch::default();
+        let mut sketch = Sketch {
+            size: symbols.size,
+            ..Sketch::default()
+        };
         let visible = visible.is_none_or(|visible| visible.get());
         let outline = switches.outlines && outlined.0.contains(id);
         let active = outlined.0.last() == Some(id);
@@ -252,7 +299,7 @@ fn draw_symbols(
             width: WIDTH,
             on_top: false,
         };
-        let held = symbols.0.get(&entity).copied();
+        let held = symbols.lines.get(&entity).copied();
         match held.and_then(|lines| drawn.get_mut(lines).ok()) {
             Some(mut before) => {
                 if *before != wanted {
@@ -270,7 +317,7 @@ fn draw_symbols(
                         wanted,
                     ))
                     .id();
-                symbols.0.insert(entity, lines);
+                symbols.lines.insert(entity, lines);
             }
         }
     }
@@ -282,6 +329,8 @@ struct Sketch {
     lines: Vec<Line>,
     /// Replaces the colours of what is selected.
     tint: Option<LinearRgba>,
+    /// Metres: the radius of a light without an extent.
+    size: f32,
 }
 
 /// As bright as colours get without losing their hue, so that a strong light's symbol is not white.
@@ -315,13 +364,13 @@ impl Sketch {
         let color = shown(lamp.color);
         let center = Vec3::from(place.translation);
         for [x, y] in [[Vec3::X, Vec3::Y], [Vec3::Y, Vec3::Z], [Vec3::Z, Vec3::X]] {
-            self.circle(center, [x * SIZE, y * SIZE], color);
+            self.circle(center, [x * self.size, y * self.size], color);
         }
         for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
             for side in [axis, -axis] {
                 self.line(
-                    center + side * 1.4 * SIZE,
-                    center + side * 2.2 * SIZE,
+                    center + side * 1.4 * self.size,
+                    center + side * 2.2 * self.size,
                     color,
                 );
             }
@@ -330,7 +379,7 @@ impl Sketch {
             return;
         };
         let axes = unit_axes(place);
-        let length = 8.0 * SIZE;
+        let length = 8.0 * self.size;
         for angle in [cone.inner, cone.outer] {
             let (sin, cos) = angle.sin_cos();
             let middle = center - axes[2] * (length * cos);
@@ -346,13 +395,13 @@ impl Sketch {
         let color = shown(lamp.color);
         let center = Vec3::from(place.translation);
         let [x, y, z] = unit_axes(place);
-        self.circle(center, [x * 2.0 * SIZE, y * 2.0 * SIZE], color);
+        self.circle(center, [x * 2.0 * self.size, y * 2.0 * self.size], color);
         for start in [Vec3::ZERO, x, -x, y, -y] {
-            let from = center + start * (1.2 * SIZE);
-            let tip = from - z * (8.0 * SIZE);
+            let from = center + start * (1.2 * self.size);
+            let tip = from - z * (8.0 * self.size);
             self.line(from, tip, color);
             for side in [x, -x] {
-                self.line(tip, tip + (z * 1.2 + side * 0.5) * SIZE, color);
+                self.line(tip, tip + (z * 1.2 + side * 0.5) * self.size, color);
             }
         }
     }
@@ -365,7 +414,7 @@ impl Sketch {
             .normalize_or(Vec3::X)
             .any_orthonormal_pair();
         for (end, color) in ends.into_iter().zip(colors) {
-            self.circle(end, [x, y].map(|axis| axis * 0.5 * SIZE), color);
+            self.circle(end, [x, y].map(|axis| axis * 0.5 * self.size), color);
         }
     }
 
@@ -408,13 +457,13 @@ impl Sketch {
         let center = Vec3::from(place.translation);
         let [x, y, z] = unit_axes(place);
         let (near, half) = match camera.projection {
-            Projection::Perspective { fov_y } => (0.0, 3.0 * SIZE * (0.5 * fov_y).tan()),
+            Projection::Perspective { fov_y } => (0.0, 3.0 * self.size * (0.5 * fov_y).tan()),
             Projection::Orthographic { height } => (1.0, 0.5 * height),
         };
         let aspect = 4.0 / 3.0;
         let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
         let across = corners.map(|[u, v]: [f32; 2]| x * (u * half * aspect) + y * (v * half));
-        let ahead = center - z * 3.0 * SIZE;
+        let ahead = center - z * 3.0 * self.size;
         for i in 0..4 {
             let next = across[(i + 1) % 4];
             self.line(ahead + across[i], ahead + next, colors::CAMERA);
@@ -445,8 +494,8 @@ impl Sketch {
         let center = Vec3::from(place.translation);
         for axis in unit_axes(place) {
             self.line(
-                center - axis * 2.0 * SIZE,
-                center + axis * 2.0 * SIZE,
+                center - axis * 2.0 * self.size,
+                center + axis * 2.0 * self.size,
                 color,
             );
         }
