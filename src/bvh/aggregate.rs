@@ -13,7 +13,7 @@ use super::{
     options::{BuildOptions, Levels},
     stats::TreeStats,
     triangle::LeafTriangle,
-    wide::{TriangleBlock, WideTree},
+    wide::{TriangleBlock, WideBox, WideStats, WideTree},
 };
 
 /// The instances, and a tree over them or over all their triangles. The default is empty: every ray misses.
@@ -195,6 +195,27 @@ impl Aggregate {
                 Some(instance.to_world_box(&instance.mesh.box_at(place as usize)))
             }
         }
+    }
+
+    /// Statistics of the top tree's form that rays walk when nobody watches.
+    pub fn wide_stats(&self) -> WideStats {
+        let nodes = self.wide.stats();
+        let triangles = match &self.places {
+            Places::Instances(_) => 0,
+            Places::Triangles(places) => places.len(),
+        };
+        WideStats {
+            blocks: self.blocks.len(),
+            triangles_per_block: triangles as f64 / self.blocks.len().max(1) as f64,
+            bytes: nodes.bytes + size_of_val(self.blocks.as_slice()),
+            ..nodes
+        }
+    }
+
+    /// The boxes of the top tree's form that rays walk when nobody watches, parents before children.
+    pub fn wide_boxes(&self) -> Vec<WideBox> {
+        let root = self.tree.nodes.first().map(|root| *root.aabb());
+        self.wide.boxes(&root.unwrap_or_default())
     }
 
     /// Statistics of the top tree.

@@ -77,16 +77,20 @@ fn foreign_cost(tree: &Bvh2, starts: &[u32], position: usize, triangle: Polygon)
     sum
 }
 
-/// A convex polygon: a triangle cut by six planes has at most nine corners.
+/// 3 + 6 + 6.
+const MOST_CORNERS: usize = 15;
+
+/// A convex polygon. A triangle cut by a box's six planes has at most nine corners; cut again by a box within,
+/// up to one more for each plane until the first box's are cut off.
 #[derive(Clone, Copy)]
 struct Polygon {
-    corners: [DVec3; 9],
+    corners: [DVec3; MOST_CORNERS],
     len: usize,
 }
 
 impl Polygon {
     const EMPTY: Self = Self {
-        corners: [DVec3::ZERO; 9],
+        corners: [DVec3::ZERO; MOST_CORNERS],
         len: 0,
     };
 
@@ -99,7 +103,7 @@ impl Polygon {
     }
 
     fn push(&mut self, corner: DVec3) {
-        // Rounding can make a tenth corner of a nearly straight one; nothing is lost without it.
+        // Rounding can make another corner of a nearly straight one; nothing is lost without it.
         if let Some(slot) = self.corners.get_mut(self.len) {
             *slot = corner;
             self.len += 1;

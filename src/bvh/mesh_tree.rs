@@ -14,7 +14,7 @@ use super::{
     triangle::{Crossing, LeafTriangle, Shear, cross},
     triangles::Triangles,
     visitor::{TreeRef, Visitor},
-    wide::{self, Eight, Leaves, TriangleBlock, WideRay, WideStats, WideTree},
+    wide::{self, Eight, Leaves, TriangleBlock, WideBox, WideRay, WideStats, WideTree},
 };
 
 /// A mesh's triangles, the tree over them, and their corners again in the order of the tree's leaves. And the same in
@@ -117,6 +117,12 @@ impl MeshTree {
             bytes: nodes.bytes + size_of_val(self.blocks.as_slice()),
             ..nodes
         }
+    }
+
+    /// The boxes of the form that rays walk when nobody watches, parents before children.
+    pub fn wide_boxes(&self) -> Vec<WideBox> {
+        let root = self.bounds().unwrap_or_default();
+        self.wide.boxes(&root)
     }
 
     /// How long building took.

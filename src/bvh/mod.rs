@@ -84,4 +84,4 @@ pub use stats::{LARGEST_LEAF_BIN, TreeStats, bytes, node_cost, sah_cost};
 pub use surface_point::SurfacePoint;
 pub use triangles::{REACH, Triangles, TrianglesError};
 pub use visitor::{Counters, NodeEvent, TreeRef, Visitor};
-pub use wide::WideStats;
+pub use wide::{WideBox, WideStats};

@@ -32,6 +32,12 @@ pub struct BuilderFigures {
     pub sah_cost: f64,
     /// Effective parent overlap.
     pub epo: f64,
+    /// Nodes of the wide form, which unwatched rays walk.
+    pub wide_nodes: usize,
+    /// Children of such a node on average, of eight.
+    pub children_per_wide_node: f64,
+    /// Triangles of a block of its leaves on average, of eight.
+    pub triangles_per_block: f64,
     /// Of the tree and all that tracing keeps of the triangles.
     pub bytes: usize,
     /// The same for each triangle.
@@ -71,6 +77,7 @@ impl BuilderFigures {
             sah_cost,
             ..
         } = aggregate.stats();
+        let wide = aggregate.wide_stats();
         let mut seen = HashSet::new();
         let meshes: usize = world
             .objects
@@ -96,6 +103,9 @@ impl BuilderFigures {
             largest_leaf,
             sah_cost,
             epo: epo(aggregate.tree(), |slot| corners[slot as usize]),
+            wide_nodes: wide.nodes,
+            children_per_wide_node: wide.children_per_node,
+            triangles_per_block: wide.triangles_per_block,
             bytes,
             bytes_per_triangle: bytes as f64 / triangles.max(1) as f64,
             build_ms: build_time(world).as_secs_f64() * 1e3,
@@ -334,7 +344,7 @@ fn rates(
 }
 
 /// Names of the columns.
-const COLUMNS: [&str; 13] = [
+const COLUMNS: [&str; 16] = [
     "builder",
     "triangles",
     "levels",
@@ -343,6 +353,9 @@ const COLUMNS: [&str; 13] = [
     "largest leaf",
     "SAH cost",
     "EPO",
+    "wide nodes",
+    "children each",
+    "triangles/block",
     "bytes",
     "bytes/triangle",
     "build ms",
@@ -351,7 +364,7 @@ const COLUMNS: [&str; 13] = [
 ];
 
 impl BuilderFigures {
-    fn cells(&self) -> [String; 13] {
+    fn cells(&self) -> [String; 16] {
         let rate = |rate: Option<f64>| rate.map_or_else(|| "-".into(), |rate| format!("{rate:.3}"));
         [
             self.builder.to_owned(),
@@ -362,6 +375,9 @@ impl BuilderFigures {
             self.largest_leaf.to_string(),
             format!("{:.2}", self.sah_cost),
             format!("{:.3}", self.epo),
+            self.wide_nodes.to_string(),
+            format!("{:.2}", self.children_per_wide_node),
+            format!("{:.2}", self.triangles_per_block),
             self.bytes.to_string(),
             format!("{:.1}", self.bytes_per_triangle),
             format!("{:.2}", self.build_ms),
@@ -374,7 +390,7 @@ impl BuilderFigures {
 /// Header and rows; without the rates where none was measured.
 fn cells(rows: &[BuilderFigures]) -> Vec<Vec<String>> {
     let measured = rows.iter().any(|row| row.rates.is_some());
-    let columns = if measured { 13 } else { 11 };
+    let columns = if measured { 16 } else { 14 };
     let header = COLUMNS.map(String::from);
     std::iter::once(header)
         .chain(rows.iter().map(BuilderFigures::cells))

@@ -67,12 +67,10 @@ pub fn sources(tree: &RayTree) -> Vec<Source> {
     };
     for ray in &tree.rays {
         match ray.parent {
-            None => add(Cause::Seen, ray.sample, ray.radiance.as_dvec3()),
+            // Nothing is between it and the sample: what it adds is what it met by itself.
+            None => add(Cause::Seen, ray.sample, ray.added.as_dvec3()),
             Some(parent) if tree.rays[parent as usize].parent.is_none() => {
-                let carried = ray.carried.as_dvec3();
-                add(Cause::of(ray), ray.sample, carried);
-                // The camera ray's radiance holds all of its children's.
-                add(Cause::Seen, ray.sample, -carried);
+                add(Cause::of(ray), ray.sample, ray.carried.as_dvec3());
             }
             Some(_) => {}
         }
@@ -183,7 +181,7 @@ impl Fate {
     fn sentence(&self, light: &str, names: &BTreeMap<u64, String>) -> String {
         let mut parts = Vec::new();
         if self.arrived > 0 {
-            parts.push(format!("{} arrive", self.arrived));
+            parts.push(format!("{} arrive{}", self.arrived, one(self.arrived)));
         }
         if self.tinted > 0 {
             parts.push(format!(
@@ -213,4 +211,9 @@ impl Fate {
             parts.join(", ")
         )
     }
+}
+
+/// The ending of a verb after a number.
+fn one(count: u32) -> &'static str {
+    if count == 1 { "s" } else { "" }
 }

@@ -54,7 +54,7 @@ pub use pattern_inset::draw_pattern;
 pub use rays::is_shown;
 pub use settings::{
     BoxChoice, BoxColor, BoxSettings, Dimension, InspectPreset, InspectSettings, MissColor,
-    NormalSettings, PatternSettings, RaySettings, TreeChoice,
+    NormalSettings, PatternSettings, RaySettings, TreeChoice, TreeForm,
 };
 pub use subject::Subject;
 pub use system::{System, lines};

@@ -53,6 +53,8 @@ impl Default for InspectSettings {
 pub struct BoxSettings {
     /// Draws them.
     pub on: bool,
+    /// Of which form of the trees.
+    pub form: TreeForm,
     /// Which ones.
     pub choice: BoxChoice,
     /// With `Levels`: the first level, the root's being 0.
@@ -79,6 +81,7 @@ impl Default for BoxSettings {
     fn default() -> Self {
         Self {
             on: false,
+            form: TreeForm::Binary,
             choice: BoxChoice::Levels,
             from_level: 0,
             to_level: 4,
@@ -91,6 +94,18 @@ impl Default for BoxSettings {
             triangles: false,
         }
     }
+}
+
+/// The forms that a tree has.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[reflect(Default, Clone, PartialEq, Debug, Hash)]
+pub enum TreeForm {
+    /// Two children a node, as the builder made it: what debug rays are traced through.
+    #[default]
+    Binary,
+    /// Up to eight children a node, made of the binary form: what pictures are traced through. Its
+    /// levels are drawn and nothing else.
+    Wide,
 }
 
 /// Which boxes.

@@ -92,6 +92,11 @@ fn corners(aggregate: &Aggregate) -> Vec<[Vec3; 3]> {
 
 /// Area of the part of a triangle inside a box: cut by one plane after the other.
 fn area_inside(corners: [Vec3; 3], min: DVec3, max: DVec3) -> f64 {
+    let [a, b, c] = corners.map(|corner| corner.as_dvec3());
+    let apart = a.min(b).min(c).cmpgt(max) | a.max(b).max(c).cmplt(min);
+    if apart.any() {
+        return 0.0;
+    }
     let mut polygon: Vec<DVec3> = corners.iter().map(|corner| corner.as_dvec3()).collect();
     for axis in 0..3 {
         for (sign, limit) in [(1.0, min[axis]), (-1.0, -max[axis])] {

@@ -108,15 +108,15 @@ fn what_cannot_be_inspected_ends_with_one_line_and_no_file() {
         ("inspect triangle --pixel 1", 2, vec!["400,300"]),
         ("inspect triangle --pixel 1,1 --sample x", 2, vec!["all"]),
         (
-            "inspect triangle --pixel 1,1 --steps 99",
+            "inspect triangle --pixel 1,1 --steps 99999",
             2,
             vec!["no such ray"],
         ),
         ("inspect triangle --picture a.exr", 2, vec!["a.exr", ".png"]),
         (
-            "inspect triangle --picture a.png --gizmo box=1",
+            "inspect triangle --picture a.png --gizmo boxs.on=1",
             2,
-            vec!["--gizmo box", "boxes"],
+            vec!["--gizmo boxs.on", "boxes.on"],
         ),
         (
             "inspect triangle --pixel 1,1 --camera top",

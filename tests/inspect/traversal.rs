@@ -53,20 +53,31 @@ impl<'a> Oracle<'a> {
     }
 
     fn close(&mut self, a: f64, b: f64) {
+        if !a.is_finite() || !b.is_finite() {
+            return;
+        }
         self.unsure |= (a - b).abs() <= TOO_CLOSE * a.abs().max(b.abs()).max(1e-3);
     }
 
-    fn span(&self, view: &TreeView, node: u32, ray: Ray64) -> (f64, f64) {
+    /// Where the ray enters a node's box and leaves it. The tracer's test is conservative: what is hit
+    /// here is hit there; what is hit only with a margin is too close to call.
+    fn span(&mut self, view: &TreeView, node: u32, ray: Ray64) -> (f64, f64) {
         let node = &view.tree.nodes[node as usize];
-        let (mut entry, mut exit) = (0.0_f64, f64::INFINITY);
-        for axis in 0..3 {
-            let (a, b) = (
-                (f64::from(node.min[axis]) - ray.origin[axis]) / ray.direction[axis],
-                (f64::from(node.max[axis]) - ray.origin[axis]) / ray.direction[axis],
-            );
-            entry = entry.max(a.min(b));
-            exit = exit.min(a.max(b));
-        }
+        let (min, max) = (node.min.as_dvec3(), node.max.as_dvec3());
+        let largest = min.abs().max(max.abs()).max(ray.origin.abs()).max_element();
+        let with_margin = |margin: f64| {
+            let (mut entry, mut exit) = (0.0_f64, f64::INFINITY);
+            for axis in 0..3 {
+                let a = (min[axis] - margin - ray.origin[axis]) / ray.direction[axis];
+                let b = (max[axis] + margin - ray.origin[axis]) / ray.direction[axis];
+                entry = entry.max(a.min(b));
+                exit = exit.min(a.max(b));
+            }
+            (entry, exit)
+        };
+        let (entry, exit) = with_margin(0.0);
+        let (wide_entry, wide_exit) = with_margin(1e-5 * largest);
+        self.unsure |= (entry <= exit) != (wide_entry <= wide_exit);
         (entry, exit)
     }
 
@@ -78,7 +89,6 @@ impl<'a> Oracle<'a> {
             return;
         }
         let (entry, exit) = self.span(&view, 0, ray);
-        self.close(entry, exit);
         self.close(entry, self.limit);
         if entry > exit {
             return;
@@ -98,13 +108,14 @@ impl<'a> Oracle<'a> {
             return self.leaf(view, node, ray);
         }
         let left = here.first_index;
-        let spans = [left, left + 1].map(|child| (child, self.span(view, child, ray)));
         let mut hit = Vec::new();
-        for (child, (entry, exit)) in spans {
-            self.close(entry, exit);
-            self.close(entry, self.limit);
+        for child in [left, left + 1] {
+            let (entry, exit) = self.span(view, child, ray);
             if entry > exit {
-            } else if entry > self.limit {
+                continue;
+            }
+            self.close(entry, self.limit);
+            if entry > self.limit {
                 self.pruned.insert(place(view, child));
             } else {
                 hit.push((child, entry));

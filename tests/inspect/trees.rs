@@ -6,7 +6,7 @@ use glam::{UVec2, Vec3};
 use glassbox::bvh::{Aggregate, BuildOptions, Builder, Instance, Levels, MeshTree, Triangles};
 use glassbox::inspect::{
     BoxChoice, BoxColor, BoxSettings, InspectSettings, LineSet, RaySettings, Stands, System,
-    TreeChoice,
+    TreeChoice, TreeForm,
 };
 use glassbox::trace::{Camera, Material, Mesh, Object, World};
 use std::sync::Arc;
@@ -80,6 +80,29 @@ fn s5_the_boxes_of_a_level_are_those_of_the_halves() {
     assert_eq!(all.segments.len(), 7 * 12);
     segment(&all, Vec3::ZERO, Vec3::X * 10.0);
     assert_eq!(all.thinned, None);
+}
+
+#[test]
+fn the_wide_form_begins_with_the_same_root_and_each_form_says_which_it_is() {
+    let binary = boxes(Builder::Sah, |boxes| boxes.to_level = 40);
+    let wide = boxes(Builder::Sah, |boxes| {
+        boxes.to_level = 40;
+        boxes.form = TreeForm::Wide;
+    });
+    segment(&wide, Vec3::ZERO, Vec3::X * 10.0);
+    assert!(wide.segments.len() < binary.segments.len());
+    assert!(wide.notes[0].contains("wide form"), "{:?}", wide.notes);
+    assert!(
+        binary.notes[0].contains("binary form"),
+        "{:?}",
+        binary.notes
+    );
+    let none = boxes(Builder::Sah, |boxes| {
+        boxes.from_level = 50;
+        boxes.to_level = 60;
+        boxes.form = TreeForm::Wide;
+    });
+    assert!(none.is_empty() && none.notes[0].contains("levels 50 to 60"));
 }
 
 #[test]
@@ -163,7 +186,6 @@ fn a_builder_without_planes_says_so_where_boxes_overlap() {
         ..InspectSettings::default()
     };
     let set = scene.lines(System::Boxes, &inspect);
-    assert!(!set.planes.is_empty());
     assert!(
         set.notes.iter().any(|note| note.contains("overlap")),
         "{:?}",

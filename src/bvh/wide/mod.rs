@@ -31,6 +31,6 @@ pub(crate) use eight::{Eight, Query, answer};
 pub(crate) use node::LEAF;
 #[cfg(test)]
 pub(crate) use portable::Portable;
-pub use tree::WideStats;
 pub(crate) use tree::WideTree;
+pub use tree::{WideBox, WideStats};
 pub(crate) use walk::{FEW, Leaves, MANY, WideRay, few_hold, walk};

@@ -2,9 +2,8 @@
 
 use std::ops::Range;
 
-#[cfg(test)]
-use obvhs::aabb::Aabb;
-use obvhs::bvh2::Bvh2;
+use glam::Vec3;
+use obvhs::{aabb::Aabb, bvh2::Bvh2};
 
 use super::{
     collapse,
@@ -29,6 +28,17 @@ pub struct WideStats {
     pub most_pending: usize,
     /// Memory of nodes and blocks.
     pub bytes: usize,
+}
+
+/// A box of a wide tree, for those who draw it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WideBox {
+    /// Wide nodes above it; the root's box has 0.
+    pub depth: u32,
+    /// A leaf of up to eight triangles (in a tree over instances, of one instance).
+    pub is_leaf: bool,
+    /// Its corners, in the tree's space.
+    pub bounds: [Vec3; 2],
 }
 
 /// Wide nodes, the root first.
@@ -118,6 +128,32 @@ impl WideTree {
             bytes: self.bytes(),
             ..WideStats::default()
         }
+    }
+
+    /// Every box that a ray may be tested against, `root` first, parents before children. The root's own
+    /// box is not kept: it is that of the binary tree.
+    pub(crate) fn boxes(&self, root: &Aabb) -> Vec<WideBox> {
+        let Some(number) = self.root else {
+            return Vec::new();
+        };
+        let wide_box = |bounds: &Aabb, depth, child: u32| WideBox {
+            depth,
+            is_leaf: child & LEAF != 0,
+            bounds: [bounds.min.into(), bounds.max.into()],
+        };
+        let mut boxes = vec![wide_box(root, 0, number)];
+        let mut depths = vec![0; self.nodes.len()];
+        // Children stand after their parents.
+        for (index, node) in self.nodes.iter().enumerate() {
+            for (bounds, child) in node.children() {
+                let depth = depths[index] + 1;
+                boxes.push(wide_box(&bounds, depth, child));
+                if child & LEAF == 0 {
+                    depths[child as usize] = depth;
+                }
+            }
+        }
+        boxes
     }
 
     /// Memory of the nodes, in bytes.
