@@ -25,7 +25,7 @@
 //! passed the tests above and may be the nearest pay for it, one or two a ray; measured, it costs at most a few per
 //! cent of a ray.
 
-use glam::{Vec3, Vec3A, Vec3Swizzles};
+use glam::{DVec3, Vec3, Vec3A, Vec3Swizzles};
 
 use super::slab::{SlabRay, triangle_box};
 
@@ -67,39 +67,37 @@ impl LeafTriangle {
 /// The ray's frame: which axis is z, and the shear that turns the direction into it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shear {
-    origin: Vec3,
-    direction: Vec3,
+    origin: DVec3,
+    direction: DVec3,
+    /// Which axes are x, y and z in the frame.
     pub(crate) axes: [usize; 3],
-    /// The origin along those axes in every lane, and the shear likewise.
-    pub(crate) right: Vec3A,
-    pub(crate) up: Vec3A,
-    pub(crate) ahead: Vec3A,
-    pub(crate) x: Vec3A,
-    pub(crate) y: Vec3A,
+    /// The origin along those axes.
+    pub(crate) from: [f32; 3],
+    /// The shear of x and of y by z.
+    pub(crate) slope: [f32; 2],
 }
+
+/// The axes after each axis.
+const FRAMES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
 
 impl Shear {
     /// The frame of a ray. `direction` is finite and not zero.
     #[inline(always)]
     pub(crate) fn new(origin: Vec3, direction: Vec3) -> Self {
         let size = direction.abs();
-        let z = if size.x > size.y {
-            if size.x > size.z { 0 } else { 2 }
-        } else if size.y > size.z {
-            1
-        } else {
-            2
-        };
-        let [x, y] = [[1, 2], [2, 0], [0, 1]][z];
+        // Chosen without a branch, since rays that follow each other may go anywhere.
+        let in_plane = usize::from(size.x <= size.y);
+        let most = if in_plane == 0 { size.x } else { size.y };
+        let z = if most > size.z { in_plane } else { 2 };
+        let axes = FRAMES[z];
+        let [x, y, z] = axes;
+        let (from, along) = (origin.to_array(), direction.to_array());
         Self {
-            origin,
-            direction,
-            axes: [x, y, z],
-            right: Vec3A::splat(origin[x]),
-            up: Vec3A::splat(origin[y]),
-            ahead: Vec3A::splat(origin[z]),
-            x: Vec3A::splat(direction[x] / direction[z]),
-            y: Vec3A::splat(direction[y] / direction[z]),
+            origin: origin.as_dvec3(),
+            direction: direction.as_dvec3(),
+            axes,
+            from: [from[x], from[y], from[z]],
+            slope: [along[x] / along[z], along[y] / along[z]],
         }
     }
 }
@@ -112,8 +110,7 @@ pub(crate) struct Crossing {
     pub(crate) v: f32,
 }
 
-/// Where the line of the ray crosses the triangle. `t` may be negative or beyond the ray's end. `None` also for a
-/// crossing that is surely beyond `limit` or behind the origin.
+/// Where the ray crosses the triangle, `0 < t <= limit`.
 #[inline(always)]
 pub(crate) fn cross(
     shear: &Shear,
@@ -123,9 +120,10 @@ pub(crate) fn cross(
 ) -> Option<Crossing> {
     let [x, y, z] = shear.axes;
     // A lane is a corner.
-    let depth = triangle.axis(z) - shear.ahead;
-    let right = triangle.axis(x) - shear.right - depth * shear.x;
-    let up = triangle.axis(y) - shear.up - depth * shear.y;
+    let [right, up, depth] = shear.from;
+    let depth = triangle.axis(z) - Vec3A::splat(depth);
+    let right = triangle.axis(x) - Vec3A::splat(right) - depth * shear.slope[0];
+    let up = triangle.axis(y) - Vec3A::splat(up) - depth * shear.slope[1];
     // An edge function a lane: corner 2 x 1, 0 x 2, 1 x 0.
     let edges = right.zxy() * up.yzx() - up.zxy() * right.yzx();
     if edges.cmplt(Vec3A::ZERO).any() && edges.cmpgt(Vec3A::ZERO).any() {
@@ -149,15 +147,21 @@ pub(crate) fn accept(
     [u, v, w]: [f32; 3],
     limit: f32,
 ) -> Option<Crossing> {
-    let (entry, exit) = slab.span(&triangle_box(corners.map(Vec3A::from)));
-    if entry > exit || entry > limit || exit <= 0.0 {
-        return None;
-    }
-    let inverse = 1.0 / (u + v + w);
-    Some(Crossing {
-        t: clamp(plane(shear, corners), entry, exit),
-        u: v * inverse,
-        v: w * inverse,
+    let (entry, exit) = slab.span(&triangle_box([
+        corners[0].into(),
+        corners[1].into(),
+        corners[2].into(),
+    ]));
+    let t = clamp(plane(shear, corners), entry, exit);
+    // One branch for all: which of them fails nobody can foresee, that none does is rare or usual.
+    let ahead = (entry <= exit) & (exit > 0.0) & (t > 0.0) & (t <= limit);
+    ahead.then(|| {
+        let inverse = 1.0 / (u + v + w);
+        Crossing {
+            t,
+            u: v * inverse,
+            v: w * inverse,
+        }
     })
 }
 
@@ -171,9 +175,10 @@ fn clamp(t: f32, entry: f32, exit: f32) -> f32 {
 /// `t` where the line of the ray meets the triangle's plane.
 #[inline(always)]
 fn plane(shear: &Shear, corners: [Vec3; 3]) -> f32 {
-    let [a, b, c] = corners.map(|corner| corner.as_dvec3());
+    let [a, b, c] = corners;
+    let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
     let normal = (b - a).cross(c - a);
-    let height = normal.dot(a - shear.origin.as_dvec3());
-    let rate = normal.dot(shear.direction.as_dvec3());
+    let height = normal.dot(a - shear.origin);
+    let rate = normal.dot(shear.direction);
     (height / rate) as f32
 }

@@ -93,6 +93,12 @@ impl Eight for Avx2 {
     }
 
     #[inline(always)]
+    fn abs(self) -> Self {
+        // SAFETY: AVX is there, by the privacy of this type.
+        Self(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
+    }
+
+    #[inline(always)]
     fn lt(self, other: Self) -> __m256 {
         // SAFETY: AVX is there, by the privacy of this type.
         unsafe { _mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0) }

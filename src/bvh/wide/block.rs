@@ -128,8 +128,8 @@ impl TriangleBlock {
         let (zero, infinity) = (E::splat(0.0), E::splat(f32::INFINITY));
         // A NaN may pass here, but then it is in the determinant too.
         let outside = E::and(u.min(v).min(w).lt(zero), zero.lt(u.max(v).max(w)));
-        let size = det.max(zero.sub(det));
-        let area = E::and(zero.lt(size), size.lt(infinity));
+        let det = det.abs();
+        let area = E::and(zero.lt(det), det.lt(infinity));
         (E::bits(E::and_not(outside, area)), [u, v, w])
     }
 }
@@ -143,13 +143,10 @@ struct WideFrame<E> {
 impl<E: Eight> WideFrame<E> {
     #[inline(always)]
     fn new(shear: &Shear) -> Self {
+        let ([x, y, z], [right, up]) = (shear.from, shear.slope);
         Self {
-            origin: [
-                E::splat(shear.right.x),
-                E::splat(shear.up.x),
-                E::splat(shear.ahead.x),
-            ],
-            slope: [E::splat(shear.x.x), E::splat(shear.y.x)],
+            origin: [E::splat(x), E::splat(y), E::splat(z)],
+            slope: [E::splat(right), E::splat(up)],
         }
     }
 

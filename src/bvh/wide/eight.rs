@@ -24,6 +24,8 @@ pub(crate) trait Eight: Copy {
     fn min(self, other: Self) -> Self;
     /// The larger; `other` where either is NaN or both are zero.
     fn max(self, other: Self) -> Self;
+    /// Without its sign.
+    fn abs(self) -> Self;
     /// Whether it is smaller; not where either is NaN.
     fn lt(self, other: Self) -> Self::Mask;
     /// Whether it is smaller or equal; not where either is NaN.

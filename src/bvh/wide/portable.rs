@@ -64,6 +64,11 @@ impl Eight for Portable {
     }
 
     #[inline(always)]
+    fn abs(self) -> Self {
+        Self(std::array::from_fn(|lane| self.0[lane].abs()))
+    }
+
+    #[inline(always)]
     fn lt(self, other: Self) -> u32 {
         self.mask(other, |a, b| a < b)
     }

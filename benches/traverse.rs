@@ -1,0 +1,226 @@
+//! Time of a batch of rays through one mesh: our kernel, our watched walk of the binary tree, and obvhs' own two
+//! traversals, over a bumpy sphere and a knot.
+//!
+//! `cargo bench --bench traverse --no-default-features`
+
+use divan::{Bencher, black_box, counter::ItemsCount};
+use glam::{Affine3A, Vec3, vec3};
+use glassbox::bvh::{Aggregate, BuildOptions, Instance, MeshTree, Ray, Triangles};
+use obvhs::{
+    BvhBuildParams, bvh2::Bvh2, bvh2::builder::build_bvh2_from_tris, cwbvh::CwBvh,
+    cwbvh::builder::build_cwbvh_from_tris, ray::RayHit, rt_triangle::RtTriangle,
+    triangle::Triangle,
+};
+use std::{
+    f32::consts::{PI, TAU},
+    sync::{Arc, LazyLock},
+    time::Duration,
+};
+
+fn main() {
+    divan::main();
+}
+
+/// Rays of a batch.
+const RAYS: usize = 20_000;
+
+/// A mesh, and rays from its surface in all directions.
+struct Subject {
+    aggregate: Aggregate,
+    rays: Vec<Ray>,
+    bvh2: (Bvh2, Vec<RtTriangle>),
+    cwbvh: (CwBvh, Vec<RtTriangle>),
+}
+
+static SPHERE: LazyLock<Subject> = LazyLock::new(|| subject(&patch(2, 15_000, sphere)));
+static KNOT: LazyLock<Subject> = LazyLock::new(|| subject(&patch(16, 87_000, knot)));
+
+const NAMES: [&str; 2] = ["sphere", "knot"];
+
+fn of(name: &str) -> &'static Subject {
+    match name {
+        "sphere" => &SPHERE,
+        _ => &KNOT,
+    }
+}
+
+#[divan::bench(args = NAMES)]
+fn closest_ours(bencher: Bencher, name: &str) {
+    let Subject {
+        aggregate, rays, ..
+    } = of(name);
+    let mut hits = Vec::new();
+    bencher
+        .counter(ItemsCount::new(rays.len()))
+        .bench_local(|| aggregate.closest_hits(black_box(rays), &mut hits));
+}
+
+#[divan::bench(args = NAMES)]
+fn closest_ours_watched(bencher: Bencher, name: &str) {
+    let Subject {
+        aggregate, rays, ..
+    } = of(name);
+    let hit = |ray: &Ray| aggregate.closest_hit_with(ray, &mut ()).is_some();
+    bencher
+        .counter(ItemsCount::new(rays.len()))
+        .bench_local(|| black_box(rays).iter().filter(|ray| hit(ray)).count());
+}
+
+#[divan::bench(args = NAMES)]
+fn closest_obvhs_bvh2(bencher: Bencher, name: &str) {
+    let Subject { rays, bvh2, .. } = of(name);
+    let (tree, triangles) = bvh2;
+    let hit = |ray: &Ray| {
+        let mut hit = RayHit::none();
+        tree.ray_traverse(theirs(ray), &mut hit, |ray, i| triangles[i].intersect(ray))
+    };
+    bencher
+        .counter(ItemsCount::new(rays.len()))
+        .bench_local(|| black_box(rays).iter().filter(|ray| hit(ray)).count());
+}
+
+#[divan::bench(args = NAMES)]
+fn closest_obvhs_cwbvh(bencher: Bencher, name: &str) {
+    let Subject { rays, cwbvh, .. } = of(name);
+    let (tree, triangles) = cwbvh;
+    let hit = |ray: &Ray| {
+        let mut hit = RayHit::none();
+        tree.ray_traverse(theirs(ray), &mut hit, |ray, i| triangles[i].intersect(ray))
+    };
+    bencher
+        .counter(ItemsCount::new(rays.len()))
+        .bench_local(|| black_box(rays).iter().filter(|ray| hit(ray)).count());
+}
+
+#[divan::bench(args = NAMES)]
+fn any_ours(bencher: Bencher, name: &str) {
+    let Subject {
+        aggregate, rays, ..
+    } = of(name);
+    let mut occluded = Vec::new();
+    bencher
+        .counter(ItemsCount::new(rays.len()))
+        .bench_local(|| aggregate.occlusions(black_box(rays), &mut occluded));
+}
+
+#[divan::bench(args = NAMES)]
+fn any_obvhs_bvh2(bencher: Bencher, name: &str) {
+    let Subject { rays, bvh2, .. } = of(name);
+    let (tree, triangles) = bvh2;
+    let hit =
+        |ray: &Ray| !tree.ray_traverse_miss(theirs(ray), |ray, i| triangles[i].intersect(ray));
+    bencher
+        .counter(ItemsCount::new(rays.len()))
+        .bench_local(|| black_box(rays).iter().filter(|ray| hit(ray)).count());
+}
+
+#[divan::bench(args = NAMES)]
+fn any_obvhs_cwbvh(bencher: Bencher, name: &str) {
+    let Subject { rays, cwbvh, .. } = of(name);
+    let (tree, triangles) = cwbvh;
+    let hit =
+        |ray: &Ray| !tree.ray_traverse_miss(theirs(ray), |ray, i| triangles[i].intersect(ray));
+    bencher
+        .counter(ItemsCount::new(rays.len()))
+        .bench_local(|| black_box(rays).iter().filter(|ray| hit(ray)).count());
+}
+
+fn theirs(ray: &Ray) -> obvhs::ray::Ray {
+    let (origin, direction) = (ray.origin.to_array(), ray.direction.to_array());
+    obvhs::ray::Ray::new(origin.into(), direction.into(), 0.0, ray.t_max)
+}
+
+fn subject(corners: &[[Vec3; 3]]) -> Subject {
+    let positions = corners.as_flattened().to_vec();
+    let indices = (0..corners.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
+    let triangles = Triangles::new(positions, indices.collect()).expect("indices in range");
+    let options = BuildOptions::default();
+    let mesh = Arc::new(MeshTree::build(triangles, &options));
+    let instance = Instance::new(mesh, &Affine3A::IDENTITY).expect("the identity has an inverse");
+    let mut random = random();
+    let rays = (0..RAYS)
+        .map(|_| {
+            let [a, b, c] = corners[(random() * corners.len() as f32) as usize];
+            let direction = vec3(random(), random(), random()) - 0.5;
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            Ray::new((a + b + c) / 3.0 + normal * 1e-3, direction)
+        })
+        .collect();
+    let theirs: Vec<Triangle> = corners
+        .iter()
+        .map(|[a, b, c]| Triangle {
+            v0: a.to_array().into(),
+            v1: b.to_array().into(),
+            v2: c.to_array().into(),
+        })
+        .collect();
+    let in_order = |indices: &[u32]| -> Vec<RtTriangle> {
+        let triangles = indices.iter().map(|&i| &theirs[i as usize]);
+        triangles.map(RtTriangle::from).collect()
+    };
+    let parameters = BvhBuildParams {
+        pre_split: false,
+        ..BvhBuildParams::medium_build()
+    };
+    let bvh2 = build_bvh2_from_tris(&theirs, parameters, &mut Duration::default());
+    let cwbvh = build_cwbvh_from_tris(&theirs, parameters, &mut Duration::default());
+    let (of_bvh2, of_cwbvh) = (
+        in_order(&bvh2.primitive_indices),
+        in_order(&cwbvh.primitive_indices),
+    );
+    Subject {
+        aggregate: Aggregate::build(vec![instance], &options),
+        rays,
+        bvh2: (bvh2, of_bvh2),
+        cwbvh: (cwbvh, of_cwbvh),
+    }
+}
+
+/// Numbers in [0, 1): Knuth's 64-bit linear congruential generator, upper bits.
+fn random() -> impl FnMut() -> f32 {
+    let mut state = 1u64;
+    move || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 40) as f32 / (1u32 << 24) as f32
+    }
+}
+
+/// About `count` triangles on a surface over u and v in 0..1, `aspect` times as many along u.
+fn patch(aspect: usize, count: usize, surface: fn(f32, f32) -> Vec3) -> Vec<[Vec3; 3]> {
+    let rows = ((count / (2 * aspect)) as f32).sqrt() as usize;
+    let columns = aspect * rows;
+    let point = |i: usize, j: usize| surface(i as f32 / columns as f32, j as f32 / rows as f32);
+    let quads = (0..columns).flat_map(|i| (0..rows).map(move |j| (i, j)));
+    quads
+        .flat_map(|(i, j)| {
+            let (a, c) = (point(i, j), point(i + 1, j + 1));
+            [[a, point(i + 1, j), c], [a, c, point(i, j + 1)]]
+        })
+        .collect()
+}
+
+fn sphere(u: f32, v: f32) -> Vec3 {
+    let (azimuth, polar) = (u * TAU, v * PI);
+    let bumps = (7.0 * azimuth).sin() * (9.0 * polar).sin();
+    let (sin, cos) = polar.sin_cos();
+    vec3(azimuth.cos() * sin, cos, azimuth.sin() * sin) * (1.0 + 0.1 * bumps)
+}
+
+/// A tube along a trefoil.
+fn knot(u: f32, v: f32) -> Vec3 {
+    let centre = |t: f32| {
+        let radius = 2.0 + (3.0 * t).cos();
+        vec3(
+            radius * (2.0 * t).cos(),
+            (3.0 * t).sin(),
+            radius * (2.0 * t).sin(),
+        )
+    };
+    let t = u * TAU;
+    let along = (centre(t + 1e-3) - centre(t - 1e-3)).normalize();
+    let (side, up) = along.any_orthonormal_pair();
+    let (sin, cos) = (v * TAU).sin_cos();
+    centre(t) + (side * cos + up * sin) * 0.4
+}
