@@ -11,8 +11,8 @@ use crate::scene::SceneId;
 use bevy::camera::visibility::Visibility;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{
-    self, Align, Align2, Color32, FontFamily, FontId, Layout, Rect, Response, ScrollArea, Sense,
-    Stroke, StrokeKind, TextEdit, Ui, pos2, vec2,
+    self, Align2, Color32, FontFamily, FontId, Rect, Response, ScrollArea, Sense, Stroke,
+    StrokeKind, TextEdit, Ui, pos2, vec2,
 };
 use std::ops::Range;
 
@@ -34,20 +34,7 @@ enum Deed {
 }
 
 pub(super) fn hierarchy_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
-    // From the right: what is left is the field's, to the pixel, so that the panel does not grow by
-    // what the two overlap.
-    let row = vec2(ui.available_width(), ui.spacing().interact_size.y);
-    ui.allocate_ui_with_layout(row, Layout::right_to_left(Align::Center), |ui| {
-        let clear = ui.add_enabled(!panels.search.is_empty(), egui::Button::new("✖").small());
-        if clear.says("Shows all entities again").clicked() {
-            panels.search.clear();
-        }
-        let field = TextEdit::singleline(&mut panels.search)
-            .hint_text("Search")
-            .desired_width(ui.available_width());
-        ui.add(field)
-            .says("Shows only entities whose name or kind contains this");
-    });
+    search_ui(ui, panels);
     ui.add_space(2.0);
     let outline = world.resource::<Outline>();
     let selection = world.resource::<Selection>();
@@ -90,6 +77,22 @@ pub(super) fn hierarchy_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) 
     if let Some(deed) = deed {
         perform(ui, world, panels, &rows, deed);
     }
+}
+
+fn search_ui(ui: &mut Ui, panels: &mut Panels) {
+    let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
+    let right_to_left = egui::Layout::right_to_left(egui::Align::Center);
+    ui.allocate_ui_with_layout(size, right_to_left, |ui| {
+        let clear = ui.add_enabled(!panels.search.is_empty(), egui::Button::new("✖").small());
+        if clear.says("Shows all entities again").clicked() {
+            panels.search.clear();
+        }
+        let field = TextEdit::singleline(&mut panels.search)
+            .hint_text("Search")
+            .desired_width(f32::INFINITY);
+        ui.add(field)
+            .says("Shows only entities whose name or kind contains this");
+    });
 }
 
 fn row_ui(
