@@ -53,7 +53,8 @@ fn divider_ui(ui: &Ui, free: Rect, world: &mut World) -> bool {
         let divider = ((at.x - free.min.x) / free.width()).clamp(0.02, 0.98);
         world.resource_mut::<Viewport>().divider = divider;
     }
-    let active = response.hovered() || response.dragged();
+    // By the place itself: egui knows what is hovered only a frame later, and a press would pass.
+    let active = response.dragged() || is_over(ui.ctx(), rect);
     let color = if active { accent(ui) } else { Color32::WHITE };
     let width = if active { 2.0 } else { 1.0 };
     let painter = ui.painter();
@@ -117,7 +118,7 @@ fn region_ui(ui: &Ui, free: Rect, world: &mut World, panels: &mut Panels) -> boo
         panels.region_start = ui.input(|input| input.pointer.press_origin());
     }
     let Some(start) = panels.region_start else {
-        return response.hovered();
+        return true;
     };
     let Some(end) = response.interact_pointer_pos() else {
         return true;
@@ -352,7 +353,12 @@ fn notices_ui(context: &egui::Context, free: Rect, world: &mut World) -> bool {
     if let Some(i) = closed {
         notices.close(i);
     }
-    !shown.is_empty() && area.response.contains_pointer()
+    !shown.is_empty() && is_over(context, area.response.rect)
+}
+
+fn is_over(context: &egui::Context, rect: Rect) -> bool {
+    let pointer = context.pointer_latest_pos();
+    pointer.is_some_and(|at| rect.contains(at))
 }
 
 /// How one begins, until it was read once.

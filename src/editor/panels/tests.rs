@@ -504,7 +504,7 @@ fn a_message_stays_within_the_picture_and_can_be_closed() {
             }
             _ => None,
         });
-    let close = close.last().unwrap();
+    let close = close.collect::<Vec<_>>().pop().unwrap();
     desk.click(close);
     assert!(desk.world().resource::<Notices>().is_empty());
 }
