@@ -34,17 +34,7 @@ enum Deed {
 }
 
 pub(super) fn hierarchy_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
-    ui.horizontal(|ui| {
-        let field = TextEdit::singleline(&mut panels.search)
-            .hint_text("Search")
-            .desired_width(ui.available_width() - 26.0);
-        ui.add(field)
-            .says("Shows only entities whose name or kind contains this");
-        let clear = ui.add_enabled(!panels.search.is_empty(), egui::Button::new("✖").small());
-        if clear.says("Shows all entities again").clicked() {
-            panels.search.clear();
-        }
-    });
+    search_ui(ui, panels);
     ui.add_space(2.0);
     let outline = world.resource::<Outline>();
     let selection = world.resource::<Selection>();
@@ -87,6 +77,22 @@ pub(super) fn hierarchy_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) 
     if let Some(deed) = deed {
         perform(ui, world, panels, &rows, deed);
     }
+}
+
+fn search_ui(ui: &mut Ui, panels: &mut Panels) {
+    let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
+    let right_to_left = egui::Layout::right_to_left(egui::Align::Center);
+    ui.allocate_ui_with_layout(size, right_to_left, |ui| {
+        let clear = ui.add_enabled(!panels.search.is_empty(), egui::Button::new("✖").small());
+        if clear.says("Shows all entities again").clicked() {
+            panels.search.clear();
+        }
+        let field = TextEdit::singleline(&mut panels.search)
+            .hint_text("Search")
+            .desired_width(f32::INFINITY);
+        ui.add(field)
+            .says("Shows only entities whose name or kind contains this");
+    });
 }
 
 fn row_ui(

@@ -127,14 +127,18 @@ fn around_ui(
     };
     if preferences.show_hierarchy {
         widths[0] = side("hierarchy", widths[0], true)
-            .show_inside(ui, |ui| hierarchy::hierarchy_ui(ui, world, panels))
+            .show_inside(ui, |ui| {
+                contained(ui, |ui| hierarchy::hierarchy_ui(ui, world, panels))
+            })
             .response
             .rect
             .width();
     }
     if preferences.show_inspector {
         widths[1] = side("inspector", widths[1], false)
-            .show_inside(ui, |ui| inspector::inspector_ui(ui, world, panels))
+            .show_inside(ui, |ui| {
+                contained(ui, |ui| inspector::inspector_ui(ui, world, panels))
+            })
             .response
             .rect
             .width();
@@ -147,6 +151,16 @@ fn around_ui(
         [preferences.hierarchy_width, preferences.inspector_width] = widths;
     }
     ui.available_rect_before_wrap()
+}
+
+/// Keeps what is drawn within the room that there is: a panel would grow with what sticks out of it,
+/// frame by frame, and the picture would start over with each.
+fn contained(ui: &mut egui::Ui, body: impl FnOnce(&mut egui::Ui)) {
+    let room = ui.available_rect_before_wrap();
+    let mut inner = ui.new_child(egui::UiBuilder::new().max_rect(room));
+    inner.shrink_clip_rect(room);
+    body(&mut inner);
+    ui.advance_cursor_after_rect(room);
 }
 
 /// Tells the rest of the editor where the picture is, and whether pointer and keys are meant for it.

@@ -298,6 +298,27 @@ fn every_scene_is_drawn_in_every_tab_at_every_size_and_nothing_of_it_counts_as_c
 }
 
 #[test]
+fn no_panel_grows_by_itself_whatever_it_shows() {
+    let mut desk = Desk::open("showcase");
+    let ids = desk.ids();
+    for size in [SMALL, USUAL] {
+        desk.size = size;
+        desk.settle();
+        let rect = desk.world().resource::<Viewport>().rect;
+        for tab in [Tab::Object, Tab::Render, Tab::Debug, Tab::Bvh] {
+            desk.world().resource_mut::<Panels>().tab = tab;
+            for &id in &ids {
+                desk.world().resource_mut::<Selection>().set([id]);
+                desk.draw(Vec::new());
+                desk.draw(Vec::new());
+                let now = desk.world().resource::<Viewport>().rect;
+                assert_eq!(now, rect, "{tab:?} of {id:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn of_four_thousand_entities_only_the_rows_that_are_seen_are_laid_out() {
     let mut desk = Desk::empty(SMALL);
     for i in 1..=4000_u64 {
