@@ -6,14 +6,21 @@ use super::history::HistoryPlugin;
 use super::render_job::RenderJobPlugin;
 use crate::app::headless_app_with;
 use bevy::app::App;
+use std::path::Path;
 
 /// Scenes, files, edits and undo, without a renderer, a window or an event loop: send
 /// [`Action`](super::Action)s and call `update`.
 pub fn headless_editor() -> App {
-    headless_app_with((
-        HistoryPlugin,
-        EditsPlugin,
-        DocumentPlugin::default(),
-        RenderJobPlugin,
-    ))
+    editor(DocumentPlugin::default())
+}
+
+/// The same, with copies of unsaved work in this folder.
+pub fn headless_editor_with_recovery(folder: &Path) -> App {
+    editor(DocumentPlugin {
+        recovery: Some(folder.to_path_buf()),
+    })
+}
+
+fn editor(document: DocumentPlugin) -> App {
+    headless_app_with((HistoryPlugin, EditsPlugin, document, RenderJobPlugin))
 }

@@ -46,7 +46,7 @@ pub mod viewport;
 mod window;
 
 pub use action::Action;
-pub use headless::headless_editor;
+pub use headless::{headless_editor, headless_editor_with_recovery};
 pub use script::{Script, ScriptError};
 pub use selection::Selection;
 pub use startup::{NoWindow, check};

@@ -1,7 +1,10 @@
 //! The editor without a window: edits, undo, files.
 
+mod files;
 mod pasting;
 mod random;
+mod recovery;
+mod rendering;
 mod scene_copy;
 mod steps;
 mod tasks;
@@ -21,7 +24,7 @@ fn editor(scene: &str) -> App {
         OpenOptions::default(),
     )
     .unwrap_or_else(|error| panic!("{error}"));
-    glassbox::editor::history::reset(app.world_mut());
+    glassbox::editor::document::adopt(app.world_mut(), scene, None);
     app.update();
     app.update();
     app

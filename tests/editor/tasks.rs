@@ -44,8 +44,8 @@ const TASKS: &[Task] = &[
         },
     },
     Task {
-        name: "turn a parent with its children",
-        scene: "showcase",
+        name: "turn two objects at once",
+        scene: BOX,
         act: |app| {
             let ids = all(app);
             act(app, Action::Select(ids[1..3].to_vec()));
@@ -103,7 +103,7 @@ const TASKS: &[Task] = &[
     },
     Task {
         name: "delete everything",
-        scene: "showcase",
+        scene: "spheres",
         act: |app| {
             act(app, Action::SelectAll);
             act(app, Action::Delete);
@@ -120,7 +120,7 @@ const TASKS: &[Task] = &[
     },
     Task {
         name: "copy and paste everything",
-        scene: "showcase",
+        scene: "spheres",
         act: |app| {
             act(app, Action::SelectAll);
             act(app, Action::Copy);

@@ -22,7 +22,7 @@ use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::thread::{self, JoinHandle};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 /// How often unsaved work is copied.
 const EVERY: Duration = Duration::from_secs(60);
@@ -31,10 +31,11 @@ const EVERY: Duration = Duration::from_secs(60);
 #[derive(Resource, Debug)]
 pub struct RecoveryFolder {
     folder: PathBuf,
+    /// What this editor's files are called.
+    session: String,
     /// Held as long as the editor runs.
     lock: Option<File>,
-    /// How often unsaved work is copied.
-    pub every: Duration,
+    every: Duration,
     next: Instant,
     /// The state that the copy holds.
     copied: Option<u64>,
@@ -85,6 +86,7 @@ fn beside(copy: &Path, extension: &str) -> PathBuf {
 pub(super) fn add_to(app: &mut App, folder: &Path) {
     app.insert_resource(RecoveryFolder {
         folder: folder.to_path_buf(),
+        session: session_name(),
         lock: None,
         every: EVERY,
         next: Instant::now() + EVERY,
@@ -94,6 +96,13 @@ pub(super) fn add_to(app: &mut App, folder: &Path) {
     })
     .add_systems(Startup, offer)
     .add_systems(Last, (copy_unsaved, clear_at_exit).chain());
+}
+
+/// Another for every editor: process numbers are used again.
+fn session_name() -> String {
+    let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
+    let since = since.map_or(0, |since| since.as_nanos());
+    format!("{}-{since}", std::process::id())
 }
 
 /// Looks for work that nobody is doing any more.
@@ -216,9 +225,14 @@ fn copy_unsaved(world: &mut World) {
 }
 
 impl RecoveryFolder {
+    /// How often unsaved work is copied, from now on; a minute where nothing is said.
+    pub fn copy_every(&mut self, every: Duration) {
+        self.every = every;
+        self.next = Instant::now();
+    }
+
     fn file(&self, extension: &str) -> PathBuf {
-        self.folder
-            .join(format!("{}.{extension}", std::process::id()))
+        self.folder.join(format!("{}.{extension}", self.session))
     }
 
     /// Takes the scene's content, and writes it on a thread of its own.
