@@ -57,7 +57,10 @@ pub fn run(scene: SceneSource, script: Option<Script>) -> ExitCode {
         HistoryPlugin,
         EditsPlugin,
         DocumentPlugin {
-            recovery: config_folder().map(|folder| folder.join("recovery")),
+            // A script finds the same editor every time.
+            recovery: config_folder()
+                .filter(|_| script.is_none())
+                .map(|folder| folder.join("recovery")),
         },
         RenderJobPlugin,
         PanelsPlugin,
