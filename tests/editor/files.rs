@@ -108,7 +108,7 @@ fn unsaved_changes_are_asked_for_before_they_are_lost() {
             })
         );
         assert!(asks, "{:?}", document(&app).question);
-        answer(app.world_mut(), Answer::Path(file.with_extension("")));
+        answer(app.world_mut(), Answer::Path(file.with_file_name("a")));
         if file.exists() && document(&app).question.is_some() {
             answer(app.world_mut(), Answer::Yes);
         }
