@@ -14,7 +14,7 @@ use crate::film::{Progressive, Status};
 use crate::scene::{self, Output, RenderSettings, SceneId};
 use crate::sync::{SyncSystems, Traced, TracedCameras};
 use crate::trace;
-use bevy::asset::{Assets, Handle};
+use bevy::asset::{AssetEventSystems, Assets, Handle};
 use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{Camera, Camera3d, Projection};
 use bevy::core_pipeline::tonemapping::Tonemapping;
@@ -42,9 +42,13 @@ impl Plugin for TracedViewPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<TracedView>().add_systems(
             PostUpdate,
-            (give_screens, follow, show_prints)
-                .chain()
-                .after(SyncSystems),
+            (
+                (give_screens, follow).chain().after(SyncSystems),
+                // A print's texture has to reach the renderer in the frame in which the material
+                // names it: a material without its texture waits for the next frame, and where
+                // every frame brings another print it would wait for ever.
+                show_prints.before(AssetEventSystems),
+            ),
         );
     }
 }

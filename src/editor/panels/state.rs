@@ -1,7 +1,7 @@
 //! What the panels remember between two frames, and forget when the editor is closed.
 
 use super::compare::Kept;
-use super::dialogs::Gallery;
+use super::dialogs::{Gallery, RenderForm};
 use super::inspector::{ErrorCurve, Thumbnails, Trees, Turns};
 use super::status::{Memory, Numbers};
 use crate::editor::action::Action;
@@ -34,6 +34,7 @@ pub(super) enum Dialog {
     Preferences,
     Scenes,
     History,
+    Render,
 }
 
 /// A name that is being typed.
@@ -52,6 +53,9 @@ pub(super) struct Panels {
     pub dialog: Option<Dialog>,
     /// The one that was open in the frame before.
     pub dialog_before: Option<Dialog>,
+    /// A path that is being typed for the document.
+    pub typed_path: Option<String>,
+    pub render_form: RenderForm,
     /// How far actions were read.
     pub heard: MessageCursor<Action>,
     pub gallery: Gallery,

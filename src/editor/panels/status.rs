@@ -1,7 +1,8 @@
 //! The line below: what the traced view has, how fast it gets on, and what is under the pointer.
 
 use super::says::{Says, take_hint};
-use super::state::Panels;
+use super::state::{Dialog, Panels};
+use crate::editor::render_job::RenderJob;
 use crate::editor::viewport::EditorCamera;
 use crate::film::{Ending, State};
 use crate::io::LoadProblems;
@@ -87,6 +88,7 @@ pub(super) fn status_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
             );
         }
         problems_ui(ui, world);
+        job_ui(ui, world, panels);
         if let Some(hint) = hint {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 ui.add(egui::Label::new(RichText::new(hint).weak()).truncate());
@@ -97,6 +99,19 @@ pub(super) fn status_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
 
 fn figure(ui: &mut Ui, text: &str, says: &str) {
     ui.label(text).says(says);
+}
+
+/// How far a render to a file is; a click opens its dialog.
+fn job_ui(ui: &mut Ui, world: &World, panels: &mut Panels) {
+    let progress = world
+        .get_resource::<RenderJob>()
+        .and_then(RenderJob::progress);
+    let Some(progress) = progress else { return };
+    let text = format!("rendering {:.0} %", progress.fraction * 100.0);
+    let says = "A picture is being rendered to a file; click to see it, or to stop it";
+    if ui.add(egui::Button::new(text).small()).says(says).clicked() {
+        panels.dialog = Some(Dialog::Render);
+    }
 }
 
 /// What cannot be loaded or traced as it is.

@@ -484,12 +484,30 @@ fn every_dialog_is_drawn_at_every_size() {
             Dialog::About,
             Dialog::Preferences,
             Dialog::History,
+            Dialog::Render,
         ] {
             desk.world().resource_mut::<Panels>().dialog = Some(dialog);
             desk.settle();
             assert_eq!(desk.world().resource::<Panels>().dialog, Some(dialog));
         }
     }
+}
+
+#[test]
+fn unsaved_changes_are_asked_about_and_cancel_leaves_everything() {
+    let mut desk = Desk::open("triangle");
+    let ids = desk.ids();
+    desk.select([ids[0]]);
+    desk.world().write_message(Action::Duplicate);
+    desk.settle();
+    assert_eq!(desk.ids().len(), ids.len() + 1);
+    desk.world().write_message(Action::New);
+    desk.settle();
+    assert!(desk.find("Don't save").is_some());
+    desk.click_on("Cancel");
+    desk.settle();
+    assert!(desk.find("Don't save").is_none());
+    assert_eq!(desk.ids().len(), ids.len() + 1);
 }
 
 #[test]

@@ -4,6 +4,8 @@ mod about;
 mod history;
 mod keys;
 mod preferences;
+mod question;
+mod render;
 mod scenes;
 
 use super::says::Says;
@@ -13,6 +15,7 @@ use bevy::ecs::message::Messages;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{self, Id, Modal, RichText, ScrollArea, Ui};
 
+pub(super) use render::RenderForm;
 pub(super) use scenes::Gallery;
 
 /// Opens and closes what actions ask for.
@@ -21,16 +24,27 @@ pub(super) fn answer_actions(world: &World, panels: &mut Panels) {
         return;
     };
     for action in panels.heard.read(messages) {
-        if *action == Action::ToggleHelp {
-            panels.dialog = match panels.dialog {
-                Some(Dialog::Keys) => None,
-                _ => Some(Dialog::Keys),
-            };
+        match action {
+            Action::ToggleHelp => {
+                panels.dialog = match panels.dialog {
+                    Some(Dialog::Keys) => None,
+                    _ => Some(Dialog::Keys),
+                };
+            }
+            Action::RenderDialog => {
+                panels.render_form.open(world);
+                panels.dialog = Some(Dialog::Render);
+            }
+            _ => {}
         }
     }
 }
 
 pub(super) fn dialogs_ui(context: &egui::Context, world: &mut World, panels: &mut Panels) {
+    // What the document asks comes first: something waits for it.
+    if question::question_ui(context, world, panels) {
+        return;
+    }
     let Some(dialog) = panels.dialog else {
         panels.dialog_before = None;
         return;
@@ -41,6 +55,7 @@ pub(super) fn dialogs_ui(context: &egui::Context, world: &mut World, panels: &mu
         Dialog::Preferences => ("Preferences", 380.0),
         Dialog::Scenes => ("Built-in scenes", 790.0),
         Dialog::History => ("History", 420.0),
+        Dialog::Render => ("Render to a file", 460.0),
     };
     let stays = modal_ui(context, title, width, |ui| match dialog {
         Dialog::Keys => keys::keys_ui(ui),
@@ -48,6 +63,7 @@ pub(super) fn dialogs_ui(context: &egui::Context, world: &mut World, panels: &mu
         Dialog::Preferences => preferences::preferences_ui(ui, world),
         Dialog::Scenes => scenes::scenes_ui(ui, world, panels),
         Dialog::History => history::history_ui(ui, world),
+        Dialog::Render => render::render_ui(ui, world, panels),
     });
     // The press that opened it does not close it again.
     let f1 = context.input(|input| input.key_pressed(egui::Key::F1));

@@ -3,6 +3,7 @@
 use super::super::fields::section;
 use super::super::state::Panels;
 use super::error_plot::error_plot_ui;
+use super::gizmos::gizmos_ui;
 use crate::editor::viewport::EditorCamera;
 use crate::view::TracedRender;
 use bevy::ecs::query::With;
@@ -15,4 +16,5 @@ pub(super) fn debug_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     section(ui, "Error against time", true, |ui| {
         error_plot_ui(ui, status.as_ref(), &mut panels.error_curve);
     });
+    gizmos_ui(ui, world);
 }

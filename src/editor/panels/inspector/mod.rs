@@ -5,6 +5,7 @@ mod camera;
 mod debug;
 mod environment;
 mod error_plot;
+mod gizmos;
 mod lamps;
 mod maps;
 mod material;

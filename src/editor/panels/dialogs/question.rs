@@ -1,0 +1,158 @@
+//! What has to be decided before anything else goes on.
+
+use super::super::says::Says;
+use super::super::state::Panels;
+use super::modal_ui;
+use crate::editor::document::{Answer, Document, Purpose, Question, answer};
+use bevy::ecs::world::World;
+use bevy_egui::egui::{self, Key, TextEdit, Ui};
+use std::path::PathBuf;
+
+/// Shows the document's question, if one is open; true where it is.
+pub(super) fn question_ui(context: &egui::Context, world: &mut World, panels: &mut Panels) -> bool {
+    let Some(question) = world.resource::<Document>().question.clone() else {
+        panels.typed_path = None;
+        return false;
+    };
+    let name = world.resource::<Document>().name.clone();
+    let mut answered = None;
+    let title = match &question {
+        Question::Unsaved { .. } => "Unsaved changes",
+        Question::Path { purpose, .. } => match purpose {
+            Purpose::Open => "Open",
+            Purpose::SaveAs => "Save as",
+            Purpose::Import => "Import",
+        },
+        Question::Replace { .. } => "The file exists",
+        Question::Outside { .. } => "Files outside the folder",
+        Question::Recover(_) => "Unsaved work was found",
+    };
+    let stays = modal_ui(context, title, 460.0, |ui| match &question {
+        Question::Unsaved { .. } => {
+            ui.label(format!("{name} has changes that are not saved."));
+            answered = buttons_ui(
+                ui,
+                &[
+                    ("Save", "Saves the scene, then goes on", Answer::Yes),
+                    ("Don't save", "Goes on; the changes are lost", Answer::No),
+                    ("Cancel", "Leaves everything as it is", Answer::Cancel),
+                ],
+            );
+        }
+        Question::Path {
+            purpose,
+            suggestion,
+        } => {
+            answered = path_ui(ui, panels, *purpose, suggestion.clone());
+        }
+        Question::Replace { file, .. } => {
+            ui.label(format!("{} is there already.", file.display()));
+            answered = buttons_ui(
+                ui,
+                &[
+                    ("Replace", "The old file is lost", Answer::Yes),
+                    ("Cancel", "Leaves it as it is", Answer::Cancel),
+                ],
+            );
+        }
+        Question::Outside { file, says } => {
+            ui.label(format!("{}: {says}", file.display()));
+            ui.label("Open it with files from outside its folder? Do so only if you trust it.");
+            answered = buttons_ui(
+                ui,
+                &[
+                    (
+                        "Open",
+                        "Reads files outside the scene's folder too",
+                        Answer::Yes,
+                    ),
+                    ("Cancel", "Leaves the open scene as it is", Answer::Cancel),
+                ],
+            );
+        }
+        Question::Recover(found) => {
+            let minutes = found.age.as_secs() / 60;
+            ui.label(format!(
+                "{} had changes when Glassbox ended unexpectedly, about {minutes} minutes ago.",
+                found.name
+            ));
+            answered = buttons_ui(
+                ui,
+                &[
+                    ("Recover", "Opens what was kept of it", Answer::Yes),
+                    ("Delete", "Takes the copy away", Answer::No),
+                    ("Later", "Asks again at the next start", Answer::Cancel),
+                ],
+            );
+        }
+    });
+    let answered = answered.or((!stays).then_some(Answer::Cancel));
+    if let Some(answered) = answered {
+        panels.typed_path = None;
+        answer(world, answered);
+    }
+    true
+}
+
+/// One button for each answer; Enter gives the first.
+fn buttons_ui(ui: &mut Ui, answers: &[(&str, &str, Answer)]) -> Option<Answer> {
+    ui.add_space(8.0);
+    let mut answered = None;
+    ui.horizontal(|ui| {
+        for (name, says, answer) in answers {
+            if ui.button(*name).says(says).clicked() {
+                answered = Some(answer.clone());
+            }
+        }
+    });
+    let enter = ui.input(|input| input.key_pressed(Key::Enter));
+    let first = answers.first().filter(|_| enter);
+    answered.or(first.map(|(_, _, answer)| answer.clone()))
+}
+
+/// A path is typed, where the system has no dialog for it.
+fn path_ui(
+    ui: &mut Ui,
+    panels: &mut Panels,
+    purpose: Purpose,
+    suggestion: PathBuf,
+) -> Option<Answer> {
+    let hint = match purpose {
+        Purpose::Open => {
+            "A scene or a model: .scn.ron, .obj, .gltf, .glb, or a built-in scene's name"
+        }
+        Purpose::SaveAs => "Where to: .scn.ron keeps everything; .obj and .glb are models",
+        Purpose::Import => "A model: .obj, .gltf or .glb",
+    };
+    ui.label(hint);
+    let is_new = panels.typed_path.is_none();
+    let text = panels
+        .typed_path
+        .get_or_insert_with(|| suggestion.display().to_string());
+    let field = TextEdit::singleline(text).desired_width(ui.available_width() - 12.0);
+    let response = ui
+        .add(field)
+        .says("The path; relative ones begin in the working folder");
+    if is_new {
+        response.request_focus();
+    }
+    let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+    let path = PathBuf::from(text.trim());
+    let is_empty = path.as_os_str().is_empty();
+    ui.add_space(8.0);
+    let mut answered = (entered && !is_empty).then(|| Answer::Path(path.clone()));
+    ui.horizontal(|ui| {
+        let go = ui.add_enabled(!is_empty, egui::Button::new("OK"));
+        if go.says("Goes on with this path").clicked() {
+            answered = Some(Answer::Path(path));
+        }
+        if ui
+            .button("Cancel")
+            .says("Leaves everything as it is")
+            .clicked()
+        {
+            answered = Some(Answer::Cancel);
+        }
+    });
+    answered
+}

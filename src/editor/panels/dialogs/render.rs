@@ -1,0 +1,173 @@
+//! Rendering to a file: what, from where, how good; and how far it is.
+
+use super::super::fields::{Number, integer, row};
+use super::super::menu_bar::cameras;
+use super::super::says::Says;
+use super::super::state::Panels;
+use super::super::status::percent;
+use crate::editor::render_job::{
+    RenderFrom, RenderJob, RenderProgress, RenderRequest, start_render,
+};
+use crate::editor::viewport::EditorCamera;
+use crate::scene::{RenderSettings, SceneId};
+use crate::view::TracedRender;
+use bevy::ecs::query::With;
+use bevy::ecs::world::World;
+use bevy_egui::egui::{self, Color32, ComboBox, DragValue, ProgressBar, RichText, TextEdit, Ui};
+
+/// What is entered, kept while the dialog is closed.
+pub(in super::super) struct RenderForm {
+    file: String,
+    from: From,
+    /// Size, samples and rules, from the scene's when the dialog is opened.
+    settings: Option<RenderSettings>,
+    refused: Option<String>,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum From {
+    View,
+    Camera(SceneId),
+}
+
+impl Default for RenderForm {
+    fn default() -> Self {
+        Self {
+            file: "picture.png".into(),
+            from: From::View,
+            settings: None,
+            refused: None,
+        }
+    }
+}
+
+impl RenderForm {
+    /// Takes the scene's settings over when it is opened.
+    pub fn open(&mut self, world: &World) {
+        self.settings = Some(world.resource::<RenderSettings>().clone());
+        self.refused = None;
+    }
+}
+
+pub(super) fn render_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
+    let progress = world.resource::<RenderJob>().progress();
+    if let Some(progress) = progress {
+        progress_ui(ui, world, &progress);
+        ui.weak(
+            "You can close this and go on editing: the picture is that of the scene as it was.",
+        );
+        return;
+    }
+    let scene = world.resource::<RenderSettings>().clone();
+    let form = &mut panels.render_form;
+    let mut settings = form.settings.take().unwrap_or(scene);
+    let says = "PNG and JPEG as on the screen; EXR and HDR keep the linear light";
+    row(ui, "File", says, |ui| {
+        let width = ui.available_width() - 12.0;
+        ui.add(TextEdit::singleline(&mut form.file).desired_width(width))
+            .says(says);
+    });
+    from_ui(ui, world, form);
+    row(ui, "Size", "Pixels of the picture", |ui| {
+        for axis in 0..2 {
+            if axis == 1 {
+                ui.label("×");
+            }
+            let field = DragValue::new(&mut settings.size[axis]).range(1..=65_536_u32);
+            ui.add(field).says("Pixels");
+        }
+    });
+    let says = "Samples of each pixel, at least";
+    integer(ui, "Samples", says, &mut settings.spp, 1..=1 << 20, false);
+    let says = "Stops when the estimated relative error has fallen to this; 0: never";
+    let error = &mut settings.sampling.error;
+    Number::positive(0.001, "")
+        .within(0.0, 1000.0)
+        .row(ui, "Stop at error", says, error, false);
+    let says = "Stops after so many seconds; 0: never";
+    let time = &mut settings.sampling.time;
+    Number::positive(0.1, "s")
+        .within(0.0, 1e7)
+        .row(ui, "Stop after", says, time, false);
+    if let Some(refused) = &form.refused {
+        let color: Color32 = ui.visuals().error_fg_color;
+        ui.label(RichText::new(refused).color(color));
+    }
+    ui.add_space(8.0);
+    let says = "Begins; the editing goes on meanwhile";
+    if ui.button("Render").says(says).clicked() {
+        let camera = match form.from {
+            From::Camera(id) => Some(RenderFrom::Camera(id)),
+            From::View => view_camera(world),
+        };
+        form.refused = match camera {
+            None => Some("the view traces nothing; choose a camera, or the traced view".into()),
+            Some(camera) => {
+                let request = RenderRequest {
+                    file: form.file.trim().into(),
+                    camera,
+                    settings: settings.clone(),
+                };
+                start_render(world, request)
+                    .err()
+                    .map(|why| why.to_string())
+            }
+        };
+    }
+    form.settings = Some(settings);
+}
+
+fn from_ui(ui: &mut Ui, world: &mut World, form: &mut RenderForm) {
+    let cameras = cameras(world);
+    let name_of = |from: From| match from {
+        From::View => "The view".to_owned(),
+        From::Camera(id) => cameras
+            .iter()
+            .find(|camera| camera.0 == id)
+            .map_or_else(|| "a camera that is gone".into(), |camera| camera.1.clone()),
+    };
+    let says = "From where: what the view shows, or one of the scene's cameras";
+    row(ui, "From", says, |ui| {
+        ComboBox::from_id_salt("from")
+            .selected_text(name_of(form.from))
+            .width((ui.available_width() - 8.0).max(80.0))
+            .show_ui(ui, |ui| {
+                ui.selectable_value(&mut form.from, From::View, "The view");
+                for (id, name) in &cameras {
+                    ui.selectable_value(&mut form.from, From::Camera(*id), name);
+                }
+            })
+            .response
+            .says(says);
+    });
+}
+
+/// The tracer's camera of the view.
+fn view_camera(world: &mut World) -> Option<RenderFrom> {
+    let mut query = world.query_filtered::<&TracedRender, With<EditorCamera>>();
+    let (_, camera, _) = query.single(world).ok()?.subject()?;
+    Some(RenderFrom::View(Box::new(camera.clone())))
+}
+
+/// A bar with what is known of the end, and a way to stop it.
+fn progress_ui(ui: &mut Ui, world: &mut World, progress: &RenderProgress) {
+    ui.label(progress.file.display().to_string());
+    let mut text = match (&progress.status, progress.writing) {
+        (_, true) => "writing".to_owned(),
+        (None, _) => "waiting for the trees".to_owned(),
+        (Some(status), _) => format!("{:.0} samples", status.samples),
+    };
+    if let Some(status) = &progress.status {
+        if let Some(error) = status.error() {
+            text += &format!(", error {}", percent(error.relative()));
+        }
+        if let Some(left) = status.seconds_left.filter(|_| !progress.writing) {
+            text += &format!(", {left:.0} s left");
+        }
+    }
+    ui.add(ProgressBar::new(progress.fraction).text(text));
+    let cancel = ui.add_enabled(!progress.writing, egui::Button::new("Cancel render"));
+    if cancel.says("Stops it; nothing is written").clicked() {
+        world.resource_mut::<RenderJob>().cancel();
+    }
+}
