@@ -12,6 +12,12 @@
 //!
 //! [`GlassboxPlugins`] adds the first four to any Bevy app, with what they need.
 
+#![expect(
+    clippy::too_many_arguments,
+    clippy::type_complexity,
+    reason = "a system's parameters are the list of what it reads"
+)]
+
 mod darkroom;
 pub mod lines;
 mod pick;

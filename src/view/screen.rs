@@ -82,6 +82,9 @@ impl Material for ScreenMaterial {
     }
 }
 
+/// Metres: farther than anything that is drawn.
+const FAR: f32 = 1e9;
+
 /// Marks the rectangle that belongs to a view.
 #[derive(Component)]
 pub(super) struct Screen;
@@ -114,7 +117,8 @@ pub(super) fn spawn_screen(
         NoFrustumCulling,
         NotShadowCaster,
         NotShadowReceiver,
-        Transform::default(),
+        // Among transparent things the farthest is drawn first; gizmos count as being at the camera.
+        Transform::from_xyz(0.0, 0.0, -FAR),
         layer,
     ));
     (entity.id(), handle)
