@@ -51,8 +51,13 @@ fn rgba(picture: &Picture, shown: impl Fn(Vec3) -> [u8; 3] + Sync) -> Vec<u8> {
     (bytes.par_chunks_mut(4 * width))
         .zip(picture.pixels.par_chunks(width))
         .for_each(|(bytes, pixels)| {
+            // A coarse picture has the same pixel many times over.
+            let (mut last, mut shown_last) = (Vec3::ZERO, shown(Vec3::ZERO));
             for (bytes, &pixel) in bytes.as_chunks_mut::<4>().0.iter_mut().zip(pixels) {
-                let [r, g, b] = shown(pixel);
+                if pixel != last {
+                    (last, shown_last) = (pixel, shown(pixel));
+                }
+                let [r, g, b] = shown_last;
                 *bytes = [r, g, b, 255];
             }
         });
@@ -66,11 +71,9 @@ fn rounded(value: f32) -> u8 {
 
 /// A rising curve over [0, 1], rounded to 256 steps, exactly.
 struct Steps {
-    /// By the upper half of a number's bits: the step of the smallest number with this half. The next
-    /// step may begin among the others; no second one does.
-    least: Vec<u8>,
-    /// The bits of the smallest number of each step, and an end.
-    first: [u32; 257],
+    /// By the upper half of a number's bits: in the lowest 8 bits the step of the smallest number with
+    /// this half; above them from which lower half on it is the next one. It is never a second one.
+    table: Vec<u32>,
 }
 
 const ONE: u32 = 1.0_f32.to_bits();
@@ -87,35 +90,44 @@ impl Steps {
     }
 
     fn new(curve: impl Fn(f32) -> f32) -> Self {
-        let mut first = [u32::MAX; 257];
-        for (step, first) in first[..256].iter_mut().enumerate() {
-            // The bits of numbers that are not negative are ordered as they are.
-            let (mut low, mut high) = (0, ONE);
-            while low < high {
-                let middle = low + (high - low) / 2;
-                if usize::from(rounded(curve(f32::from_bits(middle)))) < step {
-                    low = middle + 1;
-                } else {
-                    high = middle;
-                }
-            }
-            *first = low;
+        let first = first_of_steps(curve);
+        let entry = |half: u32| {
+            let step = first.partition_point(|&first| first <= half << 16) - 1;
+            let next = first
+                .get(step + 1)
+                .map_or(1 << 16, |&next| next - (half << 16));
+            step as u32 | next.min(1 << 16) << 8
+        };
+        Self {
+            table: (0..=ONE >> 16).map(entry).collect(),
         }
-        let least = (0..ONE >> 16)
-            .map(|half| (first.partition_point(|&first| first <= half << 16) - 1) as u8)
-            .collect();
-        Self { least, first }
     }
 
+    #[inline(always)]
     fn of(&self, x: f32) -> u8 {
-        if x >= 1.0 {
-            return 255;
-        }
-        // Not a number becomes 0.
-        let bits = if x > 0.0 { x.to_bits() } else { 0 };
-        let step = self.least[(bits >> 16) as usize];
-        step + u8::from(bits >= self.first[usize::from(step) + 1])
+        // In this form not a number becomes 0.
+        let x = if x > 0.0 { x } else { 0.0 };
+        let bits = (if x < 1.0 { x } else { 1.0 }).to_bits();
+        let entry = self.table[(bits >> 16) as usize];
+        entry as u8 + u8::from(bits & 0xffff >= entry >> 8)
     }
+}
+
+/// The bits of the smallest number in [0, 1] of each step of a rising curve.
+fn first_of_steps(curve: impl Fn(f32) -> f32) -> [u32; 256] {
+    std::array::from_fn(|step| {
+        // The bits of numbers that are not negative are ordered as they are.
+        let (mut low, mut high) = (0, ONE);
+        while low < high {
+            let middle = low + (high - low) / 2;
+            if usize::from(rounded(curve(f32::from_bits(middle)))) < step {
+                low = middle + 1;
+            } else {
+                high = middle;
+            }
+        }
+        low
+    })
 }
 
 /// AgX's curve over the light that it tells apart, linear between the places of its table: its
@@ -171,10 +183,10 @@ mod tests {
     /// Every number between 2^-20 and 2 whose lower bits are one of a few, what lies beside every
     /// step, and what is out of range.
     fn numbers() -> Vec<f32> {
-        let steps = [Steps::raw(), Steps::srgb()];
+        let steps = [first_of_steps(|x| x), first_of_steps(srgb::encode)];
         let beside = steps
             .iter()
-            .flat_map(|steps| &steps.first[1..256])
+            .flat_map(|steps| &steps[1..])
             .flat_map(|&first| [first - 9, first - 1, first, first + 1, first + 9]);
         let halves = (1e-6_f32.to_bits() >> 16)..(2.0_f32.to_bits() >> 16);
         let all = halves.flat_map(|half| [0, 1, 0x7fff, 0xffff].map(|low| half << 16 | low));

@@ -2,6 +2,7 @@
 //! on. The pixels of a coarser picture are among those of a finer one, and all of them are samples
 //! that the film will want, so a coarse start costs no ray.
 
+use super::TILE;
 use super::sample_chunk::{BatchSize, Subject, with_scratch};
 use super::tiles::Tile;
 use crate::trace::{RayCounts, SampleId};
@@ -69,6 +70,12 @@ impl Preview {
         self.version = self.version.wrapping_add(1);
     }
 
+    /// Squares of so many pixels, from a tile's corner on, show one and the same: half a lattice's
+    /// distance, because a lattice's pixel stands in the middle of those that show it.
+    pub fn side(&self) -> u32 {
+        (self.divider / 2).clamp(1, TILE)
+    }
+
     /// What the pixel shows: the nearest on the finest lattice that has one there.
     pub fn shown(&self, pixel: UVec2) -> Option<Vec3> {
         let place = pixel - self.area.origin;
@@ -130,7 +137,7 @@ pub(super) fn lattice(
 
 /// The squares of 16 × 16 pixels of a lattice over an area of this size.
 pub(super) fn lattice_squares(size: UVec2, divider: u32) -> Vec<UVec2> {
-    let count = size.map(|n| n.div_ceil(divider).div_ceil(super::TILE));
+    let count = size.map(|n| n.div_ceil(divider).div_ceil(TILE));
     (0..count.y)
         .flat_map(|y| (0..count.x).map(move |x| UVec2::new(x, y)))
         .collect()

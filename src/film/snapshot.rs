@@ -3,7 +3,7 @@
 use super::engine::Engine;
 use super::preview::Preview;
 use super::tile_state::{TILE_PIXELS, TileState};
-use super::tiles::FilmPixel;
+use super::tiles::{FilmPixel, Tile};
 use super::{Film, Picture, TILE, lock};
 use glam::UVec2;
 
@@ -113,9 +113,19 @@ fn draw_means(state: &TileState, picture: &mut Picture) {
 
 fn draw_preview(state: &TileState, preview: &Preview, picture: &mut Picture) {
     let width = picture.width as usize;
-    for (pixel, _) in state.tile.pixels() {
-        if let Some(value) = preview.shown(pixel) {
-            picture.pixels[pixel.y as usize * width + pixel.x as usize] = value;
+    let Tile { origin, extent } = state.tile;
+    let end = origin + extent;
+    let side = preview.side();
+    for y in (origin.y..end.y).step_by(side as usize) {
+        for x in (origin.x..end.x).step_by(side as usize) {
+            let Some(value) = preview.shown(UVec2::new(x, y)) else {
+                continue;
+            };
+            let columns = x as usize..(x + side).min(end.x) as usize;
+            for y in y..(y + side).min(end.y) {
+                let row = &mut picture.pixels[y as usize * width..];
+                row[columns.clone()].fill(value);
+            }
         }
     }
 }

@@ -2,6 +2,7 @@ use super::meshes::TracedMeshes;
 use super::problem::Fault;
 use super::reading::{Motions, Reader, Switched};
 use super::traced::Draft;
+use super::tree_building::{TopLevelThread, TreeBuilding};
 use crate::bvh::{Aggregate, BuildOptions, Instance};
 use crate::scene::SceneId;
 use crate::trace;
@@ -43,18 +44,22 @@ pub(super) struct Row {
 }
 
 impl Row {
-    /// True where the tree over the objects would come out the same.
-    fn same(&self, other: &Self) -> bool {
+    /// True where it is the same object, wherever it stands.
+    fn same_object(&self, other: &Self) -> bool {
+        self.id == other.id
+            && self.entity == other.entity
+            && self.motion_samples == other.motion_samples
+            && Arc::ptr_eq(&self.mesh, &other.mesh)
+    }
+
+    /// True where it stands in the same place and moves alike.
+    fn same_place(&self, other: &Self) -> bool {
         // Bits, because -0 and 0 may round differently on the way.
         let bits = |row: &Self| {
             let velocity = row.velocity.to_array().map(f32::to_bits);
             (row.transform.to_cols_array().map(f32::to_bits), velocity)
         };
-        self.id == other.id
-            && self.entity == other.entity
-            && self.motion_samples == other.motion_samples
-            && Arc::ptr_eq(&self.mesh, &other.mesh)
-            && bits(self) == bits(other)
+        bits(self) == bits(other)
     }
 }
 
@@ -94,6 +99,8 @@ pub(super) fn sync_instances(
     mut motions: Motions,
     objects: ObjectQuery,
     meshes: Res<TracedMeshes>,
+    building: Res<TreeBuilding>,
+    mut thread: ResMut<TopLevelThread>,
     mut known: ResMut<TracedInstances>,
     draft: ResMut<Draft>,
 ) {
@@ -145,30 +152,47 @@ pub(super) fn sync_instances(
         let transform = transform.affine();
         let motion = motions.of(entity);
         let velocity = motion.map_or(Vec3::ZERO, |(velocity, _)| velocity);
-        let instance = Instance::new(mesh.tree.clone(), &transform);
-        match instance.and_then(|instance| instance.moving(velocity)) {
-            Ok(instance) => instances.push(instance),
-            Err(fault) => {
-                reader.note(Fault::Transform(fault));
-                continue;
-            }
-        }
-        rows.push(Row {
+        let row = Row {
             id,
             entity,
             mesh: mesh.clone(),
             motion_samples: motion.map_or(0, |(_, samples)| reader.samples(samples)),
             transform,
             velocity,
-        });
+        };
+        // Most stand where they stood.
+        let place = rows.len();
+        let before = known.rows.get(place);
+        let instance = if before.is_some_and(|b| row.same_object(b) && row.same_place(b)) {
+            Ok(draft.world.aggregate.instances()[place].clone())
+        } else {
+            Instance::new(mesh.tree.clone(), &transform)
+                .and_then(|instance| instance.moving(velocity))
+        };
+        match instance {
+            Ok(instance) => instances.push(instance),
+            Err(fault) => {
+                reader.note(Fault::Transform(fault));
+                continue;
+            }
+        }
+        rows.push(row);
     }
-    let same = rows.len() == known.rows.len()
-        && rows.iter().zip(&known.rows).all(|(new, old)| new.same(old));
-    if same && !options_changed {
+    let same = |same: fn(&Row, &Row) -> bool| {
+        let mut pairs = rows.iter().zip(&known.rows);
+        rows.len() == known.rows.len() && pairs.all(|(new, old)| same(new, old))
+    };
+    let same_objects = same(Row::same_object);
+    if same_objects && same(Row::same_place) && !options_changed {
         return;
     }
+    draft.other_objects |= !same_objects;
     known.rows = rows;
     known.options = *meshes.options();
-    draft.world.aggregate = Arc::new(Aggregate::build(instances, meshes.options()));
+    let build = || Aggregate::build(instances, meshes.options());
+    draft.world.aggregate = Arc::new(match *building {
+        TreeBuilding::AtOnce => build(),
+        TreeBuilding::InBackground => thread.run(build),
+    });
     draft.changes.top_level = true;
 }

@@ -52,8 +52,8 @@ pub(super) fn sync_materials(
     // Not `||`: every reader has to be emptied.
     let gone = no_phong.read().count() + no_maps.read().count() + no_shared.read().count();
     let switched = switched.any();
-    let changes = draft.changes;
-    if gone == 0 && !switched && edited.is_empty() && !changes.top_level && !changes.textures {
+    let other = draft.other_objects || draft.changes.textures;
+    if gone == 0 && !switched && edited.is_empty() && !other {
         return;
     }
     let draft = draft.into_inner();

@@ -85,6 +85,7 @@ impl Plugin for SyncPlugin {
             .init_resource::<meshes::TracedMeshes>()
             .init_resource::<textures::TracedTextures>()
             .init_resource::<instances::TracedInstances>()
+            .init_resource::<tree_building::TopLevelThread>()
             .configure_sets(
                 PostUpdate,
                 SyncSystems

@@ -64,6 +64,8 @@ pub(super) struct Draft {
     pub problems: Problems,
     /// Meshes whose tree is being built.
     pub pending: usize,
+    /// Some object appeared, went, or has another mesh: who merely moved keeps the material.
+    pub other_objects: bool,
     /// Some part was read again, so that its problems may be others although nothing was redone.
     pub reread: bool,
 }
@@ -108,6 +110,7 @@ pub(super) fn publish_snapshot(
         draft.reread = true;
     }
     let changes = std::mem::take(&mut draft.changes);
+    draft.other_objects = false;
     traced.bypass_change_detection().pending = draft.pending;
     if !changes.any() && !draft.reread {
         traced.bypass_change_detection().changes = changes;

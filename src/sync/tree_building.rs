@@ -16,7 +16,7 @@ use std::thread::available_parallelism;
 /// When trees of meshes are built.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TreeBuilding {
-    /// On threads of their own. Objects keep the mesh that they had until the new one's tree is there,
+    /// On threads of their own; no frame waits but for the tree over the objects. Objects keep the mesh that they had until the new one's tree is there,
     /// and those that had none appear with it: see [`Traced::pending`](super::Traced).
     #[default]
     InBackground,
@@ -31,6 +31,25 @@ pub fn finish(app: &mut App) {
     app.insert_resource(TreeBuilding::AtOnce);
     app.update();
     app.insert_resource(before.unwrap_or_default());
+}
+
+/// The thread that builds the tree over the objects while the frame waits: what is done in parallel
+/// there would wait for the tracer's threads elsewhere, and they are busy until a pass ends.
+#[derive(Resource, Default)]
+pub(super) struct TopLevelThread(Option<ThreadPool>);
+
+impl TopLevelThread {
+    /// Does the work there, or here where the system has no thread to give.
+    pub fn run<R: Send>(&mut self, work: impl FnOnce() -> R + Send) -> R {
+        if self.0.is_none() {
+            let pool = ThreadPoolBuilder::new().num_threads(1);
+            self.0 = pool.thread_name(|_| "top level".into()).build().ok();
+        }
+        match &self.0 {
+            Some(pool) => pool.install(work),
+            None => work(),
+        }
+    }
 }
 
 /// A mesh with its tree.
