@@ -5,7 +5,7 @@ use super::output::say;
 use super::progress::Progress;
 use super::settings::check_scene;
 use super::stage::{SceneArgs, Stage, with_threads};
-use crate::io::SceneSource;
+use crate::io::{SceneSource, check_writable};
 use crate::report::{self, Options, Part, Subject, Table, write_report};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -25,9 +25,12 @@ pub(super) struct Report {
     /// built-in ones (default: five built-in ones). A file that is called like a part is ./NAME
     #[arg(value_name = "PART|SCENE")]
     what: Vec<PathBuf>,
-    /// Folder for report.md, its tables (CSV) and its plots (SVG and PNG)
+    /// Folder for report.md, its tables (CSV) and its plots (SVG and PNG); or a file NAME.md
     #[arg(short, long, value_name = "DIR", default_value = "report")]
     output: PathBuf,
+    /// Folder for tables and plots, where they shall not be beside the report
+    #[arg(long, value_name = "DIR")]
+    files: Option<PathBuf>,
     /// Fewer rays, rounds and samples: about two minutes for a scene
     #[arg(long)]
     quick: bool,
@@ -82,6 +85,8 @@ fn measure(args: &Report, parts: Vec<Part>, scenes: &[PathBuf]) -> Result<(), Fa
         .map(|scene| subject(scene, args))
         .collect::<Result<Vec<Subject>, Failure>>()?;
     let editing = args.editing.as_deref().map(table).transpose()?;
+    let (file, folder) = places(args);
+    check_writable_in(&file)?;
     let options = Options {
         editing,
         parts,
@@ -94,7 +99,7 @@ fn measure(args: &Report, parts: Vec<Part>, scenes: &[PathBuf]) -> Result<(), Fa
         progress.show_step(what, done, all);
     });
     drop(progress);
-    write_report(&report, &args.output)?;
+    write_report(&report, &file, &folder)?;
     if !args.quiet {
         say(report.findings().join("\n"))?;
         for section in &report.sections {
@@ -106,7 +111,6 @@ fn measure(args: &Report, parts: Vec<Part>, scenes: &[PathBuf]) -> Result<(), Fa
                 ))?;
             }
         }
-        let file = args.output.join("report.md");
         say(format_args!(
             "\n{}: {:.0} s",
             file.display(),
@@ -147,6 +151,29 @@ fn subject(scene: &Path, args: &Report) -> Result<Subject, Failure> {
         camera: camera.camera,
         settings,
     })
+}
+
+/// The Markdown file, and the folder of everything else.
+fn places(args: &Report) -> (PathBuf, PathBuf) {
+    let is_file = args
+        .output
+        .extension()
+        .is_some_and(|extension| extension == "md");
+    let (file, beside) = if is_file {
+        let folder = args.output.parent().unwrap_or(Path::new(""));
+        (args.output.clone(), folder.to_path_buf())
+    } else {
+        (args.output.join("report.md"), args.output.clone())
+    };
+    (file, args.files.clone().unwrap_or(beside))
+}
+
+/// Where nothing can be written nothing needs to be measured.
+fn check_writable_in(file: &Path) -> Result<(), Failure> {
+    match file.parent() {
+        Some(folder) if folder.exists() => Ok(check_writable(file)?),
+        _ => Ok(()),
+    }
 }
 
 /// A table that another program wrote.

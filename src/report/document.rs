@@ -6,9 +6,12 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
 
-/// Writes `report.md` and what it refers to into a folder, which is made where it does not exist.
-pub fn write_report(report: &Report, folder: &Path) -> Result<(), FileError> {
-    std::fs::create_dir_all(folder).map_err(|error| FileError::writing(folder, &error))?;
+/// Writes the report as Markdown into `file`, and what that shows and refers to into a folder, which is made where it
+/// does not exist.
+pub fn write_report(report: &Report, file: &Path, folder: &Path) -> Result<(), FileError> {
+    for folder in file.parent().into_iter().chain([folder]) {
+        std::fs::create_dir_all(folder).map_err(|error| FileError::writing(folder, &error))?;
+    }
     for section in &report.sections {
         for table in &section.tables {
             write_text(&folder.join(format!("{}.csv", table.file)), &table.csv())?;
@@ -24,15 +27,24 @@ pub fn write_report(report: &Report, folder: &Path) -> Result<(), FileError> {
             write_picture(&file, shown.width, shown.height, &shown.pixels)?;
         }
     }
-    write_text(&folder.join("report.md"), &markdown(report))
+    write_text(file, &markdown(report, &way(file, folder)))
+}
+
+/// What comes before a file's name in a link from the report to the folder.
+fn way(file: &Path, folder: &Path) -> String {
+    let home = file.parent().unwrap_or(Path::new(""));
+    let parts = folder.strip_prefix(home).unwrap_or(folder).components();
+    parts
+        .map(|part| format!("{}/", part.as_os_str().to_string_lossy()))
+        .collect()
 }
 
 fn write_text(file: &Path, text: &str) -> Result<(), FileError> {
     replace_file(file, |writer| writer.write_all(text.as_bytes()))
 }
 
-/// The whole report as Markdown, its plots and pictures beside it.
-fn markdown(report: &Report) -> String {
+/// The whole report as Markdown; `way` leads to its tables, plots and pictures.
+fn markdown(report: &Report, way: &str) -> String {
     let mut text = String::from("# Speed against error\n\n");
     text += &report.findings().join("\n");
     // Writing to a string cannot fail.
@@ -54,12 +66,12 @@ fn markdown(report: &Report) -> String {
         }
     }
     for section in &report.sections {
-        text += &section_text(section);
+        text += &section_text(section, way);
     }
     text
 }
 
-fn section_text(section: &Section) -> String {
+fn section_text(section: &Section, way: &str) -> String {
     let mut text = format!("\n## {}\n\n", section.title);
     text += &section.findings.join("\n");
     text.push('\n');
@@ -67,15 +79,15 @@ fn section_text(section: &Section) -> String {
         let _ = write!(text, "\n{paragraph}\n");
     }
     for plot in &section.plots {
-        let _ = write!(text, "\n![{}]({}.svg)\n", plot.title, plot.file);
+        let _ = write!(text, "\n![{}]({way}{}.svg)\n", plot.title, plot.file);
     }
     for (name, caption, _) in &section.pictures {
-        let _ = write!(text, "\n![{caption}]({name}.png)\n\n{caption}\n");
+        let _ = write!(text, "\n![{caption}]({way}{name}.png)\n\n{caption}\n");
     }
     for table in &section.tables {
         let _ = write!(
             text,
-            "\n### {}\n\n[{}.csv]({}.csv)\n\n{}",
+            "\n### {}\n\n[{}.csv]({way}{}.csv)\n\n{}",
             table.title,
             table.file,
             table.file,
@@ -124,8 +136,9 @@ mod tests {
         };
         let folder = tempfile::tempdir().unwrap();
         let folder = folder.path().join("new");
-        write_report(&report, &folder).unwrap();
-        let text = std::fs::read_to_string(folder.join("report.md")).unwrap();
+        let file = folder.join("REPORT.md");
+        write_report(&report, &file, &folder.join("assets/report")).unwrap();
+        let text = std::fs::read_to_string(file).unwrap();
         for part in [
             "Ours is fast.",
             "Seed 7",
@@ -140,8 +153,11 @@ mod tests {
             .skip(1)
             .filter_map(|rest| rest.split(')').next())
             .collect();
-        assert_eq!(links.len(), 2, "{links:?}");
-        for link in links.into_iter().chain(["front.png"]) {
+        assert_eq!(
+            links,
+            ["assets/report/front.svg", "assets/report/speeds.csv"]
+        );
+        for link in links.into_iter().chain(["assets/report/front.png"]) {
             let size = std::fs::metadata(folder.join(link)).unwrap().len();
             assert!(size > 10, "{link} has {size} bytes");
         }

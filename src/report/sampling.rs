@@ -214,6 +214,11 @@ fn curve(
 ) -> Vec<Point> {
     let mut curve = Vec::new();
     for &count in effort.counts {
+        // The film estimates nothing from few samples, so there is no goal.
+        if way == Way::Adaptive && count < 16 {
+            (0..effort.seeds).for_each(|_| step());
+            continue;
+        }
         let mut pictures = Vec::new();
         for seed in 0..effort.seeds {
             let mut settings = RenderSettings {
@@ -240,10 +245,6 @@ fn curve(
             }
             pictures.push(rendered(subject, &settings));
             step();
-        }
-        // The film estimates nothing from few samples, so there is no goal.
-        if way == Way::Adaptive && count < 16 {
-            continue;
         }
         curve.extend(point(&pictures, reference));
     }

@@ -12,6 +12,7 @@ use super::timing::{median, take_turns};
 use super::{Cell, Options, Section, Subject, Table, Watch};
 use crate::film::{Picture, develop, render};
 use crate::scene::{Features, RenderSettings, Sampling};
+use crate::trace::Camera;
 use glam::UVec2;
 use std::hint::black_box;
 
@@ -207,7 +208,8 @@ fn switches(subject: &Subject, options: &Options) -> Table {
         settings
     }));
     let picture = |settings: &RenderSettings| {
-        render(&subject.world, &subject.camera, settings, &|_, _| {}).picture
+        let camera = through_lens(&subject.camera, settings);
+        render(&subject.world, &camera, settings, &|_, _| {}).picture
     };
     let rounds = rounds(options).div_ceil(2);
     let times = take_turns(variants.len(), rounds, |i| {
@@ -244,6 +246,15 @@ fn switches(subject: &Subject, options: &Options) -> Table {
         ]);
     }
     table
+}
+
+/// The camera as the settings want it: a lens that is switched off is a pinhole. (In an app the sync sees to that.)
+fn through_lens(camera: &Camera, settings: &RenderSettings) -> Camera {
+    let mut camera = camera.clone();
+    if !settings.features.lens {
+        camera.optics.aperture_radius = 0.0;
+    }
+    camera
 }
 
 /// A picture as a screen shows it, as numbers to compare.

@@ -1,9 +1,9 @@
 //! A scene to bring effects into: the head between its point lights, matt, opaque, still, without textures.
 
-use super::shown;
+use super::{shown, through_lens};
 use crate::app::headless_app;
 use crate::bvh::{Aggregate, BuildOptions, Instance, MeshTree};
-use crate::film::{Picture, develop, render};
+use crate::film::{Picture, Rendered, develop, render};
 use crate::io::builtin;
 use crate::scene::RenderSettings;
 use crate::sync::{Traced, TracedCameras};
@@ -38,14 +38,19 @@ impl Specimen {
 
     /// The picture as a screen shows it, with all that comes after tracing.
     pub fn picture(&self) -> Vec<[f32; 3]> {
-        let rendered = render(&self.world, &self.camera, &self.settings, &|_, _| {});
+        let rendered = self.rendered();
         develop(&rendered.picture, &self.settings.output)
     }
 
     /// The same as a picture.
     pub(super) fn developed(&self) -> Picture {
-        let rendered = render(&self.world, &self.camera, &self.settings, &|_, _| {});
+        let rendered = self.rendered();
         shown(&rendered.picture, &self.settings)
+    }
+
+    fn rendered(&self) -> Rendered {
+        let camera = through_lens(&self.camera, &self.settings);
+        render(&self.world, &camera, &self.settings, &|_, _| {})
     }
 
     fn needs_again(&mut self) {

@@ -101,6 +101,7 @@ pub fn measure(subjects: &[Subject], options: &Options, watch: Watch) -> Section
             "front",
         ],
     );
+    let mut standings = Vec::new();
     for subject in subjects {
         let triangles = subject.triangles();
         if triangles.is_empty() {
@@ -124,7 +125,13 @@ pub fn measure(subjects: &[Subject], options: &Options, watch: Watch) -> Section
         section
             .findings
             .extend(finding(subject, &candidates, &rows, &leaks));
+        standings.extend(standing(&candidates, &rows));
         builders::measure(subject, &triangles, &rays, options, watch, &mut section);
+    }
+    if subjects.len() > 1 {
+        section
+            .findings
+            .splice(0..0, over_all(&candidates, &leaks, &standings));
     }
     section.summary = Some(section.tables.len());
     section.tables.push(summary);
@@ -292,6 +299,49 @@ fn front_plot(
         y: Axis::logarithmic("mean relative error of t"),
         series,
     }
+}
+
+/// Speeds of all kernels on one scene, ours first.
+fn standing(candidates: &[Candidate], rows: &[Row]) -> Option<Vec<f64>> {
+    let speeds: Vec<f64> = rows.iter().map(Row::speed).collect();
+    (speeds.len() == candidates.len()).then_some(speeds)
+}
+
+/// Ours against each of the others that come nearest, over all scenes.
+fn over_all(candidates: &[Candidate], leaks: &[Leaks], standings: &[Vec<f64>]) -> Option<String> {
+    let against = |other: usize| -> f64 {
+        let logs = standings
+            .iter()
+            .map(|speeds| (speeds[0] / speeds[other]).ln());
+        let (count, sum) = logs
+            .filter(|log| log.is_finite())
+            .fold((0.0, 0.0), |(n, s), l| (n + 1.0, s + l));
+        (sum / f64::max(count, 1.0)).exp()
+    };
+    let others = (0..candidates.len()).filter(|&i| !candidates[i].is_ours());
+    let mut ratios: Vec<(f64, usize)> = others.map(|i| (against(i), i)).collect();
+    ratios.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let said: Vec<String> = ratios
+        .iter()
+        .take(3)
+        .map(|&(ratio, i)| {
+            let leaks = 0.5 * (leaks[i].edges + leaks[i].vertices);
+            let (ratio, leaks) = (digits(ratio, 2), digits(leaks, 2));
+            format!(
+                "{ratio} times that of {} ({leaks} leaks a million)",
+                candidates[i].name()
+            )
+        })
+        .collect();
+    let ours = 0.5 * (leaks[0].edges + leaks[0].vertices);
+    (!standings.is_empty()).then(|| {
+        format!(
+            "Over {} scenes the speed of Glassbox on one thread, with {} leaks a million rays at edges and vertices, is {}.",
+            standings.len(),
+            digits(ours, 2),
+            said.join(", ")
+        )
+    })
 }
 
 fn finding(

@@ -105,9 +105,12 @@ impl Plain {
     }
 }
 
-fn across(random: &mut Random) -> Ray {
+/// From outside at a place on a random hair: rays that are aimed at nothing hardly ever meet one of so thin ones.
+fn at_hair(triangles: &[[Vec3; 3]], random: &mut Random) -> Ray {
+    let [a, b, c] = random.of(triangles);
+    let (u, v) = (random.unit(), random.unit());
     let origin = random.direction() * 3.0;
-    Ray::new(origin, random.cube() * 1.2 - origin)
+    Ray::new(origin, a + (b - a) * (u * (1.0 - v)) + (c - a) * v - origin)
 }
 
 /// Nanoseconds a ray, on one thread.
@@ -131,7 +134,7 @@ pub(super) fn hairball(effort: &Effort) -> Outcome {
     let tallies = pieces(rays, effort.seed, |random, count| {
         let (mut tally, mut near) = (Tally::default(), Vec::new());
         for _ in 0..count {
-            let ray = across(random);
+            let ray = at_hair(&triangles, random);
             plain.near(&ray, &mut near);
             tally.judge_among(&scene, &ray, scene.closest_hit(&ray), |_| {
                 near.iter().copied()
@@ -141,28 +144,38 @@ pub(super) fn hairball(effort: &Effort) -> Outcome {
     });
     let mut sum = Tally::default();
     tallies.into_iter().for_each(|tally| sum.add(tally));
-    // The plain tree itself: with every triangle in turn the verdicts are the same.
+    // The plain tree itself: it keeps what brute force finds, so that both judge alike the answer that was found, and the
+    // answer that there is nothing. (The band may differ: a triangle seen along its length is in it from afar.)
     let checked = (effort.rays / 10_000).clamp(10, 1_000);
     let differ: usize = pieces(checked, effort.seed + 1, |random, count| {
         let mut near = Vec::new();
         (0..count)
             .filter(|_| {
-                let ray = across(random);
-                let found = scene.closest_hit(&ray);
+                let ray = at_hair(&triangles, random);
                 plain.near(&ray, &mut near);
-                let (mut all, mut some) = (Tally::default(), Tally::default());
-                all.judge(&scene, &ray, found);
-                some.judge_among(&scene, &ray, found, |_| near.iter().copied());
-                (all.wrong, all.in_band, all.hits) != (some.wrong, some.in_band, some.hits)
+                [scene.closest_hit(&ray), None].into_iter().any(|found| {
+                    let (mut all, mut some) = (Tally::default(), Tally::default());
+                    all.judge(&scene, &ray, found);
+                    some.judge_among(&scene, &ray, found, |_| near.iter().copied());
+                    all.wrong != some.wrong
+                })
             })
             .count()
     })
     .into_iter()
     .sum();
     let mut random = Random::new(effort.seed + 2);
-    let timed: Vec<Ray> = (0..20_000).map(|_| across(&mut random)).collect();
+    let timed: Vec<Ray> = (0..20_000)
+        .map(|_| at_hair(&triangles, &mut random))
+        .collect();
     let pot = alone(teapot(), &BuildOptions::default());
-    let (hair, pot) = (time(&scene, &timed), time(&pot, &timed));
+    let at_pot: Vec<Ray> = (0..20_000)
+        .map(|_| {
+            let origin = Vec3::new(0.0, 0.9, 0.0) + random.direction() * 6.0;
+            Ray::new(origin, Vec3::new(0.0, 0.9, 0.0) + random.cube() - origin)
+        })
+        .collect();
+    let (hair, pot) = (time(&scene, &timed), time(&pot, &at_pot));
     let figures = format!(
         "{} triangles: {} hits, {} wrong, {} in the band; plain tree against brute force on {checked} rays: {differ} differ; \
          {} ns a ray, {} times a teapot's",
@@ -179,5 +192,5 @@ pub(super) fn hairball(effort: &Effort) -> Outcome {
             differ == 0,
             format!("the plain tree loses {differ} of {checked}"),
         )
-        .require(sum.hits * 20 > rays, "hardly a ray hits a hair")
+        .require(sum.hits * 2 > rays, "hardly a ray hits a hair")
 }

@@ -375,35 +375,44 @@ pub(super) fn map() -> Environment {
 pub(super) fn environment(effort: &Effort) -> Outcome {
     let environment = map();
     let count = (effort.rays / 100).clamp(200, 50_000);
-    let step = 1e-4_f32;
-    let (mut seam, mut poles) = (0.0_f32, 0.0_f32);
-    for i in 1..count {
-        let part = i as f32 / count as f32;
-        let (r, y) = (part * PI).sin_cos();
-        let left = environment.radiance(Vec3::new(-step * r, y, r));
-        let right = environment.radiance(Vec3::new(step * r, y, r));
-        seam = seam.max((left - right).abs().max_element());
-        let (sin, cos) = (part * TAU).sin_cos();
-        let side = Vec3::new(cos, 0.0, sin) * step;
-        for pole in [Vec3::Y, -Vec3::Y] {
-            let (here, there) = (
-                environment.radiance(side + pole),
-                environment.radiance(pole - side),
-            );
-            poles = poles.max((here - there).abs().max_element());
+    // The largest change over a step across the seam, and over the poles.
+    let changes = |step: f32| {
+        let (mut seam, mut poles) = (0.0_f32, 0.0_f32);
+        for i in 1..count {
+            let part = i as f32 / count as f32;
+            let (r, y) = (part * PI).sin_cos();
+            let left = environment.radiance(Vec3::new(-step * r, y, r));
+            let right = environment.radiance(Vec3::new(step * r, y, r));
+            seam = seam.max((left - right).abs().max_element());
+            let (sin, cos) = (part * TAU).sin_cos();
+            let side = Vec3::new(cos, 0.0, sin) * step;
+            for pole in [Vec3::Y, -Vec3::Y] {
+                let (here, there) = (
+                    environment.radiance(side + pole),
+                    environment.radiance(pole - side),
+                );
+                poles = poles.max((here - there).abs().max_element());
+            }
         }
-    }
-    // The map changes by at most 8 over a texel of π/8, and directions differ by 2e-4 radians.
-    let bound = 8.0 / (PI / 8.0) * 2.0 * step * 1.5;
+        [seam, poles]
+    };
+    // Where there is no jump a tenth of the step makes a tenth of the change, and rounding.
+    let (steps, tenths) = (changes(1e-2), changes(1e-3));
+    let [seam, poles] = [0, 1].map(|i| tenths[i] / steps[i].max(1e-3));
     let figures = format!(
-        "across the seam {}, over the poles {}; a step of 2e-4 may change it by {}",
+        "a tenth of the step: {} of the change across the seam, {} over the poles",
         digits(f64::from(seam), 2),
-        digits(f64::from(poles), 2),
-        digits(f64::from(bound), 2)
+        digits(f64::from(poles), 2)
     );
-    Outcome::new(3 * count, figures)
-        .require(seam < bound, format!("a jump of {seam} at the seam"))
-        .require(poles < bound, format!("a jump of {poles} at the poles"))
+    Outcome::new(6 * count, figures)
+        .require(
+            seam < 0.2,
+            format!("{seam} of the change is left at the seam"),
+        )
+        .require(
+            poles < 0.2,
+            format!("{poles} of the change is left at the poles"),
+        )
 }
 
 /// Whether the picture of nothing is its background.
