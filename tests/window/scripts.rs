@@ -35,3 +35,16 @@ fn a_claim_that_does_not_hold_says_what_was_found() {
         "{err}"
     );
 }
+
+#[test]
+fn the_scripts_that_come_with_glassbox_are_understood() {
+    let mut read = 0;
+    for entry in std::fs::read_dir(super::assets()).unwrap() {
+        let path = entry.unwrap().path();
+        if let Err(error) = glassbox::editor::Script::read(&path) {
+            panic!("{error}");
+        }
+        read += 1;
+    }
+    assert!(read > 0, "there are none");
+}
