@@ -5,9 +5,8 @@ use crate::scene::{
     RenderSettings, SceneCamera, SceneId, SegmentLamp, UsesMaterial,
 };
 use bevy::camera::visibility::Visibility;
-use bevy::ecs::reflect::ReflectComponent;
 use bevy::ecs::{hierarchy::ChildOf, name::Name, world::World};
-use bevy::reflect::{FromType, TypeRegistry};
+use bevy::reflect::TypeRegistry;
 use bevy::transform::components::Transform;
 use bevy::world_serialization::DynamicWorldBuilder;
 use std::any::TypeId;
@@ -47,7 +46,9 @@ macro_rules! bundle {
 
         /// Each kept component's type and how to reach it on an entity.
         #[cfg(feature = "editor")]
-        pub(crate) fn kept_components() -> Vec<(TypeId, ReflectComponent)> {
+        pub(crate) fn kept_components() -> Vec<(TypeId, bevy::ecs::reflect::ReflectComponent)> {
+            use bevy::ecs::reflect::ReflectComponent;
+            use bevy::reflect::FromType;
             vec![$((
                 TypeId::of::<$component>(),
                 <ReflectComponent as FromType<$component>>::from_type(),
