@@ -224,9 +224,16 @@ fn s6_visited_nodes_are_white_pruned_ones_red_and_the_hit_triangle_is_outlined()
     );
     let scene = Scene::of(stack(), along);
     let set = scene.lines(System::Visits, &inspect);
-    let red = |a: Vec3, b: Vec3| expect(&set, a, b, RED);
-    red(Vec3::new(2.0, -1.0, -1.0), Vec3::new(2.0, 1.0, -1.0));
-    red(Vec3::new(4.0, -1.0, -1.0), Vec3::new(6.0, -1.0, -1.0));
+    expect(
+        &set,
+        Vec3::new(4.0, -1.0, -1.0),
+        Vec3::new(6.0, -1.0, -1.0),
+        RED,
+    );
+    // The second square's box is flat, and its edges are also the first half's.
+    let second = |end: &Vec3| (end.x - 2.0).abs() < 1e-3;
+    let red = set.segments.iter().filter(|s| is_color(s.colors[0], RED));
+    assert_eq!(red.filter(|s| s.ends.iter().all(second)).count(), 8 + 4);
     // Top root, root, first half, first square.
     let count = |color| {
         set.segments
