@@ -60,6 +60,7 @@ pub enum Action {
     ShowSplit,
     TogglePause,
     Restart,
+    ShootRay,
     // Tools
     Move,
     Turn,
@@ -199,6 +200,7 @@ actions! {
     ShowSplit "Split view" [key(KeyCode::Digit3)] "Raster on the left, traced on the right; drag the line between"
     TogglePause "Pause or go on" [key(KeyCode::KeyP)] "The traced view stands still, and keeps what it has"
     Restart "Restart" [ctrl(KeyCode::KeyR)] "Renders the traced view from its first sample again"
+    ShootRay "Debug ray" [key(KeyCode::KeyR)] "Traces the pixel under the pointer again and draws its rays; beside the picture it takes them away"
     Move "Move" [key(KeyCode::KeyW)] "Drag the arrows to move the selection"
     Turn "Turn" [key(KeyCode::KeyE)] "Drag the rings to turn the selection"
     Scale "Scale" [key(KeyCode::KeyT)] "Drag the cubes to scale the selection"

@@ -5,6 +5,7 @@ use super::document::{DocumentPlugin, adopt};
 use super::edits::EditsPlugin;
 use super::handles::HandlesPlugin;
 use super::history::HistoryPlugin;
+use super::inspection::InspectionPlugin;
 use super::keys::KeysPlugin;
 use super::navigation::NavigationPlugin;
 use super::notice::Notices;
@@ -70,6 +71,7 @@ pub fn run(scene: SceneSource, script: Option<Script>) -> ExitCode {
         PointerPlugin,
         KeysPlugin,
         HandlesPlugin,
+        InspectionPlugin,
         PacePlugin,
     ))
     .add_message::<Action>()
