@@ -65,11 +65,6 @@ impl DebugRay {
     pub fn rays(&self) -> Option<&RayTree> {
         self.rays.as_ref()
     }
-
-    /// The picked pixel, counted from the picture's top left.
-    pub fn pixel(&self) -> Option<UVec2> {
-        Some(self.shot.as_ref()?.pixel)
-    }
 }
 
 /// R: the pixel under the pointer. Over nothing it takes the rays away.
