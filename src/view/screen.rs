@@ -1,8 +1,8 @@
 //! The traced picture as something that Bevy's renderer draws: a rectangle over the whole viewport
 //! with the depth of what was traced, so that gizmos are hidden by what they stand behind.
 //!
-//! It is drawn first of all transparent things: after the rasterised scene, which it covers where
-//! it shows, and before the gizmos.
+//! It is drawn after the opaque part of the rasterised scene, which it covers where it shows, and
+//! before gizmos.
 
 use crate::scene::NotTraced;
 use bevy::asset::{Asset, Assets, Handle, RenderAssetUsages, embedded_asset};
@@ -55,7 +55,9 @@ impl Material for ScreenMaterial {
     }
 
     fn alpha_mode(&self) -> AlphaMode {
-        AlphaMode::Blend
+        // These are drawn after what is opaque, and before gizmos, which are drawn first of all
+        // that is blended.
+        AlphaMode::Mask(0.5)
     }
 
     fn enable_prepass() -> bool {
@@ -82,14 +84,11 @@ impl Material for ScreenMaterial {
     }
 }
 
-/// Metres: farther than anything that is drawn.
-const FAR: f32 = 1e9;
-
 /// Marks the rectangle that belongs to a view.
 #[derive(Component)]
 pub(super) struct Screen;
 
-/// A rectangle over the whole viewport, far behind everything in the order of drawing.
+/// A rectangle over the whole viewport.
 pub(super) fn spawn_screen(
     commands: &mut Commands,
     meshes: &mut Assets<Mesh>,
@@ -117,8 +116,7 @@ pub(super) fn spawn_screen(
         NoFrustumCulling,
         NotShadowCaster,
         NotShadowReceiver,
-        // Among transparent things the farthest is drawn first; gizmos count as being at the camera.
-        Transform::from_xyz(0.0, 0.0, -FAR),
+        Transform::default(),
         layer,
     ));
     (entity.id(), handle)
