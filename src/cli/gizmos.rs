@@ -93,7 +93,7 @@ mod tests {
     fn what_is_no_setting_names_those_there_are() {
         for (text, part) in [
             ("box.on=true", "boxes.on"),
-            ("boxes=true", "choose one of its settings: on, choice"),
+            ("boxes=true", "choose one of its settings: on, form, choice"),
             ("boxes.on=maybe", "true or false"),
             ("boxes.object=-1", "whole number"),
         ] {

@@ -73,7 +73,8 @@ impl Display {
     /// Whether there is an adapter to draw with.
     fn draws(&self) -> bool {
         let folder = tempfile::tempdir().unwrap();
-        let output = self.play(folder.path(), &[], "[Quit]");
+        // A few frames: ended in its first, the software driver may still be compiling, and crash.
+        let output = self.play(folder.path(), &[], "[Wait(Frames(5)), Quit]");
         let (_, err) = crate::cli::texts(&output);
         if err.contains("no graphics adapter") {
             missing("there is no graphics adapter (Debian: mesa-vulkan-drivers)");

@@ -30,7 +30,7 @@ fn a_claim_that_does_not_hold_says_what_was_found() {
     let (_, err) = texts(&output);
     assert_eq!(output.status.code(), Some(1), "{err}");
     assert!(
-        err.contains("script.ron:3: Lamp's PointLamp.intensity is 0.26")
+        err.contains("script.ron:3: Lamp's PointLamp.intensity is 0.25999")
             && err.contains("0.5 ± 0.1"),
         "{err}"
     );

@@ -84,9 +84,9 @@ impl Script {
         let mut steps = Vec::with_capacity(raw.len());
         for raw in raw {
             let step = raw.get_ron();
-            // It is a part of `text`, white space before it included.
+            // It is a part of `text`, white space and comments before it included.
             let before = step.as_ptr() as usize - text.as_ptr() as usize;
-            let blank = step.len() - step.trim_start().len();
+            let blank = step.len() - without_comments(step).len();
             let line = 1 + text[..before + blank].matches('\n').count();
             let parsed = ron::from_str::<Step>(step).map_err(|error| {
                 let further = step[..]
@@ -112,6 +112,18 @@ impl Script {
     pub(super) fn play_in(self, app: &mut App) {
         player::add(app, Player::new(self));
     }
+}
+
+/// The text from its first step on: without the white space and the line comments before it.
+fn without_comments(text: &str) -> &str {
+    let mut rest = text.trim_start();
+    while rest.starts_with("//") {
+        rest = rest
+            .split_once('\n')
+            .map_or("", |(_, below)| below)
+            .trim_start();
+    }
+    rest
 }
 
 /// Whether a script is being played.

@@ -278,6 +278,7 @@ fn about(variant: &str) -> &'static str {
         "Sobol" => {
             "Well spread points: the error falls faster than one over the root of the samples"
         }
+        "Jittered" => "One random point in each cell of a grid: better than independent ones",
         "Independent" => "Independent random numbers, to compare with",
         "Area" => "Spread over the pixel: smooth edges",
         "Center" => "All at the pixel's centre: jagged edges",
