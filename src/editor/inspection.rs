@@ -154,6 +154,10 @@ struct Drawn {
 }
 
 /// Makes those sets again that may be others.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "a system's parameters are the list of what it reads"
+)]
 fn draw_inspection(
     mut commands: Commands,
     inspect: Res<InspectSettings>,
