@@ -4,12 +4,11 @@
 //! 50 ms at first, up to twice a second for a render that has been going on for long, as the gain
 //! of each pass becomes smaller (Cycles' render scheduler does the same).
 
-use super::screen::ndc;
 use crate::film::views::{Scale, Source, Sources, View, show};
-use crate::film::{FirstHits, Progressive, Snapshot, State};
-use crate::scene::{Output, Projection, RenderSettings};
-use crate::trace::{self, FirstHit, central_hits};
-use bevy::math::{UVec2, Vec3};
+use crate::film::{FirstHits, Progressive, Snapshot, State, depths, develop_rgba8};
+use crate::scene::{Output, RenderSettings};
+use crate::trace;
+use bevy::math::UVec2;
 use rayon::ThreadPool;
 use std::io;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -224,6 +223,10 @@ impl Job {
     }
 
     fn shown(&mut self) -> Option<(Vec<u8>, Option<Scale>)> {
+        if self.order.view == View::Shaded {
+            let bytes = develop_rgba8(&self.snapshot.picture, &self.order.output);
+            return Some((bytes, None));
+        }
         let (world, camera, settings) = &*self.subject;
         let source = self.order.view.source();
         let film = matches!(source, Source::Samples | Source::Errors).then(|| self.render.film());
@@ -259,35 +262,14 @@ impl Job {
         Some((bytes, shown.scale))
     }
 
-    /// Of the central rays of a picture that is small enough to be traced besides.
+    /// For a picture that is small enough to be traced besides.
     fn depths(&self) -> (UVec2, Vec<f32>) {
         let (world, camera, settings) = &*self.subject;
         let pixels = settings.size.as_vec2().element_product();
         let scale = (MOST_DEPTHS / pixels).sqrt().min(1.0);
         let size = (settings.size.as_vec2() * scale).as_uvec2().max(UVec2::ONE);
-        let settings = RenderSettings {
-            size,
-            ..settings.clone()
-        };
-        let places: Vec<UVec2> = (0..size.y)
-            .flat_map(|y| (0..size.x).map(move |x| UVec2::new(x, y)))
-            .collect();
-        let mut hits = vec![FirstHit::MISS; places.len()];
-        central_hits(world, camera, &settings, &places, &mut hits);
-        let along_axis = |place: UVec2| match camera.projection {
-            Projection::Orthographic { .. } => 1.0,
-            Projection::Perspective { fov_y } => {
-                let ndc = ndc(place.x, place.y, size.x, size.y);
-                let tan = (0.5 * fov_y).tan();
-                let aspect = size.x as f32 / size.y as f32;
-                Vec3::new(ndc.x * tan * aspect, ndc.y * tan, 1.0).length_recip()
-            }
-        };
-        let depths = places
-            .iter()
-            .zip(&hits)
-            .map(|(&place, hit)| (hit.depth * along_axis(place)).min(1e30))
-            .collect();
-        (size, depths)
+        let depths = depths(world, camera, settings, size);
+        // Finite, so that the shader's arithmetic is.
+        (size, depths.into_iter().map(|d| d.min(1e30)).collect())
     }
 }

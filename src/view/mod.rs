@@ -23,6 +23,7 @@ pub mod lines;
 mod pick;
 pub mod raster;
 mod screen;
+mod sketch;
 mod standard;
 mod symbols;
 mod traced;

@@ -11,7 +11,7 @@ use bevy::image::{Image, ImageSampler, TextureFormatPixelInfo};
 use bevy::light::{NotShadowCaster, NotShadowReceiver};
 use bevy::mesh::{Indices, Mesh, Mesh3d, MeshVertexBufferLayoutRef, PrimitiveTopology};
 use bevy::pbr::{Material, MaterialPipeline, MaterialPipelineKey, MaterialPlugin, MeshMaterial3d};
-use bevy::prelude::{AlphaMode, App, Commands, Component, Plugin, Transform, Vec2, Vec3, Vec4};
+use bevy::prelude::{AlphaMode, App, Commands, Component, Plugin, Transform, Vec3, Vec4};
 use bevy::reflect::TypePath;
 use bevy::render::render_resource::{
     AsBindGroup, CompareFunction, Extent3d, RenderPipelineDescriptor, SpecializedMeshPipelineError,
@@ -171,12 +171,4 @@ pub(super) fn depth_numbers(projection: &bevy::camera::Projection) -> [f32; 3] {
 pub(super) fn numbers(divider: f32, projection: &bevy::camera::Projection) -> Vec4 {
     let [near, offset, slope] = depth_numbers(projection);
     Vec4::new(divider, near, offset, slope)
-}
-
-/// Where the middle of a pixel is, from -1 to 1, y up.
-pub(super) fn ndc(x: u32, y: u32, width: u32, height: u32) -> Vec2 {
-    Vec2::new(
-        (x as f32 + 0.5) / width as f32 * 2.0 - 1.0,
-        1.0 - (y as f32 + 0.5) / height as f32 * 2.0,
-    )
 }
