@@ -6,28 +6,24 @@
 //! view, moves it.
 
 mod eye;
+mod obey;
 
 pub use eye::Eye;
 
-use super::action::{Action, Addition, Axis};
 use super::edits::{self, AddAt};
-use super::extent::{extent_of, scene_extent, world_from_entity, world_from_parent};
-use super::history::{Gesture, History};
-use super::notice::Notices;
+use super::extent::{scene_extent, world_from_entity, world_from_parent};
+use super::history::Gesture;
 use super::pointer::PointerUse;
-use super::selection::Selection;
-use super::viewport::{EditorCamera, Show, Viewport};
+use super::viewport::{EditorCamera, Viewport};
 use crate::scene::{Projection as SceneProjection, SceneCamera, SceneId};
-use crate::view::{TracedRender, TracedView};
+use crate::view::TracedView;
 use bevy::app::{App, Plugin, PostUpdate, Update};
 use bevy::camera::{
     Camera, OrthographicProjection, PerspectiveProjection, Projection, ScalingMode,
 };
-use bevy::ecs::entity::Entity;
-use bevy::ecs::message::{MessageCursor, Messages};
 use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
-use bevy::ecs::system::{Local, Res, ResMut, Single};
+use bevy::ecs::system::{Res, ResMut, Single};
 use bevy::ecs::world::World;
 use bevy::input::ButtonInput;
 use bevy::input::keyboard::KeyCode;
@@ -60,7 +56,7 @@ impl Plugin for NavigationPlugin {
             .init_resource::<FlySpeed>()
             .add_systems(
                 Update,
-                (obey, fly, see_through, settle, aim_additions)
+                (obey::obey, fly, see_through, settle, aim_additions)
                     .chain()
                     .after(super::pointer::use_pointer),
             )
@@ -130,7 +126,7 @@ fn settle(world: &mut World) {
         return;
     };
     if world.resource::<LookThrough>().camera.is_none() {
-        frame(world, true);
+        obey::frame(world, true);
         return;
     }
     let mut eye = world.resource_mut::<Eye>();
@@ -149,10 +145,6 @@ fn aspect(world: &World) -> f32 {
     } else {
         1.0
     }
-}
-
-fn entity_of(world: &mut World, id: SceneId) -> Option<Entity> {
-    edits::scene_entity(world, id)
 }
 
 /// Changes the view as a hand does: a locked camera comes along, another one is left.
@@ -174,7 +166,7 @@ pub(super) fn move_view(world: &mut World, change: impl FnOnce(&mut Eye)) {
 
 /// Puts a camera of the scene where the eye is.
 fn move_camera(world: &mut World, id: SceneId, eye: &Eye) {
-    let Some(entity) = entity_of(world, id) else {
+    let Some(entity) = edits::scene_entity(world, id) else {
         return;
     };
     let parent = world_from_parent(world, entity);
@@ -360,148 +352,12 @@ fn fly(world: &mut World) {
     });
 }
 
-/// Does what was asked for of the view.
-fn obey(world: &mut World, mut cursor: Local<MessageCursor<Action>>) {
-    let messages = world.resource::<Messages<Action>>();
-    let actions: Vec<Action> = cursor.read(messages).cloned().collect();
-    for action in actions {
-        match action {
-            Action::FrameSelected => frame(world, false),
-            Action::FrameAll => frame(world, true),
-            Action::LookAlong(axis) => look_along(world, axis),
-            Action::ToggleProjection => {
-                begin_gesture(world);
-                let back = back(world);
-                move_view(world, |eye| {
-                    eye.orthographic = !eye.orthographic;
-                    eye.back = back;
-                });
-                end_gesture(world);
-            }
-            Action::LookThrough(camera) => look_through(world, camera),
-            Action::ToggleCamera => toggle_camera(world),
-            Action::ToggleLock => {
-                let mut through = world.resource_mut::<LookThrough>();
-                through.locked = !through.locked;
-                let text = if through.locked {
-                    "Moving the view moves the camera that it looks through."
-                } else {
-                    "Moving the view leaves the camera that it looks through."
-                };
-                world.resource_mut::<Notices>().tell(text);
-            }
-            Action::AddBookmark => add_bookmark(world),
-            Action::ShowRaster => show(world, Show::Raster),
-            Action::ShowTraced => show(world, Show::Traced),
-            Action::ShowSplit => show(world, Show::Split),
-            Action::TogglePause => {
-                let mut views = world.query_filtered::<&mut TracedView, With<EditorCamera>>();
-                for mut view in views.iter_mut(world) {
-                    view.paused = !view.paused;
-                }
-            }
-            Action::Restart => {
-                let mut renders = world.query_filtered::<&mut TracedRender, With<EditorCamera>>();
-                for mut render in renders.iter_mut(world) {
-                    render.restart();
-                }
-            }
-            _ => {}
-        }
-    }
-}
-
-fn show(world: &mut World, show: Show) {
-    world.resource_mut::<Viewport>().show = show;
-}
-
-fn frame(world: &mut World, all: bool) {
-    let selected = world.resource::<Selection>().ids().to_vec();
-    let extent = if all || selected.is_empty() {
-        scene_extent(world)
-    } else {
-        extent_of(world, &selected)
-    };
-    let Some(extent) = extent else {
-        return;
-    };
-    let scene = scene_extent(world).map_or(1.0, |scene| scene.radius());
-    // What has no size, a light for example, is shown with what is around it.
-    let radius = match extent.radius() {
-        radius if radius > 1e-3 * scene => radius,
-        _ => (0.1 * scene).max(1e-3),
-    };
-    let aspect = aspect(world);
-    let back = back(world);
-    begin_gesture(world);
-    move_view(world, |eye| {
-        eye.back = back;
-        eye.frame(extent.centre(), radius, aspect);
-    });
-    end_gesture(world);
-}
-
-/// How far an orthographic view has to stand back to have all of the scene before it.
-fn back(world: &mut World) -> f32 {
-    let pivot = world.resource::<Eye>().pivot;
-    scene_extent(world).map_or(0.0, |extent| {
-        extent.radius() + extent.centre().distance(pivot)
-    })
-}
-
-fn look_along(world: &mut World, axis: Axis) {
-    let back = back(world);
-    // Leaves a camera even where it is locked: an axis view is for looking, not for taking pictures.
-    world.resource_mut::<LookThrough>().camera = None;
-    let mut eye = world.resource_mut::<Eye>();
-    eye.look_along(axis);
-    eye.back = back;
-}
-
-fn look_through(world: &mut World, camera: Option<SceneId>) {
-    let mut through = world.resource_mut::<LookThrough>();
-    through.camera = camera;
-    through.seen = None;
-    if camera.is_none() {
-        let mut eye = world.resource_mut::<Eye>();
-        eye.roll = 0.0;
-    }
-}
-
-/// Through the selected camera, or the first one; freely where it was looked through already.
-fn toggle_camera(world: &mut World) {
-    let mut cameras = world.query_filtered::<&SceneId, With<SceneCamera>>();
-    let cameras: Vec<SceneId> = cameras.iter(world).copied().collect();
-    let selected = world.resource::<Selection>().ids().iter().rev();
-    let chosen = selected
-        .copied()
-        .find(|id| cameras.contains(id))
-        .or_else(|| cameras.iter().min().copied());
-    let Some(chosen) = chosen else {
-        let text = "The scene has no camera; Ctrl+B adds one where the view stands.";
-        world.resource_mut::<Notices>().tell(text);
-        return;
-    };
-    let now = world.resource::<LookThrough>().camera;
-    look_through(world, (now != Some(chosen)).then_some(chosen));
-}
-
-fn add_bookmark(world: &mut World) {
-    let eye = world.resource::<Eye>().clone();
-    let Some(id) = edits::add(world, &Addition::Camera, AddAt::default()) else {
-        return;
-    };
-    move_camera(world, id, &eye);
-    world.resource_mut::<History>().name_next("Keep this view");
-    look_through(world, Some(id));
-}
-
 /// Follows the camera that is looked through.
 fn see_through(world: &mut World) {
     let Some(id) = world.resource::<LookThrough>().camera else {
         return;
     };
-    let found = entity_of(world, id).and_then(|entity| {
+    let found = edits::scene_entity(world, id).and_then(|entity| {
         let projection = world.get::<SceneCamera>(entity)?.projection;
         let (_, rotation, translation) =
             world_from_entity(world, entity)?.to_scale_rotation_translation();
