@@ -109,7 +109,8 @@ impl Session {
             .collect();
         app.update();
         app.insert_resource(TreeBuilding::InBackground);
-        let show = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+        let threads = rayon::current_num_threads().min(4);
+        let show = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         Self {
             object: object.expect("an object"),
             light,

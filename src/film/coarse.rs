@@ -16,8 +16,11 @@ impl Engine {
         let area = self.area;
         let focus = lock(&self.queue).focus();
         let mut preview = Preview::new(area);
-        let (seconds, rays) = time_samples(&self.subject, &mut preview, focus, &self.batch);
-        let coarsest = first_divider(area.extent, seconds / rayon::current_num_threads() as f64);
+        let ((seconds, rays), threads) = self.on_threads(|| {
+            let timed = time_samples(&self.subject, &mut preview, focus, &self.batch);
+            (timed, rayon::current_num_threads())
+        });
+        let coarsest = first_divider(area.extent, seconds / threads as f64);
         self.note_rays(rays);
         *lock(&self.preview) = Some(preview);
         let mut divider = coarsest;
@@ -28,11 +31,11 @@ impl Engine {
             let mut squares = lattice_squares(area.extent, divider);
             while !squares.is_empty() {
                 // Those that were not done when a pause came are tried again; what they had is kept.
-                squares = squares
-                    .into_par_iter()
-                    .with_max_len(1)
-                    .filter(|square| !self.preview_square(*square, divider))
-                    .collect();
+                squares = self.on_threads(|| {
+                    let squares = squares.into_par_iter().with_max_len(1);
+                    let left = squares.filter(|square| !self.preview_square(*square, divider));
+                    left.collect()
+                });
                 if let Some(ending) = self.interrupted() {
                     return Some(ending);
                 }

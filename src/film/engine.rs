@@ -12,10 +12,11 @@ use super::tiles::{Tile, TileGrid};
 use crate::trace::RayCounts;
 use bevy::math::URect;
 use glam::{UVec2, Vec2};
+use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
-use std::sync::{Condvar, Mutex, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::Duration;
 
 /// How a render goes about it. The samples are the same.
@@ -33,6 +34,8 @@ pub(super) struct Mode {
 pub(super) struct Engine {
     pub subject: Subject,
     pub mode: Mode,
+    /// Whose threads trace; without one those of the caller's pool.
+    pub pool: Option<Arc<ThreadPool>>,
     pub grid: TileGrid,
     pub tiles: Vec<Mutex<TileState>>,
     /// Those that are rendered, and the rectangle that they make.
@@ -60,7 +63,7 @@ struct Progress {
 }
 
 impl Engine {
-    pub fn new(subject: Subject, mode: Mode) -> Self {
+    pub fn new(subject: Subject, mode: Mode, pool: Option<Arc<ThreadPool>>) -> Self {
         static COUNT: AtomicU64 = AtomicU64::new(0);
         let grid = TileGrid::new(subject.settings.size);
         let (rendered, area) = grid.within(mode.region);
@@ -82,6 +85,7 @@ impl Engine {
             area,
             subject,
             mode,
+            pool,
             grid,
         }
     }
@@ -151,11 +155,20 @@ impl Engine {
         }
     }
 
+    /// Works on the threads that trace. What waits does so outside, lest a paused render keeps a thread
+    /// from others.
+    pub(super) fn on_threads<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+        match &self.pool {
+            Some(pool) => pool.install(work),
+            None => work(),
+        }
+    }
+
     /// Works on what is queued until nothing is left, or something else ends the render.
     fn run_queue(&self, told: &(dyn Fn(&Self) + Sync)) -> Option<Ending> {
         loop {
             let waiting = lock(&self.queue).len();
-            (0..waiting).into_par_iter().with_max_len(1).for_each(|_| {
+            let next_chunk = |_| {
                 if self.must_stop() {
                     return;
                 }
@@ -167,6 +180,10 @@ impl Engine {
                         lock(&self.queue).push(chunk);
                     }
                 }
+            };
+            self.on_threads(|| {
+                let chunks = (0..waiting).into_par_iter().with_max_len(1);
+                chunks.for_each(next_chunk);
             });
             if let Some(ending) = self.interrupted() {
                 return Some(ending);

@@ -27,6 +27,7 @@ mod gaussian;
 mod passes;
 mod per_pixel;
 mod picture;
+mod pool;
 mod preview;
 mod progressive;
 mod queue;

@@ -2,6 +2,7 @@
 
 use super::control::Signal;
 use super::engine::{Engine, Mode};
+use super::pool::watched_pool;
 use super::sample_chunk::Subject;
 use super::{Ending, Film, Snapshot, Status};
 use crate::scene::RenderSettings;
@@ -27,8 +28,9 @@ pub struct Progressive {
 }
 
 impl Progressive {
-    /// Begins to render on rayon's global pool what [`render`](super::render()) renders, from the
-    /// picture's middle outwards. The error is that of a system which has no more threads.
+    /// Begins to render what [`render`](super::render()) renders, from the picture's middle outwards, on
+    /// threads that all such renders share and that give way to others. The error is that of a system
+    /// which has no more threads.
     pub fn start(world: World, camera: Camera, settings: RenderSettings) -> io::Result<Self> {
         Self::start_region(world, camera, settings, None)
     }
@@ -53,7 +55,7 @@ impl Progressive {
             samples,
             region,
         };
-        let engine = Arc::new(Engine::new(subject, mode));
+        let engine = Arc::new(Engine::new(subject, mode, Some(watched_pool()?)));
         engine.set_focus(engine.area.center());
         let (lets_worker_go, told) = channel::<()>();
         let worker = Worker(engine.clone());

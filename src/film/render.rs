@@ -63,6 +63,7 @@ pub fn render_samples(
             samples,
             region: None,
         },
+        None,
     );
     let ending = engine.run(&|engine| progress(&engine.status()));
     let status = engine.status();

@@ -152,7 +152,7 @@ mod tests {
             samples: 0..2,
             region: None,
         };
-        Engine::new(subject, mode)
+        Engine::new(subject, mode, None)
     }
 
     #[test]

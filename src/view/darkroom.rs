@@ -4,6 +4,7 @@
 //! 50 ms at first, up to twice a second for a render that has been going on for long, as the gain
 //! of each pass becomes smaller (Cycles' render scheduler does the same).
 
+use crate::bvh::Aggregate;
 use crate::film::views::{Scale, Source, Sources, View, show};
 use crate::film::{FirstHits, Progressive, Snapshot, State, depths, develop_rgba8};
 use crate::scene::{Output, RenderSettings};
@@ -24,6 +25,8 @@ const FIRST: Duration = Duration::from_millis(2);
 const MOST_DEPTHS: f32 = 120_000.0;
 /// Samples a pixel of those views that are made of first hits.
 const VIEW_SAMPLES: u32 = 4;
+/// That develop, at most: the work is small.
+const THREADS: usize = 4;
 
 /// How prints are made.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +41,8 @@ pub(super) struct Print {
     pub size: UVec2,
     /// RGBA.
     pub bytes: Vec<u8>,
-    /// Metres along the view axis, with the size of their own; only with the first print.
+    /// Metres along the view axis, with the size of their own; `None` where those of the print before
+    /// are still true, or come with the next.
     pub depths: Option<(UVec2, Vec<f32>)>,
     pub scale: Option<Scale>,
     /// Which render it is of: the address of its [`Progressive`].
@@ -65,9 +69,9 @@ impl Darkroom {
     pub fn open() -> io::Result<Self> {
         let (tasks, inbox) = channel();
         let newest = Arc::new(Mutex::new(None));
-        // Its own: the tracer's threads are busy for a whole pass.
+        // Its own: the tracer's threads are busy for a whole pass, and give way to these.
         let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(1)
+            .num_threads(rayon::current_num_threads().min(THREADS))
             .thread_name(|_| "darkroom".into())
             .build()
             .map_err(io::Error::other)?;
@@ -104,9 +108,8 @@ struct Job {
     render: Arc<Progressive>,
     subject: Box<Subject>,
     order: Box<Order>,
-    snapshot: Snapshot,
     first_hits: Option<FirstHits>,
-    depths_sent: bool,
+    printed: bool,
     ended: bool,
     next: Instant,
     started: Instant,
@@ -115,11 +118,37 @@ struct Job {
 struct Developer {
     newest: Arc<Mutex<Option<Print>>>,
     job: Option<Job>,
+    /// Outlives a job: what a new render has no picture of yet shows the one before.
+    snapshot: Snapshot,
+    /// Of what the newest depths are.
+    depths_of: Option<DepthsOf>,
+}
+
+/// All that depths depend on.
+#[derive(PartialEq)]
+struct DepthsOf {
+    /// Kept, lest another is made at its address.
+    trees: KeptTrees,
+    camera: trace::Camera,
+    size: UVec2,
+}
+
+struct KeptTrees(Arc<Aggregate>);
+
+impl PartialEq for KeptTrees {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
 }
 
 impl Developer {
     fn new(newest: Arc<Mutex<Option<Print>>>) -> Self {
-        Self { newest, job: None }
+        Self {
+            newest,
+            job: None,
+            snapshot: Snapshot::black(UVec2::ZERO),
+            depths_of: None,
+        }
     }
 
     /// Until the darkroom is closed.
@@ -143,14 +172,31 @@ impl Developer {
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => return,
             }
-            if let Some(job) = self.job.as_mut()
-                && Instant::now() >= job.next
+            let Self {
+                job: Some(job),
+                snapshot,
+                depths_of,
+                ..
+            } = &mut self
+            else {
+                continue;
+            };
+            if Instant::now() >= job.next
                 && !job.ended
-                && let Some(print) = pool.install(|| job.print())
+                && let Some(print) = pool.install(|| job.print(snapshot, depths_of))
             {
-                *self.newest.lock().unwrap_or_else(PoisonError::into_inner) = Some(print);
+                self.put_up(print);
             }
         }
+    }
+
+    fn put_up(&self, mut print: Print) {
+        let mut newest = self.newest.lock().unwrap_or_else(PoisonError::into_inner);
+        // Depths that nobody has taken yet are still the newest.
+        if let (None, Some(before)) = (&print.depths, newest.take()) {
+            print.depths = before.depths;
+        }
+        *newest = Some(print);
     }
 
     fn take_on(&mut self, task: Task) {
@@ -173,16 +219,15 @@ impl Developer {
                 if let Some(job) = same {
                     job.order = order;
                     job.ended = false;
-                    job.snapshot = job.render.snapshot();
+                    job.printed = false;
                     job.next = now;
                 } else {
                     self.job = Some(Job {
-                        snapshot: render.snapshot(),
                         render,
                         subject,
                         order,
                         first_hits: None,
-                        depths_sent: false,
+                        printed: false,
                         ended: false,
                         next: now,
                         started: now,
@@ -195,24 +240,43 @@ impl Developer {
 
 impl Job {
     /// A print where there is anything new.
-    fn print(&mut self) -> Option<Print> {
+    fn print(
+        &mut self,
+        snapshot: &mut Snapshot,
+        depths_of: &mut Option<DepthsOf>,
+    ) -> Option<Print> {
         let status = self.render.status();
         let ended = matches!(status.state, State::Ended(_));
-        let changed = self.render.refresh(&mut self.snapshot);
-        let begun = status.rays.total() > 0;
-        if !begun {
+        if status.divider.is_none() && !ended {
             self.next = Instant::now() + FIRST;
             return None;
         }
-        self.ended = ended;
+        let changed = self.render.refresh(snapshot);
+        let (world, camera, settings) = &*self.subject;
+        let wanted = DepthsOf {
+            trees: KeptTrees(world.aggregate.clone()),
+            camera: camera.clone(),
+            size: settings.size,
+        };
+        // The first picture does not wait for them, but the last shows them.
+        let new_depths = depths_of.as_ref() != Some(&wanted);
+        let depths = (new_depths && (self.printed || ended)).then(|| self.depths());
+        if depths.is_some() {
+            *depths_of = Some(wanted);
+        }
         let age = self.started.elapsed();
-        self.next = Instant::now() + (age / 10).clamp(INTERVAL[0], INTERVAL[1]);
-        if !changed && self.depths_sent && !ended && self.order.view == View::Shaded {
+        self.next = Instant::now()
+            + match new_depths && depths.is_none() {
+                true => FIRST,
+                false => (age / 10).clamp(INTERVAL[0], INTERVAL[1]),
+            };
+        let stands = self.printed && self.order.view == View::Shaded;
+        if !changed && depths.is_none() && !ended && stands {
             return None;
         }
-        let (shown, scale) = self.shown()?;
-        let depths = (!self.depths_sent).then(|| self.depths());
-        self.depths_sent = true;
+        self.ended = ended;
+        let (shown, scale) = self.shown(snapshot)?;
+        self.printed = true;
         Some(Print {
             size: self.subject.2.size,
             bytes: shown,
@@ -222,9 +286,9 @@ impl Job {
         })
     }
 
-    fn shown(&mut self) -> Option<(Vec<u8>, Option<Scale>)> {
+    fn shown(&mut self, snapshot: &Snapshot) -> Option<(Vec<u8>, Option<Scale>)> {
         if self.order.view == View::Shaded {
-            let bytes = develop_rgba8(&self.snapshot.picture, &self.order.output);
+            let bytes = develop_rgba8(&snapshot.picture, &self.order.output);
             return Some((bytes, None));
         }
         let (world, camera, settings) = &*self.subject;
@@ -241,7 +305,7 @@ impl Job {
         let counts = film.as_ref().map(|film| film.counts());
         let errors = film.as_ref().map(|film| film.relative_errors());
         let sources = Sources {
-            picture: Some(&self.snapshot.picture),
+            picture: Some(&snapshot.picture),
             first_hits: self.first_hits.as_ref(),
             samples: counts.as_deref().map(|counts| (settings.size, counts)),
             errors: errors.as_deref().map(|errors| (settings.size, errors)),

@@ -10,7 +10,7 @@ use super::screen::{
     Screen, ScreenMaterial, depth_image, no_picture, numbers, picture_image, spawn_screen,
 };
 use crate::film::views::{Scale, View};
-use crate::film::{Progressive, Status};
+use crate::film::{Progressive, State, Status};
 use crate::scene::{self, Output, RenderSettings, SceneId};
 use crate::sync::{SyncSystems, Traced, TracedCameras};
 use crate::trace;
@@ -34,6 +34,9 @@ use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 use bevy::transform::components::GlobalTransform;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
+
+/// A render that is to be replaced may take so long to its first picture.
+const LONGEST_WAIT: Duration = Duration::from_millis(100);
 
 /// Starts, restarts and shows renders. Needs [`SyncPlugin`](crate::sync::SyncPlugin) and a window.
 pub struct TracedViewPlugin;
@@ -164,6 +167,20 @@ impl TracedRender {
         self.retire();
     }
 
+    /// Whether a render that has just begun shall show its first picture before another takes its
+    /// place: while something is dragged every frame begins one, and none would ever be seen.
+    fn is_awaited(&self, size: UVec2) -> bool {
+        let Some(running) = &self.running else {
+            return false;
+        };
+        let of = Arc::as_ptr(&running.render) as usize;
+        !running.paused
+            && running.settings.size == size
+            && running.started.elapsed() < LONGEST_WAIT
+            && self.shown.as_ref().is_none_or(|shown| shown.of != of)
+            && !matches!(running.render.status().state, State::Ended(_))
+    }
+
     fn retire(&mut self) {
         if let Some(running) = self.running.take() {
             running.render.cancel();
@@ -275,6 +292,9 @@ fn follow(
                 && running.camera == camera
                 && running.settings == wanted
         });
+        if !same && render.is_awaited(size) {
+            continue;
+        }
         if !same {
             let started = Instant::now();
             render.retire();
