@@ -20,19 +20,10 @@ pub struct Meaning {
     pub says: &'static str,
 }
 
-/// What is drawn with these settings, in the order in which the systems are. Rays count where there
-/// are some of their kind.
-pub fn legend(inspect: &InspectSettings, rays: Option<&RayTree>) -> Vec<Meaning> {
+/// What the colours of a system's lines mean with these settings. Rays count where there are some of
+/// their kind.
+pub fn legend(system: System, inspect: &InspectSettings, rays: Option<&RayTree>) -> Vec<Meaning> {
     let mut all = Vec::new();
-    for system in System::ALL {
-        if system.is_on(inspect) {
-            add(&mut all, system, inspect, rays);
-        }
-    }
-    all
-}
-
-fn add(all: &mut Vec<Meaning>, system: System, inspect: &InspectSettings, rays: Option<&RayTree>) {
     let mut say = |colors: &[LinearRgba], says| {
         all.push(Meaning {
             colors: colors.to_vec(),
@@ -61,7 +52,7 @@ fn add(all: &mut Vec<Meaning>, system: System, inspect: &InspectSettings, rays: 
                 BoxColor::Visits => say(&scale, "boxes, from never entered to most often"),
             }
             if boxes.form == TreeForm::Wide {
-                return;
+                return all;
             }
             if boxes.split_planes {
                 say(&AXES, "planes that split across x, y, z");
@@ -94,7 +85,7 @@ fn add(all: &mut Vec<Meaning>, system: System, inspect: &InspectSettings, rays: 
         System::Lobes => {
             let blurred =
                 |ray: &&TracedRay| matches!(ray.kind, RayKind::Gloss | RayKind::Translucency);
-            if rays.is_some_and(|tree| tree.rays.iter().any(|ray| blurred(&ray))) {
+            if shown.iter().any(blurred) {
                 say(&[CYAN], "the disc that directions are drawn from");
                 say(&[YELLOW], "where each ray passes it");
             }
@@ -130,6 +121,7 @@ fn add(all: &mut Vec<Meaning>, system: System, inspect: &InspectSettings, rays: 
             }
         }
     }
+    all
 }
 
 #[cfg(test)]
@@ -138,34 +130,19 @@ mod tests {
     use crate::inspect::InspectPreset;
 
     #[test]
-    fn nothing_is_explained_that_is_not_drawn() {
-        let inspect = InspectSettings::default();
-        // The debug rays are switched on, but there are none.
-        assert!(
-            legend(&inspect, None)
-                .iter()
-                .all(|meaning| meaning.colors != [WHITE])
-        );
-        let off = InspectSettings {
-            on: false,
-            lens: true,
-            ..inspect
-        };
-        assert_eq!(legend(&off, None), []);
-    }
-
-    #[test]
-    fn every_system_that_needs_no_ray_is_explained() {
+    fn every_system_that_is_drawn_without_a_ray_is_explained_and_no_other() {
         let mut inspect = InspectPreset::WhereIsTheNoiseFrom.settings();
-        inspect.boxes.on = true;
         inspect.boxes.split_planes = true;
-        inspect.normals.on = true;
-        let says: Vec<_> = legend(&inspect, None).iter().map(|m| m.says).collect();
-        for word in ["boxes", "split", "normals", "lights", "aperture", "shutter"] {
-            assert!(
-                says.iter().any(|text| text.contains(word)),
-                "{word}: {says:?}"
-            );
+        for system in System::ALL {
+            let meanings = legend(system, &inspect, None);
+            let needs_rays = matches!(system, System::Visits | System::Lobes | System::Rays);
+            assert_eq!(meanings.is_empty(), needs_rays, "{system:?}: {meanings:?}");
+            assert!(meanings.iter().all(|meaning| !meaning.colors.is_empty()));
         }
+        let boxes = legend(System::Boxes, &inspect, None);
+        assert!(boxes.iter().any(|meaning| meaning.colors == AXES));
+        inspect.boxes.split_planes = false;
+        let boxes = legend(System::Boxes, &inspect, None);
+        assert!(boxes.iter().all(|meaning| meaning.colors != AXES));
     }
 }

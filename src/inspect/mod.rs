@@ -18,7 +18,7 @@
 //! | motion | where moving things stand when the shutter opens and closes |
 //!
 //! Beside lines: [`pattern`], where the samples of a pixel lie; [`Traversal`], the way of a ray
-//! through the trees step by step; [`legend`], what the colours of the lines mean; [`compare_builders`], each builder's tree in numbers;
+//! through the trees step by step; [`legend()`], what the colours of the lines mean; [`compare_builders`], each builder's tree in numbers;
 //! [`draw_over`], lines over a picture without a GPU; [`Document`], all of it as one file.
 
 mod boxes;

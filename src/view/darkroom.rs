@@ -99,6 +99,18 @@ impl Darkroom {
     }
 }
 
+/// In place of a print that nobody has taken. The depths, which come with a render's first print
+/// alone, are not lost with that.
+fn put_on(shelf: &mut Option<Print>, mut print: Print) {
+    if let Some(before) = shelf.take()
+        && before.of == print.of
+        && print.depths.is_none()
+    {
+        print.depths = before.depths;
+    }
+    *shelf = Some(print);
+}
+
 /// What is being developed.
 struct Job {
     render: Arc<Progressive>,
@@ -148,7 +160,8 @@ impl Developer {
                 && !job.ended
                 && let Some(print) = pool.install(|| job.print())
             {
-                *self.newest.lock().unwrap_or_else(PoisonError::into_inner) = Some(print);
+                let mut shelf = self.newest.lock().unwrap_or_else(PoisonError::into_inner);
+                put_on(&mut shelf, print);
             }
         }
     }
@@ -271,5 +284,37 @@ impl Job {
         let depths = depths(world, camera, settings, size);
         // Finite, so that the shader's arithmetic is.
         (size, depths.into_iter().map(|d| d.min(1e30)).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn print(of: usize, depths: Option<f32>) -> Print {
+        Print {
+            size: UVec2::ONE,
+            bytes: vec![0; 4],
+            depths: depths.map(|depth| (UVec2::ONE, vec![depth])),
+            scale: None,
+            of,
+        }
+    }
+
+    #[test]
+    fn depths_outlive_a_print_that_nobody_took_but_not_its_render() {
+        let mut shelf = None;
+        put_on(&mut shelf, print(1, Some(3.0)));
+        put_on(&mut shelf, print(1, None));
+        put_on(&mut shelf, print(1, None));
+        let depths = |shelf: &Option<Print>| {
+            let print = shelf.as_ref().unwrap();
+            print.depths.as_ref().map(|(_, depths)| depths[0])
+        };
+        assert_eq!(depths(&shelf), Some(3.0));
+        put_on(&mut shelf, print(2, None));
+        assert_eq!(depths(&shelf), None);
+        put_on(&mut shelf, print(2, Some(5.0)));
+        assert_eq!(depths(&shelf), Some(5.0));
     }
 }

@@ -144,7 +144,7 @@ impl Pair {
 const NEAR: f32 = 22.0;
 const CHANGED: f32 = 12.0;
 /// A line that covers less of its pixels than this is none.
-const COVERS: f32 = 0.3;
+const COVERS: f32 = 0.2;
 
 /// The largest difference of a channel.
 fn apart(a: [u8; 3], b: [u8; 3]) -> f32 {

@@ -11,7 +11,8 @@ use crate::trace::RayTree;
 use bevy::color::{ColorToPacked, LinearRgba, Srgba};
 use bevy::ecs::world::World;
 use bevy_egui::egui::{
-    self, Align2, Color32, FontId, Id, Mesh, Rect, RichText, Sense, Ui, pos2, vec2,
+    self, Align2, Color32, FontId, Id, Mesh, Rect, RichText, Sense, Stroke, StrokeKind, Ui, pos2,
+    vec2,
 };
 
 /// Extent of a line in the legend, in points.
@@ -44,7 +45,11 @@ impl LineTexts {
         });
         Self {
             version: drawings.version(),
-            meanings: legend(inspect, rays),
+            meanings: drawings
+                .sets()
+                .filter(|set| !set.is_empty())
+                .flat_map(|set| legend(set.system, inspect, rays))
+                .collect(),
             notes: notes.collect(),
             labels: drawings.sets().flat_map(|set| set.labels.clone()).collect(),
         }
@@ -77,7 +82,7 @@ pub(super) fn line_legend_ui(ui: &Ui, free: Rect, world: &mut World, panels: &mu
         .fixed_pos(free.min + vec2(10.0, 10.0))
         .order(egui::Order::Middle)
         .show(ui.ctx(), |ui| {
-            let fill = ui.visuals().panel_fill.gamma_multiply(0.85);
+            let fill = ui.visuals().panel_fill.gamma_multiply(0.93);
             egui::Frame::new()
                 .fill(fill)
                 .corner_radius(4.0)
@@ -107,6 +112,10 @@ fn body(ui: &mut Ui, texts: &LineTexts, lacks_rays: bool) {
         ui.horizontal(|ui| {
             let (place, _) = ui.allocate_exact_size(vec2(SWATCH.x, 12.0), Sense::hover());
             let line = Rect::from_center_size(place.center(), SWATCH);
+            // What is dark is seen by its edge.
+            let edge = Stroke::new(1.0, ui.visuals().weak_text_color());
+            ui.painter()
+                .rect_stroke(line, 1.0, edge, StrokeKind::Outside);
             ui.painter().add(swatch(line, colors));
             ui.label(RichText::new(*says).small());
         });

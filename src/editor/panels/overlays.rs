@@ -39,7 +39,9 @@ pub(super) fn overlays_ui(ui: &mut Ui, free: Rect, world: &mut World, panels: &m
     pattern_ui(ui, free, world, panels);
     over |= line_legend_ui(ui, free, world, panels);
     over |= notices_ui(ui.ctx(), free, world);
-    hint_ui(ui.ctx(), free, world);
+    if !panels.only_picture {
+        hint_ui(ui.ctx(), free, world);
+    }
     over
 }
 

@@ -107,7 +107,7 @@ fn inset_ui(ui: &Ui, free: Rect, pattern: &Pattern, pixel: UVec2) {
     painter.rect_stroke(square, 0.0, Stroke::new(1.0, INK), StrokeKind::Outside);
     for (row, text) in [
         format!("{count} samples of pixel {}, {}", pixel.x, pixel.y),
-        format!("{} →   {} ↓", name(pattern.x), name(pattern.y)),
+        format!("across: {}   down: {}", name(pattern.x), name(pattern.y)),
     ]
     .into_iter()
     .enumerate()
@@ -129,8 +129,8 @@ fn cells(count: usize, side: f32) -> usize {
 
 fn name(dimension: Dimension) -> &'static str {
     match dimension {
-        Dimension::PixelX => "across the pixel",
-        Dimension::PixelY => "down the pixel",
+        Dimension::PixelX => "pixel x",
+        Dimension::PixelY => "pixel y",
         Dimension::LensU => "lens u",
         Dimension::LensV => "lens v",
         Dimension::Time => "time",
