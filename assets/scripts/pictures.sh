@@ -23,7 +23,12 @@ play() {
 }
 
 # 256 colours are enough for a window, and a third of the size.
-lighter() { mogrify -strip -dither FloydSteinberg -colors 256 "$@"; }
+lighter() {
+    local picture
+    for picture in "$@"; do
+        convert "$picture" -strip -dither None -colors 256 "PNG8:$picture"
+    done
+}
 
 sheet() {
     local scripts=$root/tests/window/gizmos

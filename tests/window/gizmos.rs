@@ -208,13 +208,16 @@ fn the_rays_of_a_picked_pixel_show_what_each_system_did() {
     // From (0, 1.3, 4.8) along -Z: in the plane z = 0 a metre is 100 pixels, and (0, 0) is at
     // (320, 240 + 130).
     let at = |x: f32, y: f32| [320.0 + 100.0 * x, 370.0 - 100.0 * y];
-    let (camera, floor, lamp) = (at(-2.5, 1.0), at(1.5, 0.0), at(1.5, 2.0));
+    let (camera, floor) = (at(-2.5, 1.0), at(1.5, 0.0));
+    // The floor, which has the ray's own colour, begins 339 pixels from the top; the lamp's symbol, as
+    // white as what it sends, ends at 190.
+    let (above_floor, below_lamp) = (at(0.2, 0.325), at(1.5, 1.75));
 
     // S1. The lamp stands 2 m above the floor: 3.6 π W/sr / 4 m² · kd / π = 0.9 kd, which is
     // (0.72, 0.36, 0.18); on the screen (221, 162, 118).
     pictures
         .pair("s01", "s01-off")
-        .shows(&[Line(camera, floor, [221, 162, 118])])
+        .shows(&[Line(camera, above_floor, [221, 162, 118])])
         // Shadow rays are switched off.
         .leaves(&[[430.0, 190.0, 500.0, 330.0]]);
 
@@ -238,7 +241,7 @@ fn the_rays_of_a_picked_pixel_show_what_each_system_did() {
     // S3. Nothing is in the lamp's way. Towards (-1, 2.4) the slope is -0.96: at x = 0.4 the block
     // begins, at a height of 1.056 (it reaches from 0.85 to 1.15); seen again from (0.1, 1.344) on.
     pictures.pair("s03", "s03-off").shows(&[
-        Line(floor, lamp, WHITE),
+        Line(floor, below_lamp, WHITE),
         Line(floor, at(0.4, 1.056), BLOCKED),
         Line(at(0.1, 1.344), at(-0.9, 2.304), DARK),
     ]);
@@ -252,17 +255,18 @@ fn the_rays_of_a_picked_pixel_show_what_each_system_did() {
     let front = |t: f32| [320.0 - 109.1 * (1.5 - t), 141.8];
     // Its back edge is 5.2 m away, 92.3 pixels a metre: yellow to green.
     let back = |t: f32| [320.0 - 92.3 * (1.5 - t), 156.9];
+    // The lights' own lines are always there, as the editor's handles: before the lights are, nothing is.
+    pictures.pair("s04", "s03-off").shows(&[
+        Line(tube(0.1), tube(0.1), [243, 0, 89]),
+        Line(tube(0.5), tube(0.5), [188, 0, 188]),
+        Line(tube(0.9), tube(0.9), [89, 0, 243]),
+        Line(front(0.1), front(0.1), [243, 89, 255]),
+        Line(front(0.9), front(0.9), [89, 243, 255]),
+        Line(back(0.1), back(0.1), [243, 255, 0]),
+        Line(back(0.9), back(0.9), [89, 255, 0]),
+    ]);
     pictures
         .pair("s04", "s04-off")
-        .shows(&[
-            Line(tube(0.1), tube(0.1), [243, 0, 89]),
-            Line(tube(0.5), tube(0.5), [188, 0, 188]),
-            Line(tube(0.9), tube(0.9), [89, 0, 243]),
-            Line(front(0.1), front(0.1), [243, 89, 255]),
-            Line(front(0.9), front(0.9), [89, 243, 255]),
-            Line(back(0.1), back(0.1), [243, 255, 0]),
-            Line(back(0.9), back(0.9), [89, 255, 0]),
-        ])
         .is_crossed([419.0, 250.0, 497.0, 251.0], 6)
         .leaves(&[[380.0, 245.0, 416.0, 255.0], [499.0, 245.0, 540.0, 255.0]]);
 
@@ -324,9 +328,9 @@ fn the_rays_of_a_picked_pixel_show_what_each_system_did() {
     let (pane, filter) = (at(-1.0, 0.625), at(1.5, 1.0));
     pictures.pair("s15", "s15-off").shows(&[
         Line(camera, pane, [111, 83, 76]),
-        Line(pane, floor, [123, 92, 85]),
+        Line(pane, above_floor, [123, 92, 85]),
         Line(floor, filter, [143, 149, 188]),
-        Line(filter, lamp, WHITE),
+        Line(filter, below_lamp, WHITE),
     ]);
 
     // S16. Seen from x = -0.8. The aperture has a radius of 0.3; all rays meet 2.5 m before it, at
@@ -381,11 +385,11 @@ fn trees_normals_and_motion_are_drawn_where_they_are() {
     ]);
 
     // S5 and S10: turned by 30 degrees, from 20 degrees above, without perspective. To the right of the
-    // picture goes (cos 30°, 0, -sin 30°), upwards (-sin 30° sin 20°, cos 20°, -cos 30° sin 20°).
+    // picture goes (cos 30°, 0, -sin 30°), 150 pixels a metre, upwards (-sin 30° sin 20°, cos 20°, -cos 30° sin 20°).
     let turned = |[x, y, z]: [f32; 3]| {
         [
-            320.0 + 100.0 * (0.866 * x - 0.5 * z),
-            240.0 - 100.0 * (-0.171 * x + 0.9397 * (y - 0.5) - 0.2962 * z),
+            320.0 + 150.0 * (0.866 * x - 0.5 * z),
+            240.0 - 150.0 * (-0.171 * x + 0.9397 * (y - 0.5) - 0.2962 * z),
         ]
     };
     let edge = |from, to, color| Line(turned(from), turned(to), color);
@@ -399,7 +403,7 @@ fn trees_normals_and_motion_are_drawn_where_they_are() {
     ]);
     // Nothing between two balls of a box: that is the next level.
     let [x, y] = turned([-1.0, 0.5, 0.4]);
-    one.leaves(&[[x - 8.0, y - 30.0, x + 8.0, y + 30.0]]);
+    one.leaves(&[[x - 8.0, y - 30.0, x + 8.0, y + 12.0]]);
     pictures.pair("s05", "s05-off").shows(&[
         edge([-1.1, 0.9, 0.4], [-1.1, 0.1, 0.4], DEEPEST),
         edge([0.9, 0.9, 0.4], [0.9, 0.1, 0.4], DEEPEST),
