@@ -251,7 +251,7 @@ fn end_at_divider(
         return;
     }
     divider.0 = wanted;
-    for (_, mut material) in assets.iter_mut() {
+    for (_, material) in assets.iter_mut() {
         material.extension = EndsAt::new(wanted);
     }
 }
