@@ -61,6 +61,10 @@ pub enum Action {
     TogglePause,
     Restart,
     ShootRay,
+    /// Between the rays of the picked pixel's first sample and those of all.
+    ToggleAllSamples,
+    /// The panels go and come back.
+    TogglePanels,
     // Tools
     Move,
     Turn,
@@ -201,6 +205,8 @@ actions! {
     TogglePause "Pause or go on" [key(KeyCode::KeyP)] "The traced view stands still, and keeps what it has"
     Restart "Restart" [ctrl(KeyCode::KeyR)] "Renders the traced view from its first sample again"
     ShootRay "Debug ray" [key(KeyCode::KeyR)] "Traces the pixel under the pointer again and draws its rays; beside the picture it takes them away"
+    ToggleAllSamples "Rays of all samples" [ctrl_shift(KeyCode::KeyR)] "Draws the debug rays of all samples of the picked pixel, or again those of its first one"
+    TogglePanels "Only the picture" [ctrl(KeyCode::Space)] "Takes the panels away, so that the picture fills the window; again, or Escape, brings them back"
     Move "Move" [key(KeyCode::KeyW)] "Drag the arrows to move the selection"
     Turn "Turn" [key(KeyCode::KeyE)] "Drag the rings to turn the selection"
     Scale "Scale" [key(KeyCode::KeyT)] "Drag the cubes to scale the selection"

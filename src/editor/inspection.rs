@@ -17,7 +17,7 @@ use bevy::ecs::entity::Entity;
 use bevy::ecs::message::MessageReader;
 use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
-use bevy::ecs::system::{Commands, Local, Query, Res, ResMut, Single};
+use bevy::ecs::system::{Commands, Query, Res, ResMut, Single};
 use bevy::math::{UVec2, Vec3};
 use bevy::prelude::{DetectChanges, IntoScheduleConfigs};
 use bevy::window::{PrimaryWindow, Window};
@@ -30,6 +30,7 @@ impl Plugin for InspectionPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<InspectSettings>()
             .init_resource::<DebugRay>()
+            .init_resource::<Drawings>()
             .add_systems(Update, shoot)
             .add_systems(
                 PostUpdate,
@@ -47,23 +48,58 @@ const CROSS: f32 = 0.004;
 /// the scene changes.
 #[derive(Resource, Default)]
 pub(super) struct DebugRay {
+    /// Which of the samples are traced.
+    pub which: Which,
     shot: Option<Shot>,
-    rays: Option<RayTree>,
+    rays: Option<Arc<RayTree>>,
+    /// What `rays` were traced with.
+    of: Option<(Arc<World>, RenderSettings, Which)>,
+}
+
+/// Which of the pixel's samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Which {
+    /// Sample 0.
+    #[default]
+    First,
+    /// All that a render takes.
+    All,
+}
+
+impl Which {
+    fn samples(self) -> Samples {
+        match self {
+            Self::First => Samples::One(0),
+            Self::All => Samples::All,
+        }
+    }
 }
 
 /// A pixel of a picture: all that is needed to trace it again.
-struct Shot {
-    pixel: UVec2,
-    camera: Camera,
-    settings: RenderSettings,
-    /// Of which world `rays` are.
-    world: Option<Arc<World>>,
+pub(super) struct Shot {
+    /// (0, 0) is the top left one.
+    pub pixel: UVec2,
+    /// From where. The view may have moved on since.
+    pub camera: Camera,
+    /// The picture's.
+    pub size: UVec2,
 }
 
 impl DebugRay {
     /// The rays, where a pixel was picked.
-    pub fn rays(&self) -> Option<&RayTree> {
+    pub fn rays(&self) -> Option<&Arc<RayTree>> {
         self.rays.as_ref()
+    }
+
+    /// The pixel that was picked.
+    pub fn shot(&self) -> Option<&Shot> {
+        self.shot.as_ref()
+    }
+
+    /// The world and the settings that the rays were traced with.
+    pub fn traced_with(&self) -> Option<(&Arc<World>, &RenderSettings)> {
+        let (world, settings, _) = self.of.as_ref()?;
+        Some((world, settings))
     }
 }
 
@@ -73,17 +109,32 @@ fn shoot(
     window: Single<&Window, With<PrimaryWindow>>,
     viewport: Res<Viewport>,
     render: Single<&TracedRender, With<EditorCamera>>,
-    settings: Res<RenderSettings>,
     mut ray: ResMut<DebugRay>,
     mut notices: ResMut<Notices>,
 ) {
-    if !actions.read().any(|action| *action == Action::ShootRay) {
+    let mut asked = false;
+    for action in actions.read() {
+        match action {
+            Action::ShootRay => asked = true,
+            Action::ToggleAllSamples => {
+                ray.which = match ray.which {
+                    Which::All => Which::First,
+                    _ => Which::All,
+                };
+            }
+            _ => {}
+        }
+    }
+    if !asked {
         return;
     }
     let place = window.cursor_position().map(|at| viewport.place(at));
     let inside = place.filter(|at| at.min_element() >= 0.0 && at.max_element() < 1.0);
     let Some(place) = inside else {
-        *ray = DebugRay::default();
+        *ray = DebugRay {
+            which: ray.which,
+            ..DebugRay::default()
+        };
         return;
     };
     let Some((_, camera, rendered)) = render.subject() else {
@@ -94,15 +145,12 @@ fn shoot(
     ray.shot = Some(Shot {
         pixel: (place * size.as_vec2()).as_uvec2().min(size - 1),
         camera: camera.clone(),
-        settings: RenderSettings {
-            size,
-            ..settings.clone()
-        },
-        world: None,
+        size,
     });
+    ray.of = None;
 }
 
-/// The picked pixel's first sample, whenever the scene is another.
+/// The picked pixel, whenever the scene is another.
 fn trace_again(
     traced: Res<Traced>,
     settings: Res<RenderSettings>,
@@ -112,32 +160,23 @@ fn trace_again(
     let Some(shot) = &ray.shot else {
         return;
     };
-    let known = shot.world.as_ref();
-    let same = known.is_some_and(|world| Arc::ptr_eq(world, &traced.world));
+    let same = ray
+        .of
+        .as_ref()
+        .is_some_and(|(world, _, which)| Arc::ptr_eq(world, &traced.world) && *which == ray.which);
     if same && !settings.is_changed() {
         return;
     }
-    let DebugRay {
-        shot: Some(shot),
-        rays,
-    } = &mut *ray
-    else {
-        return;
-    };
-    shot.world = Some(traced.world.clone());
-    shot.settings = RenderSettings {
-        size: shot.settings.size,
+    let settings = RenderSettings {
+        size: shot.size,
         ..settings.clone()
     };
-    let found = probe(
-        &traced.world,
-        &shot.camera,
-        &shot.settings,
-        shot.pixel,
-        &Samples::One(0),
-    );
-    *rays = match found {
-        Ok(rays) => Some(rays),
+    let samples = ray.which.samples();
+    let found = probe(&traced.world, &shot.camera, &settings, shot.pixel, &samples);
+    let of = (traced.world.clone(), settings, ray.which);
+    ray.of = Some(of);
+    ray.rays = match found {
+        Ok(rays) => Some(Arc::new(rays)),
         Err(problem) => {
             notices.fault(problem.to_string());
             None
@@ -145,10 +184,30 @@ fn trace_again(
     };
 }
 
+/// What is drawn now.
+#[derive(Resource, Default)]
+pub(super) struct Drawings {
+    sets: [Option<Drawn>; System::ALL.len()],
+    version: u64,
+}
+
+impl Drawings {
+    /// The sets that are drawn, in their order.
+    pub fn sets(&self) -> impl Iterator<Item = &LineSet> {
+        self.sets.iter().flatten().map(|drawn| &drawn.set)
+    }
+
+    /// Another number for other lines.
+    pub fn version(&self) -> u64 {
+        self.version
+    }
+}
+
 /// One system's set on the screen.
 struct Drawn {
     entity: Entity,
     key: u64,
+    set: LineSet,
     /// Kept, so that a key that is made of places in memory cannot come again.
     _world: Arc<World>,
 }
@@ -167,7 +226,7 @@ fn draw_inspection(
     ray: Res<DebugRay>,
     render: Single<&TracedRender, With<EditorCamera>>,
     mut sets: Query<&mut DrawnLines>,
-    mut drawn: Local<[Option<Drawn>; System::ALL.len()]>,
+    mut drawings: ResMut<Drawings>,
 ) {
     let Some((_, camera, rendered)) = render.subject() else {
         return;
@@ -179,13 +238,19 @@ fn draw_inspection(
     let shot = ray.shot.as_ref().map(|shot| &shot.camera);
     let of_scene = cameras.0.first().map(|camera| &camera.camera);
     let photographer = of_scene.or(shot).unwrap_or(camera);
+    let rays = ray.rays().map(Arc::as_ref);
     let subject =
-        Subject::new(&traced.world, photographer, &settings, &inspect, ray.rays()).seen_by(camera);
+        Subject::new(&traced.world, photographer, &settings, &inspect, rays).seen_by(camera);
+    let Drawings {
+        sets: drawn,
+        version,
+    } = &mut *drawings;
     for (system, known) in System::ALL.into_iter().zip(drawn.iter_mut()) {
         let needs_rays = matches!(system, System::Visits | System::Rays | System::Lobes);
-        if !system.is_on(&inspect) || (needs_rays && ray.rays().is_none()) {
+        if !system.is_on(&inspect) || (needs_rays && rays.is_none()) {
             if let Some(known) = known.take() {
                 commands.entity(known.entity).despawn();
+                *version += 1;
             }
             continue;
         }
@@ -193,8 +258,9 @@ fn draw_inspection(
         if known.as_ref().is_some_and(|known| known.key == key) {
             continue;
         }
+        let set = system.lines(&subject);
         let wanted = DrawnLines {
-            lines: gizmo_lines(&system.lines(&subject), camera),
+            lines: gizmo_lines(&set, camera),
             width: WIDTH,
             on_top: false,
         };
@@ -207,9 +273,11 @@ fn draw_inspection(
             }
             None => commands.spawn(wanted).id(),
         };
+        *version += 1;
         *known = Some(Drawn {
             entity,
             key,
+            set,
             _world: traced.world.clone(),
         });
     }

@@ -18,6 +18,10 @@ pub(super) const YELLOW: LinearRgba = LinearRgba::rgb(1.0, 0.85, 0.0);
 pub(super) const GREEN: LinearRgba = LinearRgba::rgb(0.05, 0.9, 0.15);
 /// Normals of triangles.
 pub(super) const BLUE: LinearRgba = LinearRgba::rgb(0.1, 0.35, 1.0);
+/// Normals at vertices.
+pub(super) const VERTEX: LinearRgba = LinearRgba::rgb(0.112, 0.584, 0.122);
+/// Normals that stand between vertices.
+pub(super) const BETWEEN: LinearRgba = LinearRgba::rgb(0.05, 0.25, 0.3);
 /// Lenses and cameras.
 pub(super) const CYAN: LinearRgba = LinearRgba::rgb(0.05, 0.8, 0.9);
 /// Motion.
@@ -30,6 +34,9 @@ pub(super) const AXES: [LinearRgba; 3] = [
 ];
 /// Inner nodes where only leaves have a colour.
 pub(super) const GREY: LinearRgba = LinearRgba::rgb(0.25, 0.25, 0.25);
+
+/// Lines begin here on the palette: before a dark picture nobody sees what is darker.
+const DARKEST: f32 = 0.3;
 
 /// Below this the largest channel counts as nothing.
 const NOTHING: f32 = 1e-4;
@@ -46,9 +53,9 @@ pub(super) fn of_radiance(radiance: Vec3, exposure: f32) -> LinearRgba {
     LinearRgba::rgb(shown.x, shown.y, shown.z)
 }
 
-/// A place in [0, 1] on the heatmaps' palette.
+/// A place in [0, 1] on the heatmaps' palette, without the darkest part of that.
 pub(super) fn of_scale(place: f32) -> LinearRgba {
-    let [r, g, b] = viridis(place);
+    let [r, g, b] = viridis(DARKEST + (1.0 - DARKEST) * place);
     Srgba::rgb(r, g, b).into()
 }
 

@@ -2,6 +2,7 @@
 
 use super::color::{CYAN, YELLOW};
 use super::line_set::{LineSet, Stands};
+use super::rays::is_shown;
 use super::{Subject, System};
 use crate::trace::{RayHit, RayKind, TracedRay};
 use glam::Vec3;
@@ -23,6 +24,9 @@ pub(super) fn lobes(subject: &Subject) -> LineSet {
             RayKind::Translucency => 1,
             _ => continue,
         };
+        if !is_shown(&subject.inspect.rays, ray) {
+            continue;
+        }
         let Some(parent) = ray.parent else { continue };
         let Some(hit) = tree.rays[parent as usize].hit else {
             continue;

@@ -18,7 +18,7 @@
 //! | motion | where moving things stand when the shutter opens and closes |
 //!
 //! Beside lines: [`pattern`], where the samples of a pixel lie; [`Traversal`], the way of a ray
-//! through the trees step by step; [`compare_builders`], each builder's tree in numbers;
+//! through the trees step by step; [`legend()`], what the colours of the lines mean; [`compare_builders`], each builder's tree in numbers;
 //! [`draw_over`], lines over a picture without a GPU; [`Document`], all of it as one file.
 
 mod boxes;
@@ -26,6 +26,7 @@ mod builders;
 mod color;
 mod document;
 mod explain;
+mod legend;
 mod lens;
 mod lights;
 mod line_set;
@@ -47,6 +48,7 @@ mod visits;
 pub use builders::{BuilderFigures, BuilderRates, compare_builders, csv, markdown};
 pub use document::{Document, RayLine};
 pub use explain::{Cause, Source, explanation, sources};
+pub use legend::{Meaning, legend};
 pub use line_set::{CIRCLE_SEGMENTS, Dot, Label, LineSet, Panel, Segment, Stands, Thinned};
 pub use overlay::{FAINT, Overlay, draw_over};
 pub use pattern::{Pattern, pattern};

@@ -6,7 +6,7 @@ use super::{Subject, System};
 use glam::Vec3;
 
 /// How much the ghost at the shutter's opening covers; that at its closing covers all.
-const GHOST_ALPHA: f32 = 0.45;
+pub(super) const GHOST_ALPHA: f32 = 0.45;
 
 /// For each moving object a line from its middle when the shutter opens to its middle when it
 /// closes, and its box at both times; for a moving camera the line.

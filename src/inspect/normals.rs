@@ -1,10 +1,9 @@
 //! Normals at the vertices of meshes, and between them.
 
-use super::color::of_scale;
+use super::color::{BETWEEN, VERTEX};
 use super::line_set::{LineSet, Stands, Thinned};
 use super::{Subject, System};
 use crate::trace::Cone;
-use bevy::color::LinearRgba;
 use bevy::platform::collections::HashMap;
 use glam::{IVec2, Vec3};
 
@@ -79,11 +78,7 @@ pub(super) fn normals(subject: &Subject) -> LineSet {
     let cone = Cone::of_pixel(subject.camera, subject.settings.size);
     for (_, placed) in &kept {
         let length = settings.length * cone.width_at(placed.ahead);
-        let color = if placed.between {
-            BETWEEN
-        } else {
-            of_scale(0.75)
-        };
+        let color = if placed.between { BETWEEN } else { VERTEX };
         let tip = placed.at + length * placed.normal;
         set.line([placed.at, tip], color, placed.stands);
     }
@@ -97,9 +92,6 @@ pub(super) fn normals(subject: &Subject) -> LineSet {
     }
     set
 }
-
-/// Normals that stand between vertices.
-const BETWEEN: LinearRgba = LinearRgba::rgb(0.05, 0.25, 0.3);
 
 /// The interpolated normals at a triangle's places with barycentric weights i/n.
 fn on_triangle(

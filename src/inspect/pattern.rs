@@ -31,7 +31,8 @@ pub fn pattern(
     pixel: UVec2,
     count: u64,
 ) -> Pattern {
-    let sampler = Sampler::new(pixel.x, pixel.y, settings.seed, settings.sequence);
+    let sampler =
+        Sampler::new(pixel.x, pixel.y, settings.seed, settings.sequence).on_grid(settings.jitter);
     let number = |dimension, index| number(settings, sampler, choice.light, dimension, index);
     let [x_rays, y_rays] =
         [choice.x, choice.y].map(|dimension| rays_of(world, settings, choice.light, dimension));
@@ -96,5 +97,27 @@ fn number(
         (PixelSampling::Corner, PixelX) => 0.0,
         (PixelSampling::Corner, PixelY) => 1.0,
         _ => sampler.block(index, purpose, 0)[component],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Sequence;
+
+    #[test]
+    fn jittered_samples_have_a_cell_of_the_pixel_each() {
+        let settings = RenderSettings {
+            sequence: Sequence::Jittered,
+            jitter: 4,
+            ..RenderSettings::default()
+        };
+        let choice = PatternSettings::default();
+        let found = pattern(&World::default(), &settings, &choice, UVec2::new(7, 9), 16);
+        let cell = |point: &Vec2| (*point * 4.0).as_uvec2();
+        let mut cells: Vec<_> = found.points.iter().map(cell).map(|c| (c.x, c.y)).collect();
+        cells.sort_unstable();
+        cells.dedup();
+        assert_eq!(cells.len(), 16, "{:?}", found.points);
     }
 }

@@ -103,6 +103,15 @@ impl Darkroom {
     }
 }
 
+/// In place of a print that nobody has taken. Its depths, which come only when they are others, are
+/// the newest still where this one has none.
+fn put_on(shelf: &mut Option<Print>, mut print: Print) {
+    if let (None, Some(before)) = (&print.depths, shelf.take()) {
+        print.depths = before.depths;
+    }
+    *shelf = Some(print);
+}
+
 /// What is being developed.
 struct Job {
     render: Arc<Progressive>,
@@ -185,18 +194,10 @@ impl Developer {
                 && !job.ended
                 && let Some(print) = pool.install(|| job.print(snapshot, depths_of))
             {
-                self.put_up(print);
+                let mut shelf = self.newest.lock().unwrap_or_else(PoisonError::into_inner);
+                put_on(&mut shelf, print);
             }
         }
-    }
-
-    fn put_up(&self, mut print: Print) {
-        let mut newest = self.newest.lock().unwrap_or_else(PoisonError::into_inner);
-        // Depths that nobody has taken yet are still the newest.
-        if let (None, Some(before)) = (&print.depths, newest.take()) {
-            print.depths = before.depths;
-        }
-        *newest = Some(print);
     }
 
     fn take_on(&mut self, task: Task) {
@@ -335,5 +336,37 @@ impl Job {
         let depths = depths(world, camera, settings, size);
         // Finite, so that the shader's arithmetic is.
         (size, depths.into_iter().map(|d| d.min(1e30)).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn print(of: usize, depths: Option<f32>) -> Print {
+        Print {
+            size: UVec2::ONE,
+            bytes: vec![0; 4],
+            depths: depths.map(|depth| (UVec2::ONE, vec![depth])),
+            scale: None,
+            of,
+        }
+    }
+
+    #[test]
+    fn depths_outlive_a_print_that_nobody_took_until_there_are_others() {
+        let mut shelf = None;
+        put_on(&mut shelf, print(1, Some(3.0)));
+        put_on(&mut shelf, print(1, None));
+        put_on(&mut shelf, print(1, None));
+        let depths = |shelf: &Option<Print>| {
+            let print = shelf.as_ref().unwrap();
+            print.depths.as_ref().map(|(_, depths)| depths[0])
+        };
+        assert_eq!(depths(&shelf), Some(3.0));
+        put_on(&mut shelf, print(2, None));
+        assert_eq!(depths(&shelf), Some(3.0));
+        put_on(&mut shelf, print(2, Some(5.0)));
+        assert_eq!(depths(&shelf), Some(5.0));
     }
 }

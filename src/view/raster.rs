@@ -2,7 +2,7 @@
 //!
 //! | ours | Bevy's |
 //! |---|---|
-//! | [`Phong`] | `StandardMaterial` on the same entity: kd is the base colour, ke the emission; a highlight of exponent s has about the roughness (2/(s+2))^¼ (Beckmann's, Walter et al. 2007, eq. 8, and Bevy's square); a mirror is metal |
+//! | [`Phong`] | `StandardMaterial` (that ends at the view's divider) on the same entity: kd is the base colour, ke the emission; a highlight of exponent s has about the roughness (2/(s+2))^¼ (Beckmann's, Walter et al. 2007, eq. 8, and Bevy's square); a mirror is metal |
 //! | [`PointLamp`] | `PointLight` of 4π·I lumens, or `SpotLight` |
 //! | [`DirectionalLamp`] | `DirectionalLight` of as many lux |
 //! | [`SegmentLamp`] | `PointLight` in its middle, of all its strength |
@@ -13,23 +13,29 @@
 //!
 //! Everything that is drawn so lies in one layer, which a camera can leave out.
 
+use super::TracedView;
 use crate::scene::{
     DirectionalLamp, ParallelogramLamp, Phong, PhongMaps, PointLamp, SegmentLamp, UsesMaterial,
 };
-use bevy::asset::{Assets, Handle};
+use bevy::asset::{Asset, Assets, Handle, embedded_asset};
 use bevy::camera::Exposure;
 use bevy::camera::visibility::{InheritedVisibility, RenderLayers, Visibility};
 use bevy::color::{Color, ColorToComponents, LinearRgba};
-use bevy::light::{DirectionalLight, PointLight, SpotLight};
-use bevy::math::{Quat, Vec3};
+use bevy::light::{DirectionalLight, GlobalAmbientLight, PointLight, SpotLight};
+use bevy::math::{Quat, Vec3, Vec4};
 use bevy::mesh::Mesh3d;
-use bevy::pbr::{MeshMaterial3d, StandardMaterial};
+use bevy::pbr::{
+    ExtendedMaterial, MaterialExtension, MaterialPlugin, MeshMaterial3d, StandardMaterial,
+};
 use bevy::platform::collections::HashMap;
 use bevy::prelude::{
     AlphaMode, App, Changed, Commands, Component, DetectChanges, DetectChangesMut, Entity,
-    IntoScheduleConfigs, Or, Plugin, PostUpdate, Query, Ref, RemovedComponents, ResMut, Resource,
-    With, Without,
+    IntoScheduleConfigs, Or, Plugin, PostUpdate, Query, Ref, RemovedComponents, Res, ResMut,
+    Resource, With, Without,
 };
+use bevy::reflect::TypePath;
+use bevy::render::render_resource::AsBindGroup;
+use bevy::shader::ShaderRef;
 use bevy::transform::TransformSystems;
 use bevy::transform::components::{GlobalTransform, Transform};
 use std::f32::consts::{FRAC_PI_2, PI};
@@ -39,19 +45,31 @@ pub const RASTER_LAYER: usize = 1;
 /// Lights reach as far as this; Bevy cuts them off there. Metres.
 const REACH: f32 = 1.0e4;
 
+/// What a white surface shows where no light reaches it. The tracer shows black there; a little more
+/// keeps an unlit scene in sight. Bevy's own 80 is meant for a camera in daylight, and all white here.
+const AMBIENT: f32 = 0.02;
+
 /// Shows a scene of our components in Bevy's renderer. Not for scenes of Bevy's own materials,
 /// which it shows anyway.
 pub struct RasterPlugin;
 
 impl Plugin for RasterPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<RasterMaterials>().add_systems(
-            PostUpdate,
-            (give_materials, give_lights, move_lights)
-                .chain()
-                .after(TransformSystems::Propagate)
-                .after(crate::sync::SyncSystems),
-        );
+        embedded_asset!(app, "raster.wgsl");
+        app.add_plugins(MaterialPlugin::<RasterMaterial>::default());
+        app.insert_resource(GlobalAmbientLight {
+            brightness: AMBIENT,
+            ..GlobalAmbientLight::default()
+        });
+        app.init_resource::<RasterMaterials>()
+            .init_resource::<Divider>()
+            .add_systems(
+                PostUpdate,
+                (give_materials, end_at_divider, give_lights, move_lights)
+                    .chain()
+                    .after(TransformSystems::Propagate)
+                    .after(crate::sync::SyncSystems),
+            );
     }
 }
 
@@ -63,13 +81,42 @@ pub fn exposure() -> Exposure {
     }
 }
 
+/// What Bevy's renderer draws of a material of ours.
+type RasterMaterial = ExtendedMaterial<StandardMaterial, EndsAt>;
+
+/// Where in the viewport it ends: the traced picture begins there.
+#[derive(Asset, AsBindGroup, TypePath, Clone, Debug)]
+struct EndsAt {
+    /// x: a part of the viewport's width.
+    #[uniform(100)]
+    numbers: Vec4,
+}
+
+impl EndsAt {
+    fn new(divider: f32) -> Self {
+        Self {
+            numbers: Vec4::new(divider, 0.0, 0.0, 0.0),
+        }
+    }
+}
+
+impl MaterialExtension for EndsAt {
+    fn fragment_shader() -> ShaderRef {
+        "embedded://glassbox/view/raster.wgsl".into()
+    }
+
+    fn enable_prepass() -> bool {
+        false
+    }
+
+    fn enable_shadows() -> bool {
+        false
+    }
+}
+
 /// The approximations, by the entity that has the material.
 #[derive(Resource, Default)]
-pub(super) struct RasterMaterials(HashMap<Entity, Handle<StandardMaterial>>);
-
-/// On an object: the material that it wears is one of [`RasterMaterials`].
-#[derive(Component)]
-pub(super) struct WearsRaster;
+struct RasterMaterials(HashMap<Entity, Handle<RasterMaterial>>);
 
 /// A light of Bevy's that stands for one of ours.
 #[derive(Component, Clone)]
@@ -114,16 +161,14 @@ fn luminance(color: LinearRgba) -> f32 {
 type EditedMaterial = Or<(Changed<Phong>, Changed<PhongMaps>)>;
 type EditedObject = Or<(Changed<Mesh3d>, Changed<UsesMaterial>, Changed<Phong>)>;
 /// What has a material of Bevy's own keeps it.
-type Ours = (
-    With<Mesh3d>,
-    Or<(Without<MeshMaterial3d<StandardMaterial>>, With<WearsRaster>)>,
-);
+type Ours = (With<Mesh3d>, Without<MeshMaterial3d<StandardMaterial>>);
 
 /// Materials that changed, and objects that have another.
 fn give_materials(
     mut commands: Commands,
     mut materials: ResMut<RasterMaterials>,
-    mut assets: ResMut<Assets<StandardMaterial>>,
+    divider: Res<Divider>,
+    mut assets: ResMut<Assets<RasterMaterial>>,
     edited: Query<(Entity, &Phong, Option<&PhongMaps>), EditedMaterial>,
     mut gone: RemovedComponents<Phong>,
     mut unshared: RemovedComponents<UsesMaterial>,
@@ -131,7 +176,7 @@ fn give_materials(
         (
             Entity,
             Option<&UsesMaterial>,
-            Option<&MeshMaterial3d<StandardMaterial>>,
+            Option<&MeshMaterial3d<RasterMaterial>>,
         ),
         Ours,
     >,
@@ -147,9 +192,13 @@ fn give_materials(
         if let Some(known) = materials.0.get(&entity)
             && let Some(mut asset) = assets.get_mut(known)
         {
-            *asset = material;
+            asset.base = material;
             continue;
         }
+        let material = RasterMaterial {
+            base: material,
+            extension: EndsAt::new(divider.0),
+        };
         materials.0.insert(entity, assets.add(material));
         added = true;
     }
@@ -161,7 +210,6 @@ fn give_materials(
         if worn.is_none_or(|worn| worn.0 != *handle) {
             commands.entity(entity).insert((
                 MeshMaterial3d(handle.clone()),
-                WearsRaster,
                 RenderLayers::layer(RASTER_LAYER),
             ));
         }
@@ -179,6 +227,33 @@ fn give_materials(
         }
     }
     unshared.clear();
+}
+
+/// Where the materials end now.
+#[derive(Resource)]
+struct Divider(f32);
+
+impl Default for Divider {
+    fn default() -> Self {
+        Self(1.0)
+    }
+}
+
+/// Where the traced picture begins there is no raster picture. Of several views the first counts.
+fn end_at_divider(
+    views: Query<&TracedView>,
+    mut divider: ResMut<Divider>,
+    mut assets: ResMut<Assets<RasterMaterial>>,
+) {
+    // All traced: nothing of it is drawn.
+    let wanted = views.iter().map(|view| view.divider).next().unwrap_or(1.0);
+    if wanted == divider.0 || wanted <= 0.0 {
+        return;
+    }
+    divider.0 = wanted;
+    for (_, material) in assets.iter_mut() {
+        material.extension = EndsAt::new(wanted);
+    }
 }
 
 type LampQuery<'w, 's> = Query<

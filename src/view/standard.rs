@@ -16,7 +16,7 @@
 //! become. Textures have to be in the main world (`RenderAssetUsages::MAIN_WORLD`), as Bevy's
 //! loaders keep them by default.
 
-use super::raster::{RasterTwin, WearsRaster};
+use super::raster::RasterTwin;
 use crate::scene::{
     Cone, DirectionalLamp, NotTraced, ParallelogramLamp, Phong, PhongMaps, PointLamp,
 };
@@ -97,7 +97,7 @@ fn map_materials(
             Option<&Phong>,
             Option<&PhongMaps>,
         ),
-        (Without<WearsRaster>, Without<NotTraced>),
+        Without<NotTraced>,
     >,
     mut gone: RemovedComponents<MeshMaterial3d<StandardMaterial>>,
 ) {

@@ -5,6 +5,7 @@
 //! Where they are missing a test says so and passes, unless `GLASSBOX_NEEDS_WINDOW=1` is set.
 
 mod clicks;
+mod gizmos;
 mod handling;
 mod pictures;
 mod scripts;
@@ -14,7 +15,7 @@ mod story;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 /// How long a run may take: software drivers draw a few frames a second.
@@ -67,7 +68,10 @@ impl Display {
             _one: one,
         };
         assert!(!line.trim().is_empty(), "Xvfb gave no display");
-        display.draws().then_some(display)
+        // Asked once: all displays have the same drivers.
+        static DRAWS: OnceLock<bool> = OnceLock::new();
+        let draws = DRAWS.get_or_init(|| display.draws());
+        draws.then_some(display)
     }
 
     /// Whether there is an adapter to draw with.

@@ -208,6 +208,7 @@ fn view_ui(ui: &mut Ui, world: &mut World) {
         .says("Shows the list of entities on the left");
     ui.checkbox(&mut preferences.show_inspector, "Inspector")
         .says("Shows the properties on the right");
+    entry_ui(ui, world, &Action::TogglePanels);
     if preferences != before {
         *world.resource_mut::<Preferences>() = preferences;
     }

@@ -12,6 +12,7 @@
 //! | [`inspector`] | the tabs Object, Render, Debug and BVH |
 //! | [`status`] | the line below |
 //! | [`overlays`], [`compare`] | divider, legend, region, messages, a kept picture over the picture |
+//! | [`line_legend`], [`pattern`] | what the tracer's lines mean, and where a pixel's samples lie |
 //! | [`dialogs`] | what is in front of everything |
 
 mod compare;
@@ -20,9 +21,11 @@ mod fields;
 mod gesture;
 mod hierarchy;
 mod inspector;
+mod line_legend;
 mod menu_bar;
 mod outline;
 mod overlays;
+mod pattern;
 mod says;
 mod several;
 mod state;
@@ -98,6 +101,9 @@ fn around_ui(
     panels: &mut Panels,
     preferences: &Preferences,
 ) -> egui::Rect {
+    if panels.only_picture {
+        return ui.available_rect_before_wrap();
+    }
     let fill = ui.visuals().panel_fill;
     let bar = |margin| egui::Frame::new().fill(fill).inner_margin(margin);
     egui::Panel::top("menu")

@@ -1,6 +1,8 @@
 //! What lies over the picture: the divider of the split view, the legend of a heatmap, the frame of
 //! a region, messages, and the hint of the first run.
 
+use super::line_legend::line_legend_ui;
+use super::pattern::pattern_ui;
 use super::says::Says;
 use super::state::Panels;
 use super::theme::accent;
@@ -34,8 +36,12 @@ pub(super) fn overlays_ui(ui: &mut Ui, free: Rect, world: &mut World, panels: &m
     }
     over |= region_ui(ui, free, world, panels);
     legend_ui(ui, free, world, panels);
+    pattern_ui(ui, free, world, panels);
+    over |= line_legend_ui(ui, free, world, panels);
     over |= notices_ui(ui.ctx(), free, world);
-    hint_ui(ui.ctx(), free, world);
+    if !panels.only_picture {
+        hint_ui(ui.ctx(), free, world);
+    }
     over
 }
 
@@ -356,7 +362,7 @@ fn notices_ui(context: &egui::Context, free: Rect, world: &mut World) -> bool {
     !shown.is_empty() && is_over(context, area.response.rect)
 }
 
-fn is_over(context: &egui::Context, rect: Rect) -> bool {
+pub(super) fn is_over(context: &egui::Context, rect: Rect) -> bool {
     let pointer = context.pointer_latest_pos();
     pointer.is_some_and(|at| rect.contains(at))
 }

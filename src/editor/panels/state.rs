@@ -3,6 +3,8 @@
 use super::compare::Kept;
 use super::dialogs::{Gallery, RenderForm};
 use super::inspector::{ErrorCurve, Thumbnails, Trees, Turns};
+use super::line_legend::LineTexts;
+use super::pattern::PatternOf;
 use super::status::{Memory, Numbers};
 use crate::editor::action::Action;
 use crate::scene::SceneId;
@@ -50,6 +52,8 @@ pub(super) struct Renaming {
 #[derive(Resource, Default)]
 pub(super) struct Panels {
     pub tab: Tab,
+    /// The picture fills the window, and the panels are not drawn.
+    pub only_picture: bool,
     pub dialog: Option<Dialog>,
     /// The one that was open in the frame before.
     pub dialog_before: Option<Dialog>,
@@ -72,6 +76,12 @@ pub(super) struct Panels {
     pub drags_region: bool,
     /// Where such a drag began.
     pub region_start: Option<Pos2>,
+    /// Only the heading of the lines' legend is shown.
+    pub legend_folded: bool,
+    /// What there is to say of the lines that are drawn.
+    pub line_texts: Option<LineTexts>,
+    /// Where the picked pixel's samples lie.
+    pub pattern: Option<PatternOf>,
     /// A field is being dragged or typed into, and the gesture that this makes is the panels' own.
     pub in_gesture: bool,
     /// A picture that was kept to compare with.

@@ -547,3 +547,18 @@ fn a_message_stays_within_the_picture_and_can_be_closed() {
     desk.click(close);
     assert!(desk.world().resource::<Notices>().is_empty());
 }
+
+#[test]
+fn the_picture_alone_fills_the_window_until_escape() {
+    let mut desk = Desk::open("cornell-box");
+    let rect = |desk: &mut Desk| desk.world().resource::<Viewport>().rect;
+    let before = rect(&mut desk);
+    desk.world().write_message(Action::TogglePanels);
+    desk.settle();
+    assert_eq!(rect(&mut desk).size(), Vec2::new(USUAL[0], USUAL[1]));
+    assert_eq!(desk.find("Object"), None);
+    desk.world().write_message(Action::SelectNone);
+    desk.settle();
+    assert_eq!(rect(&mut desk), before);
+    assert!(desk.find("Object").is_some());
+}

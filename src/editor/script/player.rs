@@ -23,7 +23,7 @@ use bevy::input::mouse::{MouseButton, MouseButtonInput, MouseScrollUnit, MouseWh
 use bevy::input::touch::TouchPhase;
 use bevy::math::Vec2;
 use bevy::prelude::IntoScheduleConfigs;
-use bevy::window::{CursorMoved, PrimaryWindow, Window, WindowEvent};
+use bevy::window::{CursorMoved, PrimaryWindow, Window, WindowEvent, WindowResized};
 use bevy_egui::EguiPostUpdateSet;
 use std::collections::VecDeque;
 use std::io::Write;
@@ -233,9 +233,17 @@ fn begin(world: &mut World, player: &mut Player, step: Step) -> Result<(), Strin
             player.settle();
         }
         Step::Size(width, height) => {
-            let mut windows = world.query_filtered::<&mut Window, With<PrimaryWindow>>();
-            if let Ok(mut window) = windows.single_mut(world) {
-                window.resolution.set(width as f32, height as f32);
+            let mut windows = world.query_filtered::<(Entity, &mut Window), With<PrimaryWindow>>();
+            let (width, height) = (width as f32, height as f32);
+            if let Ok((window, mut component)) = windows.single_mut(world) {
+                component.resolution.set(width, height);
+                // Cameras hear of it in the same frame, as where a person drags the border: else
+                // they would draw into a window of another size.
+                world.write_message(WindowResized {
+                    window,
+                    width,
+                    height,
+                });
             }
             player.settle();
         }

@@ -35,6 +35,8 @@ pub(super) fn answer_actions(world: &World, panels: &mut Panels) {
                 panels.render_form.open(world);
                 panels.dialog = Some(Dialog::Render);
             }
+            Action::TogglePanels => panels.only_picture = !panels.only_picture,
+            Action::SelectNone => panels.only_picture = false,
             _ => {}
         }
     }

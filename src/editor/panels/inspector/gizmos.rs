@@ -3,6 +3,7 @@
 use super::super::fields::{Number, integer, section, switch};
 use super::super::says::Says;
 use super::render::choice_ui;
+use crate::editor::inspection::{DebugRay, Which};
 use crate::inspect::{InspectPreset, InspectSettings};
 use bevy::ecs::world::World;
 use bevy::reflect::{GetPath, PartialReflect, ReflectRef, TypeInfo};
@@ -235,6 +236,12 @@ pub(super) fn gizmos_ui(ui: &mut Ui, world: &mut World) {
                 .clicked()
             {
                 settings = preset.settings();
+                // Noise is what samples differ in.
+                if preset == InspectPreset::WhereIsTheNoiseFrom
+                    && let Some(mut ray) = world.get_resource_mut::<DebugRay>()
+                {
+                    ray.which = Which::All;
+                }
             }
         }
     });

@@ -1,0 +1,192 @@
+//! What the lines that the tracer drew mean: a legend over the picture, with what there is to say of
+//! them, and the labels at their places.
+
+use super::overlays::is_over;
+use super::says::Says;
+use super::state::Panels;
+use crate::editor::inspection::{DebugRay, Drawings};
+use crate::editor::pick::to_window;
+use crate::inspect::{InspectSettings, Label, Meaning, Thinned, legend};
+use crate::trace::RayTree;
+use bevy::color::{ColorToPacked, LinearRgba, Srgba};
+use bevy::ecs::world::World;
+use bevy_egui::egui::{
+    self, Align2, Color32, FontId, Id, Mesh, Rect, RichText, Sense, Stroke, StrokeKind, Ui, pos2,
+    vec2,
+};
+
+/// Extent of a line in the legend, in points.
+const SWATCH: egui::Vec2 = vec2(26.0, 3.0);
+/// Notes are broken at this width, in points.
+const WIDTH: f32 = 230.0;
+
+/// What the lines that are drawn say in words.
+pub(super) struct LineTexts {
+    /// Of the [`Drawings`].
+    version: u64,
+    meanings: Vec<Meaning>,
+    notes: Vec<String>,
+    labels: Vec<Label>,
+}
+
+impl LineTexts {
+    fn of(drawings: &Drawings, inspect: &InspectSettings, rays: Option<&RayTree>) -> Self {
+        let notes = drawings.sets().flat_map(|set| {
+            let left_out = set.thinned.as_ref().map(|thinned| {
+                let Thinned {
+                    what,
+                    drawn,
+                    of,
+                    rule,
+                } = thinned;
+                format!("{drawn} of {of} {what} are drawn: {rule}")
+            });
+            left_out.into_iter().chain(set.notes.clone())
+        });
+        Self {
+            version: drawings.version(),
+            meanings: drawings
+                .sets()
+                .filter(|set| !set.is_empty())
+                .flat_map(|set| legend(set.system, inspect, rays))
+                .collect(),
+            notes: notes.collect(),
+            labels: drawings.sets().flat_map(|set| set.labels.clone()).collect(),
+        }
+    }
+}
+
+/// Draws them; true where the pointer is over the legend.
+pub(super) fn line_legend_ui(ui: &Ui, free: Rect, world: &mut World, panels: &mut Panels) -> bool {
+    let Some(inspect) = world.get_resource::<InspectSettings>().filter(|i| i.on) else {
+        return false;
+    };
+    let rays = world.get_resource::<DebugRay>().and_then(DebugRay::rays);
+    let Some(drawings) = world.get_resource::<Drawings>() else {
+        return false;
+    };
+    let known = panels.line_texts.take();
+    let texts = match known.filter(|texts| texts.version == drawings.version()) {
+        Some(texts) => texts,
+        None => LineTexts::of(drawings, inspect, rays.map(|rays| &**rays)),
+    };
+    let wants_rays =
+        inspect.lobes || inspect.pattern.on || inspect.rays.visited || inspect.rays.pruned;
+    let lacks_rays = wants_rays && rays.is_none();
+    labels_ui(ui, free, world, &texts.labels);
+    let texts = panels.line_texts.insert(texts);
+    if texts.meanings.is_empty() && texts.notes.is_empty() && !lacks_rays {
+        return false;
+    }
+    let area = egui::Area::new(Id::new("legend of the lines"))
+        .fixed_pos(free.min + vec2(10.0, 10.0))
+        .order(egui::Order::Middle)
+        .show(ui.ctx(), |ui| {
+            let fill = ui.visuals().panel_fill.gamma_multiply(0.93);
+            egui::Frame::new()
+                .fill(fill)
+                .corner_radius(4.0)
+                .inner_margin(egui::Margin::symmetric(7, 4))
+                .show(ui, |ui| {
+                    ui.spacing_mut().item_spacing.y = 1.0;
+                    let heading = if panels.legend_folded {
+                        "Lines ⏵"
+                    } else {
+                        "Lines ⏷"
+                    };
+                    let heading = egui::Button::new(RichText::new(heading).small()).frame(false);
+                    let says = "What the colours of the lines mean; a click folds it up";
+                    if ui.add(heading).says(says).clicked() {
+                        panels.legend_folded = !panels.legend_folded;
+                    }
+                    if !panels.legend_folded {
+                        body(ui, texts, lacks_rays);
+                    }
+                });
+        });
+    is_over(ui.ctx(), area.response.rect)
+}
+
+fn body(ui: &mut Ui, texts: &LineTexts, lacks_rays: bool) {
+    for Meaning { colors, says } in &texts.meanings {
+        ui.horizontal(|ui| {
+            let (place, _) = ui.allocate_exact_size(vec2(SWATCH.x, 12.0), Sense::hover());
+            let line = Rect::from_center_size(place.center(), SWATCH);
+            // What is dark is seen by its edge.
+            let edge = Stroke::new(1.0, ui.visuals().weak_text_color());
+            ui.painter()
+                .rect_stroke(line, 1.0, edge, StrokeKind::Outside);
+            ui.painter().add(swatch(line, colors));
+            ui.label(RichText::new(*says).small());
+        });
+    }
+    ui.set_max_width(WIDTH);
+    let lack = lacks_rays.then_some("no pixel is picked: point at the picture and press R");
+    for note in texts.notes.iter().map(String::as_str).chain(lack) {
+        ui.label(RichText::new(note).small().weak());
+    }
+}
+
+/// A line that goes from colour to colour.
+fn swatch(place: Rect, colors: &[LinearRgba]) -> Mesh {
+    let mut mesh = Mesh::default();
+    // A single colour is the same from end to end.
+    let last = colors.len().saturating_sub(1).max(1);
+    for i in 0..=last {
+        let Some(color) = colors.get(i).or_else(|| colors.last()) else {
+            return mesh;
+        };
+        let x = place.min.x + place.width() * i as f32 / last as f32;
+        let color = color32(*color);
+        mesh.colored_vertex(pos2(x, place.min.y), color);
+        mesh.colored_vertex(pos2(x, place.max.y), color);
+        if i > 0 {
+            let at = 2 * i as u32;
+            mesh.add_triangle(at - 2, at - 1, at);
+            mesh.add_triangle(at - 1, at, at + 1);
+        }
+    }
+    mesh
+}
+
+fn color32(color: LinearRgba) -> Color32 {
+    let [r, g, b, a] = Srgba::from(color).to_u8_array();
+    Color32::from_rgba_unmultiplied(r, g, b, a)
+}
+
+/// Beside what they are about.
+fn labels_ui(ui: &Ui, free: Rect, world: &mut World, labels: &[Label]) {
+    let zoom = ui.ctx().zoom_factor();
+    let painter = ui.painter().with_clip_rect(free);
+    for label in labels {
+        let Some(at) = to_window(world, label.at) else {
+            continue;
+        };
+        let at = pos2(at.x, at.y) / zoom + vec2(3.0, -3.0);
+        let font = FontId::proportional(11.0);
+        let galley = painter.layout_no_wrap(label.text.clone(), font, color32(label.color));
+        let rect = Align2::LEFT_BOTTOM.anchor_size(at, galley.size());
+        let dark = Color32::from_black_alpha(140);
+        painter.rect_filled(rect.expand2(vec2(2.0, 0.0)), 2.0, dark);
+        painter.galley(rect.min, galley, Color32::WHITE);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_swatch_has_each_colour_at_its_place() {
+        let place = Rect::from_min_max(pos2(0.0, 0.0), pos2(20.0, 3.0));
+        let (red, blue) = (LinearRgba::RED, LinearRgba::BLUE);
+        let two = swatch(place, &[red, blue]);
+        assert_eq!(two.vertices.len(), 4);
+        assert_eq!(two.vertices[0].color, Color32::from_rgb(255, 0, 0));
+        assert_eq!(two.vertices[2].color, Color32::from_rgb(0, 0, 255));
+        assert_eq!(two.vertices[3].pos, pos2(20.0, 3.0));
+        let one = swatch(place, &[red]);
+        assert_eq!(one.vertices[2].color, Color32::from_rgb(255, 0, 0));
+        assert!(swatch(place, &[]).is_empty());
+    }
+}
