@@ -44,7 +44,11 @@ mod traversal;
 mod trees;
 mod visits;
 
-pub use builders::{BuilderFigures, BuilderRates, compare_builders, csv, markdown};
+pub use boxes::BoxRange;
+pub use builders::{
+    BuilderFigures, BuilderRates, Tell, build_time, builder_name, compare_builders,
+    compare_builders_told, csv, markdown, rebuilt, same_geometry,
+};
 pub use document::{Document, RayLine};
 pub use explain::{Cause, Source, explanation, sources};
 pub use line_set::{CIRCLE_SEGMENTS, Dot, Label, LineSet, Panel, Segment, Stands, Thinned};
@@ -54,7 +58,7 @@ pub use pattern_inset::draw_pattern;
 pub use rays::is_shown;
 pub use settings::{
     BoxChoice, BoxColor, BoxSettings, Dimension, InspectPreset, InspectSettings, MissColor,
-    NormalSettings, PatternSettings, RaySettings, TreeChoice, TreeForm,
+    NormalSettings, PairSettings, PatternSettings, RaySettings, TreeChoice, TreeForm,
 };
 pub use subject::Subject;
 pub use system::{System, lines};

@@ -1,5 +1,6 @@
 //! What is drawn: a switch for every system, one for all, and three ready-made answers.
 
+use crate::scene::Builder;
 use bevy::ecs::{reflect::ReflectResource, resource::Resource};
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 
@@ -12,6 +13,8 @@ pub struct InspectSettings {
     pub on: bool,
     /// Boxes of the trees.
     pub boxes: BoxSettings,
+    /// Boxes and visits of two builders' trees, side by side.
+    pub pair: PairSettings,
     /// The debug rays.
     pub rays: RaySettings,
     /// Normals of the meshes.
@@ -35,6 +38,7 @@ impl Default for InspectSettings {
         Self {
             on: true,
             boxes: BoxSettings::default(),
+            pair: PairSettings::default(),
             rays: RaySettings::default(),
             normals: NormalSettings::default(),
             lights: false,
@@ -92,6 +96,30 @@ impl Default for BoxSettings {
             color: BoxColor::Level,
             split_planes: false,
             triangles: false,
+        }
+    }
+}
+
+/// Two trees over the same view: on its left the boxes, and what the debug rays visit, in the trees
+/// of one builder, on its right in those of another. What is traced stays what it is. The window
+/// shows them; where there is none nothing is drawn of them.
+#[derive(Reflect, Clone, Debug, PartialEq)]
+#[reflect(Default, Clone, PartialEq, Debug)]
+pub struct PairSettings {
+    /// Shows them, in place of the boxes and visits of the trees that are traced.
+    pub on: bool,
+    /// Whose trees are on the left.
+    pub left: Builder,
+    /// Whose trees are on the right.
+    pub right: Builder,
+}
+
+impl Default for PairSettings {
+    fn default() -> Self {
+        Self {
+            on: false,
+            left: Builder::Median,
+            right: Builder::Ploc,
         }
     }
 }
@@ -306,7 +334,9 @@ impl Dimension {
 }
 
 /// A ready-made choice that answers a question.
-#[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(
+    Reflect, Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
+)]
 pub enum InspectPreset {
     /// The rays of one pixel, and what was in their lights' way.
     WhyBlack,
@@ -339,6 +369,24 @@ impl InspectPreset {
             Self::WhyBlack => "why is this pixel black?",
             Self::IsTheTreeGood => "is this tree good?",
             Self::WhereIsTheNoiseFrom => "where is my noise from?",
+        }
+    }
+
+    /// What one sees of it, in a sentence.
+    pub fn says(self) -> &'static str {
+        match self {
+            Self::WhyBlack => {
+                "Point at the pixel and press R: its rays, each in the light it carries, red where \
+                 they meet nothing; a shadow ray ends at what blocks its light, dark beyond."
+            }
+            Self::IsTheTreeGood => {
+                "Boxes of the trees, bright where rays pay most. Point and press R: white boxes are \
+                 visited by the pixel's rays, red ones were hit but skipped. Good trees show few."
+            }
+            Self::WhereIsTheNoiseFrom => {
+                "Point and press R: the pixel's rays with every random choice that they took, on lens, \
+                 lights, time and blur discs, and where its samples lie. What spreads widest is noisy."
+            }
         }
     }
 

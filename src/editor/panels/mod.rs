@@ -12,6 +12,7 @@
 //! | [`inspector`] | the tabs Object, Render, Debug and BVH |
 //! | [`status`] | the line below |
 //! | [`overlays`], [`compare`] | divider, legend, region, messages, a kept picture over the picture |
+//! | [`tree_pair`] | which builder's trees are on which side |
 //! | [`dialogs`] | what is in front of everything |
 
 mod compare;
@@ -29,6 +30,7 @@ mod state;
 mod status;
 mod theme;
 mod toolbar;
+mod tree_pair;
 
 #[cfg(test)]
 mod tests;
@@ -55,6 +57,7 @@ impl Plugin for PanelsPlugin {
         app.add_plugins((EguiPlugin::default(), PreferencesPlugin))
             .init_resource::<Panels>()
             .init_resource::<Outline>()
+            .add_plugins(super::trees::TreesPlugin)
             .add_systems(EguiPrimaryContextPass, (outline_scene, draw).chain());
     }
 }

@@ -2,7 +2,7 @@
 
 use super::compare::Kept;
 use super::dialogs::{Gallery, RenderForm};
-use super::inspector::{ErrorCurve, Thumbnails, Trees, Turns};
+use super::inspector::{Builders, ErrorCurve, PerformanceForm, Thumbnails, Trees, Turns};
 use super::status::{Memory, Numbers};
 use crate::editor::action::Action;
 use crate::scene::SceneId;
@@ -82,6 +82,8 @@ pub(super) struct Panels {
     pub thumbnails: Thumbnails,
     pub error_curve: ErrorCurve,
     pub trees: Trees,
+    pub builders: Builders,
+    pub performance: PerformanceForm,
     pub numbers: Numbers,
     pub memory: Memory,
     /// What the pixel under the pointer shows, and of which world, pixel and camera that is.
