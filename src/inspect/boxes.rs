@@ -1,15 +1,15 @@
 //! The boxes of the trees, as they are traced.
 
 use super::color::{AXES, GREY, WHITE, faint, of_scale};
-use super::line_set::{Label, LineSet, Panel, Stands, Thinned, box_corners};
+use super::line_set::{Label, LineSet, Panel, Stands, Thinned};
 use super::settings::{BoxChoice, BoxColor, BoxSettings, TreeChoice, TreeForm};
 use super::trees::{TreeView, trees};
 use super::visits::Visits;
+use super::wide_boxes::wide_boxes;
 use super::{Subject, System};
-use crate::bvh::{SplitPlane, TreeRef, WideBox, node_cost};
+use crate::bvh::{SplitPlane, TreeRef, node_cost};
 use crate::trace::World;
 use bevy::color::LinearRgba;
-use bevy::platform::collections::HashSet;
 use glam::Vec3;
 
 /// How much a split plane covers.
@@ -45,7 +45,7 @@ pub(super) fn boxes(subject: &Subject) -> LineSet {
     };
     let views: Vec<TreeView> = trees(world).filter(|view| wanted(settings, view)).collect();
     if settings.form == TreeForm::Wide {
-        wide(&mut set, subject, &views);
+        wide_boxes(&mut set, subject, &views);
         return set;
     }
     let chosen: Vec<Vec<Chosen>> = choose(settings, world, &views, &mut set);
@@ -95,88 +95,8 @@ pub(super) fn boxes(subject: &Subject) -> LineSet {
     set
 }
 
-/// Boxes of the wide form: a range of its levels, coloured by level.
-fn wide(set: &mut LineSet, subject: &Subject, views: &[TreeView]) {
-    let settings = &subject.inspect.boxes;
-    let levels = settings.from_level..=settings.to_level;
-    let mut boxes: Vec<(&TreeView, WideBox)> = Vec::new();
-    for view in views {
-        let of = match view.instance() {
-            None => subject.world.aggregate.wide_boxes(),
-            Some((_, instance)) => instance.mesh.wide_boxes(),
-        };
-        let in_range = of.into_iter().filter(|b| levels.contains(&b.depth));
-        boxes.extend(in_range.map(|b| (view, b)));
-    }
-    if boxes.is_empty() {
-        let (from, to) = (settings.from_level, settings.to_level);
-        set.notes
-            .push(format!("the wide form has no box at levels {from} to {to}"));
-        return;
-    }
-    let deepest = boxes.iter().map(|(_, b)| b.depth).max().unwrap_or(0);
-    let most = subject.inspect.max_lines as usize / 12;
-    let of = boxes.len();
-    boxes.sort_by_key(|(_, b)| b.depth);
-    boxes.truncate(most);
-    for (view, WideBox { depth, bounds, .. }) in &boxes {
-        let [min, max] = *bounds;
-        // A wide box has no node of its own in the binary form: it stands for its tree.
-        let stands = Stands::Node {
-            instance: view.instance().map(|(instance, _)| instance),
-            node: 0,
-        };
-        let color = of_scale(*depth as f32 / deepest.max(1) as f32);
-        set.edges(&view.place(box_corners(min, max)), color, stands);
-    }
-    set.notes
-        .push("the wide form of the trees, through which pictures are traced".into());
-    if of > boxes.len() {
-        set.thinned = Some(Thinned {
-            what: "boxes",
-            drawn: boxes.len(),
-            of,
-            rule: "the levels nearest to the root",
-        });
-    }
-}
-
-/// What of the trees there is to choose from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct BoxRange {
-    /// Leaves that [`BoxSettings::leaf`] counts.
-    pub leaves: usize,
-    /// The deepest level of the form that is asked for.
-    pub deepest: u32,
-}
-
-impl BoxRange {
-    /// Of the trees that the settings ask for. One look at every node of every tree.
-    pub fn of(world: &World, settings: &BoxSettings) -> Self {
-        let mut range = Self::default();
-        let mut seen = HashSet::new();
-        for view in trees(world).filter(|view| wanted(settings, view)) {
-            range.leaves += view.tree.nodes.len().div_ceil(2);
-            if !seen.insert(std::ptr::from_ref(view.tree)) {
-                continue;
-            }
-            let deepest = match (settings.form, view.instance()) {
-                (TreeForm::Binary, _) => view.depths().into_iter().max(),
-                (TreeForm::Wide, None) => deepest(world.aggregate.wide_boxes()),
-                (TreeForm::Wide, Some((_, instance))) => deepest(instance.mesh.wide_boxes()),
-            };
-            range.deepest = range.deepest.max(deepest.unwrap_or(0));
-        }
-        range
-    }
-}
-
-fn deepest(boxes: Vec<WideBox>) -> Option<u32> {
-    boxes.into_iter().map(|wide| wide.depth).max()
-}
-
 /// Whether a tree is asked for.
-fn wanted(settings: &BoxSettings, view: &TreeView) -> bool {
+pub(super) fn wanted(settings: &BoxSettings, view: &TreeView) -> bool {
     // A leaf, or the path to a triangle, is looked for where triangles are.
     match view.name {
         TreeRef::Top => {

@@ -83,10 +83,16 @@ fn divider_ui(ui: &Ui, free: Rect, world: &mut World, split: bool) -> bool {
 }
 
 /// Text over a picture of any brightness.
-pub(super) fn label(ui: &Ui, at: egui::Pos2, align: Align2, text: &str) -> Rect {
-    let galley =
-        ui.painter()
-            .layout_no_wrap(text.to_owned(), FontId::proportional(12.0), Color32::WHITE);
+fn label(ui: &Ui, at: egui::Pos2, align: Align2, text: &str) {
+    label_within(ui, at, align, text, f32::INFINITY);
+}
+
+/// The same in lines no wider than this; returns where it stands.
+pub(super) fn label_within(ui: &Ui, at: egui::Pos2, align: Align2, text: &str, width: f32) -> Rect {
+    let font = FontId::proportional(12.0);
+    let galley = ui
+        .painter()
+        .layout(text.to_owned(), font, Color32::WHITE, width);
     let rect = align.anchor_size(at, galley.size());
     let painter = ui.painter();
     painter.rect_filled(
