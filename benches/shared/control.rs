@@ -2,28 +2,56 @@
 //! traversal. It is `bvh::watched` and `bvh::traverse` without their visitor, and nothing else.
 
 use crate::bvh::aggregate::{Aggregate, Places};
+use crate::bvh::mesh_tree::{MeshTree, ObjectRay};
 use crate::bvh::safe_ray::SafeRay;
 use crate::bvh::slab::SlabRay;
 use crate::bvh::triangle::{Crossing, Shear, cross};
 use crate::bvh::{Hit, MAX_DEPTH, Ray};
 use obvhs::bvh2::node::Bvh2Node;
 
+/// What a query answers that wants nothing more. This one always wants the nearest, and asks all the same: it is
+/// the visitor alone that it does without.
+const STOP: f32 = f32::NEG_INFINITY;
+
 type Stack = [(f32, u32); MAX_DEPTH];
 const EMPTY: Stack = [(0.0, 0); MAX_DEPTH];
 
-const NONE: Hit = Hit {
-    t: f32::INFINITY,
-    instance: u32::MAX,
-    triangle: u32::MAX,
-    u: 0.0,
-    v: 0.0,
-};
+/// The nearest hit so far.
+struct Best(Hit);
+
+impl Best {
+    const NONE: Self = Self(Hit {
+        t: f32::INFINITY,
+        instance: u32::MAX,
+        triangle: u32::MAX,
+        u: 0.0,
+        v: 0.0,
+    });
+
+    #[inline(always)]
+    fn offer(&mut self, hit: Hit, limit: f32) -> f32 {
+        if hit.beats(&self.0) {
+            self.0 = hit;
+            hit.t
+        } else {
+            limit
+        }
+    }
+}
 
 /// The nearest hit.
 pub fn closest_hit(aggregate: &Aggregate, ray: &Ray) -> Option<Hit> {
     let ray = SafeRay::new(ray)?;
-    let mut best = NONE;
-    let mut at = |instance, triangle, crossing: Option<Crossing>, limit: f32| {
+    let mut best = Best::NONE;
+    each_hit(aggregate, &ray, |hit, limit| best.offer(hit, limit));
+    (best.0.instance != u32::MAX).then(|| ray.scaled(best.0))
+}
+
+/// Hands the hits on the ray whose `t` is not beyond the limit to `at(hit, limit)`, which returns the
+/// new limit.
+fn each_hit(aggregate: &Aggregate, ray: &SafeRay, mut at: impl FnMut(Hit, f32) -> f32) {
+    let mut at = |instance, triangle, crossing, limit| {
+        let mut new_limit = limit;
         if let Some(Crossing { t, u, v }) = crossing
             && t <= limit
             && ray.reaches(t)
@@ -35,12 +63,9 @@ pub fn closest_hit(aggregate: &Aggregate, ray: &Ray) -> Option<Hit> {
                 u,
                 v,
             };
-            if hit.beats(&best) {
-                best = hit;
-                return hit.t;
-            }
+            new_limit = at(hit, limit);
         }
-        limit
+        new_limit
     };
     let (mut stack, mut mesh_stack) = (EMPTY, EMPTY);
     let mut last = None;
@@ -53,29 +78,13 @@ pub fn closest_hit(aggregate: &Aggregate, ray: &Ray) -> Option<Hit> {
                     let Some(object) = instance.to_object_ray(&ray.world, ray.time) else {
                         continue;
                     };
-                    let mesh = &instance.mesh;
-                    let mut shear = None;
-                    walk(
-                        &mesh.tree().nodes,
-                        &mut mesh_stack,
-                        &object.slab,
-                        limit,
-                        |first, count, mut limit| {
-                            let shear = shear
-                                .get_or_insert_with(|| Shear::new(object.origin, object.direction));
-                            let first = first as usize;
-                            for triangle in &mesh.leaves[first..first + count as usize] {
-                                let crossing = cross(shear, &object.slab, triangle, limit);
-                                limit = at(number, triangle.number, crossing, limit);
-                            }
-                            limit
-                        },
-                    )
+                    let at = |triangle, crossing, limit| at(number, triangle, crossing, limit);
+                    let stack = &mut mesh_stack;
+                    walk_mesh(&instance.mesh, &object, stack, limit, at)
                 }
                 Places::Triangles(places) => {
                     let (number, place) = places[place];
-                    let Some((object, shear)) = aggregate.object_ray(&ray, number, &mut last)
-                    else {
+                    let Some((object, shear)) = aggregate.object_ray(ray, number, &mut last) else {
                         continue;
                     };
                     let mesh = &aggregate.instances()[number as usize].mesh;
@@ -83,12 +92,44 @@ pub fn closest_hit(aggregate: &Aggregate, ray: &Ray) -> Option<Hit> {
                     at(number, triangle, crossing, limit)
                 }
             };
+            if limit == STOP {
+                break;
+            }
         }
         limit
     };
     let slab = aggregate.top_slab(&ray.world);
     walk(&aggregate.tree().nodes, &mut stack, &slab, ray.end, leaf);
-    (best.instance != u32::MAX).then(|| ray.scaled(best))
+}
+
+/// Walks a mesh's tree along a ray in object space.
+#[inline(always)]
+fn walk_mesh(
+    mesh: &MeshTree,
+    ray: &ObjectRay,
+    stack: &mut Stack,
+    limit: f32,
+    mut at: impl FnMut(u32, Option<Crossing>, f32) -> f32,
+) -> f32 {
+    let mut shear = None;
+    walk(
+        &mesh.tree().nodes,
+        stack,
+        &ray.slab,
+        limit,
+        |first, count, mut limit| {
+            let shear = shear.get_or_insert_with(|| Shear::new(ray.origin, ray.direction));
+            let first = first as usize;
+            for triangle in &mesh.leaves[first..first + count as usize] {
+                let crossing = cross(shear, &ray.slab, triangle, limit);
+                limit = at(triangle.number, crossing, limit);
+                if limit == STOP {
+                    break;
+                }
+            }
+            limit
+        },
+    )
 }
 
 /// Walks `nodes` along the ray, nearest child first.
@@ -112,6 +153,9 @@ fn walk(
     loop {
         let next = if node.prim_count != 0 {
             limit = leaf(node.first_index, node.prim_count, limit);
+            if limit == STOP {
+                return STOP;
+            }
             None
         } else {
             let (left, right) = (node.first_index, node.first_index + 1);

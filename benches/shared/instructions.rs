@@ -114,8 +114,9 @@ fn count_watched(aggregate: &Aggregate, rays: &[Ray]) -> usize {
 
 #[inline(never)]
 fn count_wide(aggregate: &Aggregate, rays: &[Ray]) -> usize {
-    let hit = |ray: &&Ray| aggregate.closest_hit(ray).is_some();
-    black_box(rays).iter().filter(hit).count()
+    let mut hits = Vec::new();
+    aggregate.closest_hits(black_box(rays), &mut hits);
+    hits.iter().flatten().count()
 }
 
 /// Two knots, one of them turned, and rays from the first one's surface in all directions.

@@ -46,7 +46,7 @@ mod instance;
 mod layout;
 mod levels;
 mod median;
-mod mesh_tree;
+pub(crate) mod mesh_tree;
 mod options;
 mod ploc;
 mod queries;

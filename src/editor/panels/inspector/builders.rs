@@ -180,6 +180,8 @@ fn table(rows: &[BuilderFigures]) -> Vec<Row> {
                 Some(value) => {
                     let (text, exact) = (short(value), value.to_string());
                     match better {
+                        // What a builder that does nothing saves is no merit.
+                        _ if row.builder == "none" => Cell::plain(text, exact),
                         Less => Cell::less(value, text, exact),
                         More => Cell::more(value, text, exact),
                         Neither => Cell::plain(text, exact),
