@@ -17,10 +17,12 @@ pub(super) mod pair;
 pub(super) use obey::BoxRanges;
 
 use crate::bvh;
+use crate::inspect::InspectSettings;
 use crate::scene;
 use crate::sync::SyncSystems;
-use bevy::app::{App, Plugin, PostUpdate, Update};
-use bevy::prelude::IntoScheduleConfigs;
+use bevy::app::{App, Plugin, PostUpdate, Startup, Update};
+use bevy::prelude::{IntoScheduleConfigs, Res, ResMut};
+use bevy::render::renderer::RenderAdapterInfo;
 
 /// The part that needs no window: measurements, actions, the trees of a pair.
 pub(super) struct TreeStudyPlugin;
@@ -28,7 +30,7 @@ pub(super) struct TreeStudyPlugin;
 impl Plugin for TreeStudyPlugin {
     fn build(&self, app: &mut App) {
         app.add_message::<super::action::Action>()
-            .init_resource::<crate::inspect::InspectSettings>()
+            .init_resource::<InspectSettings>()
             .init_resource::<super::notice::Notices>()
             .init_resource::<measure::Measurements>()
             .init_resource::<pair::TreePair>()
@@ -43,13 +45,28 @@ pub(super) struct TreesPlugin;
 
 impl Plugin for TreesPlugin {
     fn build(&self, app: &mut App) {
-        app.add_plugins(TreeStudyPlugin).add_systems(
-            PostUpdate,
-            (
-                pair::draw_pair.after(pair::build_pair),
-                cameras::fit_cameras.before(bevy::camera::CameraUpdateSystems),
-            ),
-        );
+        app.add_plugins(TreeStudyPlugin)
+            .add_systems(Startup, fit_lines)
+            .add_systems(
+                PostUpdate,
+                (
+                    pair::draw_pair.after(pair::build_pair),
+                    cameras::fit_cameras.before(bevy::camera::CameraUpdateSystems),
+                ),
+            );
+    }
+}
+
+/// Lines of a system at most where a processor draws them too: so many take it about 30 ms of a
+/// frame at 1280 x 720 (two cores of an EPYC, Mesa's llvmpipe; boxes of the 87,000 triangles of the
+/// scene `knot`).
+const LINES_WITHOUT_GPU: u32 = 30_000;
+
+/// No more lines than the machine draws quickly; what is left out is said.
+fn fit_lines(adapter: Option<Res<RenderAdapterInfo>>, mut inspect: ResMut<InspectSettings>) {
+    let is_cpu = adapter.is_some_and(|adapter| adapter.device_type == wgpu::DeviceType::Cpu);
+    if is_cpu && inspect.max_lines == InspectSettings::default().max_lines {
+        inspect.max_lines = LINES_WITHOUT_GPU;
     }
 }
 

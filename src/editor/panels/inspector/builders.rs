@@ -28,7 +28,7 @@ pub(super) fn builders_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
         ui,
         world,
         "Compare the builders",
-        "Builds and measures in the background, one thread; the traced view waits meanwhile",
+        "Builds and measures in the background; the traced view waits meanwhile",
         |all| &mut all.comparison,
     );
     if start {

@@ -175,7 +175,10 @@ fn trees_ui(ui: &mut Ui, trees: &mut Trees) {
                 (
                     "Largest leaf",
                     "What it holds",
-                    format!("{} {}", stats.largest_leaf, tree.primitives),
+                    match stats.largest_leaf {
+                        1 => format!("1 {}", tree.primitives.trim_end_matches('s')),
+                        n => format!("{} {}", grouped(n.into()), tree.primitives),
+                    },
                 ),
                 (
                     "SAH cost",

@@ -17,8 +17,18 @@ use std::time::{Duration, Instant};
 const COMPARE: &str = "Compare the builders";
 
 impl Desk {
-    fn in_tab_bvh(scene: &str) -> Self {
+    /// With all trees built.
+    fn with_trees(scene: &str) -> Self {
         let mut desk = Self::open(scene);
+        desk.until("built", |world| {
+            let traced = world.resource::<Traced>();
+            traced.pending == 0 && !traced.world.objects.is_empty()
+        });
+        desk
+    }
+
+    fn in_tab_bvh(scene: &str) -> Self {
+        let mut desk = Self::with_trees(scene);
         desk.world().resource_mut::<Panels>().tab = Tab::Bvh;
         desk.settle();
         desk
@@ -184,7 +194,7 @@ fn an_empty_scene_has_nothing_to_measure_and_says_so() {
 
 #[test]
 fn the_performance_test_times_every_builder_as_often_as_asked() {
-    let mut desk = Desk::open("cornell-box");
+    let mut desk = Desk::with_trees("cornell-box");
     desk.world().resource_mut::<RenderSettings>().size = bevy::math::UVec2::new(16, 12);
     desk.settle();
     crate::editor::trees::measure::test_performance(desk.world(), 3, 2);
@@ -210,7 +220,7 @@ fn the_performance_test_times_every_builder_as_often_as_asked() {
 
 #[test]
 fn of_two_trees_the_one_that_is_traced_is_not_built_again() {
-    let mut desk = Desk::open("head");
+    let mut desk = Desk::with_trees("head");
     let traced = desk.world().resource::<Traced>().world.clone();
     desk.world().resource_mut::<InspectSettings>().pair.on = true;
     desk.settle();
@@ -245,7 +255,7 @@ fn of_two_trees_the_one_that_is_traced_is_not_built_again() {
 
 #[test]
 fn a_and_s_step_through_the_leaves_and_stop_at_the_ends() {
-    let mut desk = Desk::open("head");
+    let mut desk = Desk::with_trees("head");
     let leaf = |desk: &mut Desk| desk.world().resource::<InspectSettings>().boxes.leaf;
     let step = |desk: &mut Desk, action: Action| {
         desk.world().write_message(action);
