@@ -12,6 +12,13 @@
 //!
 //! and what of the tracer's world was redone. Times are wall-clock, on all the machine's cores: on a
 //! machine that is busy with other things they say little.
+//!
+//! `cargo bench --bench edits -- lines`: what a hundred thousand lines of gizmos that stand cost in a
+//! frame instead.
+
+#[cfg(feature = "view")]
+#[path = "shared/lines.rs"]
+mod lines;
 
 use bevy::app::App;
 use bevy::asset::Assets;
@@ -43,6 +50,10 @@ const BETWEEN: Duration = Duration::from_millis(20);
 const FRAME: Duration = Duration::from_millis(4);
 
 fn main() {
+    #[cfg(feature = "view")]
+    if std::env::args().any(|argument| argument == "lines") {
+        return lines::main();
+    }
     println!("{} threads", rayon::current_num_threads());
     for (scene, instances) in [
         ("cornell-box", 0),

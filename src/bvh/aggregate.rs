@@ -23,7 +23,7 @@ pub struct Aggregate {
     options: BuildOptions,
     pub(super) tree: Bvh2,
     /// What a leaf of `tree` holds, in leaf order.
-    pub(super) places: Places,
+    pub(crate) places: Places,
     /// The tree as rays walk it when nobody watches.
     pub(super) wide: WideTree,
     /// What its leaves hold: ranges of the places of instances, or of the blocks.
@@ -40,7 +40,7 @@ pub struct Aggregate {
 }
 
 #[derive(Clone)]
-pub(super) enum Places {
+pub(crate) enum Places {
     /// Two levels: instances.
     Instances(Vec<u32>),
     /// One level: (instance, place in the leaf order of its mesh).

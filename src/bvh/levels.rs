@@ -282,7 +282,7 @@ impl Arrangement for OneLevel<'_> {
 impl Aggregate {
     /// The ray as the boxes of the top tree need it.
     #[inline(always)]
-    pub(super) fn top_slab(&self, world: &ObjectRay) -> SlabRay {
+    pub(crate) fn top_slab(&self, world: &ObjectRay) -> SlabRay {
         let pad = world.origin.abs().max_element() * self.ray_pad;
         SlabRay::new(world.origin, world.direction, pad)
     }
@@ -290,7 +290,7 @@ impl Aggregate {
     /// The ray in an instance's space and its frame there, made anew when the instance is not the last one; `None`
     /// where the instance cannot be met.
     #[inline(always)]
-    pub(super) fn object_ray<'a>(
+    pub(crate) fn object_ray<'a>(
         &self,
         ray: &SafeRay,
         number: u32,

@@ -23,7 +23,7 @@ use super::{
 pub struct MeshTree {
     triangles: Triangles,
     tree: Bvh2,
-    leaves: Vec<LeafTriangle>,
+    pub(crate) leaves: Vec<LeafTriangle>,
     wide: WideTree,
     blocks: Vec<TriangleBlock>,
     build_time: Duration,

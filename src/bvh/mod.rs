@@ -35,7 +35,7 @@
 //! Rules at the borders: both sides are hit; an edge belongs to all its triangles; a ray in a triangle's plane misses it;
 //! hits lie strictly between 0 and `t_max`.
 
-mod aggregate;
+pub(crate) mod aggregate;
 mod boxes;
 mod build;
 mod crossing;
@@ -46,14 +46,14 @@ mod instance;
 mod layout;
 mod levels;
 mod median;
-mod mesh_tree;
+pub(crate) mod mesh_tree;
 mod options;
 mod ploc;
 mod queries;
 mod ray;
-mod safe_ray;
+pub(crate) mod safe_ray;
 mod sah;
-mod slab;
+pub(crate) mod slab;
 #[cfg(test)]
 mod specimens;
 mod split_plane;
@@ -64,7 +64,7 @@ mod tests;
 mod top_down;
 mod traverse;
 mod treelets;
-mod triangle;
+pub(crate) mod triangle;
 mod triangles;
 mod visitor;
 mod watched;

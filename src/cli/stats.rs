@@ -1,10 +1,7 @@
 //! `--stats`: what a rendering took, as one JSON object.
 
 use crate::trace::{RayCounts, World};
-use bevy::platform::collections::HashSet;
 use serde::Serialize;
-use std::sync::Arc;
-use std::time::Duration;
 
 /// What a rendering took. With several cameras rays and times are those of all pictures together.
 #[derive(Clone, Debug, Serialize)]
@@ -39,18 +36,6 @@ pub(super) fn triangles(world: &World) -> u64 {
         .iter()
         .map(|object| object.mesh.tree.triangles().len() as u64)
         .sum()
-}
-
-/// Time spent on the trees of a world, each counted once.
-pub(super) fn build_time(world: &World) -> Duration {
-    let mut seen = HashSet::new();
-    let meshes: Duration = world
-        .objects
-        .iter()
-        .filter(|object| seen.insert(Arc::as_ptr(&object.mesh.tree)))
-        .map(|object| object.mesh.tree.build_time())
-        .sum();
-    meshes + world.aggregate.build_time()
 }
 
 /// Million rays a second.

@@ -1,6 +1,7 @@
 //! What can be asked of the editor. Menus, keys, buttons and scripts send the same messages, and
 //! one table says what each is called, which keys send it, and what it does.
 
+use crate::inspect::InspectPreset;
 use crate::scene::{SceneId, Shape};
 use bevy::ecs::message::Message;
 use bevy::input::keyboard::KeyCode;
@@ -73,6 +74,12 @@ pub enum Action {
     ToggleSnap,
     // Help
     ToggleHelp,
+    // What is drawn over the picture
+    ToggleGizmos,
+    /// Draws what answers a question.
+    Inspect(InspectPreset),
+    PreviousLeaf,
+    NextLeaf,
 }
 
 /// What can be added.
@@ -213,6 +220,12 @@ actions! {
     ToggleLocal "World or local axes" [key(KeyCode::KeyL)] "Whether handles follow the world's axes or the object's own"
     ToggleSnap "Snap" [key(KeyCode::KeyN)] "Handles move in steps"
     ToggleHelp "Keys and mouse" [key(KeyCode::F1), shift(KeyCode::Slash)] "Shows every key"
+    ToggleGizmos "Show the tracer's lines" [key(KeyCode::KeyG)] "All that is drawn of rays and trees, off and on again as it was"
+    Inspect(InspectPreset::WhyBlack) "Why is this pixel black?" [] "Draws the rays of a pixel in the light that they carry: point at it and press R"
+    Inspect(InspectPreset::IsTheTreeGood) "Is this tree good?" [] "Draws the trees' boxes by what they cost, and what a pixel's rays visit of them"
+    Inspect(InspectPreset::WhereIsTheNoiseFrom) "Where is my noise from?" [] "Draws what is chosen at random for a pixel: point at it and press R"
+    PreviousLeaf "Previous leaf" [key(KeyCode::KeyA)] "One leaf back, while one leaf of the trees is drawn"
+    NextLeaf "Next leaf" [key(KeyCode::KeyS)] "One leaf on, while one leaf of the trees is drawn"
 }
 
 impl Action {

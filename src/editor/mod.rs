@@ -17,6 +17,7 @@
 //! | `window` | the app: plugins, window, cameras |
 //! | `panels` | everything that egui draws |
 //! | `inspection` | what the tracer did, drawn over the scene; the debug ray |
+//! | `trees` | the builders compared and timed, two trees side by side |
 //! | [`navigation`] | moving the view |
 //! | [`handles`] | arrows, rings and points that are dragged |
 //! | `pointer`, `keys`, `pick` | what a press means, what a key means, what is under the pointer |
@@ -44,6 +45,7 @@ pub mod render_job;
 mod script;
 pub mod selection;
 mod startup;
+mod trees;
 pub mod viewport;
 mod window;
 

@@ -52,7 +52,7 @@ pub use first_hits::FirstHits;
 pub use gaussian::{MAX_SIGMA, blurred, kernel};
 pub use picture::Picture;
 pub use progressive::Progressive;
-pub use render::{Rendered, render, render_samples};
+pub use render::{Rendered, render, render_samples, render_while};
 pub use snapshot::Snapshot;
 pub use status::{Ending, State, Status, TrendPoint};
 pub use sum::Sum;

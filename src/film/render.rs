@@ -1,3 +1,4 @@
+use super::control::Signal;
 use super::engine::{Engine, Mode};
 use super::sample_chunk::Subject;
 use super::{Ending, Film, Picture, Status};
@@ -51,6 +52,34 @@ pub fn render_samples(
     samples: Range<u64>,
     progress: &(dyn Fn(&Status) + Sync),
 ) -> Rendered {
+    run(world, camera, settings, samples, &|engine| {
+        progress(&engine.status());
+    })
+}
+
+/// What [`render`] renders, for as long as `go_on` says so, which is asked from any thread after
+/// every piece of a tile. A render that was ended so has [`Ending::Cancelled`].
+pub fn render_while(
+    world: &World,
+    camera: &Camera,
+    settings: &RenderSettings,
+    go_on: &(dyn Fn(&Status) -> bool + Sync),
+) -> Rendered {
+    let spp = u64::from(samples_per_pixel(world, camera, settings));
+    run(world, camera, settings, 0..spp, &|engine| {
+        if !go_on(&engine.status()) {
+            engine.control.tell(Signal::Cancel);
+        }
+    })
+}
+
+fn run(
+    world: &World,
+    camera: &Camera,
+    settings: &RenderSettings,
+    samples: Range<u64>,
+    told: &(dyn Fn(&Engine) + Sync),
+) -> Rendered {
     let subject = Subject {
         world: world.clone(),
         camera: camera.clone(),
@@ -65,7 +94,7 @@ pub fn render_samples(
         },
         None,
     );
-    let ending = engine.run(&|engine| progress(&engine.status()));
+    let ending = engine.run(told);
     let status = engine.status();
     Rendered {
         picture: engine.picture(),

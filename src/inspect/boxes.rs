@@ -1,12 +1,14 @@
 //! The boxes of the trees, as they are traced.
 
 use super::color::{AXES, GREY, WHITE, faint, of_scale};
-use super::line_set::{Label, LineSet, Panel, Stands, Thinned, box_corners};
+use super::line_set::{Label, LineSet, Panel, Stands, Thinned};
 use super::settings::{BoxChoice, BoxColor, BoxSettings, TreeChoice, TreeForm};
 use super::trees::{TreeView, trees};
 use super::visits::Visits;
+use super::wide_boxes::wide_boxes;
 use super::{Subject, System};
-use crate::bvh::{SplitPlane, TreeRef, WideBox, node_cost};
+use crate::bvh::{SplitPlane, TreeRef, node_cost};
+use crate::trace::World;
 use bevy::color::LinearRgba;
 use glam::Vec3;
 
@@ -43,7 +45,7 @@ pub(super) fn boxes(subject: &Subject) -> LineSet {
     };
     let views: Vec<TreeView> = trees(world).filter(|view| wanted(settings, view)).collect();
     if settings.form == TreeForm::Wide {
-        wide(&mut set, subject, &views);
+        wide_boxes(&mut set, subject, &views);
         return set;
     }
     let chosen: Vec<Vec<Chosen>> = choose(settings, world, &views, &mut set);
@@ -93,54 +95,8 @@ pub(super) fn boxes(subject: &Subject) -> LineSet {
     set
 }
 
-/// Boxes of the wide form: a range of its levels, coloured by level.
-fn wide(set: &mut LineSet, subject: &Subject, views: &[TreeView]) {
-    let settings = &subject.inspect.boxes;
-    let levels = settings.from_level..=settings.to_level;
-    let mut boxes: Vec<(&TreeView, WideBox)> = Vec::new();
-    for view in views {
-        let of = match view.instance() {
-            None => subject.world.aggregate.wide_boxes(),
-            Some((_, instance)) => instance.mesh.wide_boxes(),
-        };
-        let in_range = of.into_iter().filter(|b| levels.contains(&b.depth));
-        boxes.extend(in_range.map(|b| (view, b)));
-    }
-    if boxes.is_empty() {
-        let (from, to) = (settings.from_level, settings.to_level);
-        set.notes
-            .push(format!("the wide form has no box at levels {from} to {to}"));
-        return;
-    }
-    let deepest = boxes.iter().map(|(_, b)| b.depth).max().unwrap_or(0);
-    let most = subject.inspect.max_lines as usize / 12;
-    let of = boxes.len();
-    boxes.sort_by_key(|(_, b)| b.depth);
-    boxes.truncate(most);
-    for (view, WideBox { depth, bounds, .. }) in &boxes {
-        let [min, max] = *bounds;
-        // A wide box has no node of its own in the binary form: it stands for its tree.
-        let stands = Stands::Node {
-            instance: view.instance().map(|(instance, _)| instance),
-            node: 0,
-        };
-        let color = of_scale(*depth as f32 / deepest.max(1) as f32);
-        set.edges(&view.place(box_corners(min, max)), color, stands);
-    }
-    set.notes
-        .push("the wide form of the trees, through which pictures are traced".into());
-    if of > boxes.len() {
-        set.thinned = Some(Thinned {
-            what: "boxes",
-            drawn: boxes.len(),
-            of,
-            rule: "the levels nearest to the root",
-        });
-    }
-}
-
 /// Whether a tree is asked for.
-fn wanted(settings: &BoxSettings, view: &TreeView) -> bool {
+pub(super) fn wanted(settings: &BoxSettings, view: &TreeView) -> bool {
     // A leaf, or the path to a triangle, is looked for where triangles are.
     match view.name {
         TreeRef::Top => {
@@ -167,7 +123,7 @@ impl TreeView<'_> {
 
 fn choose(
     settings: &BoxSettings,
-    world: &crate::trace::World,
+    world: &World,
     views: &[TreeView],
     set: &mut LineSet,
 ) -> Vec<Vec<Chosen>> {

@@ -21,6 +21,7 @@
 //! through the trees step by step; [`legend()`], what the colours of the lines mean; [`compare_builders`], each builder's tree in numbers;
 //! [`draw_over`], lines over a picture without a GPU; [`Document`], all of it as one file.
 
+mod box_range;
 mod boxes;
 mod builders;
 mod color;
@@ -36,6 +37,7 @@ mod normals;
 mod overlay;
 mod pattern;
 mod pattern_inset;
+mod presets;
 mod rays;
 mod settings;
 mod subject;
@@ -44,8 +46,13 @@ mod table;
 mod traversal;
 mod trees;
 mod visits;
+mod wide_boxes;
 
-pub use builders::{BuilderFigures, BuilderRates, compare_builders, csv, markdown};
+pub use box_range::BoxRange;
+pub use builders::{
+    BuilderFigures, BuilderRates, Tell, build_time, builder_name, compare_builders,
+    compare_builders_told, csv, markdown, rebuilt, same_geometry,
+};
 pub use document::{Document, RayLine};
 pub use explain::{Cause, Source, explanation, sources};
 pub use legend::{Meaning, legend};
@@ -53,10 +60,11 @@ pub use line_set::{CIRCLE_SEGMENTS, Dot, Label, LineSet, Panel, Segment, Stands,
 pub use overlay::{FAINT, Overlay, draw_over};
 pub use pattern::{Pattern, pattern};
 pub use pattern_inset::draw_pattern;
+pub use presets::InspectPreset;
 pub use rays::is_shown;
 pub use settings::{
-    BoxChoice, BoxColor, BoxSettings, Dimension, InspectPreset, InspectSettings, MissColor,
-    NormalSettings, PatternSettings, RaySettings, TreeChoice, TreeForm,
+    BoxChoice, BoxColor, BoxSettings, Dimension, InspectSettings, MissColor, NormalSettings,
+    PairSettings, PatternSettings, RaySettings, TreeChoice, TreeForm,
 };
 pub use subject::Subject;
 pub use system::{System, lines};

@@ -1,5 +1,6 @@
-//! What is drawn: a switch for every system, one for all, and three ready-made answers.
+//! What is drawn: a switch for every system, and one for all.
 
+use crate::scene::Builder;
 use bevy::ecs::{reflect::ReflectResource, resource::Resource};
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 
@@ -12,6 +13,8 @@ pub struct InspectSettings {
     pub on: bool,
     /// Boxes of the trees.
     pub boxes: BoxSettings,
+    /// Boxes and visits of two builders' trees, side by side.
+    pub pair: PairSettings,
     /// The debug rays.
     pub rays: RaySettings,
     /// Normals of the meshes.
@@ -35,6 +38,7 @@ impl Default for InspectSettings {
         Self {
             on: true,
             boxes: BoxSettings::default(),
+            pair: PairSettings::default(),
             rays: RaySettings::default(),
             normals: NormalSettings::default(),
             lights: false,
@@ -92,6 +96,30 @@ impl Default for BoxSettings {
             color: BoxColor::Level,
             split_planes: false,
             triangles: false,
+        }
+    }
+}
+
+/// Two trees over the same view: on its left the boxes, and what the debug rays visit, in the trees
+/// of one builder, on its right in those of another. What is traced stays what it is. The window
+/// shows them; where there is none nothing is drawn of them.
+#[derive(Reflect, Clone, Debug, PartialEq)]
+#[reflect(Default, Clone, PartialEq, Debug)]
+pub struct PairSettings {
+    /// Shows them, in place of the boxes and visits of the trees that are traced.
+    pub on: bool,
+    /// Whose trees are on the left.
+    pub left: Builder,
+    /// Whose trees are on the right.
+    pub right: Builder,
+}
+
+impl Default for PairSettings {
+    fn default() -> Self {
+        Self {
+            on: false,
+            left: Builder::Median,
+            right: Builder::Ploc,
         }
     }
 }
@@ -303,103 +331,4 @@ impl Dimension {
         Self::GlossU,
         Self::GlossV,
     ];
-}
-
-/// A ready-made choice that answers a question.
-#[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum InspectPreset {
-    /// The rays of one pixel, and what was in their lights' way.
-    WhyBlack,
-    /// The tree's boxes, by what they cost.
-    IsTheTreeGood,
-    /// Everything that is drawn at random for a pixel.
-    WhereIsTheNoiseFrom,
-}
-
-impl InspectPreset {
-    /// All of them.
-    pub const ALL: [Self; 3] = [
-        Self::WhyBlack,
-        Self::IsTheTreeGood,
-        Self::WhereIsTheNoiseFrom,
-    ];
-
-    /// As the command line calls it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::WhyBlack => "black",
-            Self::IsTheTreeGood => "tree",
-            Self::WhereIsTheNoiseFrom => "noise",
-        }
-    }
-
-    /// The question.
-    pub fn question(self) -> &'static str {
-        match self {
-            Self::WhyBlack => "why is this pixel black?",
-            Self::IsTheTreeGood => "is this tree good?",
-            Self::WhereIsTheNoiseFrom => "where is my noise from?",
-        }
-    }
-
-    /// The answer's settings.
-    pub fn settings(self) -> InspectSettings {
-        let base = InspectSettings::default();
-        match self {
-            Self::WhyBlack => InspectSettings {
-                rays: RaySettings {
-                    hit_triangles: true,
-                    hit_normals: true,
-                    misses: MissColor::Red,
-                    ..base.rays
-                },
-                lights: true,
-                ..base
-            },
-            Self::IsTheTreeGood => InspectSettings {
-                boxes: BoxSettings {
-                    on: true,
-                    to_level: 6,
-                    color: BoxColor::Cost,
-                    ..base.boxes
-                },
-                rays: RaySettings {
-                    mirror: false,
-                    transmission: false,
-                    shadow: false,
-                    light_samples: false,
-                    visited: true,
-                    pruned: true,
-                    hit_triangles: true,
-                    ..base.rays
-                },
-                ..base
-            },
-            Self::WhereIsTheNoiseFrom => InspectSettings {
-                lights: true,
-                lens: true,
-                motion: true,
-                lobes: true,
-                pattern: PatternSettings {
-                    on: true,
-                    ..base.pattern
-                },
-                ..base
-            },
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn presets_differ_have_names_of_their_own_and_leave_the_master_switch_on() {
-        let all = InspectPreset::ALL.map(InspectPreset::settings);
-        assert!(all.iter().all(|settings| settings.on));
-        assert!(all[0] != all[1] && all[1] != all[2] && all[0] != all[2]);
-        let names = InspectPreset::ALL.map(InspectPreset::name);
-        assert_eq!(names, ["black", "tree", "noise"]);
-    }
 }

@@ -43,13 +43,13 @@ impl System {
         Self::Rays,
     ];
 
-    /// Whether the settings ask for it.
+    /// Whether the settings ask for it, of the trees that are traced.
     pub fn is_on(self, inspect: &InspectSettings) -> bool {
         let rays = &inspect.rays;
         inspect.on
             && match self {
-                Self::Boxes => inspect.boxes.on,
-                Self::Visits => rays.on && (rays.visited || rays.pruned),
+                Self::Boxes => inspect.boxes.on && !inspect.pair.on,
+                Self::Visits => rays.on && (rays.visited || rays.pruned) && !inspect.pair.on,
                 Self::Rays => rays.on,
                 Self::Lobes => inspect.lobes,
                 Self::Normals => inspect.normals.on,

@@ -12,6 +12,8 @@
 //! Sections are data: sentences, [`Table`]s, [`Plot`]s and pictures. [`write_report`] makes files of them. Times are
 //! medians of rounds in which everything that is compared takes turns, so that what else the machine does meets all
 //! alike; everything that is not a time follows from the seed.
+//!
+//! Apart from reports: [`performance`], a scene's picture timed with each builder.
 
 mod document;
 pub mod features;
@@ -19,6 +21,7 @@ mod fit;
 pub mod kernels;
 mod machine;
 mod pareto;
+pub mod performance;
 mod plot;
 pub mod sampling;
 mod section;

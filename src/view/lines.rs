@@ -4,7 +4,10 @@
 //! it, and a faint one that is not. They are made again only where the lines changed, so that a
 //! hundred thousand lines cost nothing while they stand.
 
+use super::symbols::SymbolOf;
+use super::traced::TracedView;
 use bevy::asset::Assets;
+use bevy::camera::Camera;
 use bevy::camera::visibility::RenderLayers;
 use bevy::color::LinearRgba;
 use bevy::gizmos::GizmoAsset;
@@ -12,16 +15,18 @@ use bevy::gizmos::config::GizmoLineConfig;
 use bevy::gizmos::retained::Gizmo;
 use bevy::math::Vec3;
 use bevy::prelude::{
-    App, Changed, ChildOf, Children, Commands, Component, Entity, Plugin, PostUpdate, Query,
-    ResMut, Transform, Visibility,
+    App, ChildOf, Children, Commands, Component, DetectChanges, Entity, Has, IntoScheduleConfigs,
+    Local, Plugin, PostUpdate, Projection, Query, Ref, ResMut, Transform, Visibility, With,
 };
+use bevy::transform::TransformSystems;
+use bevy::transform::components::GlobalTransform;
 
 /// Draws [`DrawnLines`].
 pub struct LinesPlugin;
 
 impl Plugin for LinesPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(PostUpdate, draw_lines);
+        app.add_systems(PostUpdate, draw_lines.after(TransformSystems::Propagate));
     }
 }
 
@@ -29,6 +34,17 @@ impl Plugin for LinesPlugin {
 const FAINT: f32 = 0.14;
 /// Towards the viewer, so that a line on a surface is not half inside it.
 const DEPTH_BIAS: f32 = -0.0004;
+/// How much of a line is left however far it is.
+const FARTHEST: f32 = 0.25;
+/// The part of the lines' ends that are so near that they do not fade.
+const NEAR_PART: f32 = 0.1;
+/// Of so many ends at most that part is looked for.
+const LOOKED_AT: usize = 2048;
+/// How far the viewer moves before lines fade anew, as a part of the distance from which they do.
+const MOVED: f32 = 0.1;
+/// More lines than this fade anew only when the viewer rests: making them takes as long as a few
+/// frames' worth of a moving hand.
+const MOST_WHILE_MOVING: usize = 5000;
 
 /// A line from one point to another in world space, its colour linear between the ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,9 +65,10 @@ impl Line {
     }
 }
 
-/// A set of lines that is drawn as long as the entity lives.
+/// A set of lines that is drawn as long as the entity lives. In a perspective view of the tracer's
+/// ([`TracedView`]) the farther ones are fainter, but for symbols ([`SymbolOf`]) and what is on top.
 #[derive(Component, Clone, Debug, Default, PartialEq)]
-#[require(Transform, Visibility)]
+#[require(Transform, Visibility, Fade)]
 pub struct DrawnLines {
     /// In world space.
     pub lines: Vec<Line>,
@@ -61,34 +78,112 @@ pub struct DrawnLines {
     pub on_top: bool,
 }
 
-/// Makes the gizmos of those sets that changed.
+/// How lines of a set fade with the distance.
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Fade(Option<Fading>);
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Fading {
+    viewer: Vec3,
+    /// The distance from which on they do.
+    from: f32,
+}
+
+impl Fading {
+    /// As this viewer sees lines. What is nearest of them has its full strength.
+    fn of(lines: &[Line], viewer: Vec3) -> Self {
+        let step = lines.len().div_ceil(LOOKED_AT).max(1);
+        let ends = lines.iter().step_by(step).flat_map(|line| line.ends);
+        let mut distances: Vec<f32> = ends.map(|end| end.distance(viewer)).collect();
+        let place = (distances.len() as f32 * NEAR_PART) as usize;
+        let from = match distances.len() {
+            0 => 0.0,
+            _ => *distances.select_nth_unstable_by(place, f32::total_cmp).1,
+        };
+        Self { viewer, from }
+    }
+
+    /// What is left of a line at a place: as the square of the distance.
+    fn strength(self, at: Vec3) -> f32 {
+        let distance = at.distance(self.viewer);
+        if distance <= self.from {
+            return 1.0;
+        }
+        // Not a number where the place is none.
+        (self.from / distance).powi(2).max(FARTHEST)
+    }
+}
+
+impl Fade {
+    /// Whether lines that fade so look right to this viewer.
+    fn fits(self, viewer: Option<Vec3>) -> bool {
+        match (self.0, viewer) {
+            (None, None) => true,
+            (Some(fading), Some(viewer)) => fading.viewer.distance(viewer) <= MOVED * fading.from,
+            _ => false,
+        }
+    }
+}
+
+/// Makes the gizmos of those sets that changed, and of those that the viewer has moved away from.
 pub(super) fn draw_lines(
     mut commands: Commands,
-    changed: Query<
-        (
-            Entity,
-            &DrawnLines,
-            Option<&Children>,
-            Option<&RenderLayers>,
-        ),
-        Changed<DrawnLines>,
-    >,
-    gizmos: Query<(), bevy::prelude::With<Gizmo>>,
+    views: Query<(&Camera, &GlobalTransform, &Projection), With<TracedView>>,
+    mut sets: Query<(
+        Entity,
+        Ref<DrawnLines>,
+        &mut Fade,
+        Option<&Children>,
+        Option<&RenderLayers>,
+        Has<SymbolOf>,
+    )>,
+    gizmos: Query<&Gizmo>,
     mut assets: ResMut<Assets<GizmoAsset>>,
+    mut before: Local<Option<Vec3>>,
 ) {
-    for (entity, drawn, children, layers) in &changed {
-        for child in children.into_iter().flatten() {
-            if gizmos.contains(*child) {
-                commands.entity(*child).despawn();
-            }
-        }
-        if drawn.lines.is_empty() {
+    let viewer = views.iter().find(|(camera, ..)| camera.is_active);
+    let viewer = viewer.and_then(|(_, transform, projection)| {
+        matches!(projection, Projection::Perspective(_)).then(|| transform.translation())
+    });
+    let rests = std::mem::replace(&mut *before, viewer) == viewer;
+    for (entity, drawn, mut fade, children, layers, is_symbol) in &mut sets {
+        let viewer = viewer.filter(|_| !(is_symbol || drawn.on_top));
+        let may_fade = rests || drawn.lines.len() <= MOST_WHILE_MOVING;
+        if !drawn.is_changed() && (fade.fits(viewer) || !may_fade) {
             continue;
         }
+        *fade = Fade(viewer.map(|viewer| Fading::of(&drawn.lines, viewer)));
+        let passes: &[(f32, f32)] = match (drawn.lines.is_empty(), drawn.on_top) {
+            (true, _) => &[],
+            (_, true) => &[(1.0, -1.0)],
+            (_, false) => &[(1.0, DEPTH_BIAS), (FAINT, -1.0)],
+        };
+        let known: Vec<(Entity, &Gizmo)> = children
+            .into_iter()
+            .flatten()
+            .filter_map(|child| Some((*child, gizmos.get(*child).ok()?)))
+            .collect();
+        let fits = |gizmo: &Gizmo, depth_bias: f32| {
+            gizmo.depth_bias == depth_bias && gizmo.line_config.width == drawn.width
+        };
+        let all_fit = known.len() == passes.len()
+            && (known.iter().zip(passes)).all(|((_, gizmo), (_, bias))| fits(gizmo, *bias));
+        if all_fit {
+            // The renderer has the old lines until the new ones reach it: nothing flickers.
+            for ((_, gizmo), (strength, _)) in known.iter().zip(passes) {
+                if let Some(mut lines) = assets.get_mut(&gizmo.handle) {
+                    *lines = asset(&drawn.lines, *strength, fade.0);
+                }
+            }
+            continue;
+        }
+        for (child, _) in known {
+            commands.entity(child).despawn();
+        }
         let layers = layers.cloned().unwrap_or_default();
-        let mut draw = |strength: f32, depth_bias: f32| {
+        for &(strength, depth_bias) in passes {
             let gizmo = Gizmo {
-                handle: assets.add(asset(&drawn.lines, strength)),
+                handle: assets.add(asset(&drawn.lines, strength, fade.0)),
                 line_config: GizmoLineConfig {
                     width: drawn.width,
                     ..GizmoLineConfig::default()
@@ -96,24 +191,52 @@ pub(super) fn draw_lines(
                 depth_bias,
             };
             commands.spawn((gizmo, layers.clone(), ChildOf(entity)));
-        };
-        if drawn.on_top {
-            draw(1.0, -1.0);
-        } else {
-            draw(1.0, DEPTH_BIAS);
-            draw(FAINT, -1.0);
         }
     }
 }
 
-fn asset(lines: &[Line], strength: f32) -> GizmoAsset {
+fn asset(lines: &[Line], strength: f32, fading: Option<Fading>) -> GizmoAsset {
     let mut asset = GizmoAsset::default();
     for line in lines {
-        let colors = line.colors.map(|color| LinearRgba {
-            alpha: color.alpha * strength,
-            ..color
+        let [from, to] = [0, 1].map(|end| {
+            let fades = fading.map_or(1.0, |fading| fading.strength(line.ends[end]));
+            let color = line.colors[end];
+            LinearRgba {
+                alpha: color.alpha * strength * fades,
+                ..color
+            }
         });
-        asset.line_gradient(line.ends[0], line.ends[1], colors[0], colors[1]);
+        asset.line_gradient(line.ends[0], line.ends[1], from, to);
     }
     asset
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn far_lines_are_fainter_than_near_ones_and_none_is_lost() {
+        let line = |z: f32| Line::new(Vec3::Z * z, Vec3::Z * z, LinearRgba::WHITE);
+        let lines: Vec<Line> = (1..=20).map(|z| line(z as f32)).collect();
+        let fading = Fading::of(&lines, Vec3::ZERO);
+        // Two of the twenty are the nearest tenth; the next begins to fade.
+        assert_eq!(fading.from, 3.0);
+        assert_eq!(fading.strength(Vec3::Z), 1.0);
+        assert_eq!(fading.strength(Vec3::Z * 3.0), 1.0);
+        assert_eq!(fading.strength(Vec3::Z * 4.0), 9.0 / 16.0);
+        assert_eq!(fading.strength(Vec3::Z * 1e9), FARTHEST);
+        assert_eq!(Fading::of(&[], Vec3::ONE).from, 0.0);
+    }
+
+    #[test]
+    fn lines_fade_anew_when_the_viewer_has_moved_far_enough_to_see_it() {
+        let fading = Fading {
+            viewer: Vec3::ZERO,
+            from: 10.0,
+        };
+        let fade = Fade(Some(fading));
+        assert!(fade.fits(Some(Vec3::X * 0.9)) && !fade.fits(Some(Vec3::X * 1.1)));
+        assert!(!fade.fits(None) && Fade(None).fits(None) && !Fade(None).fits(Some(Vec3::X)));
+    }
 }

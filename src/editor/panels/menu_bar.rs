@@ -6,6 +6,7 @@ use crate::editor::action::{Action, Addition, Axis, shapes};
 use crate::editor::history::History;
 use crate::editor::preferences::Preferences;
 use crate::editor::selection::Selection;
+use crate::inspect::{InspectPreset, InspectSettings};
 use crate::scene::{SceneCamera, SceneId};
 use bevy::ecs::name::Name;
 use bevy::ecs::world::World;
@@ -202,6 +203,8 @@ fn view_ui(ui: &mut Ui, world: &mut World) {
     ui.menu_button("Look through", |ui| look_through_ui(ui, world));
     entry_ui(ui, world, &Action::AddBookmark);
     ui.separator();
+    ui.menu_button("Rays and trees", |ui| lines_ui(ui, world));
+    ui.separator();
     let mut preferences = world.resource::<Preferences>().clone();
     let before = preferences.clone();
     ui.checkbox(&mut preferences.show_hierarchy, "Hierarchy")
@@ -211,6 +214,48 @@ fn view_ui(ui: &mut Ui, world: &mut World) {
     entry_ui(ui, world, &Action::TogglePanels);
     if preferences != before {
         *world.resource_mut::<Preferences>() = preferences;
+    }
+}
+
+/// What is drawn of rays and trees: the questions that have a ready answer, and two trees at once.
+pub(super) fn lines_ui(ui: &mut Ui, world: &mut World) {
+    let Some(inspect) = world.get_resource::<InspectSettings>().cloned() else {
+        return;
+    };
+    let mut on = inspect.on;
+    let entry = Action::ToggleGizmos.entry();
+    let keys = entry.and_then(|entry| entry.keys.first());
+    let keys = keys.map_or_else(String::new, |keys| format!(" ({})", keys.text()));
+    let toggle = ui.checkbox(&mut on, format!("Show the tracer's lines{keys}"));
+    if toggle.says(entry.map_or("", |entry| entry.says)).clicked() {
+        world.write_message(Action::ToggleGizmos);
+    }
+    ui.separator();
+    for preset in InspectPreset::ALL {
+        if let Some(entry) = Action::Inspect(preset).entry() {
+            item_ui(
+                ui,
+                world,
+                entry.name,
+                preset.says(),
+                Action::Inspect(preset),
+            );
+        }
+    }
+    ui.separator();
+    let mut pair = inspect.pair.on && inspect.on;
+    let says = "The boxes of one builder's trees on the left of the view, of another's on the right (tab BVH)";
+    if ui
+        .checkbox(&mut pair, "Two trees side by side")
+        .says(says)
+        .clicked()
+    {
+        let mut inspect = world.resource_mut::<InspectSettings>();
+        inspect.pair.on = pair;
+        if pair {
+            // Nothing would be seen else.
+            (inspect.on, inspect.boxes.on) = (true, true);
+        }
     }
 }
 

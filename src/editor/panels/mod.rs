@@ -13,6 +13,7 @@
 //! | [`status`] | the line below |
 //! | [`overlays`], [`compare`] | divider, legend, region, messages, a kept picture over the picture |
 //! | [`line_legend`], [`pattern`] | what the tracer's lines mean, and where a pixel's samples lie |
+//! | [`tree_pair`] | which builder's trees are on which side |
 //! | [`dialogs`] | what is in front of everything |
 
 mod compare;
@@ -32,6 +33,7 @@ mod state;
 mod status;
 mod theme;
 mod toolbar;
+mod tree_pair;
 
 #[cfg(test)]
 mod tests;
@@ -58,6 +60,7 @@ impl Plugin for PanelsPlugin {
         app.add_plugins((EguiPlugin::default(), PreferencesPlugin))
             .init_resource::<Panels>()
             .init_resource::<Outline>()
+            .add_plugins(super::trees::TreesPlugin)
             .add_systems(EguiPrimaryContextPass, (outline_scene, draw).chain());
     }
 }

@@ -6,6 +6,7 @@ use super::pattern::pattern_ui;
 use super::says::Says;
 use super::state::Panels;
 use super::theme::accent;
+use super::tree_pair;
 use crate::editor::notice::Notices;
 use crate::editor::preferences::Preferences;
 use crate::editor::viewport::{EditorCamera, Show, Viewport};
@@ -31,8 +32,13 @@ pub(super) fn overlays_ui(ui: &mut Ui, free: Rect, world: &mut World, panels: &m
         return false;
     }
     let mut over = false;
-    if world.resource::<Viewport>().show == Show::Split {
-        over |= divider_ui(ui, free, world);
+    let split = world.resource::<Viewport>().show == Show::Split;
+    let pair = tree_pair::is_shown(world);
+    if split || pair {
+        over |= divider_ui(ui, free, world, split);
+    }
+    if pair {
+        tree_pair::labels_ui(ui, free, world, split);
     }
     over |= region_ui(ui, free, world, panels);
     legend_ui(ui, free, world, panels);
@@ -45,8 +51,8 @@ pub(super) fn overlays_ui(ui: &mut Ui, free: Rect, world: &mut World, panels: &m
     over
 }
 
-/// The line between raster and traced.
-fn divider_ui(ui: &Ui, free: Rect, world: &mut World) -> bool {
+/// The line between raster and traced, or between two trees.
+fn divider_ui(ui: &Ui, free: Rect, world: &mut World, split: bool) -> bool {
     let divider = world.resource::<Viewport>().divider.clamp(0.0, 1.0);
     let x = free.min.x + divider * free.width();
     let rect = Rect::from_x_y_ranges(x - GRAB..=x + GRAB, free.y_range()).intersect(free);
@@ -70,6 +76,9 @@ fn divider_ui(ui: &Ui, free: Rect, world: &mut World) -> bool {
         Stroke::new(width, Color32::from_black_alpha(120)),
     );
     painter.vline(x, free.y_range(), Stroke::new(width, color));
+    if !split {
+        return active;
+    }
     for (align, dx, text) in [
         (Align2::RIGHT_TOP, -8.0, "raster"),
         (Align2::LEFT_TOP, 8.0, "traced"),
@@ -81,9 +90,15 @@ fn divider_ui(ui: &Ui, free: Rect, world: &mut World) -> bool {
 
 /// Text over a picture of any brightness.
 fn label(ui: &Ui, at: egui::Pos2, align: Align2, text: &str) {
-    let galley =
-        ui.painter()
-            .layout_no_wrap(text.to_owned(), FontId::proportional(12.0), Color32::WHITE);
+    label_within(ui, at, align, text, f32::INFINITY);
+}
+
+/// The same in lines no wider than this; returns where it stands.
+pub(super) fn label_within(ui: &Ui, at: egui::Pos2, align: Align2, text: &str, width: f32) -> Rect {
+    let font = FontId::proportional(12.0);
+    let galley = ui
+        .painter()
+        .layout(text.to_owned(), font, Color32::WHITE, width);
     let rect = align.anchor_size(at, galley.size());
     let painter = ui.painter();
     painter.rect_filled(
@@ -92,6 +107,7 @@ fn label(ui: &Ui, at: egui::Pos2, align: Align2, text: &str) {
         Color32::from_black_alpha(150),
     );
     painter.galley(rect.min, galley, Color32::WHITE);
+    rect
 }
 
 /// The frame of the region that is traced, and dragging a new one.

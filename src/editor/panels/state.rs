@@ -2,7 +2,7 @@
 
 use super::compare::Kept;
 use super::dialogs::{Gallery, RenderForm};
-use super::inspector::{ErrorCurve, Thumbnails, Trees, Turns};
+use super::inspector::{Builders, ErrorCurve, PerformanceForm, Thumbnails, Trees, Turns};
 use super::line_legend::LineTexts;
 use super::pattern::PatternOf;
 use super::status::{Memory, Numbers};
@@ -92,6 +92,8 @@ pub(super) struct Panels {
     pub thumbnails: Thumbnails,
     pub error_curve: ErrorCurve,
     pub trees: Trees,
+    pub builders: Builders,
+    pub performance: PerformanceForm,
     pub numbers: Numbers,
     pub memory: Memory,
     /// What the pixel under the pointer shows, and of which world, pixel and camera that is.

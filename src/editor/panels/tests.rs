@@ -1,6 +1,8 @@
 //! The panels as a person meets them: drawn by egui without a window, and operated by pointer and
 //! keys at the places where their texts stand.
 
+mod trees;
+
 use super::outline::{Outline, outline_scene};
 use super::panels_ui;
 use super::state::{Dialog, Panels, Tab};
@@ -9,6 +11,7 @@ use crate::editor::headless_editor;
 use crate::editor::notice::Notices;
 use crate::editor::preferences::Preferences;
 use crate::editor::selection::Selection;
+use crate::editor::trees::TreeStudyPlugin;
 use crate::editor::viewport::{EditorCamera, Show, Viewport};
 use crate::io::builtin::{self, SCENES};
 use crate::io::{OpenOptions, SceneSource, open};
@@ -58,6 +61,7 @@ impl Desk {
         .init_resource::<Viewport>()
         .init_resource::<Notices>()
         .add_message::<Action>()
+        .add_plugins(TreeStudyPlugin)
         .add_systems(Last, outline_scene);
         app.world_mut().spawn((EditorCamera, TracedView::default()));
         let context = egui::Context::default();

@@ -1,6 +1,7 @@
 //! Below the menu: handles, what the view shows, and how the traced picture is developed.
 
 use super::compare::keep_ui;
+use super::menu_bar::lines_ui;
 use super::says::Says;
 use super::state::Panels;
 use crate::editor::action::Action;
@@ -28,6 +29,9 @@ pub(super) fn toolbar_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
         }
         ui.separator();
         traced_ui(ui, world, panels);
+        ui.menu_button("Rays and trees", |ui| lines_ui(ui, world))
+            .response
+            .says("What is drawn of the tracer's rays and trees, and ready answers to three questions");
         ui.separator();
         exposure_ui(ui, world);
     });

@@ -1,10 +1,14 @@
-//! The tab BVH: how the trees are built, and what the trees that are traced are like.
+//! The tab BVH: how the trees are built, the builders against each other, and what the trees that are
+//! traced are like.
 
 use super::super::fields::section;
 use super::super::says::Says;
 use super::super::state::Panels;
 use super::super::status::{grouped, memory_text};
 use super::super::theme::accent;
+use super::builders::builders_ui;
+use super::pair::pair_ui;
+use super::performance::performance_ui;
 use super::render::settings_ui;
 use crate::bvh::{LARGEST_LEAF_BIN, TreeStats};
 use crate::scene::{Builder, RenderSettings, TreeSettings};
@@ -106,6 +110,13 @@ pub(super) fn bvh_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     if settings != before {
         *world.resource_mut::<RenderSettings>() = settings;
     }
+    section(ui, "Builders compared", true, |ui| {
+        builders_ui(ui, world, panels);
+    });
+    section(ui, "Two trees side by side", true, |ui| pair_ui(ui, world));
+    section(ui, "Performance test", false, |ui| {
+        performance_ui(ui, world, panels);
+    });
     let traced = world.resource::<Traced>().world.clone();
     let trees = &mut panels.trees;
     trees.update(&traced);
@@ -164,7 +175,10 @@ fn trees_ui(ui: &mut Ui, trees: &mut Trees) {
                 (
                     "Largest leaf",
                     "What it holds",
-                    format!("{} {}", stats.largest_leaf, tree.primitives),
+                    match stats.largest_leaf {
+                        1 => format!("1 {}", tree.primitives.trim_end_matches('s')),
+                        n => format!("{} {}", grouped(n.into()), tree.primitives),
+                    },
                 ),
                 (
                     "SAH cost",

@@ -2,12 +2,13 @@
 
 use super::super::fields::{Number, integer, section, switch};
 use super::super::says::Says;
+use super::boxes::boxes_ui;
 use super::render::choice_ui;
 use crate::editor::inspection::{DebugRay, Which};
 use crate::inspect::{InspectPreset, InspectSettings};
 use bevy::ecs::world::World;
 use bevy::reflect::{GetPath, PartialReflect, ReflectRef, TypeInfo};
-use bevy_egui::egui::Ui;
+use bevy_egui::egui::{Button, Label, RichText, Ui};
 
 /// How a setting is entered.
 enum Field {
@@ -19,63 +20,6 @@ enum Field {
 
 /// A setting: its path, its label, and what it does.
 struct Row(&'static str, &'static str, Field, &'static str);
-
-const BOXES: &[Row] = &[
-    Row(
-        "boxes.on",
-        "Draw",
-        Field::Switch,
-        "Boxes of the trees' nodes",
-    ),
-    Row(
-        "boxes.choice",
-        "Which",
-        Field::Choice,
-        "A range of levels, one leaf, or the way to a triangle",
-    ),
-    Row(
-        "boxes.from_level",
-        "From level",
-        Field::Integer(0, 64),
-        "The first level that is drawn; the root's is 0",
-    ),
-    Row(
-        "boxes.to_level",
-        "To level",
-        Field::Integer(0, 64),
-        "The last level that is drawn",
-    ),
-    Row(
-        "boxes.leaf",
-        "Leaf",
-        Field::Integer(0, 1_000_000),
-        "Which leaf, in their order; A and S step",
-    ),
-    Row(
-        "boxes.trees",
-        "Trees",
-        Field::Choice,
-        "The one over the objects, those of the meshes, or both",
-    ),
-    Row(
-        "boxes.color",
-        "Colour",
-        Field::Choice,
-        "What a box's colour says",
-    ),
-    Row(
-        "boxes.split_planes",
-        "Split planes",
-        Field::Switch,
-        "The plane between each drawn node's children",
-    ),
-    Row(
-        "boxes.triangles",
-        "Triangles",
-        Field::Switch,
-        "The triangles of drawn leaves",
-    ),
-];
 
 const RAYS: &[Row] = &[
     Row(
@@ -226,16 +170,13 @@ pub(super) fn gizmos_ui(ui: &mut Ui, world: &mut World) {
     };
     let mut settings = before.clone();
     ui.horizontal_wrapped(|ui| {
-        let says = "Everything of this tab, without losing what is chosen below";
+        let says = "Everything of this tab, without losing what is chosen below (G)";
         ui.toggle_value(&mut settings.on, "Draw").says(says);
         for preset in InspectPreset::ALL {
-            let question = preset.question();
-            if ui
-                .button(question)
-                .says("Sets what is drawn so that it answers this")
-                .clicked()
-            {
-                settings = preset.settings();
+            let answers = is_answer(preset, &settings);
+            let button = Button::selectable(answers, preset.question());
+            if ui.add(button).says(preset.says()).clicked() {
+                settings = answer(preset, &settings);
                 // Noise is what samples differ in.
                 if preset == InspectPreset::WhereIsTheNoiseFrom
                     && let Some(mut ray) = world.get_resource_mut::<DebugRay>()
@@ -245,10 +186,13 @@ pub(super) fn gizmos_ui(ui: &mut Ui, world: &mut World) {
             }
         }
     });
+    let mut presets = InspectPreset::ALL.into_iter();
+    if let Some(preset) = presets.find(|&preset| is_answer(preset, &settings)) {
+        ui.add(Label::new(RichText::new(preset.says()).weak()).wrap());
+    }
     ui.add_enabled_ui(settings.on, |ui| {
         for (title, open, rows) in [
             ("Debug rays", true, RAYS),
-            ("Trees", true, BOXES),
             ("Normals", false, NORMALS),
             ("Lights, lens, motion", false, OTHERS),
         ] {
@@ -257,11 +201,28 @@ pub(super) fn gizmos_ui(ui: &mut Ui, world: &mut World) {
                     row_ui(ui, row, &mut settings);
                 }
             });
+            if title == "Debug rays" {
+                section(ui, "Trees", true, |ui| {
+                    boxes_ui(ui, world, &mut settings);
+                });
+            }
         }
     });
     if settings != before {
         *world.resource_mut::<InspectSettings>() = settings;
     }
+}
+
+/// The settings that answer a question. How many lines a machine can draw is no part of it.
+fn answer(preset: InspectPreset, settings: &InspectSettings) -> InspectSettings {
+    InspectSettings {
+        max_lines: settings.max_lines,
+        ..preset.settings()
+    }
+}
+
+fn is_answer(preset: InspectPreset, settings: &InspectSettings) -> bool {
+    *settings == answer(preset, settings)
 }
 
 fn row_ui(ui: &mut Ui, row: &Row, settings: &mut InspectSettings) {
@@ -305,7 +266,7 @@ mod tests {
     #[test]
     fn every_row_fits_the_type_of_its_setting() {
         let mut settings = InspectSettings::default();
-        for row in [RAYS, BOXES, NORMALS, OTHERS].into_iter().flatten() {
+        for row in [RAYS, NORMALS, OTHERS].into_iter().flatten() {
             let path = row.0;
             let fits = match row.2 {
                 Field::Switch => settings.path::<bool>(path).is_ok(),

@@ -1,17 +1,24 @@
 //! The properties: of what is selected, of the rendering, of what the gizmos show, of the trees.
 
+mod boxes;
+mod builders;
 mod bvh;
 mod camera;
 mod debug;
 mod environment;
 mod error_plot;
+mod figure_table;
 mod gizmos;
 mod lamps;
 mod maps;
 mod material;
+mod measuring;
 mod object;
+mod pair;
+mod performance;
 mod presets;
 mod render;
+mod save_text;
 mod shape;
 mod transform;
 
@@ -20,9 +27,11 @@ use super::state::{Panels, Tab};
 use bevy::ecs::world::World;
 use bevy_egui::egui::{ScrollArea, Ui};
 
+pub(super) use builders::Builders;
 pub(super) use bvh::Trees;
 pub(super) use error_plot::ErrorCurve;
 pub(super) use maps::Thumbnails;
+pub(super) use performance::PerformanceForm;
 pub(super) use transform::Turns;
 
 pub(super) fn inspector_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {

@@ -1,0 +1,271 @@
+//! The builders compared: each one's tree over the scene in numbers and histograms, side by side.
+
+use super::super::says::Says;
+use super::super::state::Panels;
+use super::figure_table::{Cell, Row, color, figure_table_ui, short};
+use super::measuring::{measure_ui, switch_builder};
+use super::save_text::{SaveText, save_text_ui};
+use crate::bvh::{Builder, LARGEST_LEAF_BIN};
+use crate::editor::trees::measure::{BUILDERS, Measurements, compare};
+use crate::editor::trees::of_setting;
+use crate::inspect::{BuilderFigures, builder_name, csv, markdown};
+use crate::scene::RenderSettings;
+use bevy::ecs::world::World;
+use bevy_egui::egui::{Label, RichText, Ui};
+use egui_plot::{Line, Plot, PlotPoints};
+
+/// What the panel keeps of it.
+#[derive(Default)]
+pub(in super::super) struct Builders {
+    save: SaveText,
+}
+
+pub(super) fn builders_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
+    let about =
+        "One tree over all triangles by each builder, and this view's own rays in the scene's.";
+    ui.add(Label::new(RichText::new(about).weak()).wrap());
+    let start = measure_ui(
+        ui,
+        world,
+        "Compare the builders",
+        "Builds and measures in the background; the traced view waits meanwhile",
+        |all| &mut all.comparison,
+    );
+    if start {
+        compare(world);
+    }
+    let rows = world.resource::<Measurements>().comparison.done().cloned();
+    let Some(rows) = rows else { return };
+    let builders: Vec<Builder> = rows.iter().filter_map(builder_of).collect();
+    let scene = of_setting(world.resource::<RenderSettings>().tree.builder);
+    let clicked = figure_table_ui(ui, "builders", &builders, scene, &table(&rows));
+    if let Some(builder) = clicked {
+        switch_builder(world, builder);
+    }
+    ui.add_space(4.0);
+    histogram_ui(
+        ui,
+        "leaves by size",
+        "% of leaves by their triangles",
+        &rows,
+        |row| &row.leaf_sizes,
+    );
+    histogram_ui(
+        ui,
+        "leaves by depth",
+        "% of leaves by their depth",
+        &rows,
+        |row| &row.depths,
+    );
+    save_text_ui(
+        ui,
+        world,
+        &mut panels.builders.save,
+        "builders.md",
+        |is_csv| match is_csv {
+            true => csv(&rows),
+            false => markdown(&rows),
+        },
+    );
+}
+
+fn builder_of(row: &BuilderFigures) -> Option<Builder> {
+    let mut all = BUILDERS.into_iter();
+    all.find(|&builder| builder_name(builder) == row.builder)
+}
+
+/// A row for each figure.
+fn table(rows: &[BuilderFigures]) -> Vec<Row> {
+    type Figure = (
+        &'static str,
+        &'static str,
+        fn(&BuilderFigures) -> Option<f64>,
+        Better,
+    );
+    enum Better {
+        Less,
+        More,
+        Neither,
+    }
+    use Better::{Less, More, Neither};
+    let figures: [Figure; 14] = [
+        (
+            "Levels",
+            "The depth of the deepest leaf; the root's is 0",
+            |row| Some(f64::from(row.levels)),
+            Neither,
+        ),
+        (
+            "Nodes",
+            "Leaves included",
+            |row| Some(row.nodes as f64),
+            Neither,
+        ),
+        (
+            "Leaves",
+            "Nodes that hold triangles",
+            |row| Some(row.leaves as f64),
+            Neither,
+        ),
+        (
+            "Largest leaf",
+            "Triangles in it",
+            |row| Some(f64::from(row.largest_leaf)),
+            Neither,
+        ),
+        (
+            "SAH cost",
+            "What a random ray that meets the root pays, by areas; lower is better",
+            |row| Some(row.sah_cost),
+            Less,
+        ),
+        (
+            "EPO",
+            "Effective parent overlap: cost of triangles that reach into boxes which are not theirs; \
+             lower is better",
+            |row| Some(row.epo),
+            Less,
+        ),
+        (
+            "kB",
+            "Of the tree and of all that tracing keeps of the triangles; 1000 bytes",
+            |row| Some(row.bytes as f64 * 1e-3),
+            Less,
+        ),
+        (
+            "B / triangle",
+            "The same for each triangle, in bytes",
+            |row| Some(row.bytes_per_triangle),
+            Less,
+        ),
+        ("Built in, ms", "Wall clock", |row| Some(row.build_ms), Less),
+        (
+            "Closest, M/s",
+            "Million closest hits a second of this view's rays, one thread, with the scene's own levels of trees",
+            |row| row.rates?.closest_mrays_per_s,
+            More,
+        ),
+        (
+            "Any hit, M/s",
+            "Million occlusion tests a second of this view's shadow rays, one thread",
+            |row| row.rates?.occlusion_mrays_per_s,
+            More,
+        ),
+        (
+            "Wide nodes",
+            "Of the form that pictures are traced through: up to eight children each",
+            |row| Some(row.wide_nodes as f64),
+            Neither,
+        ),
+        (
+            "Children, of 8",
+            "Of a wide node on average: how well it is filled",
+            |row| Some(row.children_per_wide_node),
+            More,
+        ),
+        (
+            "Triangles, of 8",
+            "Of a block of triangles that are tested at once, on average: how well it is filled",
+            |row| Some(row.triangles_per_block),
+            More,
+        ),
+    ];
+    let of = |(label, says, figure, better): Figure| Row {
+        label,
+        says,
+        cells: rows
+            .iter()
+            .map(|row| match figure(row) {
+                None => Cell::plain("–".into(), "The view has no such ray".into()),
+                Some(value) => {
+                    let (text, exact) = (short(value), value.to_string());
+                    match better {
+                        // What a builder that does nothing saves is no merit.
+                        _ if row.builder == "none" => Cell::plain(text, exact),
+                        Less => Cell::less(value, text, exact),
+                        More => Cell::more(value, text, exact),
+                        Neither => Cell::plain(text, exact),
+                    }
+                }
+            })
+            .collect(),
+    };
+    figures.into_iter().map(of).collect()
+}
+
+/// The share of each builder's leaves, a line each. A tree that is one leaf has none to share.
+fn histogram_ui(
+    ui: &mut Ui,
+    id: &str,
+    title: &str,
+    rows: &[BuilderFigures],
+    bins: fn(&BuilderFigures) -> &Vec<u32>,
+) {
+    let lines: Vec<Line> = rows
+        .iter()
+        .filter(|row| row.leaves > 1)
+        .filter_map(|row| {
+            let color = color(ui, builder_of(row)?);
+            let points = share(bins(row));
+            let line = Line::new(row.builder, PlotPoints::from(points));
+            Some(line.color(color).width(1.5))
+        })
+        .collect();
+    if lines.is_empty() {
+        ui.weak("No builder parts these triangles: every tree is one leaf.");
+        return;
+    }
+    ui.weak(title).says(
+        "A line for each builder, in the colour of its heading; a tree that is one leaf is left out",
+    );
+    Plot::new(id)
+        .height(90.0)
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .include_y(0.0)
+        .label_formatter(|name, at| {
+            let bin = at.x.round();
+            let more = if bin as usize >= LARGEST_LEAF_BIN {
+                " or more"
+            } else {
+                ""
+            };
+            format!("{name} {bin}{more}: {:.1} %", at.y)
+        })
+        .show(ui, |plot| {
+            for line in lines {
+                plot.line(line);
+            }
+        });
+}
+
+/// Percent of the leaves in each bin from the first to the last that has any, with an empty one on
+/// either side.
+fn share(bins: &[u32]) -> Vec<[f64; 2]> {
+    let sum: u64 = bins.iter().map(|&count| u64::from(count)).sum();
+    let first = bins.iter().position(|&count| count > 0).unwrap_or(0);
+    let last = bins.iter().rposition(|&count| count > 0).unwrap_or(0);
+    (first.saturating_sub(1)..=last + 1)
+        .map(|bin| {
+            let count = bins.get(bin).copied().unwrap_or(0);
+            [bin as f64, 100.0 * f64::from(count) / sum.max(1) as f64]
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_add_up_to_all_leaves() {
+        let shares = share(&[0, 0, 0, 1, 0, 3]);
+        assert_eq!(shares[0], [2.0, 0.0]);
+        assert_eq!(shares[1], [3.0, 25.0]);
+        assert_eq!(shares[3], [5.0, 75.0]);
+        assert_eq!(*shares.last().unwrap(), [6.0, 0.0]);
+        assert_eq!(share(&[]), [[0.0, 0.0], [1.0, 0.0]]);
+    }
+}

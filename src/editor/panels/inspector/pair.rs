@@ -1,0 +1,62 @@
+//! Two builders' trees over the same view.
+
+use super::super::fields::{row, switch};
+use super::super::says::Says;
+use crate::editor::trees::of_setting;
+use crate::editor::trees::pair::{Side, SideState, TreePair};
+use crate::inspect::InspectSettings;
+use crate::report::performance::title;
+use crate::scene::Builder;
+use bevy::ecs::world::World;
+use bevy_egui::egui::{ComboBox, Label, RichText, Ui};
+
+const BUILDERS: [Builder; 4] = [Builder::None, Builder::Median, Builder::Sah, Builder::Ploc];
+
+pub(super) fn pair_ui(ui: &mut Ui, world: &mut World) {
+    let Some(before) = world.get_resource::<InspectSettings>().cloned() else {
+        return;
+    };
+    let mut settings = before.clone();
+    let pair = &mut settings.pair;
+    let says = "The view's left half shows the boxes of one builder's trees, the right half another's; \
+                the picture is traced as before";
+    switch(ui, "Show", says, &mut pair.on, false);
+    let states = world.get_resource::<TreePair>().map(|pair| {
+        let state = |side: &Side| side.state();
+        [state(&pair.sides[0]), state(&pair.sides[1])]
+    });
+    let says = "Whose trees; built in the background where they are not those that are traced";
+    for (i, label, builder) in [(0, "Left", &mut pair.left), (1, "Right", &mut pair.right)] {
+        row(ui, label, says, |ui| {
+            ComboBox::from_id_salt(label)
+                .selected_text(title(of_setting(*builder)))
+                .width(84.0)
+                .show_ui(ui, |ui| {
+                    for choice in BUILDERS {
+                        ui.selectable_value(builder, choice, title(of_setting(choice)));
+                    }
+                })
+                .response
+                .says(says);
+            let state = states.as_ref().filter(|_| before.on && before.pair.on);
+            ui.weak(match state.map(|states| &states[i]) {
+                None => "",
+                Some(SideState::Traced) => "traced",
+                Some(SideState::Built) => "to look at",
+                Some(SideState::Building) => "being built…",
+                Some(SideState::Failed(_)) => "failed",
+            });
+        });
+    }
+    if pair.on && !before.pair.on {
+        // Nothing would be seen else.
+        (settings.on, settings.boxes.on) = (true, true);
+    }
+    if settings.pair.on {
+        let note = "Which boxes, and in which colours: Debug, Trees. Visits are those of the debug ray (R).";
+        ui.add(Label::new(RichText::new(note).weak()).wrap());
+    }
+    if settings != before {
+        *world.resource_mut::<InspectSettings>() = settings;
+    }
+}

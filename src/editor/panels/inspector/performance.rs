@@ -1,0 +1,153 @@
+//! The original report's performance test: the view rendered some times with each builder's trees.
+
+use super::super::fields::integer;
+use super::super::says::Says;
+use super::super::state::Panels;
+use super::figure_table::{Cell, Row, figure_table_ui, short};
+use super::measuring::{measure_ui, switch_builder};
+use super::save_text::{SaveText, save_text_ui};
+use crate::bvh::Builder;
+use crate::editor::trees::measure::{Measurements, test_performance};
+use crate::editor::trees::of_setting;
+use crate::report::performance::{Performance, PerformanceColumn};
+use crate::scene::RenderSettings;
+use bevy::ecs::world::World;
+use bevy_egui::egui::{Label, RichText, Ui};
+
+/// What is entered.
+pub(in super::super) struct PerformanceForm {
+    runs: u32,
+    spp: u32,
+    save: SaveText,
+}
+
+impl Default for PerformanceForm {
+    fn default() -> Self {
+        Self {
+            runs: 5,
+            spp: 1,
+            save: SaveText::default(),
+        }
+    }
+}
+
+pub(super) fn performance_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
+    let form = &mut panels.performance;
+    let about = "The view rendered some times with each builder, taking turns.";
+    ui.add(Label::new(RichText::new(about).weak()).wrap());
+    let says = "Renderings with each builder";
+    integer(ui, "Renderings", says, &mut form.runs, 1..=1000, false);
+    let says = "Of each pixel in a rendering, at least: what the scene's effects need counts too";
+    integer(ui, "Samples", says, &mut form.spp, 1..=4096, false);
+    let (runs, spp) = (form.runs, form.spp);
+    let start = measure_ui(
+        ui,
+        world,
+        "Run the test",
+        "Renders in the background on all threads; the traced view waits meanwhile",
+        |all| &mut all.performance,
+    );
+    if start {
+        test_performance(world, runs, spp);
+    }
+    let done = world.resource::<Measurements>().performance.done().cloned();
+    let Some(done) = done else { return };
+    ui.weak(done.caption());
+    let builders: Vec<Builder> = done.columns.iter().map(|column| column.builder).collect();
+    let scene = of_setting(world.resource::<RenderSettings>().tree.builder);
+    let clicked = figure_table_ui(ui, "performance", &builders, scene, &table(&done));
+    if let Some(builder) = clicked {
+        switch_builder(world, builder);
+    }
+    if let Some(why) = done.left_out_text() {
+        ui.add(Label::new(RichText::new(format!("{why}.")).weak()).wrap())
+            .says("glassbox bench SCENE --with-none measures it all the same");
+    }
+    save_text_ui(
+        ui,
+        world,
+        &mut panels.performance.save,
+        "performance.md",
+        |is_csv| match is_csv {
+            true => done.csv(),
+            false => done.markdown(),
+        },
+    );
+}
+
+fn table(performance: &Performance) -> Vec<Row> {
+    type Figure = (
+        &'static str,
+        &'static str,
+        fn(&PerformanceColumn) -> f64,
+        fn(f64, String, String) -> Cell,
+    );
+    let neither = |_, text, exact| Cell::plain(text, exact);
+    let figures: [Figure; 9] = [
+        (
+            "Create, ms",
+            "All trees of the scene",
+            |column| column.build_ms,
+            Cell::less,
+        ),
+        (
+            "Mean, ms",
+            "Of a rendering",
+            PerformanceColumn::mean,
+            Cell::less,
+        ),
+        (
+            "Least, ms",
+            "The shortest rendering",
+            PerformanceColumn::least,
+            Cell::less,
+        ),
+        (
+            "Most, ms",
+            "The longest rendering",
+            PerformanceColumn::most,
+            Cell::less,
+        ),
+        (
+            "Sigma, ms",
+            "Standard deviation of the renderings: differences below it say nothing",
+            PerformanceColumn::sigma,
+            neither,
+        ),
+        (
+            "Mrays / s",
+            "Million rays of every kind a second in the median rendering",
+            PerformanceColumn::mrays_per_s,
+            Cell::more,
+        ),
+        (
+            "Levels",
+            "From the root to the deepest leaf, of the trees that a ray goes through one after the other",
+            |column| f64::from(column.levels),
+            neither,
+        ),
+        (
+            "Largest leaf",
+            "Triangles in it",
+            |column| f64::from(column.largest_leaf),
+            neither,
+        ),
+        (
+            "Triangles",
+            "Of all objects: a mesh that two objects share counts twice",
+            |column| column.triangles as f64,
+            neither,
+        ),
+    ];
+    let of = |(label, says, figure, cell): Figure| Row {
+        label,
+        says,
+        cells: (performance.columns.iter())
+            .map(|column| {
+                let value = figure(column);
+                cell(value, short(value), value.to_string())
+            })
+            .collect(),
+    };
+    figures.into_iter().map(of).collect()
+}

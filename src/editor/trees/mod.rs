@@ -1,0 +1,91 @@
+//! Trees under examination: the builders compared, the performance test, two trees side by side,
+//! and which boxes are drawn.
+//!
+//! | module | does |
+//! |---|---|
+//! | [`background`] | work on a thread of its own, with progress and an end |
+//! | [`measure`] | compares the builders and times pictures |
+//! | [`pair`], [`cameras`] | two builders' trees over the left and the right of the view |
+//! | [`obey`] | what the actions about lines and boxes do |
+
+pub(super) mod background;
+mod cameras;
+pub(super) mod measure;
+mod obey;
+pub(super) mod pair;
+
+pub(super) use obey::BoxRanges;
+
+use crate::bvh;
+use crate::inspect::InspectSettings;
+use crate::scene;
+use crate::sync::SyncSystems;
+use bevy::app::{App, Plugin, PostUpdate, Startup, Update};
+use bevy::prelude::{IntoScheduleConfigs, Res, ResMut};
+use bevy::render::renderer::RenderAdapterInfo;
+
+/// The part that needs no window: measurements, actions, the trees of a pair.
+pub(super) struct TreeStudyPlugin;
+
+impl Plugin for TreeStudyPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_message::<super::action::Action>()
+            .init_resource::<InspectSettings>()
+            .init_resource::<super::notice::Notices>()
+            .init_resource::<measure::Measurements>()
+            .init_resource::<pair::TreePair>()
+            .init_resource::<BoxRanges>()
+            .add_systems(Update, (measure::carry_on, obey::obey))
+            .add_systems(PostUpdate, pair::build_pair.after(SyncSystems));
+    }
+}
+
+/// All of it, in a window.
+pub(super) struct TreesPlugin;
+
+impl Plugin for TreesPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_plugins(TreeStudyPlugin)
+            .add_systems(Startup, fit_lines)
+            .add_systems(
+                PostUpdate,
+                (
+                    pair::draw_pair.after(pair::build_pair),
+                    cameras::fit_cameras.before(bevy::camera::CameraUpdateSystems),
+                ),
+            );
+    }
+}
+
+/// Lines of a system at most where a processor draws them too: so many take it about 30 ms of a
+/// frame at 1280 x 720 (two cores of an EPYC, Mesa's llvmpipe; boxes of the 87,000 triangles of the
+/// scene `knot`).
+const LINES_WITHOUT_GPU: u32 = 30_000;
+
+/// No more lines than the machine draws quickly; what is left out is said.
+fn fit_lines(adapter: Option<Res<RenderAdapterInfo>>, mut inspect: ResMut<InspectSettings>) {
+    let is_cpu = adapter.is_some_and(|adapter| adapter.device_type == wgpu::DeviceType::Cpu);
+    if is_cpu && inspect.max_lines == InspectSettings::default().max_lines {
+        inspect.max_lines = LINES_WITHOUT_GPU;
+    }
+}
+
+/// A setting's builder as trees know it.
+pub(super) fn of_setting(builder: scene::Builder) -> bvh::Builder {
+    match builder {
+        scene::Builder::None => bvh::Builder::None,
+        scene::Builder::Median => bvh::Builder::Median,
+        scene::Builder::Sah => bvh::Builder::Sah,
+        scene::Builder::Ploc => bvh::Builder::Ploc,
+    }
+}
+
+/// The setting that makes trees with this builder.
+pub(super) fn setting_of(builder: bvh::Builder) -> scene::Builder {
+    match builder {
+        bvh::Builder::None => scene::Builder::None,
+        bvh::Builder::Median => scene::Builder::Median,
+        bvh::Builder::Sah => scene::Builder::Sah,
+        bvh::Builder::Ploc => scene::Builder::Ploc,
+    }
+}

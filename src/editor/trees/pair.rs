@@ -1,0 +1,279 @@
+//! Two trees over the same view: boxes and visits of one builder's on the left, of another's on the
+//! right.
+//!
+//! The trees are built in the background from the meshes that are traced; where one of the two is
+//! what is traced, it is that very tree. Each side is drawn by a camera of its own over one half of
+//! the view, so that moving the view makes no line again.
+
+use super::background::{Background, Outcome};
+use super::of_setting;
+use crate::bvh::BuildOptions;
+use crate::editor::inspection::DebugRay;
+use crate::editor::viewport::EditorCamera;
+use crate::inspect::{InspectSettings, LineSet, Subject, System, rebuilt};
+use crate::scene::{Builder, RenderSettings};
+use crate::sync::{Traced, TracedCameras};
+use crate::trace::{RayTree, World};
+use crate::view::{DrawnLines, Line, TracedRender};
+use bevy::camera::visibility::RenderLayers;
+use bevy::ecs::component::Component;
+use bevy::ecs::entity::Entity;
+use bevy::ecs::query::With;
+use bevy::ecs::resource::Resource;
+use bevy::ecs::system::{Commands, Query, Res, ResMut, Single};
+use bevy::math::Vec3;
+use std::borrow::Borrow;
+use std::sync::Arc;
+
+/// The layers of the two sides.
+pub(super) const LAYERS: [usize; 2] = [20, 21];
+/// Logical pixels.
+const WIDTH: f32 = 1.2;
+/// What is drawn of each side.
+const SYSTEMS: [System; 2] = [System::Boxes, System::Visits];
+
+/// The two sides, from the left.
+#[derive(Resource, Default)]
+pub(in crate::editor) struct TreePair {
+    pub sides: [Side; 2],
+}
+
+/// One side of the view.
+#[derive(Default)]
+pub(in crate::editor) struct Side {
+    /// Whose trees are wanted.
+    builder: Builder,
+    /// The world that is traced, of which they shall be.
+    of: Option<Arc<World>>,
+    building: Option<Background<Arc<World>>>,
+    /// With this side's trees; those of before while others are being built.
+    world: Option<Arc<World>>,
+    failed: Option<String>,
+    drawn: [Option<Drawn>; SYSTEMS.len()],
+}
+
+struct Drawn {
+    entity: Entity,
+    key: u64,
+    says: Vec<String>,
+    /// Kept, so that a key that is made of places in memory cannot come again.
+    _world: Arc<World>,
+}
+
+/// How far a side is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(in crate::editor) enum SideState {
+    /// Its trees are those that are traced.
+    Traced,
+    /// Its trees were built to be looked at.
+    Built,
+    /// They are being built; what is shown meanwhile is of before.
+    Building,
+    /// They cannot be.
+    Failed(String),
+}
+
+/// On the lines of a side.
+#[derive(Component)]
+pub(super) struct OfSide;
+
+impl Side {
+    /// How far it is.
+    pub fn state(&self) -> SideState {
+        if let Some(why) = &self.failed {
+            return SideState::Failed(why.clone());
+        }
+        match (&self.world, &self.of) {
+            (Some(world), Some(of)) if Arc::ptr_eq(world, of) => SideState::Traced,
+            (Some(_), _) if self.building.is_none() => SideState::Built,
+            _ => SideState::Building,
+        }
+    }
+
+    /// What its lines say of themselves: what was left out, and why.
+    pub fn says(&self) -> impl Iterator<Item = &str> {
+        let drawn = self.drawn.iter().flatten();
+        drawn.flat_map(|drawn| drawn.says.iter().map(String::as_str))
+    }
+
+    /// The world whose trees are shown.
+    #[cfg(test)]
+    pub fn world(&self) -> Option<&Arc<World>> {
+        self.world.as_ref()
+    }
+
+    /// Begins to build what is wanted and not there yet.
+    fn want(&mut self, builder: Builder, traced: &Arc<World>, options: BuildOptions) {
+        let known = self.of.as_ref().is_some_and(|of| {
+            Arc::ptr_eq(&of.aggregate, &traced.aggregate)
+                && Arc::ptr_eq(&of.objects, &traced.objects)
+        });
+        if known && self.builder == builder {
+            // What is not of the trees may be another: the world that is traced is shown as it is.
+            if self.state() == SideState::Traced {
+                (self.of, self.world) = (Some(traced.clone()), Some(traced.clone()));
+            }
+            return;
+        }
+        self.builder = builder;
+        self.of = Some(traced.clone());
+        self.building = None;
+        self.failed = None;
+        if *traced.aggregate.options() == options {
+            self.world = Some(traced.clone());
+            return;
+        }
+        let of = traced.clone();
+        let work = Background::start("pair of trees", move |_| Arc::new(rebuilt(&of, &options)));
+        match work {
+            Ok(work) => self.building = Some(work),
+            Err(error) => self.failed = Some(format!("no thread to build on: {error}")),
+        }
+    }
+
+    fn carry_on(&mut self) {
+        let Some(work) = &self.building else {
+            return;
+        };
+        match work.take() {
+            Outcome::Pending => return,
+            Outcome::Done(world) => self.world = Some(world),
+            Outcome::Lost => self.failed = Some("its trees could not be built".into()),
+        }
+        self.building = None;
+    }
+}
+
+/// How a builder's trees are built, with the scene's other settings.
+fn options(traced: &World, builder: Builder) -> BuildOptions {
+    BuildOptions {
+        builder: of_setting(builder),
+        ..*traced.aggregate.options()
+    }
+}
+
+/// Has the trees that the settings ask for built, and lets go of them when nobody does.
+pub(super) fn build_pair(
+    inspect: Res<InspectSettings>,
+    traced: Res<Traced>,
+    mut pair: ResMut<TreePair>,
+) {
+    let wanted = &inspect.pair;
+    if !(inspect.on && wanted.on) {
+        for side in &mut pair.sides {
+            (side.of, side.world, side.building) = (None, None, None);
+            side.failed = None;
+        }
+        return;
+    }
+    for (side, builder) in pair.sides.iter_mut().zip([wanted.left, wanted.right]) {
+        side.want(builder, &traced.world, options(&traced.world, builder));
+        side.carry_on();
+    }
+}
+
+/// Makes those lines again that may be others.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "a system's parameters are the list of what it reads"
+)]
+pub(super) fn draw_pair(
+    mut commands: Commands,
+    inspect: Res<InspectSettings>,
+    settings: Res<RenderSettings>,
+    cameras: Res<TracedCameras>,
+    ray: Res<DebugRay>,
+    render: Single<&TracedRender, With<EditorCamera>>,
+    mut sets: Query<&mut DrawnLines, With<OfSide>>,
+    mut pair: ResMut<TreePair>,
+) {
+    let subject = render.subject();
+    let rays = ray.rays().map(Borrow::<RayTree>::borrow);
+    for (side, layer) in pair.sides.iter_mut().zip(LAYERS) {
+        let Some((world, (_, camera, rendered))) = side.world.clone().zip(subject) else {
+            for drawn in side.drawn.iter_mut().filter_map(Option::take) {
+                commands.entity(drawn.entity).despawn();
+            }
+            continue;
+        };
+        let settings = RenderSettings {
+            size: rendered.size,
+            ..settings.clone()
+        };
+        let of_scene = cameras.0.first().map(|camera| &camera.camera);
+        let photographer = of_scene.unwrap_or(camera);
+        let subject = Subject::new(&world, photographer, &settings, &inspect, rays).seen_by(camera);
+        for (system, known) in SYSTEMS.into_iter().zip(&mut side.drawn) {
+            let is_on = match system {
+                System::Boxes => inspect.boxes.on,
+                _ => {
+                    let wanted = &inspect.rays;
+                    wanted.on && (wanted.visited || wanted.pruned) && rays.is_some()
+                }
+            };
+            if !is_on {
+                if let Some(drawn) = known.take() {
+                    commands.entity(drawn.entity).despawn();
+                }
+                continue;
+            }
+            let key = system.key(&subject);
+            if known.as_ref().is_some_and(|known| known.key == key) {
+                continue;
+            }
+            let set = system.lines(&subject);
+            let wanted = DrawnLines {
+                lines: lines_of(&set),
+                width: WIDTH,
+                on_top: false,
+            };
+            let entity = match known {
+                Some(known) => {
+                    if let Ok(mut lines) = sets.get_mut(known.entity) {
+                        *lines = wanted;
+                    }
+                    known.entity
+                }
+                None => commands
+                    .spawn((wanted, OfSide, RenderLayers::layer(layer)))
+                    .id(),
+            };
+            *known = Some(Drawn {
+                entity,
+                key,
+                says: says(&set),
+                _world: world.clone(),
+            });
+        }
+    }
+}
+
+/// Lines as they are, planes as their outlines.
+fn lines_of(set: &LineSet) -> Vec<Line> {
+    let segments = set.segments.iter().map(|segment| Line {
+        ends: segment.ends,
+        colors: segment.colors,
+    });
+    let outlines = set.planes.iter().flat_map(|plane| {
+        let [x, y] = plane.edges;
+        let corners = [Vec3::ZERO, x, x + y, y].map(|edge| plane.corner + edge);
+        let color = bevy::color::LinearRgba {
+            alpha: 1.0,
+            ..plane.color
+        };
+        (0..4).map(move |i| Line::new(corners[i], corners[(i + 1) % 4], color))
+    });
+    segments.chain(outlines).collect()
+}
+
+/// What a set says of itself, what was left out first.
+fn says(set: &LineSet) -> Vec<String> {
+    let thinned = set.thinned.map(|thinned| {
+        let (drawn, of, what) = (thinned.drawn, thinned.of, thinned.what);
+        format!("{drawn} of {of} {what} are drawn: {}", thinned.rule)
+    });
+    thinned
+        .into_iter()
+        .chain(set.notes.iter().cloned())
+        .collect()
+}
