@@ -205,7 +205,7 @@ actions! {
     Turn "Turn" [key(KeyCode::KeyE)] "Drag the rings to turn the selection"
     Scale "Scale" [key(KeyCode::KeyT)] "Drag the cubes to scale the selection"
     ToggleLocal "World or local axes" [key(KeyCode::KeyL)] "Whether handles follow the world's axes or the object's own"
-    ToggleSnap "Snap" [key(KeyCode::KeyN)] "Handles move in steps"
+    ToggleSnap "Snap" [key(KeyCode::KeyN)] "Handles move in steps; right click on the button: how large"
     ToggleHelp "Keys and mouse" [key(KeyCode::F1), shift(KeyCode::Slash)] "Shows every key"
 }
 

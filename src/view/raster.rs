@@ -3,13 +3,14 @@
 //! | ours | Bevy's |
 //! |---|---|
 //! | [`Phong`] | `StandardMaterial` on the same entity: kd is the base colour, ke the emission; a highlight of exponent s has about the roughness (2/(s+2))^¼ (Beckmann's, Walter et al. 2007, eq. 8, and Bevy's square); a mirror is metal |
-//! | [`PointLamp`] | `PointLight` of 4π·I lumens, or `SpotLight` |
-//! | [`DirectionalLamp`] | `DirectionalLight` of as many lux |
+//! | [`PointLamp`] | `PointLight` of 4π·I/E lumens, or `SpotLight` |
+//! | [`DirectionalLamp`] | `DirectionalLight` of I/E lux |
 //! | [`SegmentLamp`] | `PointLight` in its middle, of all its strength |
 //! | [`ParallelogramLamp`] | `SpotLight` in its middle along the normal, or `PointLight` where it has two sides |
 //!
 //! There are no shadows, no reflections and no background picture. A camera shows it right where
-//! its `Exposure` is [`exposure`], at which one lux on white is a brightness of 1/π.
+//! its `Exposure` is [`exposure`], which multiplies light by E. It is Bevy's own, so that an app's
+//! lights can stand beside ours.
 //!
 //! Everything that is drawn so lies in one layer, which a camera can leave out.
 
@@ -20,7 +21,7 @@ use bevy::asset::{Assets, Handle};
 use bevy::camera::Exposure;
 use bevy::camera::visibility::{InheritedVisibility, RenderLayers, Visibility};
 use bevy::color::{Color, ColorToComponents, LinearRgba};
-use bevy::light::{DirectionalLight, PointLight, SpotLight};
+use bevy::light::{DirectionalLight, PointLight, RectLight, SpotLight};
 use bevy::math::{Quat, Vec3};
 use bevy::mesh::Mesh3d;
 use bevy::pbr::{MeshMaterial3d, StandardMaterial};
@@ -57,10 +58,7 @@ impl Plugin for RasterPlugin {
 
 /// The exposure at which the raster view is as bright as the traced one.
 pub fn exposure() -> Exposure {
-    // Bevy multiplies by 1 / (1.2 · 2^ev100).
-    Exposure {
-        ev100: -1.2_f32.log2(),
-    }
+    Exposure::default()
 }
 
 /// The approximations, by the entity that has the material.
@@ -192,8 +190,15 @@ type LampQuery<'w, 's> = Query<
         Option<&'static ParallelogramLamp>,
         Ref<'static, InheritedVisibility>,
     ),
-    AnyLamp,
+    (AnyLamp, WithoutOwnLight),
 >;
+/// What has a light of Bevy's own keeps it.
+type WithoutOwnLight = (
+    Without<PointLight>,
+    Without<SpotLight>,
+    Without<DirectionalLight>,
+    Without<RectLight>,
+);
 type AnyLamp = Or<(
     With<PointLamp>,
     With<DirectionalLamp>,
@@ -249,7 +254,7 @@ fn give_lights(
                 lit.clone(),
                 DirectionalLight {
                     color: Color::LinearRgba(lamp.color),
-                    illuminance: lamp.intensity,
+                    illuminance: lamp.intensity / exposure().exposure(),
                     shadow_maps_enabled: false,
                     ..DirectionalLight::default()
                 },
@@ -280,11 +285,16 @@ fn mean(colors: &[LinearRgba]) -> LinearRgba {
     LinearRgba::rgb(mean.x, mean.y, mean.z)
 }
 
-/// `intensity` in W/sr, taken as candela.
+/// Of a light that shines all around with so many W/sr.
+fn lumens(intensity: f32) -> f32 {
+    4.0 * PI * intensity / exposure().exposure()
+}
+
+/// `intensity` in W/sr.
 fn point_light(color: LinearRgba, intensity: f32) -> PointLight {
     PointLight {
         color: Color::LinearRgba(color),
-        intensity: 4.0 * PI * intensity,
+        intensity: lumens(intensity),
         range: REACH,
         shadow_maps_enabled: false,
         ..PointLight::default()
@@ -296,7 +306,7 @@ fn point_light(color: LinearRgba, intensity: f32) -> PointLight {
 fn spot_light(color: LinearRgba, intensity: f32, [inner, outer]: [f32; 2]) -> SpotLight {
     SpotLight {
         color: Color::LinearRgba(color),
-        intensity: 4.0 * PI * intensity,
+        intensity: lumens(intensity),
         range: REACH,
         inner_angle: inner.min(1.5),
         outer_angle: outer.min(1.57),

@@ -1,9 +1,11 @@
 //! File, Edit, Add, View, Help. Entries, keys and explanations are those of the table of actions.
 
+use super::fields::angle;
 use super::says::Says;
 use super::state::{Dialog, Panels};
 use crate::editor::action::{Action, Addition, Axis, shapes};
 use crate::editor::history::History;
+use crate::editor::navigation::{field_of_view, set_field_of_view};
 use crate::editor::preferences::Preferences;
 use crate::editor::selection::Selection;
 use crate::scene::{SceneCamera, SceneId};
@@ -200,7 +202,10 @@ fn view_ui(ui: &mut Ui, world: &mut World) {
         }
     });
     ui.menu_button("Look through", |ui| look_through_ui(ui, world));
+    entry_ui(ui, world, &Action::ToggleCamera);
+    entry_ui(ui, world, &Action::ToggleLock);
     entry_ui(ui, world, &Action::AddBookmark);
+    field_of_view_ui(ui, world);
     ui.separator();
     let mut preferences = world.resource::<Preferences>().clone();
     let before = preferences.clone();
@@ -210,6 +215,18 @@ fn view_ui(ui: &mut Ui, world: &mut World) {
         .says("Shows the properties on the right");
     if preferences != before {
         *world.resource_mut::<Preferences>() = preferences;
+    }
+}
+
+/// Of the camera that is looked through, else of the view.
+fn field_of_view_ui(ui: &mut Ui, world: &mut World) {
+    let Some(mut fov) = field_of_view(world) else {
+        return;
+    };
+    ui.set_min_width(230.0);
+    let says = "The angle from the picture's lower to its upper edge: the looked-through camera's, or the view's own";
+    if angle(ui, "Field of view", says, &mut fov, [1.0, 170.0], false) {
+        set_field_of_view(world, fov);
     }
 }
 
