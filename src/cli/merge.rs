@@ -2,8 +2,10 @@
 
 use super::Failure;
 use super::output::{say, tell};
-use super::shown::{read_output, write_shown};
-use crate::io::{self, Limits, PictureFormat, check_writable, read_part, write_part};
+use super::shown::read_output;
+use crate::io::{
+    self, Limits, PictureFormat, check_writable, read_part, write_part, write_rendered,
+};
 use crate::scene::RenderSettings;
 use clap::Args;
 use std::path::PathBuf;
@@ -34,7 +36,7 @@ pub(super) fn run(args: Merge) -> Result<(), Failure> {
     } else {
         let mut settings = RenderSettings::default();
         read_output(&part.output, &mut settings)?;
-        write_shown(&args.output, &part.film.picture(), &settings)?;
+        write_rendered(&args.output, &part.film.picture(), &settings.output, &[])?;
     }
     if args.quiet {
         return Ok(());

@@ -4,7 +4,7 @@ use super::Failure;
 use super::output::say;
 use super::progress::Progress;
 use super::settings::{BuilderArg, SettingArgs, builder_name, check_scene, list};
-use super::shown::{output_text, write_shown};
+use super::shown::output_text;
 use super::stage::{SceneArgs, Stage, with_threads};
 use super::stats::{Stats, mrays_per_second, triangles};
 use super::stop::{SampleRange, StopArgs};
@@ -12,7 +12,10 @@ use super::view::ViewArgs;
 use crate::film::views::View;
 use crate::film::{FirstHits, render_samples};
 use crate::inspect::build_time;
-use crate::io::{FileError, Part, PictureFormat, check_writable, replace_file, write_part};
+use crate::io::{
+    FileError, Part, PictureFormat, check_writable, picture_notes, replace_file, write_part,
+    write_rendered,
+};
 use crate::sync::TracedCamera;
 use crate::trace::{RayCounts, digest, samples_per_pixel};
 use clap::Args;
@@ -145,7 +148,8 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
             };
             write_part(file, &part)?;
         } else if args.view.view == View::Shaded {
-            write_shown(file, &rendered.picture, &settings)?;
+            let notes = picture_notes(&camera.name, &settings, &rendered.status);
+            write_rendered(file, &rendered.picture, &settings.output, &notes)?;
         } else {
             args.view
                 .write_rendered(file, &rendered, &settings.output)?;

@@ -1,29 +1,8 @@
-//! How a picture is shown: in a file that screens show, and as a part of a picture keeps it.
+//! How a picture is shown, as a part of a picture keeps it.
 
 use super::Failure;
 use super::set::Assignment;
-use crate::film::{Picture, develop};
-use crate::io::{FileError, PictureFormat, write_picture};
 use crate::scene::{RenderSettings, SETTINGS};
-use std::path::Path;
-
-/// Writes a picture: linear light where the format holds it, else what a screen shows.
-pub(super) fn write_shown(
-    file: &Path,
-    picture: &Picture,
-    settings: &RenderSettings,
-) -> Result<(), FileError> {
-    let pixels = if PictureFormat::of(file)?.is_linear() {
-        picture
-            .pixels
-            .iter()
-            .map(|pixel| pixel.to_array())
-            .collect()
-    } else {
-        develop(picture, &settings.output)
-    };
-    write_picture(file, picture.width, picture.height, &pixels)
-}
 
 /// How a picture is shown, as a part keeps it: every setting of `output`, `key=value`.
 pub(super) fn output_text(settings: &RenderSettings) -> String {

@@ -218,7 +218,7 @@ actions! {
     Turn "Turn" [key(KeyCode::KeyE)] "Drag the rings to turn the selection"
     Scale "Scale" [key(KeyCode::KeyT)] "Drag the cubes to scale the selection"
     ToggleLocal "World or local axes" [key(KeyCode::KeyL)] "Whether handles follow the world's axes or the object's own"
-    ToggleSnap "Snap" [key(KeyCode::KeyN)] "Handles move in steps"
+    ToggleSnap "Snap" [key(KeyCode::KeyN)] "Handles move in steps; right click on the button: how large"
     ToggleHelp "Keys and mouse" [key(KeyCode::F1), shift(KeyCode::Slash)] "Shows every key"
     ToggleGizmos "Show the tracer's lines" [key(KeyCode::KeyG)] "All that is drawn of rays and trees, off and on again as it was"
     Inspect(InspectPreset::WhyBlack) "Why is this pixel black?" [] "Draws the rays of a pixel in the light that they carry: point at it and press R"

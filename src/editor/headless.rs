@@ -18,6 +18,7 @@ pub fn headless_editor() -> App {
 pub fn headless_editor_with_recovery(folder: &Path) -> App {
     editor(DocumentPlugin {
         recovery: Some(folder.to_path_buf()),
+        ..DocumentPlugin::default()
     })
 }
 

@@ -2,8 +2,9 @@
 
 use super::action::{ACTIONS, Action, Keys};
 use super::pointer::{self, PointerUse};
+use super::schedule::EditorUpdate;
 use super::viewport::Viewport;
-use bevy::app::{App, Plugin, Update};
+use bevy::app::{App, Plugin};
 use bevy::ecs::message::{MessageCursor, Messages};
 use bevy::ecs::system::Local;
 use bevy::ecs::world::World;
@@ -17,7 +18,7 @@ pub(super) struct KeysPlugin;
 
 impl Plugin for KeysPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(Update, press_keys.before(pointer::use_pointer));
+        app.add_systems(EditorUpdate, press_keys.before(pointer::use_pointer));
     }
 }
 

@@ -14,7 +14,10 @@
 //! | [`render_job`] | pictures to files while the editing goes on |
 //! | [`selection`] | which entities are meant |
 //! | [`viewport`] | the part of the window that shows the scene, and how |
-//! | `window` | the app: plugins, window, cameras |
+//! | `plugins` | what it consists of; [`EditorPlugins`] for an app with a scene of its own |
+//! | `embed` | what is different there |
+//! | `schedule`, `cameras` | when it works, and what draws it |
+//! | `window` | the program: its window and first scene |
 //! | `panels` | everything that egui draws |
 //! | `inspection` | what the tracer did, drawn over the scene; the debug ray |
 //! | `trees` | the builders compared and timed, two trees side by side |
@@ -26,8 +29,10 @@
 //! | `startup` | whether there can be a window at all |
 
 pub mod action;
+mod cameras;
 pub mod document;
 pub mod edits;
+mod embed;
 mod extent;
 pub mod handles;
 mod headless;
@@ -39,9 +44,11 @@ pub mod notice;
 mod pace;
 mod panels;
 mod pick;
+mod plugins;
 mod pointer;
 pub mod preferences;
 pub mod render_job;
+mod schedule;
 mod script;
 pub mod selection;
 mod startup;
@@ -50,7 +57,10 @@ pub mod viewport;
 mod window;
 
 pub use action::Action;
+pub use embed::{Editing, editing};
 pub use headless::{headless_editor, headless_editor_with_recovery};
+pub use plugins::EditorPlugins;
+pub use schedule::EditorUpdate;
 pub use script::{Script, ScriptError};
 pub use selection::Selection;
 pub use startup::{NoWindow, check};

@@ -10,11 +10,12 @@ use super::handles::{self, GripDrag, grip_at};
 use super::keys::Modifiers;
 use super::navigation::{self, LookThrough, ViewDrag};
 use super::pick;
+use super::schedule::EditorUpdate;
 use super::selection::Selection;
 use super::viewport::Viewport;
 use crate::scene::SceneId;
 use crate::view::{Outlined, Symbols};
-use bevy::app::{App, Plugin, Update};
+use bevy::app::{App, Plugin};
 use bevy::ecs::entity::Entity;
 use bevy::ecs::message::{MessageCursor, Messages};
 use bevy::ecs::query::{Or, With};
@@ -45,7 +46,7 @@ impl Plugin for PointerPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<PointerUse>()
             .init_resource::<Pointer>()
-            .add_systems(Update, (use_pointer, outline_selection).chain())
+            .add_systems(EditorUpdate, (use_pointer, outline_selection).chain())
             .add_systems(EguiPrimaryContextPass, draw_box);
     }
 }
@@ -224,7 +225,11 @@ fn turn_wheel(world: &mut World, notches: f32) {
         PointerUse::View(ViewDrag::Fly)
     );
     if notches != 0.0 && (flying || is_over_scene(world, at)) {
-        navigation::wheel(world, at, notches);
+        if world.resource::<Pointer>().modifiers.ctrl && !flying {
+            navigation::widen(world, notches);
+        } else {
+            navigation::wheel(world, at, notches);
+        }
     }
 }
 

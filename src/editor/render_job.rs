@@ -4,15 +4,18 @@
 //! processor with the traced view, and stops by the rules of its own settings: samples, error, time.
 
 use super::notice::Notices;
-use crate::film::{Ending, Progressive, State, Status, develop};
-use crate::io::{FileError, PictureFormat, check_size, check_writable, write_picture_with_notes};
-use crate::scene::{RenderSettings, SETTINGS, SceneId, SettingProblem, setting_problems};
+use super::schedule::EditorUpdate;
+use crate::film::{Ending, Progressive, State, Status};
+use crate::io::{
+    FileError, PictureFormat, check_size, check_writable, picture_notes, write_rendered,
+};
+use crate::scene::{RenderSettings, SceneId, SettingProblem, setting_problems};
 use crate::sync::{Traced, TracedCameras};
 use crate::trace;
-use bevy::app::{App, Plugin, Update};
+use bevy::app::{App, Plugin};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::{Mut, World};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::thread::{self, JoinHandle};
 
 /// What is to be rendered.
@@ -175,7 +178,7 @@ impl Plugin for RenderJobPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<RenderJob>()
             .init_resource::<Notices>()
-            .add_systems(Update, carry_on);
+            .add_systems(EditorUpdate, carry_on);
     }
 }
 
@@ -216,8 +219,12 @@ fn step(world: &mut World, job: Job) -> Option<Job> {
                 State::Ended(Ending::Cancelled) => return None,
                 State::Ended(_) => {
                     let (file, settings) = (file.clone(), job.request.settings.clone());
-                    let notes = notes(&job.name, &settings, &status);
-                    let write = move || write(&file, &render, &settings, &notes);
+                    let mut notes = picture_notes(&job.name, &settings, &status);
+                    notes.push(("Seconds", format!("{:.3}", status.seconds)));
+                    let write = move || {
+                        let picture = render.snapshot().picture;
+                        write_rendered(&file, &picture, &settings.output, &notes)
+                    };
                     match thread::Builder::new().name("write".into()).spawn(write) {
                         Ok(writing) => Stage::Writing(writing, status),
                         Err(error) => return fault(world, error.to_string()),
@@ -245,45 +252,4 @@ fn step(world: &mut World, job: Job) -> Option<Job> {
         writing @ Stage::Writing(..) => writing,
     };
     Some(Job { stage, ..job })
-}
-
-fn write(
-    file: &Path,
-    render: &Progressive,
-    settings: &RenderSettings,
-    notes: &[(&str, String)],
-) -> Result<(), FileError> {
-    let picture = render.snapshot().picture;
-    let pixels = if PictureFormat::of(file)?.is_linear() {
-        picture
-            .pixels
-            .iter()
-            .map(|pixel| pixel.to_array())
-            .collect()
-    } else {
-        develop(&picture, &settings.output)
-    };
-    write_picture_with_notes(file, picture.width, picture.height, &pixels, notes)
-}
-
-/// What the file says about itself: enough to render the same picture again.
-fn notes(camera: &str, settings: &RenderSettings, status: &Status) -> Vec<(&'static str, String)> {
-    let words: Vec<String> = SETTINGS
-        .iter()
-        .map(|setting| format!("{}={}", setting.path, setting.value_text(settings)))
-        .collect();
-    let mut notes = vec![
-        (
-            "Software",
-            format!("Glassbox {}", env!("CARGO_PKG_VERSION")),
-        ),
-        ("Camera", camera.to_owned()),
-        ("Settings", words.join(" ")),
-        ("Samples", format!("{}", status.samples)),
-        ("Seconds", format!("{:.3}", status.seconds)),
-    ];
-    if let Some(error) = status.error() {
-        notes.push(("Error", format!("{:.3e}", error.relative())));
-    }
-    notes
 }

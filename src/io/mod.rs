@@ -46,7 +46,10 @@ pub use import::{Imported, import};
 pub use limits::Limits;
 pub use open::{OpenOptions, Opened, SceneSource, open, open_empty};
 pub use part::{Merge, MergeError, Part, read_part, write_part};
-pub use picture::{PictureFormat, check_size, write_picture, write_picture_with_notes};
+pub use picture::{
+    Note, PictureFormat, check_size, picture_notes, write_picture, write_picture_with_notes,
+    write_rendered,
+};
 pub use problems::{LoadProblem, LoadProblems};
 #[cfg(feature = "editor")]
 pub(crate) use reload::{Reloaded, SourceFile, source_files};
@@ -61,11 +64,13 @@ pub(crate) use scene_file::{
 pub use sources::SceneFiles;
 
 use crate::scene::EnvironmentMap;
-use bevy::app::{App, Plugin, PreUpdate};
-use bevy::asset::{AssetApp, Assets};
+use bevy::app::{App, Plugin, PostUpdate};
+use bevy::asset::{AssetApp, AssetEventSystems, Assets};
+use bevy::camera::visibility::VisibilitySystems;
 use bevy::image::Image;
 use bevy::mesh::Mesh;
 use bevy::prelude::IntoScheduleConfigs;
+use bevy::transform::TransformSystems;
 use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
@@ -86,13 +91,18 @@ impl Plugin for IoPlugin {
             .init_resource::<LoadProblems>()
             .init_resource::<EnvironmentMap>()
             .add_systems(
-                PreUpdate,
+                PostUpdate,
                 (
                     sources::resolve_meshes,
                     sources::resolve_pictures,
                     sources::resolve_environment,
                 )
-                    .chain(),
+                    .chain()
+                    // What was added in this frame is drawn and traced in it.
+                    .before(AssetEventSystems)
+                    .before(TransformSystems::Propagate)
+                    .before(VisibilitySystems::CalculateBounds)
+                    .before(VisibilitySystems::VisibilityPropagate),
             );
     }
 }

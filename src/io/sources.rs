@@ -157,7 +157,11 @@ pub(crate) fn resolve_pictures(
         let before = current.cloned().unwrap_or_default();
         problems.forget(entity, LoadProblem::PICTURE);
         let mut load = |source: &Option<TextureSource>, usage, before: Option<Handle<Image>>| {
-            let source = source.as_ref()?;
+            let Some(source) = source else {
+                // What no source has named is an app's own, and stays.
+                return before
+                    .filter(|picture| !files.pictures.values().any(|id| *id == picture.id()));
+            };
             match files.picture(source, usage, &mut images) {
                 Ok(handle) => Some(handle),
                 Err(error) => {

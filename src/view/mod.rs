@@ -9,6 +9,7 @@
 //! | [`LinesPlugin`] | sets of lines, by Bevy's retained gizmos |
 //! | [`RasterPlugin`] | a scene of our components is seen in Bevy's renderer too |
 //! | [`SymbolsPlugin`] | lights, cameras and outlines |
+//! | [`HandleCameraPlugin`] | Bevy's transform gizmo over the traced picture |
 //!
 //! [`GlassboxPlugins`] adds the first four to any Bevy app, with what they need.
 
@@ -18,19 +19,25 @@
     reason = "a system's parameters are the list of what it reads"
 )]
 
+mod cameras;
 mod darkroom;
+mod handle_camera;
 pub mod lines;
 mod pick;
 pub mod raster;
 mod screen;
+mod shot;
 mod sketch;
 mod standard;
 mod symbols;
 mod traced;
 
+pub use cameras::{interface_camera, picture_camera};
+pub use handle_camera::{HandleCameraPlugin, draws_handles};
 pub use lines::{DrawnLines, Line, LinesPlugin};
 pub use pick::{Picked, TracedPickingPlugin, pick};
 pub use raster::{RASTER_LAYER, RasterPlugin};
+pub use shot::shoot_window;
 pub use standard::{StandardMappingPlugin, phong};
 pub use symbols::{Outlined, SymbolOf, Symbols, SymbolsPlugin, nearest_symbol};
 pub use traced::{PrintInfo, TracedRender, TracedView, TracedViewPlugin, traced_camera};

@@ -3,13 +3,14 @@
 //! | ours | Bevy's |
 //! |---|---|
 //! | [`Phong`] | `StandardMaterial` (that ends at the view's divider) on the same entity: kd is the base colour, ke the emission; a highlight of exponent s has about the roughness (2/(s+2))^¼ (Beckmann's, Walter et al. 2007, eq. 8, and Bevy's square); a mirror is metal |
-//! | [`PointLamp`] | `PointLight` of 4π·I lumens, or `SpotLight` |
-//! | [`DirectionalLamp`] | `DirectionalLight` of as many lux |
+//! | [`PointLamp`] | `PointLight` of 4π·I/E lumens, or `SpotLight` |
+//! | [`DirectionalLamp`] | `DirectionalLight` of I/E lux |
 //! | [`SegmentLamp`] | `PointLight` in its middle, of all its strength |
 //! | [`ParallelogramLamp`] | `SpotLight` in its middle along the normal, or `PointLight` where it has two sides |
 //!
 //! There are no shadows, no reflections and no background picture. A camera shows it right where
-//! its `Exposure` is [`exposure`], at which one lux on white is a brightness of 1/π.
+//! its `Exposure` is [`exposure`], which multiplies light by E. It is Bevy's own, so that an app's
+//! lights can stand beside ours.
 //!
 //! Everything that is drawn so lies in one layer, which a camera can leave out.
 
@@ -21,7 +22,7 @@ use bevy::asset::{Asset, Assets, Handle, embedded_asset};
 use bevy::camera::Exposure;
 use bevy::camera::visibility::{InheritedVisibility, RenderLayers, Visibility};
 use bevy::color::{Color, ColorToComponents, LinearRgba};
-use bevy::light::{DirectionalLight, GlobalAmbientLight, PointLight, SpotLight};
+use bevy::light::{AmbientLight, DirectionalLight, PointLight, RectLight, SpotLight};
 use bevy::math::{Quat, Vec3, Vec4};
 use bevy::mesh::Mesh3d;
 use bevy::pbr::{
@@ -46,7 +47,7 @@ pub const RASTER_LAYER: usize = 1;
 const REACH: f32 = 1.0e4;
 
 /// What a white surface shows where no light reaches it. The tracer shows black there; a little more
-/// keeps an unlit scene in sight. Bevy's own 80 is meant for a camera in daylight, and all white here.
+/// keeps an unlit scene in sight.
 const AMBIENT: f32 = 0.02;
 
 /// Shows a scene of our components in Bevy's renderer. Not for scenes of Bevy's own materials,
@@ -57,10 +58,6 @@ impl Plugin for RasterPlugin {
     fn build(&self, app: &mut App) {
         embedded_asset!(app, "raster.wgsl");
         app.add_plugins(MaterialPlugin::<RasterMaterial>::default());
-        app.insert_resource(GlobalAmbientLight {
-            brightness: AMBIENT,
-            ..GlobalAmbientLight::default()
-        });
         app.init_resource::<RasterMaterials>()
             .init_resource::<Divider>()
             .add_systems(
@@ -75,9 +72,14 @@ impl Plugin for RasterPlugin {
 
 /// The exposure at which the raster view is as bright as the traced one.
 pub fn exposure() -> Exposure {
-    // Bevy multiplies by 1 / (1.2 · 2^ev100).
-    Exposure {
-        ev100: -1.2_f32.log2(),
+    Exposure::default()
+}
+
+/// The light that is everywhere in the raster view, for its camera.
+pub(super) fn ambient() -> AmbientLight {
+    AmbientLight {
+        brightness: AMBIENT / exposure().exposure(),
+        ..AmbientLight::default()
     }
 }
 
@@ -267,8 +269,15 @@ type LampQuery<'w, 's> = Query<
         Option<&'static ParallelogramLamp>,
         Ref<'static, InheritedVisibility>,
     ),
-    AnyLamp,
+    (AnyLamp, WithoutOwnLight),
 >;
+/// What has a light of Bevy's own keeps it.
+type WithoutOwnLight = (
+    Without<PointLight>,
+    Without<SpotLight>,
+    Without<DirectionalLight>,
+    Without<RectLight>,
+);
 type AnyLamp = Or<(
     With<PointLamp>,
     With<DirectionalLamp>,
@@ -324,7 +333,7 @@ fn give_lights(
                 lit.clone(),
                 DirectionalLight {
                     color: Color::LinearRgba(lamp.color),
-                    illuminance: lamp.intensity,
+                    illuminance: lamp.intensity / exposure().exposure(),
                     shadow_maps_enabled: false,
                     ..DirectionalLight::default()
                 },
@@ -355,11 +364,16 @@ fn mean(colors: &[LinearRgba]) -> LinearRgba {
     LinearRgba::rgb(mean.x, mean.y, mean.z)
 }
 
-/// `intensity` in W/sr, taken as candela.
+/// Of a light that shines all around with so many W/sr.
+fn lumens(intensity: f32) -> f32 {
+    4.0 * PI * intensity / exposure().exposure()
+}
+
+/// `intensity` in W/sr.
 fn point_light(color: LinearRgba, intensity: f32) -> PointLight {
     PointLight {
         color: Color::LinearRgba(color),
-        intensity: 4.0 * PI * intensity,
+        intensity: lumens(intensity),
         range: REACH,
         shadow_maps_enabled: false,
         ..PointLight::default()
@@ -371,7 +385,7 @@ fn point_light(color: LinearRgba, intensity: f32) -> PointLight {
 fn spot_light(color: LinearRgba, intensity: f32, [inner, outer]: [f32; 2]) -> SpotLight {
     SpotLight {
         color: Color::LinearRgba(color),
-        intensity: 4.0 * PI * intensity,
+        intensity: lumens(intensity),
         range: REACH,
         inner_angle: inner.min(1.5),
         outer_angle: outer.min(1.57),

@@ -52,6 +52,11 @@ impl Plugin for StandardMappingPlugin {
     }
 }
 
+/// What was mapped last. Ours is set only where that becomes another: an edit of ours stays until
+/// Bevy's is edited too.
+#[derive(Component)]
+struct Mapped<T: Send + Sync + 'static>(T);
+
 /// The narrowest highlight that is told from a mirror.
 const MOST_SHININESS: f32 = 10_000.0;
 
@@ -94,8 +99,7 @@ fn map_materials(
         (
             Entity,
             &MeshMaterial3d<StandardMaterial>,
-            Option<&Phong>,
-            Option<&PhongMaps>,
+            Option<&Mapped<(Phong, PhongMaps)>>,
         ),
         Without<NotTraced>,
     >,
@@ -103,7 +107,7 @@ fn map_materials(
 ) {
     for entity in gone.read() {
         if let Ok(mut entity) = commands.get_entity(entity) {
-            entity.try_remove::<(Phong, PhongMaps)>();
+            entity.try_remove::<(Phong, PhongMaps, Mapped<(Phong, PhongMaps)>)>();
         }
     }
     let changed: HashSet<_> = events
@@ -114,15 +118,15 @@ fn map_materials(
         })
         .collect();
     let mut map = |entity| {
-        let Ok((entity, handle, before, maps_before)) = objects.get(entity) else {
+        let Ok((entity, handle, mapped)) = objects.get(entity) else {
             return;
         };
         let Some(material) = assets.get(&handle.0) else {
             return;
         };
-        let (phong, maps) = phong(material);
-        if before != Some(&phong) || maps_before != Some(&maps) {
-            commands.entity(entity).insert((phong, maps));
+        let ours = phong(material);
+        if mapped.is_none_or(|mapped| mapped.0 != ours) {
+            commands.entity(entity).insert((ours.clone(), Mapped(ours)));
         }
     };
     if changed.is_empty() {
@@ -199,10 +203,10 @@ impl Maps<ParallelogramLamp> for RectLight {
     }
 }
 
-fn map_lights<Theirs: Maps<Ours>, Ours: Component + PartialEq>(
+fn map_lights<Theirs: Maps<Ours>, Ours: Component + Clone + PartialEq>(
     mut commands: Commands,
     edited: Query<
-        (Entity, &Theirs, Option<&Ours>),
+        (Entity, &Theirs, Option<&Mapped<Ours>>),
         (Changed<Theirs>, Without<RasterTwin>, Without<NotTraced>),
     >,
     mut gone: RemovedComponents<Theirs>,
@@ -212,13 +216,13 @@ fn map_lights<Theirs: Maps<Ours>, Ours: Component + PartialEq>(
         if !twins.contains(entity)
             && let Ok(mut entity) = commands.get_entity(entity)
         {
-            entity.try_remove::<Ours>();
+            entity.try_remove::<(Ours, Mapped<Ours>)>();
         }
     }
-    for (entity, theirs, before) in &edited {
+    for (entity, theirs, mapped) in &edited {
         let ours = theirs.map();
-        if before != Some(&ours) {
-            commands.entity(entity).insert(ours);
+        if mapped.is_none_or(|mapped| mapped.0 != ours) {
+            commands.entity(entity).insert((ours.clone(), Mapped(ours)));
         }
     }
 }

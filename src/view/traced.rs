@@ -265,12 +265,13 @@ fn follow(
             continue;
         }
         let size = camera.physical_viewport_size().unwrap_or_default() / view.pixel_size.max(1);
+        let seen = camera.is_active && view.divider < 1.0 && size.min_element() > 0;
         let optics = view.optics_of.and_then(|id| {
             let found = cameras.0.iter().find(|camera| camera.id == id)?;
             Some(&found.camera)
         });
         let camera = traced_camera(transform, projection, optics);
-        let (Some(camera), true) = (camera, view.divider < 1.0 && size.min_element() > 0) else {
+        let (Some(camera), true) = (camera, seen) else {
             if render.running.is_some() {
                 render.retire();
             }

@@ -10,8 +10,28 @@ fn render(folder: &Path, scene: &str, output: &str, more: &[&str]) -> String {
     succeeds(folder, &arguments)
 }
 
-fn bytes(folder: &Path, name: &str) -> Vec<u8> {
-    std::fs::read(folder.join(name)).unwrap()
+/// The pixels, to the bit: files also say what they were rendered with.
+fn bits(folder: &Path, name: &str) -> Vec<u32> {
+    let picture = image::open(folder.join(name)).unwrap().into_rgb32f();
+    let values = picture.into_raw().into_iter();
+    values.map(f32::to_bits).collect()
+}
+
+#[test]
+fn a_picture_says_how_it_was_rendered_and_the_same_render_says_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["a.png", "a.exr"] {
+        let render = || {
+            render(folder.path(), "cornell-box", name, &["--seed", "7"]);
+            std::fs::read(folder.path().join(name)).unwrap()
+        };
+        let bytes = render();
+        let text = String::from_utf8_lossy(&bytes);
+        for word in ["Glassbox", "size=40x30", "spp=4", "seed=7"] {
+            assert!(text.contains(word), "{name} does not say {word}");
+        }
+        assert!(bytes == render(), "{name}: another file of the same render");
+    }
 }
 
 #[test]
@@ -35,7 +55,7 @@ fn the_same_scene_gives_the_same_picture_for_1_2_and_7_threads() {
         let render = |threads: &str| {
             // Linear 32-bit values: nothing hides behind rounding to 8 bits.
             render(folder.path(), scene, "a.exr", &["--threads", threads]);
-            bytes(folder.path(), "a.exr")
+            bits(folder.path(), "a.exr")
         };
         let one = render("1");
         assert!(
@@ -59,7 +79,7 @@ fn the_seed_changes_the_picture_and_the_builder_does_not() {
             "a.exr",
             more,
         );
-        bytes(folder.path(), "a.exr")
+        bits(folder.path(), "a.exr")
     };
     let plain = render(&[]);
     assert!(
@@ -120,16 +140,13 @@ fn every_camera_writes_a_picture_of_its_own() {
     );
     let name = all[1].trim_start_matches("a-").trim_end_matches(".png");
     render(folder.path(), "showcase", "one.png", &["--camera", name]);
-    let (one, same) = (
-        bytes(folder.path(), "one.png"),
-        bytes(folder.path(), &all[1]),
-    );
+    let (one, same) = (bits(folder.path(), "one.png"), bits(folder.path(), &all[1]));
     assert!(
         one == same,
         "the same camera gives another picture by itself"
     );
     assert!(
-        one != bytes(folder.path(), &all[0]),
+        one != bits(folder.path(), &all[0]),
         "both cameras see the same"
     );
 }
@@ -151,7 +168,7 @@ fn a_converted_scene_gives_the_same_picture() {
         render(folder.path(), scene, "built-in.exr", &[]);
         succeeds(folder.path(), &["convert", scene, "saved.scn.ron"]);
         render(folder.path(), "saved.scn.ron", "saved.exr", &[]);
-        let same = bytes(folder.path(), "built-in.exr") == bytes(folder.path(), "saved.exr");
+        let same = bits(folder.path(), "built-in.exr") == bits(folder.path(), "saved.exr");
         assert!(
             same,
             "{scene}: saved and opened again it gives another picture"

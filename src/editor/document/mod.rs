@@ -24,8 +24,9 @@ pub use recovery::{Recovered, RecoveryFolder};
 use super::action::Action;
 use super::history::{History, commit};
 use super::notice::Notices;
+use crate::editor::schedule::EditorUpdate;
 use crate::io::LoadProblems;
-use bevy::app::{App, Last, Plugin, Update};
+use bevy::app::{App, Last, Plugin};
 use bevy::ecs::change_detection::{DetectChanges, DetectChangesMut};
 use bevy::ecs::message::{MessageCursor, Messages};
 use bevy::ecs::resource::Resource;
@@ -91,6 +92,8 @@ impl Document {
 pub struct DocumentPlugin {
     /// Where copies of unsaved work are kept; `None` keeps none.
     pub recovery: Option<PathBuf>,
+    /// The window keeps its own title.
+    pub keeps_title: bool,
 }
 
 impl Plugin for DocumentPlugin {
@@ -98,13 +101,13 @@ impl Plugin for DocumentPlugin {
         app.init_resource::<Document>()
             .init_resource::<Notices>()
             .init_resource::<dialog::Dialogs>()
-            .add_systems(Update, (dialog::take_choices, act).chain())
+            .add_systems(EditorUpdate, (dialog::take_choices, act).chain())
             .add_systems(Last, (note_state, tell_load_problems));
         if let Some(folder) = &self.recovery {
             recovery::add_to(app, folder);
         }
         watch::add_to(app);
-        window::add_to(app);
+        window::add_to(app, self.keeps_title);
     }
 }
 

@@ -7,9 +7,10 @@
 //! what was loaded before stays.
 
 use crate::editor::notice::Notices;
+use crate::editor::schedule::EditorUpdate;
 use crate::io::{Folder, Limits, Reloaded, SceneFiles, SourceFile, source_files};
 use crate::scene::{Environment, MeshSource, Phong};
-use bevy::app::{App, Update};
+use bevy::app::App;
 use bevy::ecs::change_detection::DetectChanges;
 use bevy::ecs::query::{Changed, Or};
 use bevy::ecs::resource::Resource;
@@ -66,7 +67,7 @@ pub(super) fn add_to(app: &mut App) {
         next: Instant::now(),
         stale: true,
     })
-    .add_systems(Update, (note_changes, watch));
+    .add_systems(EditorUpdate, (note_changes, watch));
 }
 
 type NamesFiles = Or<(Changed<MeshSource>, Changed<Phong>)>;

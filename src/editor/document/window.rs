@@ -5,22 +5,24 @@ use crate::editor::action::Action;
 use crate::editor::edits::scene_entity;
 use crate::editor::history::History;
 use crate::editor::notice::Notices;
+use crate::editor::schedule::EditorUpdate;
 use crate::editor::selection::Selection;
 use crate::io::SceneFiles;
 use crate::scene::{Environment, Phong, TextureSource, UsesMaterial};
-use bevy::app::{App, PreUpdate, Update};
+use bevy::app::{App, PreUpdate};
 use bevy::ecs::message::{MessageCursor, Messages};
 use bevy::ecs::query::With;
 use bevy::ecs::system::{Local, Query, Res};
 use bevy::ecs::world::World;
+use bevy::prelude::IntoScheduleConfigs;
 use bevy::window::{FileDragAndDrop, PrimaryWindow, Window, WindowCloseRequested};
 use std::path::Path;
 
-pub(super) fn add_to(app: &mut App) {
+pub(super) fn add_to(app: &mut App, keeps_title: bool) {
     app.add_message::<FileDragAndDrop>()
         .add_message::<WindowCloseRequested>()
         .add_systems(PreUpdate, (take_dropped, take_closing))
-        .add_systems(Update, show_title);
+        .add_systems(EditorUpdate, show_title.run_if(move || !keeps_title));
 }
 
 fn show_title(document: Res<Document>, mut windows: Query<&mut Window, With<PrimaryWindow>>) {

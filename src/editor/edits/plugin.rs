@@ -7,9 +7,10 @@ use super::{
 use crate::editor::action::Action;
 use crate::editor::history::{Gesture, History, commit, redo, undo};
 use crate::editor::notice::Notices;
+use crate::editor::schedule::EditorUpdate;
 use crate::editor::selection::Selection;
 use crate::scene::SceneId;
-use bevy::app::{App, Plugin, Update};
+use bevy::app::{App, Plugin};
 use bevy::camera::visibility::Visibility;
 use bevy::ecs::message::{MessageCursor, Messages};
 use bevy::ecs::system::Local;
@@ -28,7 +29,7 @@ impl Plugin for EditsPlugin {
             .init_resource::<Selection>()
             .init_resource::<Notices>()
             .init_resource::<SceneIndex>()
-            .add_systems(Update, edit);
+            .add_systems(EditorUpdate, edit);
     }
 }
 

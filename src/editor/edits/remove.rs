@@ -2,6 +2,7 @@
 
 use super::parents::{roots_of, with_descendants};
 use super::scene_entity;
+use crate::editor::history::remove;
 use crate::scene::{Phong, SceneId, UsesMaterial};
 use bevy::camera::visibility::Visibility;
 use bevy::ecs::entity::Entity;
@@ -34,7 +35,7 @@ pub fn delete(world: &mut World, ids: &[SceneId]) {
         }
     }
     for root in roots {
-        world.despawn(root);
+        remove(world, root);
     }
 }
 

@@ -7,19 +7,20 @@
 mod bodies;
 mod gizmo;
 mod grips;
-mod overlay;
 
 pub(super) use gizmo::cancel;
 pub(super) use grips::{Grip, GripDrag, grip_at, grips_of_selection};
 
 use super::action::Action;
 use super::pointer::use_pointer;
-use bevy::app::{App, Plugin, PostStartup, PostUpdate, Startup, Update};
+use super::schedule::EditorUpdate;
+use crate::view::HandleCameraPlugin;
+use bevy::app::{App, Plugin, PostUpdate, Startup};
 use bevy::ecs::message::{MessageCursor, Messages};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::Local;
 use bevy::ecs::world::World;
-use bevy::gizmos::transform_gizmo::{TransformGizmoPlugin, TransformGizmoSystems};
+use bevy::gizmos::transform_gizmo::TransformGizmoSystems;
 use bevy::prelude::IntoScheduleConfigs;
 use bevy_egui::EguiPrimaryContextPass;
 use std::f32::consts::PI;
@@ -78,14 +79,13 @@ pub(super) struct HandlesPlugin;
 
 impl Plugin for HandlesPlugin {
     fn build(&self, app: &mut App) {
-        app.add_plugins(TransformGizmoPlugin)
+        app.add_plugins(HandleCameraPlugin)
             .init_resource::<Tools>()
             .init_resource::<ActiveGrip>()
             .init_resource::<gizmo::GizmoDrag>()
             .add_systems(Startup, gizmo::spawn_stand_in)
-            .add_systems(PostStartup, overlay::leave_untraced)
             .add_systems(
-                Update,
+                EditorUpdate,
                 (
                     obey,
                     grips::forget_grips,
@@ -102,8 +102,7 @@ impl Plugin for HandlesPlugin {
             )
             .add_systems(
                 PostUpdate,
-                (gizmo::forget_hover, overlay::fit_overlay)
-                    .before(bevy::camera::CameraUpdateSystems),
+                gizmo::forget_hover.before(bevy::camera::CameraUpdateSystems),
             )
             .add_systems(EguiPrimaryContextPass, grips::draw_grips);
     }

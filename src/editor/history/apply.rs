@@ -4,7 +4,7 @@ use super::super::edits::SceneIndex;
 use super::super::selection::Selection;
 use super::state::{EntityState, Kinds};
 use super::step::{Side, Step};
-use super::{Gesture, History, commit};
+use super::{Gesture, History, aside, commit};
 use crate::scene::SceneId;
 use bevy::ecs::change_detection::DetectChangesMut;
 use bevy::ecs::entity::Entity;
@@ -130,7 +130,8 @@ fn apply_entities(
     let mut made = BTreeSet::new();
     for (id, target) in &targets {
         if target.is_some() && find(world, *id).is_none() {
-            world.spawn(*id);
+            let new = world.spawn(*id).id();
+            aside::give_back(world, *id, new);
             made.insert(*id);
         }
     }
@@ -169,10 +170,7 @@ fn apply_entities(
         .filter_map(|(id, _)| find(world, *id))
         .collect();
     for entity in gone {
-        // It may have gone with its parent.
-        if let Ok(entity) = world.get_entity_mut(entity) {
-            entity.despawn();
-        }
+        aside::remove(world, entity);
     }
     targets
 }

@@ -3,6 +3,7 @@
 use super::super::edits::SceneIndex;
 use super::state::{EntityState, Kept, Kinds};
 use super::step::{Change, Step};
+use super::within::OnlyWithin;
 use super::{Changes, Removals, ResourceChanges};
 use crate::io::AnyKeptChanged;
 use crate::scene::{Environment, RenderSettings, SceneId};
@@ -28,6 +29,18 @@ impl Watch {
     }
 }
 
+/// Entities of which something kept has changed, appeared or gone since this was asked last.
+pub(super) fn changed_entities(world: &mut World) -> Vec<Entity> {
+    let mut entities = std::mem::take(&mut world.resource_mut::<Removals>().0);
+    world.resource_scope(|world, mut watch: Mut<Watch>| {
+        // It reads nothing that could be missing.
+        if let Ok(changed) = watch.0.get(world) {
+            entities.extend(&changed);
+        }
+    });
+    entities
+}
+
 #[derive(Default)]
 pub(super) struct Mirror {
     pub entities: HashMap<SceneId, EntityState>,
@@ -40,16 +53,8 @@ pub(super) struct Mirror {
 impl Mirror {
     /// Takes over what is other than it was; returns it.
     pub fn update(&mut self, world: &mut World) -> Changes {
-        let mut entities = std::mem::take(&mut world.resource_mut::<Removals>().0);
-        world.resource_scope(|world, mut watch: Mut<Watch>| {
-            // It reads nothing that could be missing.
-            if let Ok(changed) = watch.0.get(world) {
-                entities.extend(&changed);
-            }
-        });
-        if entities.is_empty() {
-            return Vec::new();
-        }
+        let mut entities = changed_entities(world);
+        entities.extend(OnlyWithin::take(world));
         self.update_these(world, &entities)
     }
 
@@ -60,7 +65,11 @@ impl Mirror {
         self.update_these(world, &all);
     }
 
-    fn update_these(&mut self, world: &mut World, entities: &[Entity]) -> Changes {
+    /// The same for these.
+    pub fn update_these(&mut self, world: &mut World, entities: &[Entity]) -> Changes {
+        if entities.is_empty() {
+            return Vec::new();
+        }
         let mut touched: BTreeSet<SceneId> = BTreeSet::new();
         world.resource_scope(|world, mut index: Mut<SceneIndex>| {
             for &entity in entities {

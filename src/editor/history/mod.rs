@@ -11,16 +11,21 @@
 //! derive it do so again.
 
 mod apply;
+mod aside;
 mod gesture;
 mod mirror;
 mod state;
 mod step;
+mod within;
 
 pub use apply::{go_to, redo, undo};
+pub(in crate::editor) use aside::remove;
 pub use gesture::Gesture;
 pub(in crate::editor) use state::Kinds;
+pub(in crate::editor) use within::{OnlyWithin, within};
 
 use super::edits::SceneIndex;
+use super::schedule;
 use super::selection::Selection;
 use crate::io::KeptComponents;
 use crate::scene::{Environment, RenderSettings, SceneId};
@@ -129,10 +134,15 @@ impl Plugin for HistoryPlugin {
             .init_resource::<Kinds>()
             .init_resource::<SceneIndex>()
             .init_resource::<Removals>()
+            .init_resource::<aside::Aside>()
             .add_observer(note_removal)
             .add_systems(Last, |world: &mut World| {
-                commit(world);
+                let started = world.resource::<History>().started;
+                if !(started && world.contains_resource::<OnlyWithin>()) {
+                    commit(world);
+                }
             });
+        schedule::add_to(app);
         SceneIndex::watch(app);
         let watch = Watch::new(app.world_mut());
         app.insert_resource(watch);
@@ -216,6 +226,7 @@ pub fn reset(world: &mut World) {
             ..History::default()
         };
         world.resource_mut::<Gesture>().take_name();
+        aside::forget(world);
         history.mirror.update(world);
         history.mirror.fill(world);
         history.mirror.update_resources(world);

@@ -6,18 +6,21 @@
 //! view, moves it.
 
 mod eye;
+mod lens;
 mod obey;
 
 pub use eye::Eye;
+pub(super) use lens::{field_of_view, set_field_of_view, widen};
 
 use super::edits::{self, AddAt};
 use super::extent::{scene_extent, world_from_entity, world_from_parent};
 use super::history::Gesture;
 use super::pointer::PointerUse;
+use super::schedule::EditorUpdate;
 use super::viewport::{EditorCamera, Viewport};
 use crate::scene::{Projection as SceneProjection, SceneCamera, SceneId};
 use crate::view::TracedView;
-use bevy::app::{App, Plugin, PostUpdate, Update};
+use bevy::app::{App, Plugin, PostUpdate};
 use bevy::camera::{
     Camera, OrthographicProjection, PerspectiveProjection, Projection, ScalingMode,
 };
@@ -55,7 +58,7 @@ impl Plugin for NavigationPlugin {
             .init_resource::<LookThrough>()
             .init_resource::<FlySpeed>()
             .add_systems(
-                Update,
+                EditorUpdate,
                 (obey::obey, fly, see_through, settle, aim_additions)
                     .chain()
                     .after(super::pointer::use_pointer),

@@ -1,9 +1,11 @@
 //! File, Edit, Add, View, Help. Entries, keys and explanations are those of the table of actions.
 
+use super::fields::angle;
 use super::says::Says;
 use super::state::{Dialog, Panels};
 use crate::editor::action::{Action, Addition, Axis, shapes};
 use crate::editor::history::History;
+use crate::editor::navigation::{field_of_view, set_field_of_view};
 use crate::editor::preferences::Preferences;
 use crate::editor::selection::Selection;
 use crate::inspect::{InspectPreset, InspectSettings};
@@ -201,7 +203,10 @@ fn view_ui(ui: &mut Ui, world: &mut World) {
         }
     });
     ui.menu_button("Look through", |ui| look_through_ui(ui, world));
+    entry_ui(ui, world, &Action::ToggleCamera);
+    entry_ui(ui, world, &Action::ToggleLock);
     entry_ui(ui, world, &Action::AddBookmark);
+    field_of_view_ui(ui, world);
     ui.separator();
     ui.menu_button("Rays and trees", |ui| lines_ui(ui, world));
     ui.separator();
@@ -256,6 +261,18 @@ pub(super) fn lines_ui(ui: &mut Ui, world: &mut World) {
             // Nothing would be seen else.
             (inspect.on, inspect.boxes.on) = (true, true);
         }
+    }
+}
+
+/// Of the camera that is looked through, else of the view.
+fn field_of_view_ui(ui: &mut Ui, world: &mut World) {
+    let Some(mut fov) = field_of_view(world) else {
+        return;
+    };
+    ui.set_min_width(230.0);
+    let says = "The angle from the picture's lower to its upper edge: the looked-through camera's, or the view's own";
+    if angle(ui, "Field of view", says, &mut fov, [1.0, 170.0], false) {
+        set_field_of_view(world, fov);
     }
 }
 

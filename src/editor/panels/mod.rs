@@ -38,6 +38,8 @@ mod tree_pair;
 #[cfg(test)]
 mod tests;
 
+use super::embed::Editing;
+use super::history::within;
 use super::preferences::{Preferences, PreferencesPlugin};
 use super::viewport::Viewport;
 use bevy::app::{App, Plugin};
@@ -57,7 +59,11 @@ pub(super) struct PanelsPlugin;
 
 impl Plugin for PanelsPlugin {
     fn build(&self, app: &mut App) {
-        app.add_plugins((EguiPlugin::default(), PreferencesPlugin))
+        // An app may have it for panels of its own.
+        if !app.is_plugin_added::<EguiPlugin>() {
+            app.add_plugins(EguiPlugin::default());
+        }
+        app.add_plugins(PreferencesPlugin)
             .init_resource::<Panels>()
             .init_resource::<Outline>()
             .add_plugins(super::trees::TreesPlugin)
@@ -66,12 +72,15 @@ impl Plugin for PanelsPlugin {
 }
 
 fn draw(world: &mut World) {
+    if world.get_resource::<Editing>().is_some_and(|on| !on.0) {
+        return;
+    }
     let mut contexts = world.query_filtered::<&mut EguiContext, With<PrimaryEguiContext>>();
     let Ok(mut context) = contexts.single_mut(world) else {
         return;
     };
     let context = context.get_mut().clone();
-    panels_ui(&context, world);
+    within(world, |world| panels_ui(&context, world));
 }
 
 /// All of it, within a pass of egui.

@@ -72,12 +72,12 @@ pub(super) fn status_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
         let numbers = panels.numbers.of(traced);
         figure(
             ui,
-            &format!("{} triangles", grouped(numbers.triangles)),
+            &counted(numbers.triangles, "triangle"),
             "Triangles of all objects; a mesh that two objects share counts twice",
         );
         figure(
             ui,
-            &format!("{} lights", numbers.lights),
+            &counted(numbers.lights as u64, "light"),
             "Lights that are traced: hidden ones are not",
         );
         if let Some(bytes) = panels.memory.bytes() {
@@ -216,6 +216,12 @@ pub(super) fn percent(part: f64) -> String {
         p if p >= 1.0 => format!("{p:.1} %"),
         p => format!("{p:.2} %"),
     }
+}
+
+/// `1 light`, `12 345 triangles`.
+fn counted(number: u64, what: &str) -> String {
+    let s = if number == 1 { "" } else { "s" };
+    format!("{} {what}{s}", grouped(number))
 }
 
 /// With a narrow space between thousands.

@@ -1,6 +1,7 @@
 //! Below the menu: handles, what the view shows, and how the traced picture is developed.
 
 use super::compare::keep_ui;
+use super::fields::{Number, angle};
 use super::menu_bar::lines_ui;
 use super::says::Says;
 use super::state::Panels;
@@ -13,7 +14,7 @@ use crate::scene::RenderSettings;
 use crate::view::TracedView;
 use bevy::ecs::query::With;
 use bevy::ecs::world::World;
-use bevy_egui::egui::{Button, ComboBox, DragValue, Ui};
+use bevy_egui::egui::{Button, ComboBox, DragValue, Popup, PopupCloseBehavior, Response, Ui};
 
 pub(super) fn toolbar_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     ui.horizontal(|ui| {
@@ -38,17 +39,23 @@ pub(super) fn toolbar_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
 }
 
 /// A button for an action of the table, pressed in where it is what holds.
-fn action_ui(ui: &mut Ui, world: &mut World, action: &Action, name: &str, on: bool) {
-    let Some(entry) = action.entry() else {
-        return;
-    };
+fn action_ui(
+    ui: &mut Ui,
+    world: &mut World,
+    action: &Action,
+    name: &str,
+    on: bool,
+) -> Option<Response> {
+    let entry = action.entry()?;
     let says = match entry.keys.first() {
         Some(keys) => format!("{} ({})", entry.says, keys.text()),
         None => entry.says.to_owned(),
     };
-    if ui.add(Button::selectable(on, name)).says(&says).clicked() {
+    let response = ui.add(Button::selectable(on, name)).says(&says);
+    if response.clicked() {
         world.write_message(action.clone());
     }
+    Some(response)
 }
 
 fn tools_ui(ui: &mut Ui, world: &mut World) {
@@ -60,7 +67,37 @@ fn tools_ui(ui: &mut Ui, world: &mut World) {
         (Action::ToggleLocal, "Local", tools.local),
         (Action::ToggleSnap, "Snap", tools.snap),
     ] {
-        action_ui(ui, world, &action, name, on);
+        let response = action_ui(ui, world, &action, name, on);
+        if let (Action::ToggleSnap, Some(response)) = (&action, response) {
+            Popup::context_menu(&response)
+                .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
+                .show(|ui| steps_ui(ui, world));
+        }
+    }
+}
+
+/// How large the steps of snapping are.
+fn steps_ui(ui: &mut Ui, world: &mut World) {
+    let Some(mut tools) = world.get_resource::<Tools>().cloned() else {
+        return;
+    };
+    let before = tools.clone();
+    ui.set_width(250.0);
+    ui.label("Steps of snapping");
+    let says = "How far one step moves";
+    Number::positive(0.01, "m").within(1e-4, 1e4).row(
+        ui,
+        "Move",
+        says,
+        &mut tools.move_step,
+        false,
+    );
+    let says = "How far one step turns";
+    angle(ui, "Turn", says, &mut tools.turn_step, [1.0, 90.0], false);
+    let says = "By how much of its size one step scales";
+    Number::slider(0.01, 1.0, "×").row(ui, "Scale", says, &mut tools.scale_step, false);
+    if tools != before {
+        *world.resource_mut::<Tools>() = tools;
     }
 }
 

@@ -1,12 +1,10 @@
 //! Pictures of the window.
 
 use crate::io::replace_file;
-use bevy::ecs::observer::On;
+use crate::view::shoot_window;
 use bevy::ecs::resource::Resource;
-use bevy::ecs::system::ResMut;
 use bevy::ecs::world::World;
 use bevy::image::Image;
-use bevy::render::view::window::screenshot::{Screenshot, ScreenshotCaptured};
 use std::path::{Path, PathBuf};
 
 /// What became of the picture that was asked for last.
@@ -23,11 +21,9 @@ impl Shot {
 /// Writes what the window shows with the next frame.
 pub(super) fn shoot(world: &mut World, path: PathBuf) {
     world.resource_mut::<Shot>().0 = None;
-    world.spawn(Screenshot::primary_window()).observe(
-        move |captured: On<ScreenshotCaptured>, mut shot: ResMut<Shot>| {
-            shot.0 = Some(write(&captured.image, &path));
-        },
-    );
+    shoot_window(world, move |shot: &mut Shot, image| {
+        shot.0 = Some(write(image, &path));
+    });
 }
 
 fn write(image: &Image, path: &Path) -> Result<(), String> {

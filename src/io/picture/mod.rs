@@ -2,9 +2,11 @@
 //! linear light in floating point. The extension decides.
 
 mod read;
+mod rendered;
 mod write;
 
 pub(crate) use read::{PictureUse, decode_picture, read_picture};
+pub use rendered::{Note, picture_notes, write_rendered};
 pub(crate) use write::encode_png;
 pub use write::{write_picture, write_picture_with_notes};
 

@@ -17,6 +17,7 @@ const MOUSE: &[(&str, &str)] = &[
     ),
     ("Shift+middle drag", "Moves the view sideways"),
     ("Wheel", "Moves towards what is under the pointer, or away"),
+    ("Ctrl+wheel", "Changes the field of view"),
     ("Right button held", "Looks around; W A S D Q E fly"),
     (
         "C held",

@@ -58,8 +58,8 @@ pub(super) fn error_plot_ui(ui: &mut Ui, status: Option<&Status>, curve: &mut Er
         .show_axes([true, true])
         .x_grid_spacer(decades)
         .y_grid_spacer(decades)
-        .x_axis_formatter(|mark, _: &RangeInclusive<f64>| power(mark.value, "s"))
-        .y_axis_formatter(|mark, _: &RangeInclusive<f64>| power(mark.value + 2.0, "%"))
+        .x_axis_formatter(|mark, shown| within(mark.value, shown, power(mark.value, "s")))
+        .y_axis_formatter(|mark, shown| within(mark.value, shown, power(mark.value + 2.0, "%")))
         .label_formatter(|_, at| {
             let error = percent(10_f64.powf(at.y));
             format!("{:.3} s\n{error}", 10_f64.powf(at.x))
@@ -121,6 +121,18 @@ fn decades(input: GridInput) -> Vec<GridMark> {
     marks
 }
 
+/// A label, where it does not stick out of the plot: the axis draws those of all grid lines.
+fn within(value: f64, shown: &RangeInclusive<f64>, label: String) -> String {
+    // Half a line of text, as a part of the plot's height.
+    let margin = 0.05 * (shown.end() - shown.start());
+    let inside = shown.start() + margin..=shown.end() - margin;
+    if inside.contains(&value) {
+        label
+    } else {
+        String::new()
+    }
+}
+
 /// `0.1 s` from -1.
 fn power(exponent: f64, unit: &str) -> String {
     let value = 10_f64.powf(exponent);
@@ -150,6 +162,14 @@ mod tests {
         let found = places(&trend);
         assert_eq!(found.len(), 1);
         assert!((found[0][0] - 1.0).abs() < 1e-12 && (found[0][1] + 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_label_that_would_stick_out_of_the_plot_is_left_out() {
+        for (value, shown) in [(-1.0, true), (0.0, false), (-1.99, false), (1.0, false)] {
+            let label = within(value, &(-2.0..=0.0), "x".into());
+            assert_eq!(!label.is_empty(), shown, "{value}");
+        }
     }
 
     #[test]

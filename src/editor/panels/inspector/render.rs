@@ -69,6 +69,15 @@ const GROUPS: &[Group] = &[
     ),
 ];
 
+/// Sizes of pictures.
+const SIZES: [(&str, UVec2); 5] = [
+    ("Square", UVec2::new(800, 800)),
+    ("HD", UVec2::new(1280, 720)),
+    ("Full HD", UVec2::new(1920, 1080)),
+    ("Square, large", UVec2::new(2048, 2048)),
+    ("4K", UVec2::new(3840, 2160)),
+];
+
 pub(super) fn render_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     environment_ui(ui, world, panels);
     let before = world.resource::<RenderSettings>().clone();
@@ -197,18 +206,18 @@ fn size_ui(ui: &mut Ui, label: &str, says: &str, value: &mut UVec2, side: u32, p
         if changed && count <= pixels {
             *value = entered;
         }
-        for (name, size) in [
-            ("HD", UVec2::new(1280, 720)),
-            ("Full HD", UVec2::new(1920, 1080)),
-        ] {
-            if ui
-                .small_button(name)
-                .says(&format!("{}×{}", size.x, size.y))
-                .clicked()
-            {
-                *value = size;
+        let says = "Sizes that are often wanted";
+        ui.menu_button("…", |ui| {
+            for (name, size) in SIZES {
+                let text = format!("{name}: {} × {}", size.x, size.y);
+                if ui.button(text).clicked() {
+                    *value = size;
+                    ui.close();
+                }
             }
-        }
+        })
+        .response
+        .says(says);
     });
 }
 

@@ -1,26 +1,47 @@
-//! Bevy draws its gizmo with a camera of its own; this makes it see as the editor's does.
+//! Bevy draws its transform gizmo with a camera of its own; this makes it see as that one does whose
+//! gizmo it is.
 
-use super::super::viewport::EditorCamera;
 use crate::scene::NotTraced;
+use bevy::app::{App, Plugin, PostStartup, PostUpdate};
 use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{Camera, ClearColorConfig, Projection};
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::query::{With, Without};
 use bevy::ecs::system::{Commands, Query, Single};
-use bevy::gizmos::transform_gizmo::{TransformGizmoFocus, TransformGizmoMeshMarker};
+use bevy::gizmos::transform_gizmo::{
+    TransformGizmoCamera, TransformGizmoFocus, TransformGizmoMeshMarker, TransformGizmoPlugin,
+};
+use bevy::prelude::IntoScheduleConfigs;
 use bevy::render::view::Msaa;
+
+/// Bevy's transform gizmo over a camera with a [`TracedView`](super::TracedView) that has a
+/// `TransformGizmoCamera`. Its parts are no objects of the scene.
+pub struct HandleCameraPlugin;
+
+impl Plugin for HandleCameraPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_plugins(TransformGizmoPlugin)
+            .add_systems(PostStartup, leave_untraced)
+            .add_systems(
+                PostUpdate,
+                fit_camera.before(bevy::camera::CameraUpdateSystems),
+            );
+    }
+}
 
 /// The layer that Bevy puts its gizmo in (`GIZMO_RENDER_LAYER` of `bevy_gizmos_render` 0.19).
 const LAYER: usize = 15;
 
-type Overlay = (Without<EditorCamera>, With<Camera>);
+type Overlay = (Without<TransformGizmoCamera>, With<Camera>);
+
+/// Whether a camera in these layers is the one that Bevy draws its gizmo with.
+pub fn draws_handles(layers: Option<&RenderLayers>) -> bool {
+    layers == Some(&RenderLayers::layer(LAYER))
+}
 
 /// Its arrows have meshes and are no objects.
-pub(super) fn leave_untraced(
-    mut commands: Commands,
-    parts: Query<Entity, With<TransformGizmoMeshMarker>>,
-) {
+fn leave_untraced(mut commands: Commands, parts: Query<Entity, With<TransformGizmoMeshMarker>>) {
     for part in &parts {
         commands.entity(part).insert(NotTraced);
     }
@@ -28,9 +49,9 @@ pub(super) fn leave_untraced(
 
 /// The same projection, and the same kind of target, so that the two draw into one picture. It rests
 /// while there is no gizmo: a camera costs time even where it draws nothing.
-pub(super) fn fit_overlay(
+fn fit_camera(
     mut commands: Commands,
-    editor: Single<(&Camera, &Projection), With<EditorCamera>>,
+    eye: Single<(&Camera, &Projection), With<TransformGizmoCamera>>,
     mut overlays: Query<
         (
             Entity,
@@ -43,9 +64,9 @@ pub(super) fn fit_overlay(
     >,
     focus: Query<(), With<TransformGizmoFocus>>,
 ) {
-    let (editor, seen) = editor.into_inner();
+    let (eye, seen) = eye.into_inner();
     for (entity, mut camera, mut projection, layers, tonemapping) in &mut overlays {
-        if *layers != RenderLayers::layer(LAYER) {
+        if !draws_handles(Some(layers)) {
             continue;
         }
         if tonemapping != Some(&Tonemapping::None) {
@@ -54,7 +75,7 @@ pub(super) fn fit_overlay(
                 .insert((Msaa::Off, Tonemapping::None));
             camera.clear_color = ClearColorConfig::None;
         }
-        let active = editor.is_active && !focus.is_empty();
+        let active = eye.is_active && !focus.is_empty();
         if camera.is_active != active {
             camera.is_active = active;
         }

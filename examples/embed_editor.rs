@@ -1,0 +1,144 @@
+//! The editor over a Bevy app's own scene: Bevy's materials and lights, systems that move things,
+//! and components that Glassbox has never heard of. Add `EditorPlugins`, and nothing else.
+//!
+//! `cargo run --release --example embed_editor`; F10 switches between the editor and the app.
+
+use bevy::asset::RenderAssetUsages;
+use bevy::image::{ImageAddressMode, ImageSampler, ImageSamplerDescriptor};
+use bevy::prelude::*;
+use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat};
+use glassbox::editor::{Editing, EditorPlugins};
+
+fn main() {
+    App::new()
+        .add_plugins(DefaultPlugins.set(WindowPlugin {
+            // The editor asks before unsaved changes are lost.
+            close_when_requested: false,
+            ..default()
+        }))
+        .add_plugins(EditorPlugins)
+        .add_systems(Startup, spawn_scene)
+        .add_systems(Update, (switch, turn, bob))
+        .run();
+}
+
+/// The app's own: undo of a deletion brings it back as well.
+#[derive(Component)]
+struct Turning {
+    /// Radians a second.
+    speed: f32,
+}
+
+#[derive(Component)]
+struct Bobbing;
+
+fn spawn_scene(
+    mut commands: Commands,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut materials: ResMut<Assets<StandardMaterial>>,
+    mut images: ResMut<Assets<Image>>,
+) {
+    commands.spawn((
+        Name::new("Ground"),
+        Mesh3d(meshes.add(Plane3d::default().mesh().size(8.0, 8.0))),
+        MeshMaterial3d(materials.add(StandardMaterial {
+            base_color_texture: Some(images.add(checkers())),
+            perceptual_roughness: 1.0,
+            reflectance: 0.0,
+            ..default()
+        })),
+    ));
+    commands.spawn((
+        Name::new("Box"),
+        Turning { speed: 0.8 },
+        Mesh3d(meshes.add(Cuboid::default())),
+        MeshMaterial3d(materials.add(Color::srgb(0.9, 0.35, 0.1))),
+        Transform::from_xyz(-1.2, 0.5, 0.0),
+    ));
+    commands.spawn((
+        Name::new("Ball"),
+        Mesh3d(meshes.add(Sphere::new(0.7))),
+        MeshMaterial3d(materials.add(StandardMaterial {
+            base_color: Color::srgb(0.9, 0.9, 0.95),
+            metallic: 1.0,
+            perceptual_roughness: 0.1,
+            ..default()
+        })),
+        Transform::from_xyz(0.8, 0.7, 0.2),
+    ));
+    commands.spawn((
+        Name::new("Lamp"),
+        Bobbing,
+        PointLight {
+            intensity: 800_000.0,
+            ..default()
+        },
+        Transform::from_xyz(3.0, 4.0, 3.0),
+    ));
+    commands.spawn((
+        Name::new("Eye"),
+        Camera3d::default(),
+        Transform::from_xyz(0.0, 3.0, 6.0).looking_at(Vec3::Y * 0.5, Vec3::Y),
+    ));
+}
+
+/// Light and dark squares, each a pixel.
+fn checkers() -> Image {
+    let pixels: Vec<u8> = (0..64)
+        .flat_map(|i| {
+            let light = (i / 8 + i % 8) % 2 == 0;
+            let [r, g, b] = if light {
+                [190, 195, 200]
+            } else {
+                [90, 100, 115]
+            };
+            [r, g, b, 255]
+        })
+        .collect();
+    let size = Extent3d {
+        width: 8,
+        height: 8,
+        depth_or_array_layers: 1,
+    };
+    // The tracer reads it too: not only the renderer's world.
+    let mut image = Image::new(
+        size,
+        TextureDimension::D2,
+        pixels,
+        TextureFormat::Rgba8UnormSrgb,
+        RenderAssetUsages::default(),
+    );
+    image.sampler = ImageSampler::Descriptor(ImageSamplerDescriptor {
+        address_mode_u: ImageAddressMode::Repeat,
+        address_mode_v: ImageAddressMode::Repeat,
+        ..ImageSamplerDescriptor::nearest()
+    });
+    image
+}
+
+fn switch(keys: Res<ButtonInput<KeyCode>>, mut editing: ResMut<Editing>) {
+    if keys.just_pressed(KeyCode::F10) {
+        editing.0 = !editing.0;
+    }
+}
+
+/// Goes on only while the editor is off.
+fn turn(time: Res<Time>, editing: Res<Editing>, mut things: Query<(&Turning, &mut Transform)>) {
+    if editing.0 {
+        return;
+    }
+    for (turning, mut place) in &mut things {
+        place.rotate_y(turning.speed * time.delta_secs());
+    }
+}
+
+/// Goes on beneath the editor as well: what an app does is no step that undo would take back.
+fn bob(time: Res<Time>, mut things: Query<&mut Transform, With<Bobbing>>) {
+    // Two seconds of moving, six of standing still.
+    let seconds = time.elapsed_secs() % 8.0;
+    if seconds < 2.0 {
+        for mut place in &mut things {
+            place.translation.y = 4.0 + 0.5 * (seconds * std::f32::consts::PI).sin();
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! The two cameras that draw into the window: one for the scene, one for the panels.
+
+use super::embed::Editing;
+use super::viewport::{EditorCamera, Viewport};
+use crate::scene::NotTraced;
+use crate::view::{RASTER_LAYER, TracedView, interface_camera, picture_camera};
+use bevy::app::{App, Plugin, PostUpdate, PreStartup};
+use bevy::camera::Camera;
+use bevy::camera::visibility::RenderLayers;
+use bevy::ecs::change_detection::DetectChangesMut;
+use bevy::ecs::query::{With, Without};
+use bevy::ecs::system::{Commands, Res, Single};
+use bevy::gizmos::transform_gizmo::TransformGizmoCamera;
+use bevy::math::{UVec2, Vec2};
+use bevy::prelude::IntoScheduleConfigs;
+use bevy::transform::TransformSystems;
+use bevy::window::{PrimaryWindow, Window};
+use bevy_egui::{EguiGlobalSettings, EguiStartupSet, PrimaryEguiContext};
+
+/// Spawns them, and keeps the scene's where the panels leave room.
+pub(super) struct CamerasPlugin;
+
+impl Plugin for CamerasPlugin {
+    fn build(&self, app: &mut App) {
+        app.insert_resource(EguiGlobalSettings {
+            auto_create_primary_context: false,
+            ..EguiGlobalSettings::default()
+        })
+        .add_systems(
+            PreStartup,
+            spawn_cameras.before(EguiStartupSet::InitContexts),
+        )
+        .add_systems(PostUpdate, fit_viewport.before(TransformSystems::Propagate));
+    }
+}
+
+fn spawn_cameras(mut commands: Commands) {
+    commands.spawn((
+        EditorCamera,
+        NotTraced,
+        TransformGizmoCamera,
+        picture_camera(),
+    ));
+    commands.spawn((PrimaryEguiContext, NotTraced, interface_camera()));
+}
+
+/// A place of the window in its pixels.
+fn pixels(place: Vec2, scale: f32) -> UVec2 {
+    (place * scale).round().max(Vec2::ZERO).as_uvec2()
+}
+
+/// The scene's camera draws into the part of the window that the panels leave free.
+fn fit_viewport(
+    viewport: Res<Viewport>,
+    editing: Option<Res<Editing>>,
+    window: Single<&Window, With<PrimaryWindow>>,
+    camera: Single<(&mut Camera, &mut TracedView, &mut RenderLayers), With<EditorCamera>>,
+    panels: Single<&mut Camera, (With<PrimaryEguiContext>, Without<EditorCamera>)>,
+) {
+    let editing = editing.is_none_or(|editing| editing.0);
+    let mut panels = panels.into_inner();
+    if panels.is_active != editing {
+        panels.is_active = editing;
+    }
+    let (mut camera, mut view, mut layers) = camera.into_inner();
+    let scale = window.scale_factor();
+    let min = pixels(viewport.rect.min, scale);
+    let max = pixels(viewport.rect.max, scale).min(window.physical_size());
+    let is_empty = min.x >= max.x || min.y >= max.y;
+    let wanted = (!is_empty).then(|| bevy::camera::Viewport {
+        physical_position: min,
+        physical_size: max - min,
+        depth: 0.0..1.0,
+    });
+    let same = match (&camera.viewport, &wanted) {
+        (Some(a), Some(b)) => {
+            a.physical_position == b.physical_position && a.physical_size == b.physical_size
+        }
+        (None, None) => true,
+        _ => false,
+    };
+    if !same {
+        camera.viewport = wanted;
+    }
+    let is_active = editing && !is_empty;
+    if camera.is_active != is_active {
+        camera.is_active = is_active;
+    }
+    // Nothing is traced for a view that nobody sees.
+    let divider = if editing { viewport.traced_from() } else { 1.0 };
+    if view.divider != divider {
+        view.divider = divider;
+    }
+    // What the traced picture covers is not drawn beneath it.
+    let wanted = if divider > 0.0 {
+        RenderLayers::from_layers(&[0, RASTER_LAYER])
+    } else {
+        RenderLayers::layer(0)
+    };
+    layers.set_if_neq(wanted);
+}

@@ -1,0 +1,96 @@
+//! The plugins that make up the editor: in its own window, and over an app's own scene.
+
+use super::action::Action;
+use super::cameras::CamerasPlugin;
+use super::document::DocumentPlugin;
+use super::edits::EditsPlugin;
+use super::embed::EmbedPlugin;
+use super::handles::HandlesPlugin;
+use super::history::HistoryPlugin;
+use super::inspection::InspectionPlugin;
+use super::keys::KeysPlugin;
+use super::navigation::NavigationPlugin;
+use super::notice::Notices;
+use super::panels::PanelsPlugin;
+use super::pointer::PointerPlugin;
+use super::render_job::RenderJobPlugin;
+use super::selection::Selection;
+use super::viewport::Viewport;
+use crate::view::{GlassboxPlugins, RasterPlugin, SymbolsPlugin};
+use bevy::app::{App, Plugin, PluginGroup, PluginGroupBuilder};
+
+/// The editor over the scene of an app of its own, in the app's window.
+///
+/// ```no_run
+/// # use bevy::prelude::*;
+/// App::new()
+///     .add_plugins((DefaultPlugins, glassbox::editor::EditorPlugins))
+///     .run();
+/// ```
+///
+/// **Expects** `DefaultPlugins` with a primary window. It contains
+/// [`GlassboxPlugins`](crate::view::GlassboxPlugins): add one of the two. An app with egui panels of
+/// its own adds its `EguiPlugin` before, and a camera with a `PrimaryEguiContext` is the editor's.
+///
+/// **Adds** the tracer, the panels, a camera that looks at the scene, undo, and files. The scene is
+/// what the app has spawned: every mesh with its `StandardMaterial`, every light and every 3-D
+/// camera of the window, by the table of
+/// [`StandardMappingPlugin`](crate::view::StandardMappingPlugin); entities with
+/// [`NotTraced`](crate::scene::NotTraced) are left out. The view begins where the app's first camera
+/// stands.
+///
+/// **While it is on** ([`Editing`], which the app may switch) the app's cameras of that window rest.
+/// The app's systems go on; those that shall not are given the run condition `not(editing)`
+/// ([`editing`]). What they do to the scene is shown and is no step: undo takes back only what was
+/// done in the editor. A deleted entity that undo brings back is another `Entity` with the same
+/// components; children that are no part of the scene are lost.
+///
+/// **Does not touch** the app's assets, its window's title, how often it draws, or its files. An
+/// edit of a place, a name, a visibility or a camera's field of view is one of the app's own
+/// components; an edit of a material or a light reaches the traced picture alone, until the app
+/// changes its own. New and Open do remove the scene's entities, those of the app too. Saving keeps
+/// what Glassbox knows: meshes that the app made itself are named as left out. For a question before
+/// unsaved changes are lost set `WindowPlugin::close_when_requested` to false.
+pub struct EditorPlugins;
+
+impl PluginGroup for EditorPlugins {
+    fn build(self) -> PluginGroupBuilder {
+        parts(DocumentPlugin {
+            keeps_title: true,
+            ..DocumentPlugin::default()
+        })
+        .add(EmbedPlugin)
+    }
+}
+
+/// What the editor consists of wherever it runs.
+pub(super) fn parts(document: DocumentPlugin) -> PluginGroupBuilder {
+    PluginGroupBuilder::start::<EditorPlugins>()
+        .add_group(GlassboxPlugins)
+        .add(RasterPlugin)
+        .add(SymbolsPlugin)
+        .add(StatePlugin)
+        .add(HistoryPlugin)
+        .add(EditsPlugin)
+        .add(document)
+        .add(RenderJobPlugin)
+        .add(PanelsPlugin)
+        .add(CamerasPlugin)
+        .add(NavigationPlugin)
+        .add(PointerPlugin)
+        .add(KeysPlugin)
+        .add(HandlesPlugin)
+        .add(InspectionPlugin)
+}
+
+/// What several of the plugins read and write.
+struct StatePlugin;
+
+impl Plugin for StatePlugin {
+    fn build(&self, app: &mut App) {
+        app.add_message::<Action>()
+            .init_resource::<Selection>()
+            .init_resource::<Viewport>()
+            .init_resource::<Notices>();
+    }
+}

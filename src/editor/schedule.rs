@@ -1,0 +1,29 @@
+//! When the editor works: once a frame, after the systems of `Update` and before what is derived
+//! from the scene. An app's own systems run before or after all of it, never in between.
+
+use super::embed::Editing;
+use super::history::within;
+use bevy::app::{App, MainScheduleOrder, Update};
+use bevy::ecs::schedule::ScheduleLabel;
+use bevy::ecs::world::World;
+
+/// Everything that answers to a hand: keys, pointer, actions, files.
+#[derive(ScheduleLabel, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct EditorUpdate;
+
+/// Runs [`EditorUpdate`].
+#[derive(ScheduleLabel, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct RunEditor;
+
+pub(super) fn add_to(app: &mut App) {
+    app.init_schedule(EditorUpdate).add_systems(RunEditor, run);
+    app.world_mut()
+        .resource_mut::<MainScheduleOrder>()
+        .insert_after(Update, RunEditor);
+}
+
+fn run(world: &mut World) {
+    if world.get_resource::<Editing>().is_none_or(|on| on.0) {
+        within(world, |world| world.run_schedule(EditorUpdate));
+    }
+}

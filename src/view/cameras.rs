@@ -1,0 +1,37 @@
+//! The cameras of a window that shows a traced picture with an interface around it. The camera of
+//! [handles](super::HandleCameraPlugin) is between the two.
+
+use super::{RASTER_LAYER, TracedView, raster};
+use bevy::camera::visibility::RenderLayers;
+use bevy::camera::{Camera, Camera2d, ClearColorConfig, PerspectiveProjection, Projection};
+use bevy::ecs::bundle::Bundle;
+use bevy::render::view::Msaa;
+
+/// The layer that holds an interface.
+const INTERFACE_LAYER: usize = 30;
+
+/// Shows the scene traced, and as Bevy's renderer shows it.
+pub fn picture_camera() -> impl Bundle {
+    (
+        TracedView::default(),
+        Msaa::Off,
+        raster::exposure(),
+        raster::ambient(),
+        RenderLayers::from_layers(&[0, RASTER_LAYER]),
+        Projection::Perspective(PerspectiveProjection::default()),
+    )
+}
+
+/// Shows an interface over the whole window, and leaves what is beneath.
+pub fn interface_camera() -> impl Bundle {
+    (
+        Camera2d,
+        Msaa::Off,
+        RenderLayers::layer(INTERFACE_LAYER),
+        Camera {
+            order: 2,
+            clear_color: ClearColorConfig::None,
+            ..Camera::default()
+        },
+    )
+}
