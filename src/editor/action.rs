@@ -69,6 +69,14 @@ pub enum Action {
     ToggleSnap,
     // Help
     ToggleHelp,
+    // Rays
+    /// Shows or hides the ray inspector.
+    ToggleRays,
+    /// A pixel of the traced view, column and row from its top left.
+    ShootPixel(u32, u32),
+    StepForward,
+    StepBack,
+    PlaySteps,
 }
 
 /// What can be added.
@@ -200,13 +208,17 @@ actions! {
     ShowSplit "Split view" [key(KeyCode::Digit3)] "Raster on the left, traced on the right; drag the line between"
     TogglePause "Pause or go on" [key(KeyCode::KeyP)] "The traced view stands still, and keeps what it has"
     Restart "Restart" [ctrl(KeyCode::KeyR)] "Renders the traced view from its first sample again"
-    ShootRay "Debug ray" [key(KeyCode::KeyR)] "Traces the pixel under the pointer again and draws its rays; beside the picture it takes them away"
+    ShootRay "Debug ray" [key(KeyCode::KeyR)] "Traces the pixel under the pointer again and draws its rays, as a click with Alt does; beside the picture it takes them away"
     Move "Move" [key(KeyCode::KeyW)] "Drag the arrows to move the selection"
     Turn "Turn" [key(KeyCode::KeyE)] "Drag the rings to turn the selection"
     Scale "Scale" [key(KeyCode::KeyT)] "Drag the cubes to scale the selection"
     ToggleLocal "World or local axes" [key(KeyCode::KeyL)] "Whether handles follow the world's axes or the object's own"
     ToggleSnap "Snap" [key(KeyCode::KeyN)] "Handles move in steps"
     ToggleHelp "Keys and mouse" [key(KeyCode::F1), shift(KeyCode::Slash)] "Shows every key"
+    ToggleRays "Ray inspector" [shift(KeyCode::KeyR)] "The debug ray's rays as a tree with all their numbers, below the picture"
+    StepForward "Next step" [key(KeyCode::Period)] "One step of the chosen ray's way through the trees on"
+    StepBack "Step before" [key(KeyCode::Comma)] "One step of the chosen ray's way through the trees back"
+    PlaySteps "Play steps" [key(KeyCode::Space)] "Plays the chosen ray's way through the trees, or stops"
 }
 
 impl Action {

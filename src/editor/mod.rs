@@ -16,7 +16,7 @@
 //! | [`viewport`] | the part of the window that shows the scene, and how |
 //! | `window` | the app: plugins, window, cameras |
 //! | `panels` | everything that egui draws |
-//! | `inspection` | what the tracer did, drawn over the scene; the debug ray |
+//! | `inspection` | what the tracer did, drawn over the scene and in numbers; the debug ray, step by step |
 //! | [`navigation`] | moving the view |
 //! | [`handles`] | arrows, rings and points that are dragged |
 //! | `pointer`, `keys`, `pick` | what a press means, what a key means, what is under the pointer |

@@ -12,6 +12,8 @@
 //! | [`inspector`] | the tabs Object, Render, Debug and BVH |
 //! | [`status`] | the line below |
 //! | [`overlays`], [`compare`] | divider, legend, region, messages, a kept picture over the picture |
+//! | [`rays`] | the ray inspector, below the picture or over it |
+//! | [`told`], [`readout`] | what is under the pointer: a line of the gizmos, a pixel |
 //! | [`dialogs`] | what is in front of everything |
 
 mod compare;
@@ -23,11 +25,14 @@ mod inspector;
 mod menu_bar;
 mod outline;
 mod overlays;
+mod rays;
+mod readout;
 mod says;
 mod several;
 mod state;
 mod status;
 mod theme;
+mod told;
 mod toolbar;
 
 #[cfg(test)]
@@ -85,6 +90,9 @@ fn panels_ui(context: &egui::Context, world: &mut World) {
         let free = around_ui(&mut ui, world, panels, &preferences);
         compare::compare_ui(&mut ui, free, world, panels);
         let over_overlay = overlays::overlays_ui(&mut ui, free, world, panels);
+        readout::readout_ui(&ui, free, world, panels);
+        told::told_ui(context, free, world, panels);
+        rays::window_ui(context, free, world, panels);
         dialogs::dialogs_ui(context, world, panels);
         gesture::note_gesture(context, world, panels);
         note_viewport(context, free, over_overlay, world);
@@ -109,6 +117,8 @@ fn around_ui(
     egui::Panel::bottom("status")
         .frame(bar(egui::Margin::symmetric(8, 3)))
         .show_inside(ui, |ui| status::status_ui(ui, world, panels));
+
+    rays::panel_ui(ui, world, panels);
 
     // Narrow windows: the panels give way before the picture does.
     let for_panels = (ui.available_width() - LEAST_PICTURE).max(0.0);

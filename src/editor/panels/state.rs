@@ -3,7 +3,9 @@
 use super::compare::Kept;
 use super::dialogs::{Gallery, RenderForm};
 use super::inspector::{ErrorCurve, Thumbnails, Trees, Turns};
+use super::rays::RaysPanel;
 use super::status::{Memory, Numbers};
+use super::told::Tales;
 use crate::editor::action::Action;
 use crate::scene::SceneId;
 use crate::trace::{Camera, FirstHit};
@@ -84,6 +86,8 @@ pub(super) struct Panels {
     pub trees: Trees,
     pub numbers: Numbers,
     pub memory: Memory,
+    pub rays: RaysPanel,
+    pub tales: Tales,
     /// What the pixel under the pointer shows, and of which world, pixel and camera that is.
     pub under_pointer: Option<(PixelOf, FirstHit)>,
 }

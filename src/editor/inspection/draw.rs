@@ -1,156 +1,60 @@
-//! What the tracer did, drawn over the scene: the lines of the room `inspect`, and the debug ray.
+//! The lines of the room `inspect` over the scene.
 //!
 //! Each system's lines are one set of retained gizmos. They are made again when the system's own
 //! key says that they may be others, so what stands costs nothing.
 
-use super::action::Action;
-use super::notice::Notices;
-use super::viewport::{EditorCamera, Viewport};
+use super::debug_ray::DebugRay;
+use crate::editor::viewport::EditorCamera;
 use crate::inspect::{InspectSettings, LineSet, Subject, System};
 use crate::scene::RenderSettings;
-use crate::sync::{SyncSystems, Traced, TracedCameras};
-use crate::trace::{self, Camera, RayTree, Samples, World, probe};
+use crate::sync::{Traced, TracedCameras};
+use crate::trace::{self, RayTree, World};
 use crate::view::{DrawnLines, Line, TracedRender};
-use bevy::app::{App, Plugin, PostUpdate, Update};
 use bevy::color::LinearRgba;
 use bevy::ecs::entity::Entity;
-use bevy::ecs::message::MessageReader;
 use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
-use bevy::ecs::system::{Commands, Local, Query, Res, ResMut, Single};
-use bevy::math::{UVec2, Vec3};
-use bevy::prelude::{DetectChanges, IntoScheduleConfigs};
-use bevy::window::{PrimaryWindow, Window};
+use bevy::ecs::system::{Commands, Query, Res, ResMut, Single};
+use bevy::math::Vec3;
 use std::sync::Arc;
-
-/// Draws them, and shoots the debug ray.
-pub(super) struct InspectionPlugin;
-
-impl Plugin for InspectionPlugin {
-    fn build(&self, app: &mut App) {
-        app.init_resource::<InspectSettings>()
-            .init_resource::<DebugRay>()
-            .add_systems(Update, shoot)
-            .add_systems(
-                PostUpdate,
-                (trace_again, draw_inspection).chain().after(SyncSystems),
-            );
-    }
-}
 
 /// Logical pixels.
 const WIDTH: f32 = 1.2;
 /// Half the arm of the cross that a point is drawn as, as a part of its distance from the viewer.
 const CROSS: f32 = 0.004;
 
-/// The rays of the pixel that was picked. They stay when the view moves, and are traced again when
-/// the scene changes.
+/// What is drawn now.
 #[derive(Resource, Default)]
-pub(super) struct DebugRay {
-    shot: Option<Shot>,
-    rays: Option<RayTree>,
+pub(in crate::editor) struct Drawings {
+    sets: [Option<Drawn>; System::ALL.len()],
+    version: u64,
 }
 
-/// A pixel of a picture: all that is needed to trace it again.
-struct Shot {
-    pixel: UVec2,
-    camera: Camera,
-    settings: RenderSettings,
-    /// Of which world `rays` are.
-    world: Option<Arc<World>>,
-}
-
-impl DebugRay {
-    /// The rays, where a pixel was picked.
-    pub fn rays(&self) -> Option<&RayTree> {
-        self.rays.as_ref()
+impl Drawings {
+    /// The sets that are drawn, in their order.
+    pub fn sets(&self) -> impl Iterator<Item = &LineSet> {
+        self.sets.iter().flatten().map(|drawn| &drawn.set)
     }
-}
 
-/// R: the pixel under the pointer. Over nothing it takes the rays away.
-fn shoot(
-    mut actions: MessageReader<Action>,
-    window: Single<&Window, With<PrimaryWindow>>,
-    viewport: Res<Viewport>,
-    render: Single<&TracedRender, With<EditorCamera>>,
-    settings: Res<RenderSettings>,
-    mut ray: ResMut<DebugRay>,
-    mut notices: ResMut<Notices>,
-) {
-    if !actions.read().any(|action| *action == Action::ShootRay) {
-        return;
+    /// Nothing is drawn.
+    pub fn is_empty(&self) -> bool {
+        self.sets.iter().all(Option::is_none)
     }
-    let place = window.cursor_position().map(|at| viewport.place(at));
-    let inside = place.filter(|at| at.min_element() >= 0.0 && at.max_element() < 1.0);
-    let Some(place) = inside else {
-        *ray = DebugRay::default();
-        return;
-    };
-    let Some((_, camera, rendered)) = render.subject() else {
-        notices.tell("The debug ray is one of the traced view's pixels: show it (key 2) first");
-        return;
-    };
-    let size = rendered.size;
-    ray.shot = Some(Shot {
-        pixel: (place * size.as_vec2()).as_uvec2().min(size - 1),
-        camera: camera.clone(),
-        settings: RenderSettings {
-            size,
-            ..settings.clone()
-        },
-        world: None,
-    });
-}
 
-/// The picked pixel's first sample, whenever the scene is another.
-fn trace_again(
-    traced: Res<Traced>,
-    settings: Res<RenderSettings>,
-    mut ray: ResMut<DebugRay>,
-    mut notices: ResMut<Notices>,
-) {
-    let Some(shot) = &ray.shot else {
-        return;
-    };
-    let known = shot.world.as_ref();
-    let same = known.is_some_and(|world| Arc::ptr_eq(world, &traced.world));
-    if same && !settings.is_changed() {
-        return;
+    /// Another number for other lines.
+    pub fn version(&self) -> u64 {
+        self.version
     }
-    let DebugRay {
-        shot: Some(shot),
-        rays,
-    } = &mut *ray
-    else {
-        return;
-    };
-    shot.world = Some(traced.world.clone());
-    shot.settings = RenderSettings {
-        size: shot.settings.size,
-        ..settings.clone()
-    };
-    let found = probe(
-        &traced.world,
-        &shot.camera,
-        &shot.settings,
-        shot.pixel,
-        &Samples::One(0),
-    );
-    *rays = match found {
-        Ok(rays) => Some(rays),
-        Err(problem) => {
-            notices.fault(problem.to_string());
-            None
-        }
-    };
 }
 
 /// One system's set on the screen.
 struct Drawn {
     entity: Entity,
     key: u64,
+    set: LineSet,
     /// Kept, so that a key that is made of places in memory cannot come again.
     _world: Arc<World>,
+    _rays: Option<Arc<RayTree>>,
 }
 
 /// Makes those sets again that may be others.
@@ -158,7 +62,7 @@ struct Drawn {
     clippy::too_many_arguments,
     reason = "a system's parameters are the list of what it reads"
 )]
-fn draw_inspection(
+pub(super) fn draw_inspection(
     mut commands: Commands,
     inspect: Res<InspectSettings>,
     settings: Res<RenderSettings>,
@@ -167,7 +71,7 @@ fn draw_inspection(
     ray: Res<DebugRay>,
     render: Single<&TracedRender, With<EditorCamera>>,
     mut sets: Query<&mut DrawnLines>,
-    mut drawn: Local<[Option<Drawn>; System::ALL.len()]>,
+    mut drawings: ResMut<Drawings>,
 ) {
     let Some((_, camera, rendered)) = render.subject() else {
         return;
@@ -176,16 +80,28 @@ fn draw_inspection(
         size: rendered.size,
         ..settings.clone()
     };
-    let shot = ray.shot.as_ref().map(|shot| &shot.camera);
+    let rays = ray.rays();
+    let shot = ray.shot().map(|shot| &shot.camera);
     let of_scene = cameras.0.first().map(|camera| &camera.camera);
     let photographer = of_scene.or(shot).unwrap_or(camera);
-    let subject =
-        Subject::new(&traced.world, photographer, &settings, &inspect, ray.rays()).seen_by(camera);
+    let subject = Subject::new(
+        &traced.world,
+        photographer,
+        &settings,
+        &inspect,
+        rays.map(Arc::as_ref),
+    )
+    .seen_by(camera);
+    let Drawings {
+        sets: drawn,
+        version,
+    } = &mut *drawings;
     for (system, known) in System::ALL.into_iter().zip(drawn.iter_mut()) {
         let needs_rays = matches!(system, System::Visits | System::Rays | System::Lobes);
-        if !system.is_on(&inspect) || (needs_rays && ray.rays().is_none()) {
+        if !system.is_on(&inspect) || (needs_rays && rays.is_none()) {
             if let Some(known) = known.take() {
                 commands.entity(known.entity).despawn();
+                *version += 1;
             }
             continue;
         }
@@ -193,8 +109,9 @@ fn draw_inspection(
         if known.as_ref().is_some_and(|known| known.key == key) {
             continue;
         }
+        let set = system.lines(&subject);
         let wanted = DrawnLines {
-            lines: gizmo_lines(&system.lines(&subject), camera),
+            lines: gizmo_lines(&set, camera),
             width: WIDTH,
             on_top: false,
         };
@@ -207,10 +124,13 @@ fn draw_inspection(
             }
             None => commands.spawn(wanted).id(),
         };
+        *version += 1;
         *known = Some(Drawn {
             entity,
             key,
+            set,
             _world: traced.world.clone(),
+            _rays: rays.cloned(),
         });
     }
 }
