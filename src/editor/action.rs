@@ -80,6 +80,14 @@ pub enum Action {
     Inspect(InspectPreset),
     PreviousLeaf,
     NextLeaf,
+    // Rays
+    /// Shows or hides the ray inspector.
+    ToggleRays,
+    /// A pixel of the traced view, column and row from its top left.
+    ShootPixel(u32, u32),
+    StepForward,
+    StepBack,
+    PlaySteps,
 }
 
 /// What can be added.
@@ -211,7 +219,7 @@ actions! {
     ShowSplit "Split view" [key(KeyCode::Digit3)] "Raster on the left, traced on the right; drag the line between"
     TogglePause "Pause or go on" [key(KeyCode::KeyP)] "The traced view stands still, and keeps what it has"
     Restart "Restart" [ctrl(KeyCode::KeyR)] "Renders the traced view from its first sample again"
-    ShootRay "Debug ray" [key(KeyCode::KeyR)] "Traces the pixel under the pointer again and draws its rays; beside the picture it takes them away"
+    ShootRay "Debug ray" [key(KeyCode::KeyR)] "Traces the pixel under the pointer again and draws its rays, as a click with Alt does; beside the picture it takes them away"
     ToggleAllSamples "Rays of all samples" [ctrl_shift(KeyCode::KeyR)] "Draws the debug rays of all samples of the picked pixel, or again those of its first one"
     TogglePanels "Only the picture" [ctrl(KeyCode::Space)] "Takes the panels away, so that the picture fills the window; again, or Escape, brings them back"
     Move "Move" [key(KeyCode::KeyW)] "Drag the arrows to move the selection"
@@ -226,6 +234,10 @@ actions! {
     Inspect(InspectPreset::WhereIsTheNoiseFrom) "Where is my noise from?" [] "Draws what is chosen at random for a pixel: point at it and press R"
     PreviousLeaf "Previous leaf" [key(KeyCode::KeyA)] "One leaf back, while one leaf of the trees is drawn"
     NextLeaf "Next leaf" [key(KeyCode::KeyS)] "One leaf on, while one leaf of the trees is drawn"
+    ToggleRays "Ray inspector" [shift(KeyCode::KeyR)] "The debug ray's rays as a tree with all their numbers, below the picture"
+    StepForward "Next step" [key(KeyCode::Period)] "One step of the chosen ray's way through the trees on"
+    StepBack "Step before" [key(KeyCode::Comma)] "One step of the chosen ray's way through the trees back"
+    PlaySteps "Play steps" [key(KeyCode::Space)] "Plays the chosen ray's way through the trees, or stops"
 }
 
 impl Action {

@@ -92,7 +92,10 @@ fn press(world: &mut World, keys: Keys, repeats: bool) {
     let Some(action) = action_of(keys) else {
         return;
     };
-    let may_repeat = matches!(action, Action::Undo | Action::Redo);
+    let may_repeat = matches!(
+        action,
+        Action::Undo | Action::Redo | Action::StepForward | Action::StepBack
+    );
     if !repeats || may_repeat {
         world.write_message(action);
     }

@@ -19,7 +19,7 @@
 //! | `schedule`, `cameras` | when it works, and what draws it |
 //! | `window` | the program: its window and first scene |
 //! | `panels` | everything that egui draws |
-//! | `inspection` | what the tracer did, drawn over the scene; the debug ray |
+//! | `inspection` | what the tracer did, drawn over the scene and in numbers; the debug ray, step by step |
 //! | `trees` | the builders compared and timed, two trees side by side |
 //! | [`navigation`] | moving the view |
 //! | [`handles`] | arrows, rings and points that are dragged |

@@ -3,6 +3,7 @@
 //! tracer.
 
 use super::history::Gesture;
+use super::inspection::Inspected;
 use super::pointer::PointerUse;
 use super::script::is_playing;
 use super::viewport::EditorCamera;
@@ -38,6 +39,7 @@ fn set_pace(world: &mut World, started: Instant) {
     let busy = world.resource::<Gesture>().active()
         || !matches!(world.resource::<PointerUse>(), PointerUse::Free)
         || is_playing(world)
+        || world.resource::<Inspected>().stepper.playing
         || started.elapsed() < START;
     let mut renders = world.query_filtered::<&TracedRender, With<EditorCamera>>();
     let render = renders.iter(world).find_map(TracedRender::status);

@@ -15,6 +15,7 @@ use super::panels::PanelsPlugin;
 use super::pointer::PointerPlugin;
 use super::render_job::RenderJobPlugin;
 use super::selection::Selection;
+use super::trees::TreesPlugin;
 use super::viewport::Viewport;
 use crate::view::{GlassboxPlugins, RasterPlugin, SymbolsPlugin};
 use bevy::app::{App, Plugin, PluginGroup, PluginGroupBuilder};
@@ -81,6 +82,7 @@ pub(super) fn parts(document: DocumentPlugin) -> PluginGroupBuilder {
         .add(KeysPlugin)
         .add(HandlesPlugin)
         .add(InspectionPlugin)
+        .add(TreesPlugin)
 }
 
 /// What several of the plugins read and write.

@@ -7,6 +7,8 @@
 use super::action::Action;
 use super::extent::own_extent;
 use super::handles::{self, GripDrag, grip_at};
+use super::inspection::Inspected;
+use super::inspection::hover::line_at;
 use super::keys::Modifiers;
 use super::navigation::{self, LookThrough, ViewDrag};
 use super::pick;
@@ -14,6 +16,7 @@ use super::schedule::EditorUpdate;
 use super::selection::Selection;
 use super::viewport::Viewport;
 use crate::scene::SceneId;
+use crate::sync::Traced;
 use crate::view::{Outlined, Symbols};
 use bevy::app::{App, Plugin};
 use bevy::ecs::entity::Entity;
@@ -64,6 +67,8 @@ pub(super) enum PointerUse {
     Grip(GripDrag),
     /// A click, as long as it does not move.
     Click { at: Vec2 },
+    /// With Alt: as long as it does not move it is a debug ray, and then turns the view.
+    Ray { at: Vec2 },
     /// A box is drawn around what shall be selected.
     Box { from: Vec2, to: Vec2 },
 }
@@ -119,6 +124,11 @@ fn go(world: &mut World, to: Vec2) {
             PointerUse::Grip(drag)
         }
         PointerUse::Click { at } if at.distance(to) > STILL => PointerUse::Box { from: at, to },
+        PointerUse::Ray { at } if at.distance(to) > STILL => {
+            navigation::begin_drag(world);
+            navigation::drag(world, ViewDrag::Orbit, to - at);
+            PointerUse::View(ViewDrag::Orbit)
+        }
         PointerUse::Box { from, .. } => PointerUse::Box { from, to },
         other => other,
     };
@@ -149,7 +159,9 @@ fn press(world: &mut World, button: MouseButton) {
         }
         _ => None,
     };
-    let next = if let Some(drag) = drag {
+    let next = if button == MouseButton::Left && drag == Some(ViewDrag::Orbit) {
+        PointerUse::Ray { at }
+    } else if let Some(drag) = drag {
         navigation::begin_drag(world);
         PointerUse::View(drag)
     } else if button == MouseButton::Left {
@@ -185,6 +197,9 @@ fn release(world: &mut World, button: MouseButton) {
         PointerUse::View(_) => navigation::end_drag(world),
         PointerUse::Grip(drag) => drag.end(world),
         PointerUse::Click { at } => click(world, at),
+        PointerUse::Ray { .. } => {
+            world.write_message(Action::ShootRay);
+        }
         PointerUse::Box { from, to } => select_box(world, from, to),
     }
 }
@@ -192,7 +207,11 @@ fn release(world: &mut World, button: MouseButton) {
 /// Ends what is going on, as where the window loses the keyboard and with it the release.
 fn let_go(world: &mut World) {
     if let Some(button) = world.resource::<Pointer>().held {
-        if matches!(world.resource::<PointerUse>(), PointerUse::Click { .. }) {
+        let is_click = matches!(
+            world.resource::<PointerUse>(),
+            PointerUse::Click { .. } | PointerUse::Ray { .. }
+        );
+        if is_click {
             take_use(world);
         }
         release(world, button);
@@ -212,7 +231,7 @@ pub(super) fn cancel(world: &mut World) -> bool {
             *world.resource_mut::<PointerUse>() = PointerUse::View(kind);
             false
         }
-        PointerUse::Free | PointerUse::Click { .. } => false,
+        PointerUse::Free | PointerUse::Click { .. } | PointerUse::Ray { .. } => false,
     }
 }
 
@@ -257,6 +276,11 @@ fn is_over_scene(world: &mut World, at: Vec2) -> bool {
 }
 
 fn click(world: &mut World, at: Vec2) {
+    if click_line(world, at) {
+        // Two clicks on two things are no double click.
+        world.resource_mut::<Pointer>().last_click = None;
+        return;
+    }
     let found = pick::at(world, at).map(|found| found.id);
     let pointer = world.resource::<Pointer>();
     let adds = pointer.modifiers.ctrl;
@@ -279,6 +303,15 @@ fn click(world: &mut World, at: Vec2) {
         (None, false) => wanted.set([]),
     }
     select(world, wanted);
+}
+
+/// Whether the click is for a line that shows what the tracer did.
+fn click_line(world: &mut World, at: Vec2) -> bool {
+    let Some((stands, _)) = line_at(world, at) else {
+        return false;
+    };
+    let traced = world.resource::<Traced>().world.clone();
+    world.resource_mut::<Inspected>().click(stands, &traced)
 }
 
 fn select(world: &mut World, wanted: Selection) {

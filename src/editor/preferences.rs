@@ -53,6 +53,12 @@ pub struct Preferences {
     pub show_hierarchy: bool,
     /// Whether the properties are shown.
     pub show_inspector: bool,
+    /// Whether the ray inspector is shown.
+    pub show_rays: bool,
+    /// It is a window over the picture, and no panel below it.
+    pub rays_float: bool,
+    /// Logical pixels.
+    pub rays_height: f32,
     /// Screen pixels along each side of one that is traced, 1 to 8: larger is quicker and coarser.
     pub pixel_size: u32,
     /// The first-run hint was read.
@@ -70,6 +76,9 @@ impl Default for Preferences {
             inspector_width: 300.0,
             show_hierarchy: true,
             show_inspector: true,
+            show_rays: false,
+            rays_float: false,
+            rays_height: 240.0,
             pixel_size: 1,
             hint_seen: false,
             recent: Vec::new(),
@@ -105,6 +114,7 @@ impl Preferences {
         let width = |value, default| within(value, 120.0, 2000.0, default);
         self.hierarchy_width = width(self.hierarchy_width, default.hierarchy_width);
         self.inspector_width = width(self.inspector_width, default.inspector_width);
+        self.rays_height = within(self.rays_height, 120.0, 2000.0, default.rays_height);
         self.pixel_size = self.pixel_size.clamp(1, 8);
         self.recent.truncate(MOST_RECENT);
         self

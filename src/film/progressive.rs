@@ -4,7 +4,7 @@ use super::control::Signal;
 use super::engine::{Engine, Mode};
 use super::pool::watched_pool;
 use super::sample_chunk::Subject;
-use super::{Ending, Film, Snapshot, Status};
+use super::{Ending, Film, Snapshot, Status, Sum};
 use crate::scene::RenderSettings;
 use crate::trace::{Camera, World, samples_per_pixel};
 use bevy::math::URect;
@@ -122,6 +122,12 @@ impl Progressive {
         let errors = film.relative_errors_in(&self.engine.decline());
         let error = errors[(place.y * film.size().x + place.x) as usize];
         Some((film.count(place.x, place.y), error))
+    }
+
+    /// The exact sum of one pixel's samples so far, and their number; `None` outside the picture.
+    pub fn pixel_sum(&self, pixel: UVec2) -> Option<(Sum, u32)> {
+        let (film, place) = self.engine.tile_film(pixel)?;
+        Some((*film.sum(place.x, place.y), film.count(place.x, place.y)))
     }
 
     /// Waits until the render has ended by itself or by [`Self::cancel`], and says why it did.
@@ -305,8 +311,11 @@ mod tests {
             let (samples, error) = render.pixel(pixel).unwrap();
             assert_eq!(samples, film.count(pixel.x, pixel.y));
             assert_eq!(error, errors[(pixel.y * SIZE.x + pixel.x) as usize]);
+            let sum = *film.sum(pixel.x, pixel.y);
+            assert_eq!(render.pixel_sum(pixel), Some((sum, samples)));
         }
         assert_eq!(render.pixel(SIZE), None);
+        assert_eq!(render.pixel_sum(SIZE), None);
     }
 
     #[test]

@@ -74,8 +74,9 @@ impl System {
     }
 
     /// A number that differs where the lines may: made of all that the system reads, and of nothing
-    /// else. Parts of the world are told apart by where they are in memory, so the snapshot from which
-    /// a set was made has to be kept for as long as its key is compared.
+    /// else. Parts of the world, and the debug rays, are told apart by where they are in memory, so
+    /// the snapshot and the rays from which a set was made have to be kept for as long as its key is
+    /// compared.
     pub fn key(self, subject: &Subject) -> u64 {
         let mut key = Key::default();
         let inspect = subject.inspect;
@@ -143,14 +144,9 @@ impl Key {
         self.add(&(Arc::as_ptr(&world.objects) as usize));
     }
 
+    /// By where they are in memory, as parts of the world: a pixel's samples may have half a million.
     fn add_rays(&mut self, rays: Option<&RayTree>) {
         let Some(rays) = rays else { return };
-        self.add(&(rays.pixel, rays.rays.len()));
-        for ray in &rays.rays {
-            for v in [ray.origin, ray.direction, ray.radiance, ray.transmittance] {
-                self.add(&v.to_array().map(f32::to_bits));
-            }
-            self.add(&ray.t.to_bits());
-        }
+        self.add(&(rays.pixel, rays.rays.len(), rays.rays.as_ptr() as usize));
     }
 }

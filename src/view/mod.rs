@@ -19,6 +19,7 @@
     reason = "a system's parameters are the list of what it reads"
 )]
 
+mod adapter;
 mod cameras;
 mod darkroom;
 mod handle_camera;
@@ -32,6 +33,7 @@ mod standard;
 mod symbols;
 mod traced;
 
+pub use adapter::Adapter;
 pub use cameras::{interface_camera, picture_camera};
 pub use handle_camera::{HandleCameraPlugin, draws_handles};
 pub use lines::{DrawnLines, Line, LinesPlugin};

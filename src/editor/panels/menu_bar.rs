@@ -217,6 +217,15 @@ fn view_ui(ui: &mut Ui, world: &mut World) {
     ui.checkbox(&mut preferences.show_inspector, "Inspector")
         .says("Shows the properties on the right");
     entry_ui(ui, world, &Action::TogglePanels);
+    let keys = Action::ToggleRays
+        .entry()
+        .and_then(|entry| entry.keys.first());
+    let name = keys.map_or_else(
+        || "Ray inspector".to_owned(),
+        |keys| format!("Ray inspector ({})", keys.text()),
+    );
+    ui.checkbox(&mut preferences.show_rays, name)
+        .says("The debug ray's rays as a tree with all their numbers, below the picture");
     if preferences != before {
         *world.resource_mut::<Preferences>() = preferences;
     }

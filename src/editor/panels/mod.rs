@@ -14,6 +14,8 @@
 //! | [`overlays`], [`compare`] | divider, legend, region, messages, a kept picture over the picture |
 //! | [`line_legend`], [`pattern`] | what the tracer's lines mean, and where a pixel's samples lie |
 //! | [`tree_pair`] | which builder's trees are on which side |
+//! | [`rays`] | the ray inspector, below the picture or over it |
+//! | [`told`], [`readout`] | what is under the pointer: a line of the gizmos, a pixel |
 //! | [`dialogs`] | what is in front of everything |
 
 mod compare;
@@ -27,11 +29,14 @@ mod menu_bar;
 mod outline;
 mod overlays;
 mod pattern;
+mod rays;
+mod readout;
 mod says;
 mod several;
 mod state;
 mod status;
 mod theme;
+mod told;
 mod toolbar;
 mod tree_pair;
 
@@ -66,7 +71,6 @@ impl Plugin for PanelsPlugin {
         app.add_plugins(PreferencesPlugin)
             .init_resource::<Panels>()
             .init_resource::<Outline>()
-            .add_plugins(super::trees::TreesPlugin)
             .add_systems(EguiPrimaryContextPass, (outline_scene, draw).chain());
     }
 }
@@ -100,6 +104,9 @@ fn panels_ui(context: &egui::Context, world: &mut World) {
         let free = around_ui(&mut ui, world, panels, &preferences);
         compare::compare_ui(&mut ui, free, world, panels);
         let over_overlay = overlays::overlays_ui(&mut ui, free, world, panels);
+        readout::readout_ui(&ui, free, world, panels);
+        told::told_ui(context, free, world, panels);
+        rays::window_ui(context, free, world, panels);
         dialogs::dialogs_ui(context, world, panels);
         gesture::note_gesture(context, world, panels);
         note_viewport(context, free, over_overlay, world);
@@ -127,6 +134,8 @@ fn around_ui(
     egui::Panel::bottom("status")
         .frame(bar(egui::Margin::symmetric(8, 3)))
         .show_inside(ui, |ui| status::status_ui(ui, world, panels));
+
+    rays::panel_ui(ui, world, panels);
 
     // Narrow windows: the panels give way before the picture does.
     let for_panels = (ui.available_width() - LEAST_PICTURE).max(0.0);

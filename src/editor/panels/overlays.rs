@@ -3,6 +3,7 @@
 
 use super::line_legend::line_legend_ui;
 use super::pattern::pattern_ui;
+use super::readout::value_text;
 use super::says::Says;
 use super::state::Panels;
 use super::theme::accent;
@@ -188,7 +189,9 @@ fn legend_ui(ui: &Ui, free: Rect, world: &mut World, panels: &mut Panels) {
         .show(ui.ctx(), |ui| {
             egui::Frame::popup(ui.style())
                 .inner_margin(egui::Margin::same(6))
-                .show(ui, |ui| entered = legend_body(ui, &scale, range, under));
+                .show(ui, |ui| {
+                    entered = legend_body(ui, (kind, &scale), range, under)
+                });
         });
     if entered != range {
         let mut query = world.query_filtered::<&mut TracedView, With<EditorCamera>>();
@@ -202,7 +205,7 @@ fn legend_ui(ui: &Ui, free: Rect, world: &mut World, panels: &mut Panels) {
 
 fn legend_body(
     ui: &mut Ui,
-    scale: &Scale,
+    (kind, scale): (View, &Scale),
     range: Option<[f32; 2]>,
     under: Option<f32>,
 ) -> Option<[f32; 2]> {
@@ -264,26 +267,17 @@ fn legend_body(
         }
     });
     let text = match under {
-        Some(value) if value.is_finite() => format!("{} {}", short(value), scale.unit),
-        Some(_) => "nothing there".into(),
+        Some(value) if value.is_finite() => format!("{} {}", value_text(kind, value), scale.unit),
+        Some(value) => value_text(kind, value),
         None => "move the pointer over the picture for its value".into(),
     };
     ui.weak(text);
     entered.filter(|[low, high]| low < high && low.is_finite() && high.is_finite())
 }
 
-fn short(value: f32) -> String {
-    match value.abs() {
-        v if v == 0.0 || v >= 100.0 => format!("{value:.0}"),
-        v if v >= 1.0 => format!("{value:.2}"),
-        v if v >= 0.001 => format!("{value:.4}"),
-        _ => format!("{value:.1e}"),
-    }
-}
-
 /// What the heatmap shows at the pixel under the pointer. Looked up when the pointer or the picture
 /// moved on, by the same function that the view is made with.
-fn value_under_pointer(
+pub(super) fn value_under_pointer(
     ui: &Ui,
     free: Rect,
     view: &TracedView,

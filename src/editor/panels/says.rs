@@ -14,14 +14,18 @@ impl Says for Response {
             return self;
         }
         if self.hovered() {
-            let text = what.to_owned();
-            self.ctx.data_mut(|data| data.insert_temp(hint_id(), text));
+            note_hint(&self.ctx, what.to_owned());
         }
         self.on_hover_ui(|ui| {
             ui.label(what);
         })
         .on_disabled_hover_text(what)
     }
+}
+
+/// Puts a text into the status bar until the next frame.
+pub(super) fn note_hint(context: &egui::Context, text: String) {
+    context.data_mut(|data| data.insert_temp(hint_id(), text));
 }
 
 /// What the control under the pointer said since it was last asked.

@@ -5,7 +5,9 @@ use super::dialogs::{Gallery, RenderForm};
 use super::inspector::{Builders, ErrorCurve, PerformanceForm, Thumbnails, Trees, Turns};
 use super::line_legend::LineTexts;
 use super::pattern::PatternOf;
+use super::rays::RaysPanel;
 use super::status::{Memory, Numbers};
+use super::told::Tales;
 use crate::editor::action::Action;
 use crate::scene::SceneId;
 use crate::trace::{Camera, FirstHit};
@@ -96,6 +98,8 @@ pub(super) struct Panels {
     pub performance: PerformanceForm,
     pub numbers: Numbers,
     pub memory: Memory,
+    pub rays: RaysPanel,
+    pub tales: Tales,
     /// What the pixel under the pointer shows, and of which world, pixel and camera that is.
     pub under_pointer: Option<(PixelOf, FirstHit)>,
 }

@@ -8,6 +8,7 @@ use super::panels_ui;
 use super::state::{Dialog, Panels, Tab};
 use crate::editor::action::Action;
 use crate::editor::headless_editor;
+use crate::editor::inspection::RaysPlugin;
 use crate::editor::notice::Notices;
 use crate::editor::preferences::Preferences;
 use crate::editor::selection::Selection;
@@ -28,21 +29,21 @@ use bevy::math::Vec2;
 use bevy_egui::egui::{self, Event, FullOutput, Key, Modifiers, PointerButton, Pos2, Shape, vec2};
 
 /// Windows that must do: the smallest, the usual one, and 4K at twice the scale.
-const SMALL: [f32; 3] = [1024.0, 640.0, 1.0];
-const USUAL: [f32; 3] = [1280.0, 720.0, 1.0];
+pub(super) const SMALL: [f32; 3] = [1024.0, 640.0, 1.0];
+pub(super) const USUAL: [f32; 3] = [1280.0, 720.0, 1.0];
 const LARGE: [f32; 3] = [1920.0, 1080.0, 2.0];
 
 /// An editor without a window.
-struct Desk {
-    app: App,
-    context: egui::Context,
-    size: [f32; 3],
+pub(super) struct Desk {
+    pub app: App,
+    pub context: egui::Context,
+    pub size: [f32; 3],
     time: f64,
     output: FullOutput,
 }
 
 impl Desk {
-    fn open(scene: &str) -> Self {
+    pub fn open(scene: &str) -> Self {
         let mut desk = Self::empty(USUAL);
         let source = SceneSource::Builtin(builtin::find(scene).unwrap());
         open(desk.app.world_mut(), &source, OpenOptions::default()).unwrap();
@@ -52,17 +53,17 @@ impl Desk {
 
     fn empty(size: [f32; 3]) -> Self {
         let mut app = headless_editor();
-        app.insert_resource(Preferences {
-            hint_seen: true,
-            ..Preferences::default()
-        })
-        .init_resource::<Panels>()
-        .init_resource::<Outline>()
-        .init_resource::<Viewport>()
-        .init_resource::<Notices>()
-        .add_message::<Action>()
-        .add_plugins(TreeStudyPlugin)
-        .add_systems(Last, outline_scene);
+        app.add_plugins((RaysPlugin, TreeStudyPlugin))
+            .insert_resource(Preferences {
+                hint_seen: true,
+                ..Preferences::default()
+            })
+            .init_resource::<Panels>()
+            .init_resource::<Outline>()
+            .init_resource::<Viewport>()
+            .init_resource::<Notices>()
+            .add_message::<Action>()
+            .add_systems(Last, outline_scene);
         app.world_mut().spawn((EditorCamera, TracedView::default()));
         let context = egui::Context::default();
         context.options_mut(|options| options.max_passes = std::num::NonZero::new(1).unwrap());
@@ -75,18 +76,18 @@ impl Desk {
         }
     }
 
-    fn world(&mut self) -> &mut World {
+    pub fn world(&mut self) -> &mut World {
         self.app.world_mut()
     }
 
     /// Until sizes and the list of entities are what they will be.
-    fn settle(&mut self) {
+    pub fn settle(&mut self) {
         for _ in 0..4 {
             self.frame(Vec::new());
         }
     }
 
-    fn frame(&mut self, events: Vec<Event>) {
+    pub fn frame(&mut self, events: Vec<Event>) {
         self.app.update();
         self.draw(events);
     }
@@ -110,7 +111,7 @@ impl Desk {
     }
 
     /// The middle of a text on the screen.
-    fn find(&self, text: &str) -> Option<Pos2> {
+    pub fn find(&self, text: &str) -> Option<Pos2> {
         fn search(shape: &Shape, text: &str) -> Option<Pos2> {
             match shape {
                 Shape::Text(shape) if shape.galley.text() == text => {
@@ -129,12 +130,12 @@ impl Desk {
             .next()
     }
 
-    fn place_of(&self, text: &str) -> Pos2 {
+    pub fn place_of(&self, text: &str) -> Pos2 {
         let place = self.find(text);
         place.unwrap_or_else(|| panic!("`{text}` is nowhere on the screen"))
     }
 
-    fn point(&mut self, at: Pos2) {
+    pub fn point(&mut self, at: Pos2) {
         self.frame(vec![Event::PointerMoved(at)]);
     }
 
@@ -185,16 +186,16 @@ impl Desk {
         self.frame(Vec::new());
     }
 
-    fn click(&mut self, at: Pos2) {
+    pub fn click(&mut self, at: Pos2) {
         self.click_with(at, Modifiers::NONE);
     }
 
-    fn click_on(&mut self, text: &str) {
+    pub fn click_on(&mut self, text: &str) {
         let at = self.place_of(text);
         self.click(at);
     }
 
-    fn drag(&mut self, from: Pos2, by: egui::Vec2) {
+    pub fn drag(&mut self, from: Pos2, by: egui::Vec2) {
         self.point(from);
         self.button(from, true, Modifiers::NONE);
         for step in 1..=5 {

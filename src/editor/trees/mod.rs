@@ -20,9 +20,9 @@ use crate::bvh;
 use crate::inspect::InspectSettings;
 use crate::scene;
 use crate::sync::SyncSystems;
+use crate::view::Adapter;
 use bevy::app::{App, Plugin, PostUpdate, Startup, Update};
-use bevy::prelude::{IntoScheduleConfigs, Res, ResMut};
-use bevy::render::renderer::RenderAdapterInfo;
+use bevy::prelude::{IntoScheduleConfigs, ResMut};
 
 /// The part that needs no window: measurements, actions, the trees of a pair.
 pub(super) struct TreeStudyPlugin;
@@ -63,9 +63,8 @@ impl Plugin for TreesPlugin {
 const LINES_WITHOUT_GPU: u32 = 30_000;
 
 /// No more lines than the machine draws quickly; what is left out is said.
-fn fit_lines(adapter: Option<Res<RenderAdapterInfo>>, mut inspect: ResMut<InspectSettings>) {
-    let is_cpu = adapter.is_some_and(|adapter| adapter.device_type == wgpu::DeviceType::Cpu);
-    if is_cpu && inspect.max_lines == InspectSettings::default().max_lines {
+fn fit_lines(adapter: Adapter, mut inspect: ResMut<InspectSettings>) {
+    if adapter.is_a_processor() && inspect.max_lines == InspectSettings::default().max_lines {
         inspect.max_lines = LINES_WITHOUT_GPU;
     }
 }

@@ -15,6 +15,14 @@ const MOUSE: &[(&str, &str)] = &[
         "Middle drag, Alt+drag",
         "Turns the view around what it looks at",
     ),
+    (
+        "Alt+click",
+        "Traces that pixel again and draws its rays, as R does",
+    ),
+    (
+        "Click on a ray or a box",
+        "Chooses it; a second click is for what is behind it",
+    ),
     ("Shift+middle drag", "Moves the view sideways"),
     ("Wheel", "Moves towards what is under the pointer, or away"),
     ("Ctrl+wheel", "Changes the field of view"),

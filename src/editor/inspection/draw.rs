@@ -1,192 +1,31 @@
-//! What the tracer did, drawn over the scene: the lines of the room `inspect`, and the debug ray.
+//! The lines of the room `inspect` over the scene.
 //!
 //! Each system's lines are one set of retained gizmos. They are made again when the system's own
 //! key says that they may be others, so what stands costs nothing.
 
-use super::action::Action;
-use super::notice::Notices;
-use super::viewport::{EditorCamera, Viewport};
+use super::debug_ray::DebugRay;
+use crate::editor::viewport::EditorCamera;
 use crate::inspect::{InspectSettings, LineSet, Subject, System};
 use crate::scene::RenderSettings;
-use crate::sync::{SyncSystems, Traced, TracedCameras};
-use crate::trace::{self, Camera, RayTree, Samples, World, probe};
+use crate::sync::{Traced, TracedCameras};
+use crate::trace::{self, RayTree, World};
 use crate::view::{DrawnLines, Line, TracedRender};
-use bevy::app::{App, Plugin, PostUpdate, Update};
 use bevy::color::LinearRgba;
 use bevy::ecs::entity::Entity;
-use bevy::ecs::message::MessageReader;
 use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Commands, Query, Res, ResMut, Single};
-use bevy::math::{UVec2, Vec3};
-use bevy::prelude::{DetectChanges, IntoScheduleConfigs};
-use bevy::window::{PrimaryWindow, Window};
+use bevy::math::Vec3;
 use std::sync::Arc;
-
-/// Draws them, and shoots the debug ray.
-pub(super) struct InspectionPlugin;
-
-impl Plugin for InspectionPlugin {
-    fn build(&self, app: &mut App) {
-        app.init_resource::<InspectSettings>()
-            .init_resource::<DebugRay>()
-            .init_resource::<Drawings>()
-            .add_systems(Update, shoot)
-            .add_systems(
-                PostUpdate,
-                (trace_again, draw_inspection).chain().after(SyncSystems),
-            );
-    }
-}
 
 /// Logical pixels.
 const WIDTH: f32 = 1.2;
 /// Half the arm of the cross that a point is drawn as, as a part of its distance from the viewer.
 const CROSS: f32 = 0.004;
 
-/// The rays of the pixel that was picked. They stay when the view moves, and are traced again when
-/// the scene changes.
-#[derive(Resource, Default)]
-pub(super) struct DebugRay {
-    /// Which of the samples are traced.
-    pub which: Which,
-    shot: Option<Shot>,
-    rays: Option<Arc<RayTree>>,
-    /// What `rays` were traced with.
-    of: Option<(Arc<World>, RenderSettings, Which)>,
-}
-
-/// Which of the pixel's samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Which {
-    /// Sample 0.
-    #[default]
-    First,
-    /// All that a render takes.
-    All,
-}
-
-impl Which {
-    fn samples(self) -> Samples {
-        match self {
-            Self::First => Samples::One(0),
-            Self::All => Samples::All,
-        }
-    }
-}
-
-/// A pixel of a picture: all that is needed to trace it again.
-pub(super) struct Shot {
-    /// (0, 0) is the top left one.
-    pub pixel: UVec2,
-    /// From where. The view may have moved on since.
-    pub camera: Camera,
-    /// The picture's.
-    pub size: UVec2,
-}
-
-impl DebugRay {
-    /// The rays, where a pixel was picked.
-    pub fn rays(&self) -> Option<&Arc<RayTree>> {
-        self.rays.as_ref()
-    }
-
-    /// The pixel that was picked.
-    pub fn shot(&self) -> Option<&Shot> {
-        self.shot.as_ref()
-    }
-
-    /// The world and the settings that the rays were traced with.
-    pub fn traced_with(&self) -> Option<(&Arc<World>, &RenderSettings)> {
-        let (world, settings, _) = self.of.as_ref()?;
-        Some((world, settings))
-    }
-}
-
-/// R: the pixel under the pointer. Over nothing it takes the rays away.
-fn shoot(
-    mut actions: MessageReader<Action>,
-    window: Single<&Window, With<PrimaryWindow>>,
-    viewport: Res<Viewport>,
-    render: Single<&TracedRender, With<EditorCamera>>,
-    mut ray: ResMut<DebugRay>,
-    mut notices: ResMut<Notices>,
-) {
-    let mut asked = false;
-    for action in actions.read() {
-        match action {
-            Action::ShootRay => asked = true,
-            Action::ToggleAllSamples => {
-                ray.which = match ray.which {
-                    Which::All => Which::First,
-                    _ => Which::All,
-                };
-            }
-            _ => {}
-        }
-    }
-    if !asked {
-        return;
-    }
-    let place = window.cursor_position().map(|at| viewport.place(at));
-    let inside = place.filter(|at| at.min_element() >= 0.0 && at.max_element() < 1.0);
-    let Some(place) = inside else {
-        *ray = DebugRay {
-            which: ray.which,
-            ..DebugRay::default()
-        };
-        return;
-    };
-    let Some((_, camera, rendered)) = render.subject() else {
-        notices.tell("The debug ray is one of the traced view's pixels: show it (key 2) first");
-        return;
-    };
-    let size = rendered.size;
-    ray.shot = Some(Shot {
-        pixel: (place * size.as_vec2()).as_uvec2().min(size - 1),
-        camera: camera.clone(),
-        size,
-    });
-    ray.of = None;
-}
-
-/// The picked pixel, whenever the scene is another.
-fn trace_again(
-    traced: Res<Traced>,
-    settings: Res<RenderSettings>,
-    mut ray: ResMut<DebugRay>,
-    mut notices: ResMut<Notices>,
-) {
-    let Some(shot) = &ray.shot else {
-        return;
-    };
-    let same = ray
-        .of
-        .as_ref()
-        .is_some_and(|(world, _, which)| Arc::ptr_eq(world, &traced.world) && *which == ray.which);
-    if same && !settings.is_changed() {
-        return;
-    }
-    let settings = RenderSettings {
-        size: shot.size,
-        ..settings.clone()
-    };
-    let samples = ray.which.samples();
-    let found = probe(&traced.world, &shot.camera, &settings, shot.pixel, &samples);
-    let of = (traced.world.clone(), settings, ray.which);
-    ray.of = Some(of);
-    ray.rays = match found {
-        Ok(rays) => Some(Arc::new(rays)),
-        Err(problem) => {
-            notices.fault(problem.to_string());
-            None
-        }
-    };
-}
-
 /// What is drawn now.
 #[derive(Resource, Default)]
-pub(super) struct Drawings {
+pub(in crate::editor) struct Drawings {
     sets: [Option<Drawn>; System::ALL.len()],
     version: u64,
 }
@@ -195,6 +34,11 @@ impl Drawings {
     /// The sets that are drawn, in their order.
     pub fn sets(&self) -> impl Iterator<Item = &LineSet> {
         self.sets.iter().flatten().map(|drawn| &drawn.set)
+    }
+
+    /// Nothing is drawn.
+    pub fn is_empty(&self) -> bool {
+        self.sets.iter().all(Option::is_none)
     }
 
     /// Another number for other lines.
@@ -210,6 +54,7 @@ struct Drawn {
     set: LineSet,
     /// Kept, so that a key that is made of places in memory cannot come again.
     _world: Arc<World>,
+    _rays: Option<Arc<RayTree>>,
 }
 
 /// Makes those sets again that may be others.
@@ -217,7 +62,7 @@ struct Drawn {
     clippy::too_many_arguments,
     reason = "a system's parameters are the list of what it reads"
 )]
-fn draw_inspection(
+pub(super) fn draw_inspection(
     mut commands: Commands,
     inspect: Res<InspectSettings>,
     settings: Res<RenderSettings>,
@@ -235,12 +80,18 @@ fn draw_inspection(
         size: rendered.size,
         ..settings.clone()
     };
-    let shot = ray.shot.as_ref().map(|shot| &shot.camera);
+    let rays = ray.rays();
+    let shot = ray.shot().map(|shot| &shot.camera);
     let of_scene = cameras.0.first().map(|camera| &camera.camera);
     let photographer = of_scene.or(shot).unwrap_or(camera);
-    let rays = ray.rays().map(Arc::as_ref);
-    let subject =
-        Subject::new(&traced.world, photographer, &settings, &inspect, rays).seen_by(camera);
+    let subject = Subject::new(
+        &traced.world,
+        photographer,
+        &settings,
+        &inspect,
+        rays.map(Arc::as_ref),
+    )
+    .seen_by(camera);
     let Drawings {
         sets: drawn,
         version,
@@ -279,6 +130,7 @@ fn draw_inspection(
             key,
             set,
             _world: traced.world.clone(),
+            _rays: rays.cloned(),
         });
     }
 }

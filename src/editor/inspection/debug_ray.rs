@@ -1,0 +1,329 @@
+//! The debug ray: samples of one pixel, traced again by the very code that renders, with every ray
+//! written down. It stays where it is when the view moves, and is shot again when the scene changes.
+
+use super::addition::Addition;
+use super::names::Names;
+use super::view_of;
+use crate::editor::action::Action;
+use crate::editor::notice::Notices;
+use crate::editor::viewport::Viewport;
+use crate::scene::{Output, RenderSettings};
+use crate::sync::Traced;
+use crate::trace::{Camera, ProbeError, RayTree, Samples, World, probe, samples_per_pixel};
+use bevy::ecs::message::{MessageCursor, Messages};
+use bevy::ecs::query::With;
+use bevy::ecs::resource::Resource;
+use bevy::ecs::system::{Local, Res, ResMut};
+use bevy::ecs::world;
+use bevy::math::UVec2;
+use bevy::window::{PrimaryWindow, Window};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::sync::{Arc, Mutex};
+use std::thread;
+
+/// Which of the pixel's samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(in crate::editor) enum Which {
+    /// Sample 0.
+    #[default]
+    First,
+    /// All that a render takes.
+    All,
+    /// This one.
+    Number(u64),
+}
+
+impl Which {
+    fn samples(self) -> Samples {
+        match self {
+            Self::First => Samples::One(0),
+            Self::All => Samples::All,
+            Self::Number(index) => Samples::One(index),
+        }
+    }
+}
+
+/// A pixel of a picture: all that is needed to trace it again.
+#[derive(Clone)]
+pub(in crate::editor) struct Shot {
+    /// (0, 0) is the top left one.
+    pub pixel: UVec2,
+    /// From where. The view may have moved on since.
+    pub camera: Camera,
+    /// The picture's.
+    pub size: UVec2,
+}
+
+/// The rays of the pixel that was picked.
+#[derive(Resource, Default)]
+pub(in crate::editor) struct DebugRay {
+    /// Which of the samples are traced.
+    pub which: Which,
+    shot: Option<Shot>,
+    rays: Option<Arc<RayTree>>,
+    /// What `rays` were traced with.
+    of: Option<Of>,
+    problem: Option<ProbeError>,
+    addition: Addition,
+    /// Counts the trees of rays that there were, and the pixels that were picked.
+    number: u64,
+    shots: u64,
+    /// What the first camera ray met, by number and name, when the pixel was picked.
+    met: Option<(u64, String)>,
+    lost: Option<String>,
+    under_way: Option<Mutex<Receiver<Found>>>,
+}
+
+type Found = (Of, Result<(RayTree, Addition), ProbeError>);
+
+/// All that rays depend on.
+#[derive(Clone)]
+struct Of {
+    world: Arc<World>,
+    settings: RenderSettings,
+    pixel: UVec2,
+    camera: Camera,
+    which: Which,
+}
+
+impl Of {
+    fn is(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.world, &other.world)
+            && self.pixel == other.pixel
+            && self.which == other.which
+            && self.camera == other.camera
+            && self.settings == other.settings
+    }
+
+    fn trace(&self) -> Result<(RayTree, Addition), ProbeError> {
+        let (world, camera, settings) = (&self.world, &self.camera, &self.settings);
+        let samples = self.which.samples();
+        let rays = probe(world, camera, settings, self.pixel, &samples)?;
+        let addition = Addition::of(world, camera, settings, &rays);
+        Ok((rays, addition))
+    }
+}
+
+impl DebugRay {
+    /// The rays, where a pixel was picked and is in the picture.
+    pub fn rays(&self) -> Option<&Arc<RayTree>> {
+        self.rays.as_ref()
+    }
+
+    /// The pixel that was picked.
+    pub fn shot(&self) -> Option<&Shot> {
+        self.shot.as_ref()
+    }
+
+    /// The world and the settings that the rays were traced with.
+    pub fn traced_with(&self) -> Option<(&Arc<World>, &RenderSettings)> {
+        let of = self.of.as_ref()?;
+        Some((&of.world, &of.settings))
+    }
+
+    /// What the rays add up to.
+    pub fn addition(&self) -> &Addition {
+        &self.addition
+    }
+
+    /// Differs from one tree of rays to the next.
+    pub fn number(&self) -> u64 {
+        self.number
+    }
+
+    /// Differs from one picked pixel to the next.
+    pub fn shots(&self) -> u64 {
+        self.shots
+    }
+
+    /// Many samples are being traced; what is shown is older.
+    pub fn is_busy(&self) -> bool {
+        self.under_way.is_some()
+    }
+
+    /// How many samples the picked pixel has.
+    pub fn sample_count(&self) -> Option<u64> {
+        let of = self.of.as_ref()?;
+        Some(samples_per_pixel(&of.world, &of.camera, &of.settings).into())
+    }
+
+    /// Picks a pixel.
+    pub fn shoot(&mut self, shot: Shot) {
+        self.shot = Some(shot);
+        self.shots += 1;
+        self.of = None;
+        self.met = None;
+        self.lost = None;
+    }
+
+    /// Takes the rays away.
+    pub fn clear(&mut self) {
+        *self = Self {
+            which: self.which,
+            number: self.number + 1,
+            shots: self.shots + 1,
+            ..Self::default()
+        };
+    }
+
+    /// Why there is nothing to see, or less than expected; `None` where all is as asked for.
+    pub fn says(&self) -> Option<String> {
+        if let Some(problem) = self.problem {
+            return Some(problem.to_string());
+        }
+        if self.shot.is_none() {
+            return Some(
+                "Nothing was shot yet: point at the traced picture and press R, click it with Alt, or enter a pixel"
+                    .into(),
+            );
+        }
+        let of = self.of.as_ref()?;
+        if of.world.objects.is_empty() {
+            return Some("The scene has no object that is traced: rays meet lights at most".into());
+        }
+        self.lost.clone()
+    }
+
+    /// Traces the pixel again where anything that rays depend on is another.
+    pub fn bring_up_to_date(
+        &mut self,
+        world: &Arc<World>,
+        settings: &RenderSettings,
+        names: &Names,
+    ) {
+        if let Some(receiver) = &self.under_way {
+            let received = match receiver.lock() {
+                Ok(receiver) => receiver.try_recv(),
+                Err(_) => Err(TryRecvError::Disconnected),
+            };
+            if matches!(received, Err(TryRecvError::Empty)) {
+                return;
+            }
+            self.under_way = None;
+            if let Ok((of, found)) = received {
+                // Shown even where the scene has moved on: the next ones follow.
+                self.take(of, found, names);
+            }
+        }
+        let Some(shot) = &self.shot else {
+            return;
+        };
+        let of = Of {
+            world: world.clone(),
+            settings: RenderSettings {
+                size: shot.size,
+                // Only developing depends on it.
+                output: Output::default(),
+                ..settings.clone()
+            },
+            pixel: shot.pixel,
+            camera: shot.camera.clone(),
+            which: self.which,
+        };
+        if self.of.as_ref().is_some_and(|known| known.is(&of)) {
+            return;
+        }
+        if of.which != Which::All {
+            let found = of.trace();
+            self.take(of, found, names);
+            return;
+        }
+        // Thousands of samples may take seconds, and no frame waits for them.
+        let (send, receive) = channel();
+        let traces = of.clone();
+        // The pool's threads belong to the picture, which may keep them for long.
+        let thread = thread::Builder::new().name("debug ray".into());
+        let started = thread.spawn(move || {
+            let found = traces.trace();
+            // Nobody may be waiting any more.
+            let _ = send.send((traces, found));
+        });
+        match started {
+            Ok(_) => self.under_way = Some(Mutex::new(receive)),
+            // A system without another thread: then a frame has to wait.
+            Err(_) => {
+                let found = of.trace();
+                self.take(of, found, names);
+            }
+        }
+    }
+
+    fn take(&mut self, of: Of, found: Result<(RayTree, Addition), ProbeError>, names: &Names) {
+        self.number += 1;
+        (self.rays, self.addition, self.problem) = match found {
+            Ok((rays, addition)) => (Some(Arc::new(rays)), addition, None),
+            Err(problem) => (None, Addition::default(), Some(problem)),
+        };
+        let objects = &of.world.objects;
+        let first = self.rays.as_ref().and_then(|rays| rays.rays.first()?.hit);
+        let gone = |id: u64| !objects.iter().any(|object| object.id == id);
+        self.lost = match &self.met {
+            Some((id, name)) if gone(*id) => Some(format!(
+                "{name}, which the ray met, is deleted or hidden: these are the rays without it"
+            )),
+            _ => None,
+        };
+        if self.met.is_none() {
+            self.met = first.map(|hit| (hit.object, names.of(hit.object)));
+        }
+        self.of = Some(of);
+    }
+}
+
+/// What R and clicks with Alt ask for: the pixel under the pointer. Beside the picture it takes the
+/// rays away.
+pub(super) fn shoot_at_pointer(world: &mut world::World, mut cursor: Local<MessageCursor<Action>>) {
+    let messages = world.resource::<Messages<Action>>();
+    let (mut asked, mut toggled) = (false, false);
+    for action in cursor.read(messages) {
+        asked |= *action == Action::ShootRay;
+        toggled ^= *action == Action::ToggleAllSamples;
+    }
+    if toggled {
+        let mut ray = world.resource_mut::<DebugRay>();
+        ray.which = match ray.which {
+            Which::All => Which::First,
+            _ => Which::All,
+        };
+    }
+    if !asked {
+        return;
+    }
+    let mut windows = world.query_filtered::<&Window, With<PrimaryWindow>>();
+    let pointer = windows.single(world).ok().and_then(Window::cursor_position);
+    let viewport = world.resource::<Viewport>();
+    let place = pointer.map(|at| viewport.place(at));
+    let inside = place.filter(|at| at.min_element() >= 0.0 && at.max_element() < 1.0);
+    let Some(place) = inside else {
+        world.resource_mut::<DebugRay>().clear();
+        return;
+    };
+    if !viewport.hovered {
+        // A panel lies over that place of the picture.
+        return;
+    }
+    let Some((camera, size)) = view_of(world) else {
+        world
+            .resource_mut::<Notices>()
+            .tell("The debug ray is one of the traced view's pixels: show it (key 2) first");
+        return;
+    };
+    let pixel = (place * size.as_vec2()).as_uvec2().min(size - 1);
+    world.resource_mut::<DebugRay>().shoot(Shot {
+        pixel,
+        camera,
+        size,
+    });
+}
+
+/// The picked pixel, whenever the scene is another.
+pub(super) fn trace_again(
+    traced: Res<Traced>,
+    settings: Res<RenderSettings>,
+    names: Res<Names>,
+    mut ray: ResMut<DebugRay>,
+) {
+    if ray.shot.is_some() || ray.under_way.is_some() {
+        ray.bring_up_to_date(&traced.world, &settings, &names);
+    }
+}

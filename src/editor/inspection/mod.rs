@@ -1,0 +1,106 @@
+//! What the tracer did, over the scene and in numbers: the lines of the room `inspect`, the debug
+//! ray with the list of its rays, and one ray's way through the trees, step by step.
+//!
+//! | module | does |
+//! |---|---|
+//! | [`debug_ray`] | a pixel, traced again with every ray written down |
+//! | [`draw`] | each system's lines as one set of retained gizmos |
+//! | [`lit`] | what is selected, in front of them |
+//! | [`hover`] | which line is under the pointer |
+//! | [`tell`] | what a line stands for, in words and numbers |
+//! | [`list`], [`column`] | the rays as a table: sorted, filtered, folded |
+//! | [`names`] | what objects, lights and materials are called |
+//! | [`addition`] | what the rays add up to, against the film |
+//! | [`json`] | all of it as text
+//! | [`stepper`] | plays a traversal forwards and back |
+//! | [`choice`] | which ray and which node are meant, and what keys do to them |
+//!
+//! Here are the facts and what is drawn in the view; the panels that show them are in `panels/rays`.
+
+pub(super) mod addition;
+pub(super) mod choice;
+pub(super) mod column;
+pub(super) mod debug_ray;
+mod draw;
+pub(super) mod hover;
+pub(super) mod json;
+pub(super) mod list;
+pub(super) mod lit;
+pub(super) mod names;
+pub(super) mod stepper;
+pub(super) mod tell;
+
+pub(super) use choice::Inspected;
+pub(super) use debug_ray::{DebugRay, Which};
+pub(super) use draw::Drawings;
+pub(super) use hover::Hovered;
+pub(super) use names::Names;
+
+use super::viewport::EditorCamera;
+use crate::inspect::InspectSettings;
+use crate::sync::SyncSystems;
+use crate::trace::Camera;
+use crate::view::TracedRender;
+use bevy::app::{App, Plugin, PostUpdate, Update};
+use bevy::ecs::query::With;
+use bevy::ecs::world::World;
+use bevy::math::UVec2;
+use bevy::prelude::IntoScheduleConfigs;
+
+/// The part that needs no window: the debug ray, the choice, the stepper.
+pub(super) struct RaysPlugin;
+
+impl Plugin for RaysPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_message::<super::action::Action>()
+            .init_resource::<InspectSettings>()
+            .init_resource::<super::notice::Notices>()
+            .init_resource::<DebugRay>()
+            .init_resource::<Inspected>()
+            .init_resource::<Names>()
+            .add_systems(Update, choice::obey)
+            .add_systems(
+                PostUpdate,
+                (
+                    names::learn,
+                    debug_ray::trace_again,
+                    choice::follow,
+                    stepper::play,
+                )
+                    .chain()
+                    .after(SyncSystems),
+            );
+    }
+}
+
+/// All of it, in a window.
+pub(super) struct InspectionPlugin;
+
+impl Plugin for InspectionPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_plugins(RaysPlugin)
+            .init_resource::<Drawings>()
+            .init_resource::<Hovered>()
+            .add_systems(
+                Update,
+                debug_ray::shoot_at_pointer.after(super::pointer::use_pointer),
+            )
+            .add_systems(
+                PostUpdate,
+                (draw::draw_inspection, lit::draw_lit)
+                    .chain()
+                    .after(stepper::play),
+            )
+            .add_systems(bevy::app::Last, hover::find_hovered);
+    }
+}
+
+/// The camera and the size of the picture that the view traces; `None` while it traces none.
+pub(super) fn view_of(world: &mut World) -> Option<(Camera, UVec2)> {
+    let mut renders = world.query_filtered::<&TracedRender, With<EditorCamera>>();
+    let (_, camera, settings) = renders.single(world).ok()?.subject()?;
+    Some((camera.clone(), settings.size))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,97 @@
+//! What the pixel under the pointer has, in the status line: the number that its colour stands for.
+
+use super::overlays::value_under_pointer;
+use super::says::note_hint;
+use super::state::Panels;
+use crate::editor::inspection::Names;
+use crate::editor::inspection::column::{color_text, vector_text};
+use crate::editor::viewport::{EditorCamera, Viewport};
+use crate::film::views::View;
+use crate::view::{TracedRender, TracedView};
+use bevy::ecs::query::With;
+use bevy::ecs::world::World;
+use bevy::math::{UVec2, Vec2};
+use bevy_egui::egui::{self, Rect, Ui};
+
+/// Says it where the pointer is over the traced picture.
+pub(super) fn readout_ui(ui: &Ui, free: Rect, world: &mut World, panels: &mut Panels) {
+    if !world.resource::<Viewport>().hovered {
+        return;
+    }
+    let mut query = world.query_filtered::<(&TracedView, &TracedRender), With<EditorCamera>>();
+    let Ok((view, render)) = query.single(world) else {
+        return;
+    };
+    let Some(pixel) = pixel_under_pointer(ui.ctx(), free, view, render) else {
+        return;
+    };
+    let value = value_under_pointer(ui, free, view, render, panels);
+    let names = world.get_resource::<Names>();
+    let hit = panels.under_pointer.as_ref().map(|(_, hit)| hit);
+    let unit = render.shown().and_then(|shown| shown.scale);
+    let text = match view.view {
+        View::Shaded | View::BloomThreshold | View::BloomLayer => {
+            let known = render.render().and_then(|render| render.pixel_sum(pixel));
+            known.map(|(sum, count)| match count {
+                0 => "no sample yet".into(),
+                1 => format!("{} (1 sample)", color_text(sum.mean(1))),
+                n => format!("{} ({n} samples)", color_text(sum.mean(n))),
+            })
+        }
+        View::Albedo => hit.map(|hit| format!("kd {}", color_text(hit.albedo))),
+        View::Normal => hit.map(|hit| vector_text(hit.normal)),
+        View::Object => hit.map(|hit| match (hit.object, names) {
+            (Some(id), Some(names)) => names.of(id.0),
+            (Some(id), None) => format!("#{}", id.0),
+            (None, _) => "nothing".into(),
+        }),
+        view => value.map(|value| {
+            let unit = unit.map_or("", |scale| scale.unit);
+            format!("{} {unit}", value_text(view, value))
+        }),
+    };
+    let text = text.unwrap_or_default();
+    note_hint(ui.ctx(), format!("pixel {}, {}: {text}", pixel.x, pixel.y));
+}
+
+fn pixel_under_pointer(
+    context: &egui::Context,
+    free: Rect,
+    view: &TracedView,
+    render: &TracedRender,
+) -> Option<UVec2> {
+    let at = context
+        .pointer_latest_pos()
+        .filter(|&at| free.contains(at))?;
+    let place = (at - free.min) / free.size();
+    let (_, _, settings) = render.subject()?;
+    let size = settings.size;
+    let pixel = (Vec2::new(place.x, place.y) * size.as_vec2()).as_uvec2();
+    (place.x >= view.divider).then(|| pixel.min(size - UVec2::ONE))
+}
+
+/// A heatmap's number with all that it has: counts are whole.
+pub(super) fn value_text(view: View, value: f32) -> String {
+    match view {
+        _ if value.is_nan() => "not known yet".into(),
+        _ if value.is_infinite() => "nothing there".into(),
+        View::Nodes | View::Triangles | View::Samples => format!("{value:.0}"),
+        View::Error if value.abs() < 1e-3 => format!("{value:.3e}"),
+        View::Error => format!("{value:.5}"),
+        _ => format!("{value:.4}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_are_whole_and_what_is_not_known_or_not_there_says_so() {
+        assert_eq!(value_text(View::Nodes, 12.0), "12");
+        assert_eq!(value_text(View::Depth, 12.0), "12.0000");
+        assert_eq!(value_text(View::Error, 0.0001234), "1.234e-4");
+        assert_eq!(value_text(View::Error, f32::NAN), "not known yet");
+        assert_eq!(value_text(View::Depth, f32::INFINITY), "nothing there");
+    }
+}

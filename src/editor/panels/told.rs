@@ -1,0 +1,222 @@
+//! What the lines over the picture stand for: beside the pointer, and of the chosen node in a corner.
+
+use super::says::Says;
+use super::state::Panels;
+use crate::bvh::primitives_below;
+use crate::editor::inspection::choice::Node;
+use crate::editor::inspection::lit::view;
+use crate::editor::inspection::tell::{Told, node_told, tell};
+use crate::editor::inspection::{DebugRay, Hovered, Inspected, Names};
+use crate::editor::pick::to_points;
+use crate::inspect::{InspectSettings, Stands, System};
+use crate::sync::Traced;
+use bevy::ecs::world::World;
+use bevy_egui::egui::{self, Align2, Grid, Id, Order, Rect, RichText, Ui, vec2};
+use std::sync::Arc;
+
+/// What was told last, of what.
+#[derive(Default)]
+pub(super) struct Tales {
+    hovered: Option<(Of, Option<Told>)>,
+    node: Option<(Of, Option<Told>)>,
+}
+
+/// A thing of a world and of a tree of rays, by their address and number.
+#[derive(Clone, Copy, PartialEq)]
+struct Of {
+    stands: (Stands, System),
+    world: usize,
+    rays: u64,
+    names: u64,
+}
+
+pub(super) fn told_ui(context: &egui::Context, free: Rect, world: &mut World, panels: &mut Panels) {
+    if !free.is_positive() || !world.contains_resource::<Inspected>() {
+        return;
+    }
+    hovered_ui(context, free, world, &mut panels.tales);
+    node_ui(context, free, world, &mut panels.tales);
+}
+
+/// The figures of what is under the pointer.
+fn hovered_ui(context: &egui::Context, free: Rect, world: &World, tales: &mut Tales) {
+    let hovered = world.get_resource::<Hovered>();
+    let Some((hovered, stands)) = hovered.and_then(|h| Some((h, h.found?))) else {
+        tales.hovered = None;
+        return;
+    };
+    let traced = &world.resource::<Traced>().world;
+    let ray = world.resource::<DebugRay>();
+    let names = world.resource::<Names>();
+    let of = Of {
+        stands,
+        world: Arc::as_ptr(traced) as usize,
+        rays: ray.number(),
+        names: names.version,
+    };
+    if tales.hovered.as_ref().is_none_or(|(known, _)| *known != of) {
+        let inspect = world.resource::<InspectSettings>();
+        let rays = ray.rays().map(Arc::as_ref);
+        tales.hovered = Some((of, tell(stands, traced, rays, inspect, names)));
+    }
+    let Some((_, Some(told))) = &tales.hovered else {
+        return;
+    };
+    let at = to_points(context, hovered.at);
+    // Away from the nearer sides of the picture, so that it lies over it.
+    let right = at.x < free.center().x;
+    let below = at.y < free.center().y;
+    let pivot = match (right, below) {
+        (true, true) => Align2::LEFT_TOP,
+        (true, false) => Align2::LEFT_BOTTOM,
+        (false, true) => Align2::RIGHT_TOP,
+        (false, false) => Align2::RIGHT_BOTTOM,
+    };
+    let side = |away: bool| if away { 16.0 } else { -12.0 };
+    egui::Area::new(Id::new("what is under the pointer"))
+        .order(Order::Tooltip)
+        .interactable(false)
+        .pivot(pivot)
+        .fixed_pos(at + vec2(side(right), side(below)))
+        .constrain_to(free)
+        .show(context, |ui| {
+            egui::Frame::popup(ui.style())
+                .inner_margin(egui::Margin::same(6))
+                .show(ui, |ui| figures_ui(ui, told));
+        });
+}
+
+fn figures_ui(ui: &mut Ui, told: &Told) {
+    ui.label(RichText::new(&told.title).strong());
+    if told.figures.is_empty() {
+        return;
+    }
+    Grid::new(("figures", &told.title))
+        .num_columns(2)
+        .spacing([10.0, 1.0])
+        .show(ui, |ui| {
+            for (name, value) in &told.figures {
+                ui.weak(*name);
+                ui.label(RichText::new(value).monospace().size(11.0));
+                ui.end_row();
+            }
+        });
+}
+
+/// The chosen node, and the ways from it.
+fn node_ui(context: &egui::Context, free: Rect, world: &mut World, tales: &mut Tales) {
+    let inspected = world.resource::<Inspected>();
+    let Some(node) = inspected.node().cloned() else {
+        tales.node = None;
+        return;
+    };
+    let names = world.resource::<Names>();
+    let of = Of {
+        stands: (
+            Stands::Node {
+                instance: node.instance,
+                node: node.node,
+            },
+            System::Boxes,
+        ),
+        world: Arc::as_ptr(&node.world) as usize,
+        rays: 0,
+        names: names.version,
+    };
+    if tales.node.as_ref().is_none_or(|(known, _)| *known != of) {
+        let told = node_told(&node.world, node.instance, node.node, names);
+        tales.node = Some((of, told));
+    }
+    let Some((_, Some(told))) = &tales.node else {
+        world.resource_mut::<Inspected>().choose_node(None);
+        return;
+    };
+    let mut next = Some(node.clone());
+    egui::Area::new(Id::new("the chosen node"))
+        .order(Order::Middle)
+        .fixed_pos(free.min + vec2(10.0, 10.0))
+        .constrain_to(free)
+        .show(context, |ui| {
+            egui::Frame::popup(ui.style())
+                .inner_margin(egui::Margin::same(6))
+                .show(ui, |ui| {
+                    figures_ui(ui, told);
+                    ways_ui(ui, &node, &mut next);
+                });
+        });
+    let is = |a: &Node| (a.instance, a.node) == (node.instance, node.node);
+    if !next.as_ref().is_some_and(is) {
+        world.resource_mut::<Inspected>().choose_node(next);
+    }
+}
+
+fn ways_ui(ui: &mut Ui, node: &Node, next: &mut Option<Node>) {
+    let Some(view) = view(&node.world, node.instance) else {
+        return;
+    };
+    let Some(here) = view.tree.nodes.get(node.node as usize) else {
+        return;
+    };
+    let parent = parent_of(&view, node.node);
+    let children = (!here.is_leaf()).then_some([here.first_index, here.first_index + 1]);
+    let ways = [
+        (
+            "Parent",
+            parent,
+            "Chooses the node that this one is a child of",
+        ),
+        ("Left", children.map(|c| c[0]), "Chooses its first child"),
+        ("Right", children.map(|c| c[1]), "Chooses its second child"),
+    ];
+    ui.horizontal(|ui| {
+        for (name, to, says) in ways {
+            let button = ui.add_enabled(to.is_some(), egui::Button::new(name).small());
+            if button.says(says).clicked()
+                && let Some(to) = to
+            {
+                *next = Some(Node {
+                    node: to,
+                    ..node.clone()
+                });
+            }
+        }
+        let close = ui.small_button("✖");
+        if close.says("No node is chosen (Esc)").clicked() {
+            *next = None;
+        }
+    });
+}
+
+fn parent_of(view: &crate::inspect::TreeView, node: u32) -> Option<u32> {
+    let place = primitives_below(view.tree, node as usize).start;
+    let path = view.path(place);
+    let at = path.iter().position(|&known| known == node)?;
+    at.checked_sub(1).map(|before| path[before])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::headless_app;
+    use crate::io::{OpenOptions, SceneSource, open};
+
+    #[test]
+    fn the_parent_of_a_node_is_the_one_whose_child_it_is() {
+        let mut app = headless_app();
+        let source = SceneSource::named(std::path::Path::new("knot"));
+        open(app.world_mut(), &source, OpenOptions::default()).unwrap();
+        app.update();
+        let world = app.world().resource::<Traced>().world.clone();
+        for instance in [None, Some(0)] {
+            let view = view(&world, instance).unwrap();
+            assert_eq!(parent_of(&view, 0), None);
+            for (index, node) in view.tree.nodes.iter().enumerate() {
+                if !node.is_leaf() {
+                    for child in [node.first_index, node.first_index + 1] {
+                        assert_eq!(parent_of(&view, child), Some(index as u32));
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,18 @@
+//! What draws the window.
+
+use bevy::ecs::system::{Res, SystemParam};
+use bevy::render::renderer::RenderAdapterInfo;
+
+/// What Bevy draws with, for a system.
+#[derive(SystemParam)]
+pub struct Adapter<'w> {
+    info: Option<Res<'w, RenderAdapterInfo>>,
+}
+
+impl Adapter<'_> {
+    /// Whether a processor draws, in software: each frame takes its time from the tracer.
+    pub fn is_a_processor(&self) -> bool {
+        let info = self.info.as_ref();
+        info.is_some_and(|info| info.device_type == wgpu_types::DeviceType::Cpu)
+    }
+}
