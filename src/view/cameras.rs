@@ -3,7 +3,11 @@
 
 use super::{RASTER_LAYER, TracedView, raster};
 use bevy::camera::visibility::RenderLayers;
-use bevy::camera::{Camera, Camera2d, ClearColorConfig, PerspectiveProjection, Projection};
+use bevy::camera::{
+    Camera, Camera2d, Camera3d, Camera3dDepthLoadOp, ClearColorConfig, PerspectiveProjection,
+    Projection,
+};
+use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::ecs::bundle::Bundle;
 use bevy::render::view::Msaa;
 
@@ -19,6 +23,26 @@ pub fn picture_camera() -> impl Bundle {
         raster::ambient(),
         RenderLayers::from_layers(&[0, RASTER_LAYER]),
         Projection::Perspective(PerspectiveProjection::default()),
+    )
+}
+
+/// Shows lines of a layer over a picture that stands in the window already, against its depth. It rests
+/// until it is made active.
+pub fn lines_camera(order: isize, layer: usize) -> impl Bundle {
+    (
+        Camera3d {
+            depth_load_op: Camera3dDepthLoadOp::Load,
+            ..Camera3d::default()
+        },
+        Camera {
+            order,
+            clear_color: ClearColorConfig::None,
+            is_active: false,
+            ..Camera::default()
+        },
+        Msaa::Off,
+        Tonemapping::None,
+        RenderLayers::layer(layer),
     )
 }
 

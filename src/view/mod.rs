@@ -34,7 +34,7 @@ mod symbols;
 mod traced;
 
 pub use adapter::Adapter;
-pub use cameras::{interface_camera, picture_camera};
+pub use cameras::{interface_camera, lines_camera, picture_camera};
 pub use handle_camera::{HandleCameraPlugin, draws_handles};
 pub use lines::{DrawnLines, Line, LinesPlugin};
 pub use pick::{Picked, TracedPickingPlugin, pick};

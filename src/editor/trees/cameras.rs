@@ -4,19 +4,14 @@
 use super::pair::LAYERS;
 use crate::editor::viewport::{EditorCamera, Viewport};
 use crate::inspect::InspectSettings;
-use bevy::camera::visibility::RenderLayers;
-use bevy::camera::{
-    Camera, Camera3d, Camera3dDepthLoadOp, ClearColorConfig, Projection, SubCameraView,
-    Viewport as Part,
-};
-use bevy::core_pipeline::tonemapping::Tonemapping;
+use crate::view::lines_camera;
+use bevy::camera::{Camera, Projection, SubCameraView, Viewport as Part};
 use bevy::ecs::component::Component;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::hierarchy::ChildOf;
 use bevy::ecs::query::{With, Without};
 use bevy::ecs::system::{Commands, Query, Res, Single};
 use bevy::math::{UVec2, Vec2};
-use bevy::render::view::Msaa;
 use bevy_egui::PrimaryEguiContext;
 
 /// The first one's place among the cameras of the window: behind Bevy's of the handles, which is 1.
@@ -65,18 +60,7 @@ pub(super) fn fit_cameras(
         for (side, layer) in LAYERS.into_iter().enumerate() {
             commands.spawn((
                 SideCamera(side),
-                Camera3d {
-                    depth_load_op: Camera3dDepthLoadOp::Load,
-                    ..Camera3d::default()
-                },
-                Camera {
-                    order: ORDER + side as isize,
-                    clear_color: ClearColorConfig::None,
-                    is_active: false,
-                    ..Camera::default()
-                },
-                (Msaa::Off, Tonemapping::None),
-                RenderLayers::layer(layer),
+                lines_camera(ORDER + side as isize, layer),
                 seen.clone(),
                 ChildOf(parent),
             ));
