@@ -17,7 +17,7 @@ use crate::io::builtin::{self, SCENES};
 use crate::io::{OpenOptions, SceneSource, open};
 use crate::scene::{Environment, PointLamp, RenderSettings, SceneId};
 use crate::view::TracedView;
-use bevy::app::{App, Last};
+use bevy::app::{App, Last, Plugin};
 use bevy::ecs::change_detection::DetectChanges;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::message::Messages;
@@ -61,8 +61,8 @@ impl Desk {
         .init_resource::<Viewport>()
         .init_resource::<Notices>()
         .add_message::<Action>()
-        .add_plugins(TreeStudyPlugin)
         .add_systems(Last, outline_scene);
+        TreeStudyPlugin.build(&mut app);
         app.world_mut().spawn((EditorCamera, TracedView::default()));
         let context = egui::Context::default();
         context.options_mut(|options| options.max_passes = std::num::NonZero::new(1).unwrap());
