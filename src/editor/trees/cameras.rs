@@ -12,20 +12,13 @@ use bevy::ecs::hierarchy::ChildOf;
 use bevy::ecs::query::{With, Without};
 use bevy::ecs::system::{Commands, Query, Res, Single};
 use bevy::math::{UVec2, Vec2};
-use bevy_egui::PrimaryEguiContext;
 
-/// The first one's place among the cameras of the window: behind Bevy's of the handles, which is 1.
-const ORDER: isize = 2;
+/// The first one's place among the cameras of the window: next after the editor's.
+const ORDER: isize = 1;
 
 /// A camera that draws one side, 0 or 1 from the left.
 #[derive(Component)]
 pub(super) struct SideCamera(usize);
-
-type IsPanels = (
-    With<PrimaryEguiContext>,
-    Without<SideCamera>,
-    Without<EditorCamera>,
-);
 
 /// Where the view is divided: pixels of its width that are on the left.
 fn left_width(width: u32, divider: f32) -> u32 {
@@ -40,21 +33,23 @@ pub(super) fn fit_cameras(
     viewport: Res<Viewport>,
     editor: Single<(Entity, &Camera, &Projection), With<EditorCamera>>,
     mut sides: Query<(Entity, &SideCamera, &mut Camera, &mut Projection), Without<EditorCamera>>,
-    mut panels: Query<&mut Camera, IsPanels>,
+    mut others: Query<&mut Camera, (Without<SideCamera>, Without<EditorCamera>)>,
 ) {
     let (parent, editor, seen) = editor.into_inner();
-    // The panels are in front of all of them.
-    let last = ORDER + LAYERS.len() as isize;
-    for mut panels in &mut panels {
-        if panels.order < last {
-            panels.order = last;
-        }
-    }
     if !(inspect.on && inspect.pair.on) {
         for (entity, ..) in &sides {
             commands.entity(entity).despawn();
         }
         return;
+    }
+    // Those of the handles, which begin with an empty depth, and of the panels come later.
+    let ours = ORDER..ORDER + LAYERS.len() as isize;
+    if others.iter().any(|camera| ours.contains(&camera.order)) {
+        for mut camera in &mut others {
+            if camera.order >= ORDER {
+                camera.order += LAYERS.len() as isize;
+            }
+        }
     }
     if sides.is_empty() {
         for (side, layer) in LAYERS.into_iter().enumerate() {
