@@ -3,8 +3,8 @@
 //! | ours | Bevy's |
 //! |---|---|
 //! | [`Phong`] | `StandardMaterial` on the same entity: kd is the base colour, ke the emission; a highlight of exponent s has about the roughness (2/(s+2))^¼ (Beckmann's, Walter et al. 2007, eq. 8, and Bevy's square); a mirror is metal |
-//! | [`PointLamp`] | `PointLight` of 4π·I/E lumens, or `SpotLight` |
-//! | [`DirectionalLamp`] | `DirectionalLight` of I/E lux |
+//! | [`PointLamp`] | `PointLight` of 4π·I lumens, or `SpotLight` |
+//! | [`DirectionalLamp`] | `DirectionalLight` of as many lux |
 //! | [`SegmentLamp`] | `PointLight` in its middle, of all its strength |
 //! | [`ParallelogramLamp`] | `SpotLight` in its middle along the normal, or `PointLight` where it has two sides |
 //!
@@ -21,7 +21,7 @@ use bevy::asset::{Assets, Handle};
 use bevy::camera::Exposure;
 use bevy::camera::visibility::{InheritedVisibility, RenderLayers, Visibility};
 use bevy::color::{Color, ColorToComponents, LinearRgba};
-use bevy::light::{DirectionalLight, PointLight, RectLight, SpotLight};
+use bevy::light::{DirectionalLight, PointLight, SpotLight};
 use bevy::math::{Quat, Vec3};
 use bevy::mesh::Mesh3d;
 use bevy::pbr::{MeshMaterial3d, StandardMaterial};
@@ -197,7 +197,7 @@ type WithoutOwnLight = (
     Without<PointLight>,
     Without<SpotLight>,
     Without<DirectionalLight>,
-    Without<RectLight>,
+    Without<bevy::light::RectLight>,
 );
 type AnyLamp = Or<(
     With<PointLamp>,

@@ -11,7 +11,7 @@
 //! | [`hierarchy`] | the list of entities, from the [`outline`] |
 //! | [`inspector`] | the tabs Object, Render, Debug and BVH |
 //! | [`status`] | the line below |
-//! | [`overlays`], [`compare`] | divider, legend, region, messages, a kept picture over the picture |
+//! | [`overlays`], [`compare`], [`notices`] | divider, legend, region, a kept picture, messages over the picture |
 //! | [`dialogs`] | what is in front of everything |
 
 mod compare;
@@ -21,6 +21,7 @@ mod gesture;
 mod hierarchy;
 mod inspector;
 mod menu_bar;
+mod notices;
 mod outline;
 mod overlays;
 mod says;
