@@ -4,7 +4,6 @@
 //! `cargo run --release --example embed_editor`; F10 switches between the editor and the app.
 
 use bevy::asset::RenderAssetUsages;
-use bevy::image::{ImageAddressMode, ImageSampler, ImageSamplerDescriptor};
 use bevy::prelude::*;
 use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat};
 use glassbox::editor::{Editing, EditorPlugins};
@@ -82,11 +81,12 @@ fn spawn_scene(
     ));
 }
 
-/// Light and dark squares, each a pixel.
+/// Light and dark squares.
 fn checkers() -> Image {
-    let pixels: Vec<u8> = (0..64)
+    const SIDE: u32 = 128;
+    let pixels: Vec<u8> = (0..SIDE * SIDE)
         .flat_map(|i| {
-            let light = (i / 8 + i % 8) % 2 == 0;
+            let light = (i / SIDE / 16 + i % SIDE / 16).is_multiple_of(2);
             let [r, g, b] = if light {
                 [190, 195, 200]
             } else {
@@ -96,24 +96,18 @@ fn checkers() -> Image {
         })
         .collect();
     let size = Extent3d {
-        width: 8,
-        height: 8,
+        width: SIDE,
+        height: SIDE,
         depth_or_array_layers: 1,
     };
     // The tracer reads it too: not only the renderer's world.
-    let mut image = Image::new(
+    Image::new(
         size,
         TextureDimension::D2,
         pixels,
         TextureFormat::Rgba8UnormSrgb,
         RenderAssetUsages::default(),
-    );
-    image.sampler = ImageSampler::Descriptor(ImageSamplerDescriptor {
-        address_mode_u: ImageAddressMode::Repeat,
-        address_mode_v: ImageAddressMode::Repeat,
-        ..ImageSamplerDescriptor::nearest()
-    });
-    image
+    )
 }
 
 fn switch(keys: Res<ButtonInput<KeyCode>>, mut editing: ResMut<Editing>) {

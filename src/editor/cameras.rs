@@ -3,7 +3,7 @@
 use super::embed::Editing;
 use super::viewport::{EditorCamera, Viewport};
 use crate::scene::NotTraced;
-use crate::view::{RASTER_LAYER, TracedView, interface_camera, picture_camera};
+use crate::view::{RASTER_LAYER, TracedRender, TracedView, interface_camera, picture_camera};
 use bevy::app::{App, Plugin, PostUpdate, PreStartup};
 use bevy::camera::Camera;
 use bevy::camera::visibility::RenderLayers;
@@ -49,12 +49,19 @@ fn pixels(place: Vec2, scale: f32) -> UVec2 {
     (place * scale).round().max(Vec2::ZERO).as_uvec2()
 }
 
+type SceneCamera = (
+    &'static mut Camera,
+    &'static mut TracedView,
+    &'static TracedRender,
+    &'static mut RenderLayers,
+);
+
 /// The scene's camera draws into the part of the window that the panels leave free.
 fn fit_viewport(
     viewport: Res<Viewport>,
     editing: Option<Res<Editing>>,
     window: Single<&Window, With<PrimaryWindow>>,
-    camera: Single<(&mut Camera, &mut TracedView, &mut RenderLayers), With<EditorCamera>>,
+    camera: Single<SceneCamera, With<EditorCamera>>,
     panels: Single<&mut Camera, (With<PrimaryEguiContext>, Without<EditorCamera>)>,
 ) {
     let editing = editing.is_none_or(|editing| editing.0);
@@ -62,7 +69,7 @@ fn fit_viewport(
     if panels.is_active != editing {
         panels.is_active = editing;
     }
-    let (mut camera, mut view, mut layers) = camera.into_inner();
+    let (mut camera, mut view, render, mut layers) = camera.into_inner();
     let scale = window.scale_factor();
     let min = pixels(viewport.rect.min, scale);
     let max = pixels(viewport.rect.max, scale).min(window.physical_size());
@@ -91,8 +98,8 @@ fn fit_viewport(
     if view.divider != divider {
         view.divider = divider;
     }
-    // What the traced picture covers is not drawn beneath it.
-    let wanted = if divider > 0.0 {
+    // What the traced picture covers is not drawn beneath it, once there is one.
+    let wanted = if divider > 0.0 || render.shown().is_none() {
         RenderLayers::from_layers(&[0, RASTER_LAYER])
     } else {
         RenderLayers::layer(0)

@@ -52,6 +52,11 @@ impl Notices {
         &self.0
     }
 
+    /// Takes all away.
+    pub fn close_all(&mut self) {
+        self.0.clear();
+    }
+
     /// Takes one away, by its place in what is shown.
     pub fn close(&mut self, index: usize) {
         if index < self.0.len() {

@@ -216,3 +216,45 @@ pub(crate) fn resolve_environment(
 pub(crate) fn split_fragment(path: &str) -> (&str, &str) {
     path.split_once('#').unwrap_or((path, ""))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::headless_app;
+
+    #[test]
+    fn a_picture_that_no_source_has_named_stays_and_one_that_was_goes_with_it() {
+        let mut app = headless_app();
+        let own = app
+            .world_mut()
+            .resource_mut::<Assets<Image>>()
+            .add(Image::default());
+        let maps = PhongMaps {
+            diffuse: Some(own.clone()),
+            opacity: None,
+        };
+        let entity = app.world_mut().spawn((Phong::default(), maps)).id();
+        app.update();
+        let diffuse = |app: &bevy::app::App| {
+            let maps = app.world().get::<PhongMaps>(entity).cloned();
+            maps.unwrap_or_default().diffuse
+        };
+        assert_eq!(diffuse(&app), Some(own.clone()), "an app's own picture");
+        let source = Some(TextureSource {
+            path: "builtin:uv".into(),
+        });
+        app.world_mut()
+            .get_mut::<Phong>(entity)
+            .unwrap()
+            .diffuse_map = source;
+        app.update();
+        let named = diffuse(&app);
+        assert!(named.is_some() && named != Some(own));
+        app.world_mut()
+            .get_mut::<Phong>(entity)
+            .unwrap()
+            .diffuse_map = None;
+        app.update();
+        assert_eq!(diffuse(&app), None);
+    }
+}

@@ -286,4 +286,28 @@ mod tests {
         };
         assert_eq!(phong(&blended).0.opacity, 0.25);
     }
+
+    #[test]
+    fn an_edit_of_ours_stays_until_bevys_is_edited_too() {
+        let mut app = App::new();
+        app.add_plugins((bevy::asset::AssetPlugin::default(), StandardMappingPlugin));
+        bevy::asset::AssetApp::init_asset::<StandardMaterial>(&mut app);
+        let light = PointLight::default();
+        let lamp = app.world_mut().spawn(light).id();
+        app.update();
+        app.world_mut()
+            .get_mut::<PointLamp>(lamp)
+            .unwrap()
+            .intensity = 7.0;
+        // What the lamp does not depend on.
+        let mut light = app.world_mut().get_mut::<PointLight>(lamp).unwrap();
+        light.shadow_maps_enabled = true;
+        app.update();
+        let now = |app: &App| app.world().get::<PointLamp>(lamp).unwrap().intensity;
+        assert_eq!(now(&app), 7.0);
+        let mut light = app.world_mut().get_mut::<PointLight>(lamp).unwrap();
+        light.intensity = 4.0 * PI / exposure();
+        app.update();
+        assert!((now(&app) - 1.0).abs() < 1e-5, "{} W/sr", now(&app));
+    }
 }

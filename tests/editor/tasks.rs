@@ -22,6 +22,13 @@ struct Task {
     act: fn(&mut App),
 }
 
+/// Selects the entity with this name, and asks for something to be done with it.
+fn act_on(app: &mut App, name: &str, action: Action) {
+    let id = named(app, name);
+    act(app, Action::Select(vec![id]));
+    act(app, action);
+}
+
 const BOX: &str = "cornell-box-parallelogram-light";
 
 const TASKS: &[Task] = &[
@@ -96,9 +103,7 @@ const TASKS: &[Task] = &[
         name: "delete an object",
         scene: BOX,
         act: |app| {
-            let block = named(app, "Mirror block");
-            act(app, Action::Select(vec![block]));
-            act(app, Action::Delete);
+            act_on(app, "Mirror block", Action::Delete);
         },
     },
     Task {
@@ -113,9 +118,7 @@ const TASKS: &[Task] = &[
         name: "duplicate an object",
         scene: BOX,
         act: |app| {
-            let block = named(app, "Mirror block");
-            act(app, Action::Select(vec![block]));
-            act(app, Action::Duplicate);
+            act_on(app, "Mirror block", Action::Duplicate);
         },
     },
     Task {

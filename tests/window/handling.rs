@@ -134,3 +134,49 @@ fn keys_that_are_typed_into_a_field_are_not_meant_for_the_scene() {
     ]"#;
     plays("cornell-box", script);
 }
+
+#[test]
+fn the_window_takes_other_sizes_and_says_nothing_of_the_machine() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let script = r#"[
+        Wait(Frames(5)),
+        Size(900, 500),
+        Wait(Frames(5)),
+        Size(1280, 720),
+        Wait(Frames(5)),
+        Size(700, 420),
+        Wait(Frames(5)),
+        Click(On("Red wall")),
+        Selected(["Red wall"]),
+        Quit,
+    ]"#;
+    let output = display.play(folder.path(), &["cornell-box"], script);
+    let (_, err) = crate::cli::texts(&output);
+    assert_eq!(output.status.code(), Some(0), "{err}");
+    assert!(!err.contains("INFO") && !err.contains("WARN"), "{err}");
+}
+
+#[test]
+fn ctrl_and_the_wheel_change_the_field_of_view() {
+    let script = r#"[
+        Wait(Frames(10)),
+        // Of the camera that is looked through: a step.
+        Move(View(0.5, 0.5)),
+        Hold("Ctrl"),
+        Wheel(-2),
+        LetGo("Ctrl"),
+        Undoes("Change the field of view"),
+        Key("Ctrl+Z"),
+        // Of the view itself: none.
+        Action(LookThrough(None)),
+        Hold("Ctrl"),
+        Wheel(4),
+        LetGo("Ctrl"),
+        AssertNot(path: "Eye.fov_y", is: 0.6867, within: 0.05),
+        Quit,
+    ]"#;
+    plays("cornell-box", script);
+}

@@ -49,10 +49,26 @@ pub(super) fn ask(world: &mut World, purpose: Purpose) {
                 since: Instant::now(),
                 choice: Mutex::new(receiver),
             });
+            world.resource_mut::<Document>().question = Some(Question::Waiting { purpose });
             return;
         }
     }
     ask_for_path(world, purpose, suggestion);
+}
+
+/// No dialog has appeared, or a person would rather type; what may still come of it is not waited
+/// for.
+pub(super) fn type_instead(world: &mut World, purpose: Purpose) {
+    let mut dialogs = world.resource_mut::<Dialogs>();
+    dialogs.open = None;
+    dialogs.broken = true;
+    let suggestion = suggestion(world, purpose);
+    ask_for_path(world, purpose, suggestion);
+}
+
+/// Nobody waits for the dialog any more.
+pub(super) fn give_up(world: &mut World) {
+    world.resource_mut::<Dialogs>().open = None;
 }
 
 fn ask_for_path(world: &mut World, purpose: Purpose, suggestion: PathBuf) {
@@ -94,14 +110,14 @@ pub(super) fn take_choices(world: &mut World) {
     }
     let (purpose, was_short) = (open.purpose, open.since.elapsed() < NO_DIALOG);
     dialogs.open = None;
+    let mut document = world.resource_mut::<Document>();
+    if matches!(document.question, Some(Question::Waiting { .. })) {
+        document.question = None;
+    }
     match choice {
         // The desktop's dialog has asked whether to replace a file.
         Ok(Some(path)) => files::request(world, &chosen(purpose, &path)),
-        _ if was_short => {
-            dialogs.broken = true;
-            let suggestion = suggestion(world, purpose);
-            ask_for_path(world, purpose, suggestion);
-        }
+        _ if was_short => type_instead(world, purpose),
         _ => world.resource_mut::<Document>().then = None,
     }
 }

@@ -21,6 +21,11 @@ pub enum Question {
         /// What to begin with.
         suggestion: PathBuf,
     },
+    /// A native dialog is open, or should be. Answers: `No` asks for a path to type instead, `Cancel`.
+    Waiting {
+        /// What for.
+        purpose: Purpose,
+    },
     /// Whether a file that exists is to be replaced. Answers: `Yes`, `Cancel`.
     Replace {
         /// The file.
@@ -82,6 +87,11 @@ pub fn answer(world: &mut World, answer: Answer) {
         (Question::Path { purpose, .. }, Answer::Path(path)) => {
             typed(world, purpose, &path);
         }
+        (Question::Waiting { purpose }, Answer::No) => dialog::type_instead(world, purpose),
+        (Question::Waiting { .. }, Answer::Cancel) => {
+            dialog::give_up(world);
+            world.resource_mut::<Document>().then = None;
+        }
         (Question::Replace { then, .. }, Answer::Yes) => perform_now(world, &then),
         (Question::Outside { file, .. }, Answer::Yes) => files::open_file(world, &file, true),
         (Question::Recover(found), Answer::Yes) => recovery::recover(world, &found),
@@ -122,5 +132,32 @@ pub(super) fn chosen(purpose: Purpose, path: &Path) -> Action {
             Action::SaveAs(name.into())
         }
         Purpose::SaveAs => Action::SaveAs(path.to_path_buf()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::headless_editor;
+
+    #[test]
+    fn who_waits_for_a_dialog_that_does_not_come_can_type_the_path() {
+        let mut app = headless_editor();
+        let world = app.world_mut();
+        let purpose = Purpose::Import;
+        let waits = || Some(Question::Waiting { purpose });
+        world.resource_mut::<Document>().question = waits();
+        answer(world, Answer::No);
+        let asked = world.resource::<Document>().question.clone();
+        assert!(matches!(
+            asked,
+            Some(Question::Path {
+                purpose: Purpose::Import,
+                ..
+            })
+        ));
+        world.resource_mut::<Document>().question = waits();
+        answer(world, Answer::Cancel);
+        assert_eq!(world.resource::<Document>().question, None);
     }
 }

@@ -225,3 +225,23 @@ fn tell(world: &mut World, done: bool, verb: &str, text: Option<String>, nothing
     };
     world.resource_mut::<Notices>().tell(text);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::action::Addition;
+    use crate::editor::headless_editor;
+    use crate::sync::Traced;
+
+    #[test]
+    fn what_is_added_is_traced_in_the_same_frame() {
+        let mut app = headless_editor();
+        app.update();
+        let traced = |app: &App| app.world().resource::<Traced>().world.objects.len();
+        assert_eq!(traced(&app), 0);
+        let cuboid = Addition::Shape("Cuboid".into());
+        app.world_mut().write_message(Action::Add(cuboid));
+        app.update();
+        assert_eq!(traced(&app), 1);
+    }
+}

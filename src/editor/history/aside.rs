@@ -77,3 +77,57 @@ pub(super) fn forget(world: &mut World) {
         world.despawn(entity);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{HistoryPlugin, redo, undo, within};
+    use super::*;
+    use crate::app::headless_app_with;
+    use crate::editor::edits::{EditsPlugin, delete, scene_entity};
+    use crate::scene::PointLamp;
+    use bevy::ecs::component::Component;
+    use bevy::ecs::hierarchy::ChildOf;
+    use bevy::transform::components::Transform;
+
+    /// Neither reflected nor cloned.
+    #[derive(Component, Debug, PartialEq)]
+    struct Own(u32);
+
+    #[test]
+    fn what_an_app_put_on_an_entity_comes_back_with_it() {
+        let mut app = headless_app_with((HistoryPlugin, EditsPlugin));
+        app.init_resource::<OnlyWithin>();
+        let world = app.world_mut();
+        let parent = (SceneId(1), Own(1), PointLamp::default());
+        let parent = world
+            .spawn((parent, Transform::from_xyz(1.0, 0.0, 0.0)))
+            .id();
+        world.spawn((SceneId(2), Own(2), PointLamp::default(), ChildOf(parent)));
+        app.update();
+        app.update();
+        for _ in 0..2 {
+            within(app.world_mut(), |world| delete(world, &[SceneId(1)]));
+            app.update();
+            let mut own = app.world_mut().query::<&Own>();
+            assert_eq!(
+                own.iter(app.world()).count(),
+                0,
+                "nobody finds it meanwhile"
+            );
+            assert!(within(app.world_mut(), undo));
+            app.update();
+            for (id, place) in [(1, 1.0), (2, 0.0)] {
+                let entity = scene_entity(app.world(), SceneId(id)).unwrap();
+                let entity = app.world().entity(entity);
+                assert_eq!(entity.get::<Own>(), Some(&Own(id as u32)));
+                assert_eq!(entity.get::<Transform>().unwrap().translation.x, place);
+            }
+            assert!(within(app.world_mut(), redo));
+            assert_eq!(scene_entity(app.world(), SceneId(2)), None);
+            assert!(within(app.world_mut(), undo));
+            app.update();
+        }
+        super::super::reset(app.world_mut());
+        assert!(app.world().resource::<Aside>().0.is_empty());
+    }
+}

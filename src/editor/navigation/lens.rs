@@ -71,9 +71,10 @@ pub(in crate::editor) fn widen(world: &mut World, notches: f32) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::editor::action::Action;
+    use crate::editor::document::adopt;
     use crate::editor::headless_editor;
     use crate::editor::history::History;
+    use crate::io::open_empty;
     use crate::scene::SceneId;
 
     fn camera(world: &mut World) -> (SceneId, f32) {
@@ -88,7 +89,8 @@ mod tests {
     #[test]
     fn a_cameras_field_of_view_is_a_step_and_the_views_own_is_none() {
         let mut app = headless_editor();
-        app.world_mut().write_message(Action::New);
+        open_empty(app.world_mut());
+        adopt(app.world_mut(), "empty", None);
         app.update();
         let world = app.world_mut();
         world.init_resource::<Eye>();

@@ -1,6 +1,7 @@
 //! What the actions of the view do.
 
-use super::{Eye, LookThrough, aspect, begin_gesture, end_gesture, move_camera, move_view};
+use super::drag::{begin_gesture, end_gesture};
+use super::{Eye, LookThrough, aspect, move_camera, move_view};
 use crate::editor::action::{Action, Addition, Axis};
 use crate::editor::edits::{self, AddAt};
 use crate::editor::extent::{extent_of, scene_extent};

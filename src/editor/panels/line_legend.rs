@@ -1,7 +1,7 @@
 //! What the lines that the tracer drew mean: a legend over the picture, with what there is to say of
 //! them, and the labels at their places.
 
-use super::overlays::is_over;
+use super::notices::is_over;
 use super::says::Says;
 use super::state::Panels;
 use crate::editor::inspection::{DebugRay, Drawings};

@@ -11,7 +11,7 @@
 //! | [`hierarchy`] | the list of entities, from the [`outline`] |
 //! | [`inspector`] | the tabs Object, Render, Debug and BVH |
 //! | [`status`] | the line below |
-//! | [`overlays`], [`compare`] | divider, legend, region, messages, a kept picture over the picture |
+//! | [`overlays`], [`compare`], [`notices`] | divider, legend, region, a kept picture, messages over the picture |
 //! | [`line_legend`], [`pattern`] | what the tracer's lines mean, and where a pixel's samples lie |
 //! | [`tree_pair`] | which builder's trees are on which side |
 //! | [`rays`] | the ray inspector, below the picture or over it |
@@ -26,6 +26,7 @@ mod hierarchy;
 mod inspector;
 mod line_legend;
 mod menu_bar;
+mod notices;
 mod outline;
 mod overlays;
 mod pattern;

@@ -1,15 +1,14 @@
 //! What lies over the picture: the divider of the split view, the legend of a heatmap, the frame of
-//! a region, messages, and the hint of the first run.
+//! a region; [`notices`](super::notices) has the rest.
 
 use super::line_legend::line_legend_ui;
+use super::notices::{hint_ui, is_over, notices_ui};
 use super::pattern::pattern_ui;
 use super::readout::value_text;
 use super::says::Says;
 use super::state::Panels;
 use super::theme::accent;
 use super::tree_pair;
-use crate::editor::notice::Notices;
-use crate::editor::preferences::Preferences;
 use crate::editor::viewport::{EditorCamera, Show, Viewport};
 use crate::film::views::{Scale, View};
 use crate::scene::RenderSettings;
@@ -327,77 +326,4 @@ pub(super) fn value_under_pointer(
             })
         }
     }
-}
-
-/// Messages, the newest below.
-fn notices_ui(context: &egui::Context, free: Rect, world: &mut World) -> bool {
-    // Only looked at while there are any: asking makes the resource count as changed.
-    if world.resource::<Notices>().is_empty() {
-        return false;
-    }
-    let mut closed = None;
-    let mut notices = world.resource_mut::<Notices>();
-    let shown: Vec<_> = notices.shown().to_vec();
-    let width = (free.width() - 40.0).clamp(120.0, 460.0);
-    let bottom = context.viewport_rect().max - free.max;
-    let area = egui::Area::new(Id::new("notices"))
-        .anchor(Align2::RIGHT_BOTTOM, -bottom - vec2(12.0, 12.0))
-        .order(egui::Order::Foreground)
-        .show(context, |ui| {
-            ui.set_max_width(width);
-            for (i, notice) in shown.iter().enumerate() {
-                egui::Frame::popup(ui.style()).show(ui, |ui| {
-                    ui.horizontal_top(|ui| {
-                        ui.set_width(width);
-                        let color = match notice.is_fault {
-                            true => ui.visuals().error_fg_color,
-                            false => ui.visuals().text_color(),
-                        };
-                        let text = egui::RichText::new(&notice.text).color(color);
-                        let room = ui.available_width() - 30.0;
-                        ui.allocate_ui(vec2(room, 0.0), |ui| {
-                            ui.set_width(room);
-                            ui.add(egui::Label::new(text).wrap().selectable(true));
-                        });
-                        if ui.small_button("✖").says("Closes this message").clicked() {
-                            closed = Some(i);
-                        }
-                    });
-                });
-            }
-        });
-    if let Some(i) = closed {
-        notices.close(i);
-    }
-    !shown.is_empty() && is_over(context, area.response.rect)
-}
-
-pub(super) fn is_over(context: &egui::Context, rect: Rect) -> bool {
-    let pointer = context.pointer_latest_pos();
-    pointer.is_some_and(|at| rect.contains(at))
-}
-
-/// How one begins, until it was read once.
-fn hint_ui(context: &egui::Context, free: Rect, world: &mut World) {
-    if world.resource::<Preferences>().hint_seen {
-        return;
-    }
-    let text = "Click selects · middle drag turns the view, with Shift moves it · wheel zooms · W E T: move, turn, scale · F1: all keys";
-    let top = free.min.y + 10.0;
-    let middle = free.center().x - context.viewport_rect().center().x;
-    egui::Area::new(Id::new("hint"))
-        .anchor(Align2::CENTER_TOP, vec2(middle, top))
-        .order(egui::Order::Middle)
-        .show(context, |ui| {
-            ui.set_max_width((free.width() - 40.0).max(160.0));
-            egui::Frame::popup(ui.style()).show(ui, |ui| {
-                ui.horizontal_wrapped(|ui| {
-                    ui.label(text);
-                    let close = ui.small_button("Got it");
-                    if close.says("Does not show this line again").clicked() {
-                        world.resource_mut::<Preferences>().hint_seen = true;
-                    }
-                });
-            });
-        });
 }

@@ -1,9 +1,14 @@
 //! One property of several entities at once: a field shows the active one's value, says where the
 //! others differ, and what is entered reaches all of them.
 
+use super::fields::{self, Number};
+use bevy::color::LinearRgba;
 use bevy::ecs::component::{Component, Mutable};
 use bevy::ecs::entity::Entity;
 use bevy::ecs::world::World;
+use bevy::math::Vec3;
+use bevy_egui::egui::Ui;
+use std::ops::RangeInclusive;
 
 /// Copies of the same component of several entities, the active one's first.
 pub(super) struct Several<C> {
@@ -73,6 +78,91 @@ impl<C: Component<Mutability = Mutable> + Clone + PartialEq> Several<C> {
                 *component = value;
             }
         }
+    }
+}
+
+/// Rows of fields: each shows the active one's property, and sets it for all.
+impl<C: Component<Mutability = Mutable> + Clone + PartialEq> Several<C> {
+    /// A number.
+    pub fn number(
+        &mut self,
+        ui: &mut Ui,
+        label: &str,
+        says: &str,
+        number: Number,
+        property: impl Fn(&mut C) -> &mut f32,
+    ) {
+        self.field(property, |value, mixed| {
+            number.row(ui, label, says, value, mixed)
+        });
+    }
+
+    /// A whole number.
+    pub fn integer(
+        &mut self,
+        ui: &mut Ui,
+        label: &str,
+        says: &str,
+        range: RangeInclusive<u32>,
+        property: impl Fn(&mut C) -> &mut u32,
+    ) {
+        self.field(property, |value, mixed| {
+            fields::integer(ui, label, says, value, range, mixed)
+        });
+    }
+
+    /// An angle; the range is in degrees.
+    pub fn angle(
+        &mut self,
+        ui: &mut Ui,
+        label: &str,
+        says: &str,
+        degrees: [f32; 2],
+        property: impl Fn(&mut C) -> &mut f32,
+    ) {
+        self.field(property, |value, mixed| {
+            fields::angle(ui, label, says, value, degrees, mixed)
+        });
+    }
+
+    /// A colour in [0, 1].
+    pub fn color(
+        &mut self,
+        ui: &mut Ui,
+        label: &str,
+        says: &str,
+        property: impl Fn(&mut C) -> &mut LinearRgba,
+    ) {
+        self.field(property, |value, mixed| {
+            fields::color(ui, label, says, value, mixed)
+        });
+    }
+
+    /// Three numbers.
+    pub fn point(
+        &mut self,
+        ui: &mut Ui,
+        label: &str,
+        says: &str,
+        number: Number,
+        property: impl Fn(&mut C) -> &mut Vec3,
+    ) {
+        self.field(property, |value, mixed| {
+            fields::point(ui, label, says, value, number, mixed)
+        });
+    }
+
+    /// A switch.
+    pub fn switch(
+        &mut self,
+        ui: &mut Ui,
+        label: &str,
+        says: &str,
+        property: impl Fn(&mut C) -> &mut bool,
+    ) {
+        self.field(property, |value, mixed| {
+            fields::switch(ui, label, says, value, mixed)
+        });
     }
 }
 

@@ -6,6 +6,9 @@ use bevy_egui::egui::{
     ThemePreference, Visuals, vec2,
 };
 
+/// Seconds from press to release that are still a click: where frames take long a press is seen late.
+const LONGEST_CLICK: f64 = 5.0;
+
 /// The accent on dark surfaces, and on light ones.
 const ACCENT: [Color32; 2] = [
     Color32::from_rgb(79, 188, 199),
@@ -54,7 +57,7 @@ const DARK: Palette = Palette {
 const LIGHT: Palette = Palette {
     well: Color32::from_rgb(255, 255, 255),
     panel: Color32::from_rgb(240, 241, 243),
-    raised: Color32::from_rgb(250, 250, 251),
+    raised: Color32::from_rgb(244, 245, 247),
     button: [
         Color32::from_rgb(222, 225, 229),
         Color32::from_rgb(208, 213, 219),
@@ -83,6 +86,9 @@ pub(super) fn apply(context: &egui::Context, preferences: &Preferences) {
     if !context.data(|data| data.get_temp::<bool>(ours).unwrap_or(false)) {
         context.set_style_of(Theme::Dark, style(Theme::Dark));
         context.set_style_of(Theme::Light, style(Theme::Light));
+        context.options_mut(|options| {
+            options.input_options.max_click_duration = LONGEST_CLICK;
+        });
         context.data_mut(|data| data.insert_temp(ours, true));
     }
     let wanted = match preferences.theme {

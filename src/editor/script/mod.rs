@@ -18,7 +18,9 @@
 //! Pointer and keys go in as the window's own events, so that panels and view get them as from a
 //! person. A step that is not known, or a claim that is wrong, is named with its file and line.
 
+mod claims;
 mod keyboard;
+mod mouse;
 mod player;
 mod screen;
 mod spot;

@@ -1,14 +1,14 @@
 //! Plays a script: a movement, a press or a release a frame, as the window would send them.
 
 use super::super::action::Action;
-use super::super::edits::scene_entity;
-use super::super::history::History;
 use super::super::selection::Selection;
 use super::super::viewport::EditorCamera;
+use super::claims::check;
 use super::keyboard::{parse, send_key, send_letter};
+use super::mouse::{move_pointer, press, turn_wheel};
 use super::screen::{Shot, shoot};
 use super::spot::{Texts, named, place, read_texts};
-use super::step::{Button, Spot, Step, Until, Value};
+use super::step::{Button, Spot, Step, Until};
 use super::{Script, value};
 use crate::scene::SceneId;
 use crate::view::TracedRender;
@@ -19,11 +19,9 @@ use bevy::ecs::resource::Resource;
 use bevy::ecs::world::{Mut, World};
 use bevy::input::ButtonState;
 use bevy::input::keyboard::KeyCode;
-use bevy::input::mouse::{MouseButton, MouseButtonInput, MouseScrollUnit, MouseWheel};
-use bevy::input::touch::TouchPhase;
 use bevy::math::Vec2;
 use bevy::prelude::IntoScheduleConfigs;
-use bevy::window::{CursorMoved, PrimaryWindow, Window, WindowEvent, WindowResized};
+use bevy::window::{PrimaryWindow, Window, WindowEvent, WindowResized};
 use bevy_egui::EguiPostUpdateSet;
 use std::collections::VecDeque;
 use std::io::Write;
@@ -298,7 +296,10 @@ fn make(
     next: Move,
 ) -> Result<Option<Move>, String> {
     match next {
-        Move::To(at) => move_pointer(world, player, window, at),
+        Move::To(at) => {
+            move_pointer(world, window, player.at, at);
+            player.at = at;
+        }
         Move::Button(button, state) => press(world, window, button, state),
         Move::Key(key, state) => {
             if key == KeyCode::ShiftLeft {
@@ -307,17 +308,7 @@ fn make(
             send_key(world, window, key, state, player.shift);
         }
         Move::Letter(letter, state) => send_letter(world, window, letter, state),
-        Move::Wheel(notches) => {
-            let wheel = MouseWheel {
-                unit: MouseScrollUnit::Line,
-                x: 0.0,
-                y: notches,
-                window,
-                phase: TouchPhase::Moved,
-            };
-            world.write_message(wheel);
-            world.write_message(WindowEvent::MouseWheel(wheel));
-        }
+        Move::Wheel(notches) => turn_wheel(world, window, notches),
         Move::Frames(frames) => {
             return Ok((frames > 1).then(|| Move::Frames(frames - 1)));
         }
@@ -356,120 +347,4 @@ fn samples(world: &mut World) -> Option<f64> {
         crate::film::State::Ended(_) => f64::INFINITY,
         _ => status.samples,
     })
-}
-
-fn move_pointer(world: &mut World, player: &mut Player, entity: Entity, at: Vec2) {
-    if let Some(mut window) = world.get_mut::<Window>(entity) {
-        let physical = (at * window.scale_factor()).as_dvec2();
-        window.set_physical_cursor_position(Some(physical));
-    }
-    let moved = CursorMoved {
-        window: entity,
-        position: at,
-        delta: Some(at - player.at),
-    };
-    player.at = at;
-    world.write_message(moved.clone());
-    world.write_message(WindowEvent::CursorMoved(moved));
-}
-
-fn press(world: &mut World, window: Entity, button: Button, state: ButtonState) {
-    let button = match button {
-        Button::Left => MouseButton::Left,
-        Button::Middle => MouseButton::Middle,
-        Button::Right => MouseButton::Right,
-    };
-    let input = MouseButtonInput {
-        button,
-        state,
-        window,
-    };
-    world.write_message(input);
-    world.write_message(WindowEvent::MouseButtonInput(input));
-}
-
-/// Checks a claim; otherwise what was found instead.
-fn check(world: &mut World, claim: Step) -> Result<(), String> {
-    match claim {
-        Step::Assert {
-            of,
-            path,
-            is,
-            within,
-        } => {
-            let found = value::read(world, of.as_deref(), &path)?;
-            if !found.is(&is, within) {
-                let subject = subject(of.as_deref(), &path);
-                let about = about(&is, within);
-                return Err(format!("{subject} is {found}, and should be {about}"));
-            }
-        }
-        Step::AssertNot {
-            of,
-            path,
-            is,
-            within,
-        } => {
-            let found = value::read(world, of.as_deref(), &path)?;
-            if found.is(&is, within) {
-                let subject = subject(of.as_deref(), &path);
-                return Err(format!("{subject} is {found}, and should not be"));
-            }
-        }
-        Step::Selected(names) => {
-            let mut wanted = names
-                .iter()
-                .map(|name| named(world, name))
-                .collect::<Result<Vec<_>, _>>()?;
-            let mut found = world.resource::<Selection>().ids().to_vec();
-            wanted.sort_unstable();
-            found.sort_unstable();
-            if found != wanted {
-                let found: Vec<String> = found.iter().map(|id| name_of(world, *id)).collect();
-                return Err(format!("selected is {found:?}, and should be {names:?}"));
-            }
-        }
-        Step::Exists(name) => {
-            named(world, &name)?;
-        }
-        Step::Gone(name) => {
-            if named(world, &name).is_ok() {
-                return Err(format!("there is an entity {name:?}, and should be none"));
-            }
-        }
-        Step::Undoes(text) => {
-            let found = world.resource::<History>().undo_text();
-            if found != Some(text.as_str()) {
-                return Err(format!("undo takes back {found:?}, and should {text:?}"));
-            }
-        }
-        Step::Shows(text) => {
-            if !world.resource::<Texts>().shows(&text) {
-                return Err(format!("no panel shows {text:?}"));
-            }
-        }
-        other => return Err(format!("{other:?} is no claim")),
-    }
-    Ok(())
-}
-
-fn subject(of: Option<&str>, path: &str) -> String {
-    match of {
-        Some(name) => format!("{name}'s {path}"),
-        None => path.to_owned(),
-    }
-}
-
-fn about(is: &Value, within: f64) -> String {
-    if within > 0.0 {
-        format!("{is} ± {within}")
-    } else {
-        is.to_string()
-    }
-}
-
-fn name_of(world: &mut World, id: SceneId) -> String {
-    let entity = scene_entity(world, id);
-    let name = entity.and_then(|entity| world.get::<bevy::ecs::name::Name>(entity));
-    name.map_or_else(|| format!("{id:?}"), |name| name.to_string())
 }

@@ -25,7 +25,8 @@ pub fn write_picture(
 }
 
 /// The same with notes, a name and a text each: a PNG keeps them as international text, an OpenEXR
-/// file as attributes; JPEG and HDR have no place for them. A name is 1 to 79 letters, a text has no
+/// file `Software` as that attribute and the others as lines of `comments`; JPEG and HDR have no
+/// place for them. A name is 1 to 79 letters, a text has no
 /// zeros in it.
 pub fn write_picture_with_notes(
     path: &Path,
@@ -104,12 +105,25 @@ fn write_exr(
     notes: &[(&str, String)],
 ) -> io::Result<()> {
     use exr::prelude::*;
+    // Attributes of other names would stand in an order of chance, and no two files be the same.
+    let text = |text: &str| {
+        // The format's letters are those of Latin-1.
+        let known = |letter: char| {
+            if u32::from(letter) < 256 { letter } else { '?' }
+        };
+        Text::new_or_none(text.chars().map(known).collect::<String>())
+    };
     let mut attributes = LayerAttributes::default();
-    for (name, text) in notes {
-        let no_text = || io::Error::other(format!("the note {name} is no plain text"));
-        let name = Text::new_or_none(name).ok_or_else(no_text)?;
-        let text = Text::new_or_none(text).ok_or_else(no_text)?;
-        attributes.other.insert(name, AttributeValue::Text(text));
+    let mut lines = Vec::new();
+    for (name, note) in notes {
+        if *name == "Software" {
+            attributes.software_name = text(note);
+        } else {
+            lines.push(format!("{name}: {note}"));
+        }
+    }
+    if !lines.is_empty() {
+        attributes.comments = text(&lines.join("\n"));
     }
     let size = (width as usize, height as usize);
     let pixel = |at: Vec2<usize>| {
@@ -207,7 +221,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let notes = [
             ("Software", "Glassbox".to_owned()),
-            ("Settings", "größe=4 a=b".into()),
+            ("Camera", "größe Ж".into()),
         ];
         for name in ["a.png", "a.exr"] {
             let (with, without) = (
@@ -232,11 +246,10 @@ mod tests {
             .collect();
         assert_eq!(text, notes.clone().map(|(_, text)| text));
         let exr = exr::meta::MetaData::read_from_file(folder.path().join("a.exr"), false).unwrap();
-        let kept = &exr.headers[0].own_attributes.other;
-        for (name, text) in notes {
-            let value = kept.get(&exr::meta::attribute::Text::from(name)).unwrap();
-            assert_eq!(value.to_text().unwrap().to_string(), text);
-        }
+        let kept = &exr.headers[0].own_attributes;
+        let text = |text: &Option<exr::meta::attribute::Text>| text.clone().unwrap().to_string();
+        assert_eq!(text(&kept.software_name), "Glassbox");
+        assert_eq!(text(&kept.comments), "Camera: größe ?");
     }
 
     #[test]

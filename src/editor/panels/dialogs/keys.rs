@@ -1,7 +1,10 @@
 //! Every key, from the table of actions, and what the mouse does.
 
 use crate::editor::action::{ACTIONS, Keys};
-use bevy_egui::egui::{Grid, RichText, Ui};
+use bevy_egui::egui::{Grid, Label, RichText, Ui};
+
+/// How much room keys get, in points: the longest of them.
+const KEYS: f32 = 215.0;
 
 /// What is no action of the table: held keys and the mouse.
 const MOUSE: &[(&str, &str)] = &[
@@ -55,14 +58,17 @@ pub(super) fn keys_ui(ui: &mut Ui) {
 }
 
 fn grid_ui<'a>(ui: &mut Ui, id: &str, rows: impl Iterator<Item = (String, &'a str)>) {
+    let width = ui.available_width();
     Grid::new(id)
         .num_columns(2)
+        .min_col_width(KEYS)
+        .max_col_width(width - KEYS - 30.0)
         .striped(true)
         .spacing([18.0, 3.0])
         .show(ui, |ui| {
             for (key, says) in rows {
                 ui.label(RichText::new(key).monospace());
-                ui.label(says);
+                ui.add(Label::new(says).wrap());
                 ui.end_row();
             }
         });

@@ -42,6 +42,18 @@ pub(super) fn answer_actions(world: &World, panels: &mut Panels) {
     }
 }
 
+/// A dialog's title, and its width in points.
+pub(super) fn frame_of(dialog: Dialog) -> (&'static str, f32) {
+    match dialog {
+        Dialog::Keys => ("Keys and mouse", 760.0),
+        Dialog::About => ("About Glassbox", 440.0),
+        Dialog::Preferences => ("Preferences", 380.0),
+        Dialog::Scenes => ("Built-in scenes", 790.0),
+        Dialog::History => ("History", 420.0),
+        Dialog::Render => ("Render to a file", 460.0),
+    }
+}
+
 pub(super) fn dialogs_ui(context: &egui::Context, world: &mut World, panels: &mut Panels) {
     // What the document asks comes first: something waits for it.
     if question::question_ui(context, world, panels) {
@@ -51,14 +63,7 @@ pub(super) fn dialogs_ui(context: &egui::Context, world: &mut World, panels: &mu
         panels.dialog_before = None;
         return;
     };
-    let (title, width) = match dialog {
-        Dialog::Keys => ("Keys and mouse", 560.0),
-        Dialog::About => ("About Glassbox", 440.0),
-        Dialog::Preferences => ("Preferences", 380.0),
-        Dialog::Scenes => ("Built-in scenes", 790.0),
-        Dialog::History => ("History", 420.0),
-        Dialog::Render => ("Render to a file", 460.0),
-    };
+    let (title, width) = frame_of(dialog);
     let stays = modal_ui(context, title, width, |ui| match dialog {
         Dialog::Keys => keys::keys_ui(ui),
         Dialog::About => about::about_ui(ui),
@@ -81,7 +86,9 @@ pub(super) fn dialogs_ui(context: &egui::Context, world: &mut World, panels: &mu
 fn modal_ui(context: &egui::Context, title: &str, width: f32, body: impl FnOnce(&mut Ui)) -> bool {
     let screen = context.content_rect().size();
     let mut stays = true;
-    let response = Modal::new(Id::new(title)).show(context, |ui| {
+    // As high as what is in it asks for, and the screen allows.
+    let area = Modal::default_area(Id::new(title)).default_size(screen);
+    let response = Modal::new(Id::new(title)).area(area).show(context, |ui| {
         ui.set_width(width.min(screen.x - 40.0));
         ui.horizontal(|ui| {
             ui.label(RichText::new(title).heading());

@@ -6,7 +6,7 @@ use super::modal_ui;
 use crate::editor::document::{Answer, Document, Purpose, Question, answer};
 use bevy::ecs::world::World;
 use bevy_egui::egui::{self, Key, TextEdit, Ui};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Shows the document's question, if one is open; true where it is.
 pub(super) fn question_ui(context: &egui::Context, world: &mut World, panels: &mut Panels) -> bool {
@@ -23,6 +23,7 @@ pub(super) fn question_ui(context: &egui::Context, world: &mut World, panels: &m
             Purpose::SaveAs => "Save as",
             Purpose::Import => "Import",
         },
+        Question::Waiting { .. } => "A file dialog is open",
         Question::Replace { .. } => "The file exists",
         Question::Outside { .. } => "Files outside the folder",
         Question::Recover(_) => "Unsaved work was found",
@@ -44,6 +45,20 @@ pub(super) fn question_ui(context: &egui::Context, world: &mut World, panels: &m
             suggestion,
         } => {
             answered = path_ui(ui, panels, *purpose, suggestion.clone());
+        }
+        Question::Waiting { .. } => {
+            ui.label("The desktop's own dialog waits for an answer.");
+            answered = buttons_ui(
+                ui,
+                &[
+                    (
+                        "Type the path",
+                        "Asks here, where no dialog has appeared",
+                        Answer::No,
+                    ),
+                    ("Cancel", "Leaves everything as it is", Answer::Cancel),
+                ],
+            );
         }
         Question::Replace { file, .. } => {
             ui.label(format!("{} is there already.", file.display()));
@@ -86,7 +101,9 @@ pub(super) fn question_ui(context: &egui::Context, world: &mut World, panels: &m
             );
         }
     });
-    let answered = answered.or((!stays).then_some(Answer::Cancel));
+    // A click beside it is no answer while something else is waited for.
+    let leaves = !stays && !matches!(question, Question::Waiting { .. });
+    let answered = answered.or(leaves.then_some(Answer::Cancel));
     if let Some(answered) = answered {
         panels.typed_path = None;
         answer(world, answered);
@@ -108,6 +125,16 @@ fn buttons_ui(ui: &mut Ui, answers: &[(&str, &str, Answer)]) -> Option<Answer> {
     let enter = ui.input(|input| input.key_pressed(Key::Enter));
     let first = answers.first().filter(|_| enter);
     answered.or(first.map(|(_, _, answer)| answer.clone()))
+}
+
+/// Where a relative path leads to.
+pub(super) fn whole_path_ui(ui: &mut Ui, path: &Path) {
+    let whole = std::path::absolute(path)
+        .ok()
+        .filter(|_| path.is_relative());
+    if let Some(whole) = whole {
+        ui.weak(whole.display().to_string());
+    }
 }
 
 /// A path is typed, where the system has no dialog for it.
@@ -139,6 +166,7 @@ fn path_ui(
     let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     let path = PathBuf::from(text.trim());
     let is_empty = path.as_os_str().is_empty();
+    whole_path_ui(ui, &path);
     ui.add_space(8.0);
     let mut answered = (entered && !is_empty).then(|| Answer::Path(path.clone()));
     ui.horizontal(|ui| {

@@ -5,6 +5,7 @@ use super::super::menu_bar::cameras;
 use super::super::says::Says;
 use super::super::state::Panels;
 use super::super::status::percent;
+use super::question::whole_path_ui;
 use crate::editor::render_job::{
     RenderFrom, RenderJob, RenderProgress, RenderRequest, start_render,
 };
@@ -14,6 +15,7 @@ use crate::view::TracedRender;
 use bevy::ecs::query::With;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{self, Color32, ComboBox, DragValue, ProgressBar, RichText, TextEdit, Ui};
+use std::path::Path;
 
 /// What is entered, kept while the dialog is closed.
 pub(in super::super) struct RenderForm {
@@ -67,6 +69,7 @@ pub(super) fn render_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
         ui.add(TextEdit::singleline(&mut form.file).desired_width(width))
             .says(says);
     });
+    whole_path_ui(ui, Path::new(form.file.trim()));
     from_ui(ui, world, form);
     row(ui, "Size", "Pixels of the picture", |ui| {
         for axis in 0..2 {

@@ -108,6 +108,10 @@ pub(super) fn scenes_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
                 None => {
                     let well = ui.visuals().extreme_bg_color;
                     ui.painter().rect_filled(place, 2.0, well);
+                    let (at, font) = (place.center(), egui::TextStyle::Small.resolve(ui.style()));
+                    let faint = ui.visuals().weak_text_color();
+                    let painter = ui.painter();
+                    painter.text(at, egui::Align2::CENTER_CENTER, "rendering…", font, faint);
                 }
             }
             let font = egui::TextStyle::Small.resolve(ui.style());

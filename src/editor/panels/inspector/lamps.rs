@@ -1,6 +1,6 @@
 //! The four kinds of light.
 
-use super::super::fields::{Number, angle, color, color_ui, integer, point, row, section, switch};
+use super::super::fields::{Number, angle, color_ui, row, section, switch};
 use super::super::several::Several;
 use crate::scene::{Cone, DirectionalLamp, ParallelogramLamp, PointLamp, SegmentLamp};
 use bevy::color::LinearRgba;
@@ -35,22 +35,19 @@ pub(super) fn lamps_ui(ui: &mut Ui, world: &mut World, entities: &[Entity]) {
     }
 }
 
-fn intensity(ui: &mut Ui, unit: &'static str, says: &str, value: &mut f32, mixed: bool) -> bool {
-    Number::positive(0.02, unit).row(ui, "Intensity", says, value, mixed)
+fn intensity(unit: &'static str) -> Number {
+    Number::positive(0.02, unit)
 }
 
+/// A place or an edge in the light's own space.
+const POINT: Number = Number::free(0.01, "");
+
 fn point_ui(ui: &mut Ui, several: &mut Several<PointLamp>) {
-    several.field(
-        |lamp| &mut lamp.color,
-        |value, mixed| color(ui, "Colour", COLOR, value, mixed),
-    );
-    several.field(
-        |lamp| &mut lamp.intensity,
-        |value, mixed| {
-            let says = "Radiant intensity: what reaches a surface falls with the distance squared";
-            intensity(ui, "W/sr", says, value, mixed)
-        },
-    );
+    several.color(ui, "Colour", COLOR, |lamp| &mut lamp.color);
+    let says = "Radiant intensity: what reaches a surface falls with the distance squared";
+    several.number(ui, "Intensity", says, intensity("W/sr"), |lamp| {
+        &mut lamp.intensity
+    });
     several.field(
         |lamp| &mut lamp.cone,
         |value, mixed| {
@@ -99,63 +96,31 @@ fn point_ui(ui: &mut Ui, several: &mut Several<PointLamp>) {
 }
 
 fn directional_ui(ui: &mut Ui, several: &mut Several<DirectionalLamp>) {
-    several.field(
-        |lamp| &mut lamp.color,
-        |value, mixed| color(ui, "Colour", COLOR, value, mixed),
-    );
-    several.field(
-        |lamp| &mut lamp.intensity,
-        |value, mixed| {
-            let says = "Irradiance on a surface that faces it, the same at every distance";
-            intensity(ui, "W/m²", says, value, mixed)
-        },
-    );
-    several.field(
-        |lamp| &mut lamp.angular_diameter,
-        |value, mixed| {
-            let says =
-                "Angle under which the source is seen: 0 gives hard shadows, the sun has 0.53°";
-            angle(ui, "Diameter", says, value, [0.0, 90.0], mixed)
-        },
-    );
-    several.field(
-        |lamp| &mut lamp.samples,
-        |value, mixed| integer(ui, "Samples", SAMPLES, value, 1..=1000, mixed),
-    );
+    several.color(ui, "Colour", COLOR, |lamp| &mut lamp.color);
+    let says = "Irradiance on a surface that faces it, the same at every distance";
+    several.number(ui, "Intensity", says, intensity("W/m²"), |lamp| {
+        &mut lamp.intensity
+    });
+    let says = "Angle under which the source is seen: 0 gives hard shadows, the sun has 0.53°";
+    several.angle(ui, "Diameter", says, [0.0, 90.0], |lamp| {
+        &mut lamp.angular_diameter
+    });
+    several.integer(ui, "Samples", SAMPLES, 1..=1000, |lamp| &mut lamp.samples);
 }
 
 fn segment_ui(ui: &mut Ui, several: &mut Several<SegmentLamp>) {
+    let says = "The colour at this end, linear between";
     for (i, name) in ["Colour A", "Colour B"].into_iter().enumerate() {
-        several.field(
-            |lamp| &mut lamp.colors[i],
-            |value, mixed| {
-                color(
-                    ui,
-                    name,
-                    "The colour at this end, linear between",
-                    value,
-                    mixed,
-                )
-            },
-        );
+        several.color(ui, name, says, |lamp| &mut lamp.colors[i]);
     }
-    several.field(
-        |lamp| &mut lamp.intensity,
-        |value, mixed| {
-            let says = "Radiant intensity of each metre, the same in all directions";
-            intensity(ui, "W/(sr·m)", says, value, mixed)
-        },
-    );
+    let says = "Radiant intensity of each metre, the same in all directions";
+    several.number(ui, "Intensity", says, intensity("W/(sr·m)"), |lamp| {
+        &mut lamp.intensity
+    });
     for (i, name) in ["End A", "End B"].into_iter().enumerate() {
-        several.field(
-            |lamp| &mut lamp.ends[i],
-            |value, mixed| point(ui, name, ENDS, value, Number::free(0.01, ""), mixed),
-        );
+        several.point(ui, name, ENDS, POINT, |lamp| &mut lamp.ends[i]);
     }
-    several.field(
-        |lamp| &mut lamp.samples,
-        |value, mixed| integer(ui, "Samples", SAMPLES, value, 1..=1000, mixed),
-    );
+    several.integer(ui, "Samples", SAMPLES, 1..=1000, |lamp| &mut lamp.samples);
 }
 
 fn parallelogram_ui(ui: &mut Ui, several: &mut Several<ParallelogramLamp>) {
@@ -179,47 +144,18 @@ fn parallelogram_ui(ui: &mut Ui, several: &mut Several<ParallelogramLamp>) {
             several.change(|lamp| lamp.colors = all);
         }
     });
-    several.field(
-        |lamp| &mut lamp.intensity,
-        |value, mixed| {
-            let says = "Radiance: a larger light of the same radiance gives more light";
-            intensity(ui, "W/(sr·m²)", says, value, mixed)
-        },
-    );
-    several.field(
-        |lamp| &mut lamp.corner,
-        |value, mixed| point(ui, "Corner", ENDS, value, Number::free(0.01, ""), mixed),
-    );
+    let says = "Radiance: a larger light of the same radiance gives more light";
+    several.number(ui, "Intensity", says, intensity("W/(sr·m²)"), |lamp| {
+        &mut lamp.intensity
+    });
+    several.point(ui, "Corner", ENDS, POINT, |lamp| &mut lamp.corner);
+    let says = "From the corner to its neighbour; it shines to where A × B points";
     for (i, name) in ["Edge A", "Edge B"].into_iter().enumerate() {
-        several.field(
-            |lamp| &mut lamp.edges[i],
-            |value, mixed| {
-                let says = "From the corner to its neighbour; it shines to where A × B points";
-                point(ui, name, says, value, Number::free(0.01, ""), mixed)
-            },
-        );
+        several.point(ui, name, says, POINT, |lamp| &mut lamp.edges[i]);
     }
-    several.field(
-        |lamp| &mut lamp.two_sided,
-        |value, mixed| {
-            switch(
-                ui,
-                "Both sides",
-                "Whether the back shines too",
-                value,
-                mixed,
-            )
-        },
-    );
-    several.field(
-        |lamp| &mut lamp.visible,
-        |value, mixed| {
-            let says = "Whether the camera and mirrors see the light itself";
-            switch(ui, "Seen", says, value, mixed)
-        },
-    );
-    several.field(
-        |lamp| &mut lamp.samples,
-        |value, mixed| integer(ui, "Samples", SAMPLES, value, 1..=1000, mixed),
-    );
+    let says = "Whether the back shines too";
+    several.switch(ui, "Both sides", says, |lamp| &mut lamp.two_sided);
+    let says = "Whether the camera and mirrors see the light itself";
+    several.switch(ui, "Seen", says, |lamp| &mut lamp.visible);
+    several.integer(ui, "Samples", SAMPLES, 1..=1000, |lamp| &mut lamp.samples);
 }

@@ -1,13 +1,13 @@
 //! Materials: an object's own, or one that several objects share.
 
-use super::super::fields::{Number, color, radiant, row, section};
+use super::super::fields::{Number, radiant, row, section};
 use super::super::outline::{Kind, Outline};
 use super::super::says::Says;
 use super::super::several::Several;
 use super::super::state::Panels;
 use super::maps::{Map, map_ui};
 use super::presets::PRESETS;
-use crate::scene::{Phong, PhongMaps, UsesMaterial};
+use crate::scene::{Phong, PhongMaps, TextureSource, UsesMaterial};
 use bevy::ecs::entity::Entity;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{ComboBox, Ui};
@@ -48,68 +48,48 @@ pub(super) fn material_ui(
             .get::<PhongMaps>(owners[0])
             .cloned()
             .unwrap_or_default();
-        several.field(
+        let mut map =
+            |label, says, loaded, property: fn(&mut Phong) -> &mut Option<TextureSource>| {
+                let map = Map {
+                    label,
+                    says,
+                    loaded,
+                };
+                several.field(property, |value, mixed| {
+                    map_ui(ui, world, panels, &map, value, mixed)
+                });
+            };
+        map(
+            "Diffuse map",
+            "A picture that takes the place of the diffuse colour",
+            maps.diffuse.as_ref(),
             |phong| &mut phong.diffuse_map,
-            |value, mixed| {
-                let map = Map {
-                    label: "Diffuse map",
-                    says: "A picture that takes the place of the diffuse colour",
-                    loaded: maps.diffuse.as_ref(),
-                };
-                map_ui(ui, world, panels, &map, value, mixed)
-            },
         );
-        several.field(
+        map(
+            "Opacity map",
+            "A picture whose brightness multiplies the opacity",
+            maps.opacity.as_ref(),
             |phong| &mut phong.opacity_map,
-            |value, mixed| {
-                let map = Map {
-                    label: "Opacity map",
-                    says: "A picture whose brightness multiplies the opacity",
-                    loaded: maps.opacity.as_ref(),
-                };
-                map_ui(ui, world, panels, &map, value, mixed)
-            },
         );
     });
     several.write(world);
 }
 
 fn fields_ui(ui: &mut Ui, several: &mut Several<Phong>) {
-    several.field(
-        |phong| &mut phong.diffuse,
-        |value, mixed| {
-            let says = "kd: the colour of the body, lit from all sides alike";
-            color(ui, "Diffuse", says, value, mixed)
-        },
-    );
-    several.field(
-        |phong| &mut phong.specular,
-        |value, mixed| {
-            let says = "ks: the highlight's colour, and what a mirror reflects; black is no mirror";
-            color(ui, "Specular", says, value, mixed)
-        },
-    );
-    several.field(
-        |phong| &mut phong.shininess,
-        |value, mixed| {
-            let says = "How narrow the highlight is; a glossy reflection blurs by one over it";
-            Number::logarithmic(1.0, 10_000.0, "").row(ui, "Shininess", says, value, mixed)
-        },
-    );
-    several.field(
-        |phong| &mut phong.opacity,
-        |value, mixed| {
-            let says = "1 is opaque; below it light goes on through the surface, tinted";
-            Number::slider(0.0, 1.0, "").row(ui, "Opacity", says, value, mixed)
-        },
-    );
+    let says = "kd: the colour of the body, lit from all sides alike";
+    several.color(ui, "Diffuse", says, |phong| &mut phong.diffuse);
+    let says = "ks: the highlight's colour, and what a mirror reflects; black is no mirror";
+    several.color(ui, "Specular", says, |phong| &mut phong.specular);
+    let says = "How narrow the highlight is; a glossy reflection blurs by one over it";
+    let number = Number::logarithmic(1.0, 10_000.0, "");
+    several.number(ui, "Shininess", says, number, |phong| &mut phong.shininess);
+    let says = "1 is opaque; below it light goes on through the surface, tinted";
+    let number = Number::slider(0.0, 1.0, "");
+    several.number(ui, "Opacity", says, number, |phong| &mut phong.opacity);
+    let says = "ke: light that the surface sends out by itself; it is seen, but lights nothing";
     several.field(
         |phong| &mut phong.emission,
-        |value, mixed| {
-            let says =
-                "ke: light that the surface sends out by itself; it is seen, but lights nothing";
-            radiant(ui, "Emission", says, value, mixed)
-        },
+        |value, mixed| radiant(ui, "Emission", says, value, mixed),
     );
 }
 

@@ -1,6 +1,6 @@
 //! The tab BVH: builders compared and timed, and two trees at once.
 
-use super::*;
+use super::desk::*;
 use crate::bvh::Builder;
 use crate::editor::history::History;
 use crate::editor::trees::measure::{BUILDERS, Measurements, Stale};

@@ -1,0 +1,128 @@
+//! Messages over the picture, and the hint of the first run.
+
+use super::says::Says;
+use crate::editor::notice::{Notice, Notices};
+use crate::editor::preferences::Preferences;
+use bevy::ecs::world::World;
+use bevy_egui::egui::{self, Align2, Id, Label, Rect, RichText, Ui, vec2};
+
+/// How many messages are shown at most: more would hide the picture.
+const MOST: usize = 4;
+/// Points beside a message's text: its button and the frame's margins.
+const BESIDE: f32 = 40.0;
+
+/// Messages, the newest below; true where the pointer is over them.
+pub(super) fn notices_ui(context: &egui::Context, free: Rect, world: &mut World) -> bool {
+    // Only looked at while there are any: asking makes the resource count as changed.
+    if world.resource::<Notices>().is_empty() {
+        return false;
+    }
+    let mut notices = world.resource_mut::<Notices>();
+    let all: Vec<Notice> = notices.shown().to_vec();
+    if all.is_empty() {
+        return false;
+    }
+    let width = (free.width() - 40.0).clamp(120.0, 460.0);
+    let bottom = context.viewport_rect().max - free.max;
+    let earlier = all.len().saturating_sub(MOST);
+    let mut closed = None;
+    let area = egui::Area::new(Id::new("notices"))
+        .anchor(Align2::RIGHT_BOTTOM, -bottom - vec2(12.0, 12.0))
+        .order(egui::Order::Foreground)
+        .show(context, |ui| {
+            ui.set_max_width(width);
+            ui.with_layout(egui::Layout::top_down(egui::Align::Max), |ui| {
+                if earlier > 0 && earlier_ui(ui, earlier) {
+                    closed = Some(Closed::All);
+                }
+                for (i, notice) in all.iter().enumerate().skip(earlier) {
+                    if notice_ui(ui, notice, width) {
+                        closed = Some(Closed::One(i));
+                    }
+                }
+            });
+        });
+    match closed {
+        Some(Closed::One(i)) => notices.close(i),
+        Some(Closed::All) => notices.close_all(),
+        None => {}
+    }
+    is_over(context, area.response.rect)
+}
+
+/// What a person has read.
+enum Closed {
+    One(usize),
+    All,
+}
+
+/// That there are more messages; true where all are to go.
+fn earlier_ui(ui: &mut Ui, earlier: usize) -> bool {
+    let frame = egui::Frame::popup(ui.style()).show(ui, |ui| {
+        ui.horizontal(|ui| {
+            ui.weak(format!("and {earlier} before these"));
+            let close = ui.small_button("Close all");
+            close.says("Closes all messages").clicked()
+        })
+        .inner
+    });
+    frame.inner
+}
+
+/// One message, as wide as its text asks for; true where it was closed.
+fn notice_ui(ui: &mut Ui, notice: &Notice, width: f32) -> bool {
+    let color = match notice.is_fault {
+        true => ui.visuals().error_fg_color,
+        false => ui.visuals().text_color(),
+    };
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let galley = ui
+        .painter()
+        .layout(notice.text.clone(), font, color, width - BESIDE);
+    let room = galley.size().x.ceil() + 1.0;
+    let frame = egui::Frame::popup(ui.style()).show(ui, |ui| {
+        ui.horizontal_top(|ui| {
+            ui.set_width(room + BESIDE - 14.0);
+            let text = RichText::new(&notice.text).color(color);
+            ui.allocate_ui(vec2(room, 0.0), |ui| {
+                ui.set_width(room);
+                ui.add(Label::new(text).wrap().selectable(true));
+            });
+            let close = ui.small_button("✖");
+            close.says("Closes this message").clicked()
+        })
+        .inner
+    });
+    frame.inner
+}
+
+/// Whether the pointer is there.
+pub(super) fn is_over(context: &egui::Context, rect: Rect) -> bool {
+    let pointer = context.pointer_latest_pos();
+    pointer.is_some_and(|at| rect.contains(at))
+}
+
+/// How one begins, until it was read once.
+pub(super) fn hint_ui(context: &egui::Context, free: Rect, world: &mut World) {
+    if world.resource::<Preferences>().hint_seen {
+        return;
+    }
+    let text = "Click selects · middle drag turns the view, with Shift moves it · wheel zooms · W E T: move, turn, scale · F1: all keys";
+    let top = free.min.y + 10.0;
+    let middle = free.center().x - context.viewport_rect().center().x;
+    egui::Area::new(Id::new("hint"))
+        .anchor(Align2::CENTER_TOP, vec2(middle, top))
+        .order(egui::Order::Middle)
+        .show(context, |ui| {
+            ui.set_max_width((free.width() - 40.0).max(160.0));
+            egui::Frame::popup(ui.style()).show(ui, |ui| {
+                ui.horizontal_wrapped(|ui| {
+                    ui.label(text);
+                    let close = ui.small_button("Got it");
+                    if close.says("Does not show this line again").clicked() {
+                        world.resource_mut::<Preferences>().hint_seen = true;
+                    }
+                });
+            });
+        });
+}

@@ -1,0 +1,197 @@
+//! What is drawn, and that it fits.
+
+use super::super::dialogs::frame_of;
+use super::super::outline::Outline;
+use super::super::state::{Dialog, Panels, Tab};
+use super::desk::{Desk, LARGE, SMALL, USUAL};
+use crate::editor::notice::Notices;
+use crate::editor::selection::Selection;
+use crate::editor::viewport::{Show, Viewport};
+use crate::io::builtin::SCENES;
+use crate::scene::{PointLamp, SceneId};
+use bevy::ecs::name::Name;
+use bevy::math::Vec2;
+use bevy_egui::egui::{Id, Rect, Shape};
+
+#[test]
+fn every_scene_is_drawn_in_every_tab_at_every_size_and_nothing_of_it_counts_as_changed() {
+    for scene in SCENES {
+        let mut desk = Desk::open(scene.name);
+        let ids = desk.ids();
+        for size in [SMALL, LARGE] {
+            desk.size = size;
+            desk.settle();
+            desk.world().clear_trackers();
+            for tab in [Tab::Object, Tab::Render, Tab::Debug, Tab::Bvh] {
+                desk.world().resource_mut::<Panels>().tab = tab;
+                // One after the other, then all at once.
+                let choices = ids.iter().map(|&id| vec![id]).chain([ids.clone()]);
+                let choices = choices.take(if tab == Tab::Object { 60 } else { 1 });
+                for selected in choices {
+                    desk.world().resource_mut::<Selection>().set(selected);
+                    desk.draw(Vec::new());
+                    desk.draw(Vec::new());
+                }
+            }
+            for show in [Show::Raster, Show::Split] {
+                desk.world().resource_mut::<Viewport>().show = show;
+                desk.draw(Vec::new());
+            }
+            assert_eq!(desk.changed(), [""; 0], "{} at {size:?}", scene.name);
+        }
+    }
+}
+
+#[test]
+fn no_panel_grows_by_itself_whatever_it_shows() {
+    let mut desk = Desk::open("showcase");
+    let ids = desk.ids();
+    for size in [SMALL, USUAL] {
+        desk.size = size;
+        desk.settle();
+        let rect = desk.world().resource::<Viewport>().rect;
+        for tab in [Tab::Object, Tab::Render, Tab::Debug, Tab::Bvh] {
+            desk.world().resource_mut::<Panels>().tab = tab;
+            for &id in &ids {
+                desk.world().resource_mut::<Selection>().set([id]);
+                desk.draw(Vec::new());
+                desk.draw(Vec::new());
+                let now = desk.world().resource::<Viewport>().rect;
+                assert_eq!(now, rect, "{tab:?} of {id:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn of_four_thousand_entities_only_the_rows_that_are_seen_are_laid_out() {
+    let mut desk = Desk::empty(SMALL);
+    for i in 1..=4000_u64 {
+        let name = Name::new(format!("Thing {i}"));
+        desk.world().spawn((SceneId(i), PointLamp::default(), name));
+    }
+    desk.settle();
+    let outline = desk.world().resource::<Outline>();
+    assert_eq!(outline.items.len(), 4000);
+    let versions = outline.versions;
+    let drawn = desk.world().resource::<Panels>().rows_drawn;
+    assert!((20..40).contains(&drawn), "{drawn} rows of 20 points each");
+    assert!(desk.find("Thing 1").is_some() && desk.find("Thing 400").is_none());
+    for _ in 0..5 {
+        desk.frame(Vec::new());
+    }
+    assert_eq!(desk.world().resource::<Outline>().versions, versions);
+}
+
+#[test]
+fn every_dialog_is_drawn_at_every_size() {
+    let mut desk = Desk::open("triangle");
+    for size in [SMALL, USUAL, LARGE] {
+        desk.size = size;
+        for dialog in [
+            Dialog::Keys,
+            Dialog::About,
+            Dialog::Preferences,
+            Dialog::History,
+            Dialog::Render,
+        ] {
+            desk.world().resource_mut::<Panels>().dialog = Some(dialog);
+            desk.settle();
+            assert_eq!(desk.world().resource::<Panels>().dialog, Some(dialog));
+            let (title, width) = frame_of(dialog);
+            let area = desk
+                .context
+                .memory(|memory| memory.area_rect(Id::new(title)));
+            let area = area.unwrap_or_else(|| panic!("{title} is not drawn"));
+            // The frame's own margins are beside it.
+            assert!(area.width() < width + 20.0, "{title}: {area:?}");
+            assert!(area.height() < size[1], "{title}: {area:?}");
+        }
+    }
+}
+
+#[test]
+fn a_message_stays_within_the_picture_and_can_be_closed() {
+    let mut desk = Desk::empty(SMALL);
+    let text = "the file cannot be written: ".to_owned() + &"very long ".repeat(30);
+    desk.world().resource_mut::<Notices>().fault(text.clone());
+    desk.settle();
+    let rect = desk.world().resource::<Viewport>().rect;
+    let at = desk.place_of(&text);
+    assert!(rect.contains(Vec2::new(at.x, at.y)), "{at:?} in {rect:?}");
+    // The first ✖ is that of the search field.
+    let close = desk
+        .output
+        .shapes
+        .iter()
+        .filter_map(|clipped| match &clipped.shape {
+            Shape::Text(shape) if shape.galley.text() == "✖" => {
+                Some(shape.pos + 0.5 * shape.galley.size())
+            }
+            _ => None,
+        });
+    let close = close.collect::<Vec<_>>().pop().unwrap();
+    desk.click(close);
+    assert!(desk.world().resource::<Notices>().is_empty());
+}
+
+/// The places of all texts, with what they are cut off at.
+fn texts(desk: &Desk) -> Vec<(String, Rect, Rect)> {
+    fn search(shape: &Shape, clip: Rect, found: &mut Vec<(String, Rect, Rect)>) {
+        match shape {
+            Shape::Text(shape) => {
+                let place = Rect::from_min_size(shape.pos, shape.galley.size());
+                found.push((shape.galley.text().to_owned(), place, clip));
+            }
+            Shape::Vec(shapes) => shapes.iter().for_each(|shape| search(shape, clip, found)),
+            _ => {}
+        }
+    }
+    let mut found = Vec::new();
+    for clipped in &desk.output.shapes {
+        search(&clipped.shape, clipped.clip_rect, &mut found);
+    }
+    found
+}
+
+#[test]
+fn no_text_of_the_properties_is_cut_off_at_the_side() {
+    let mut desk = Desk::open("showcase");
+    let ids = desk.ids();
+    for size in [SMALL, USUAL] {
+        desk.size = size;
+        desk.settle();
+        for tab in [Tab::Object, Tab::Render] {
+            desk.world().resource_mut::<Panels>().tab = tab;
+            for &id in ids.iter().take(if tab == Tab::Object { 40 } else { 1 }) {
+                desk.world().resource_mut::<Selection>().set([id]);
+                desk.draw(Vec::new());
+                desk.draw(Vec::new());
+                let right_of = desk.world().resource::<Viewport>().rect.max.x;
+                for (text, place, clip) in texts(&desk) {
+                    if place.left() > right_of && clip.intersects(place) {
+                        let beyond = place.right() - clip.right();
+                        assert!(beyond < 1.0, "{tab:?} of {id:?}: {text:?} by {beyond}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn many_messages_leave_the_picture_free_and_go_all_at_once() {
+    let mut desk = Desk::empty(SMALL);
+    for i in 0..30 {
+        let text = format!("message {i}");
+        desk.world().resource_mut::<Notices>().fault(text);
+    }
+    desk.settle();
+    assert!(desk.find("message 29").is_some(), "the newest is shown");
+    assert!(desk.find("message 25").is_none());
+    let first = desk.place_of("message 26");
+    let rect = desk.world().resource::<Viewport>().rect;
+    assert!(first.y > rect.center().y, "{first:?} in {rect:?}");
+    desk.click_on("Close all");
+    assert!(desk.world().resource::<Notices>().is_empty());
+}

@@ -1,0 +1,9 @@
+//! The panels as a person meets them: drawn by egui without a window, and operated by pointer and
+//! keys at the places where their texts stand.
+
+mod desk;
+mod drawn;
+mod operated;
+mod trees;
+
+pub(super) use desk::{Desk, SMALL, USUAL};

@@ -1,0 +1,207 @@
+//! What pointer and keys do.
+
+use super::super::outline::Outline;
+use super::super::state::{Dialog, Panels, Tab};
+use super::desk::{Desk, USUAL};
+use crate::editor::action::Action;
+use crate::editor::selection::Selection;
+use crate::editor::viewport::{Show, Viewport};
+use crate::scene::{PointLamp, RenderSettings, SceneId};
+use bevy::ecs::entity::Entity;
+use bevy::ecs::message::Messages;
+use bevy::ecs::query::With;
+use bevy::math::Vec2;
+use bevy_egui::egui::{Event, Key, Modifiers, Pos2, vec2};
+
+#[test]
+fn a_click_on_a_row_selects_ctrl_adds_and_shift_takes_what_lies_between() {
+    let mut desk = Desk::open("cornell-box");
+    let names: Vec<String> = {
+        let outline = desk.world().resource::<Outline>();
+        let items = outline.items.iter();
+        items.take(5).map(|item| item.name.clone()).collect()
+    };
+    let ids: Vec<SceneId> = names.iter().map(|name| desk.named(name).1).collect();
+    desk.click_on(&names[1]);
+    assert_eq!(desk.world().resource::<Selection>().ids(), [ids[1]]);
+    let at = desk.place_of(&names[3]);
+    desk.click_with(at, Modifiers::COMMAND | Modifiers::CTRL);
+    assert_eq!(desk.world().resource::<Selection>().ids(), [ids[1], ids[3]]);
+    desk.click_on(&names[0]);
+    let at = desk.place_of(&names[2]);
+    desk.click_with(at, Modifiers::SHIFT);
+    assert_eq!(desk.world().resource::<Selection>().ids(), &ids[..3]);
+}
+
+#[test]
+fn a_number_that_is_dragged_changes_its_component_and_no_other_as_one_step() {
+    let mut desk = Desk::open("cornell-box");
+    let mut lamps = desk
+        .world()
+        .query_filtered::<(Entity, &SceneId), With<PointLamp>>();
+    let (lamp, id) = lamps
+        .single(desk.app.world())
+        .map(|(e, id)| (e, *id))
+        .unwrap();
+    desk.select([id]);
+    let before = desk.world().get::<PointLamp>(lamp).unwrap().clone();
+    let steps = desk
+        .world()
+        .resource::<crate::editor::history::History>()
+        .position();
+    let at = desk.place_of("Intensity") + vec2(110.0, 0.0);
+    desk.drag(at, vec2(60.0, 0.0));
+    let after = desk.world().get::<PointLamp>(lamp).unwrap().clone();
+    assert!(after.intensity > before.intensity, "{before:?} {after:?}");
+    assert_eq!((after.color, after.cone), (before.color, before.cone));
+    let history = desk.world().resource::<crate::editor::history::History>();
+    assert_eq!(history.position(), steps + 1);
+}
+
+#[test]
+fn a_number_that_is_typed_out_of_range_is_brought_into_it_and_words_are_refused() {
+    let mut desk = Desk::open("cornell-box");
+    desk.world().resource_mut::<Panels>().tab = Tab::Render;
+    desk.settle();
+    let type_into = |desk: &mut Desk, text: &str| {
+        let at = desk.place_of("Mirror depth");
+        // The number stands at the right end of the slider.
+        let at = Pos2::new(desk.size[0] - 40.0, at.y);
+        desk.click(at);
+        assert!(desk.context.text_edit_focused());
+        assert!(!desk.world().resource::<Viewport>().takes_keys);
+        desk.frame(vec![Event::Text(text.into())]);
+        desk.key(Key::Enter);
+        desk.settle();
+        desk.world().resource::<RenderSettings>().max_depth
+    };
+    assert_eq!(type_into(&mut desk, "12"), 12);
+    assert_eq!(type_into(&mut desk, "4000"), 50);
+    assert_eq!(type_into(&mut desk, "many"), 50);
+    assert!(desk.world().resource::<Viewport>().takes_keys);
+}
+
+#[test]
+fn a_press_that_is_let_go_late_is_still_a_click() {
+    let mut desk = Desk::open("triangle");
+    let at = desk.place_of("Edit");
+    desk.point(at);
+    desk.button(at, true, Modifiers::NONE);
+    desk.wait(2.0);
+    desk.button(at, false, Modifiers::NONE);
+    desk.settle();
+    assert!(desk.find("History…").is_some(), "the menu is open");
+}
+
+#[test]
+fn menus_send_what_they_say() {
+    let mut desk = Desk::open("triangle");
+    desk.click_on("File");
+    desk.click_on("Save");
+    let messages = desk.world().resource::<Messages<Action>>();
+    let mut cursor = messages.get_cursor();
+    assert!(cursor.read(messages).any(|action| *action == Action::Save));
+}
+
+#[test]
+fn the_pointer_and_the_keys_are_the_scene_s_only_where_no_panel_wants_them() {
+    let mut desk = Desk::open("triangle");
+    let hovered = |desk: &mut Desk, at: Pos2| {
+        desk.point(at);
+        desk.world().resource::<Viewport>().hovered
+    };
+    let rect = desk.world().resource::<Viewport>().rect;
+    assert!(rect.width() > 500.0 && rect.height() > 400.0, "{rect:?}");
+    let middle = Pos2::new(rect.center().x, rect.center().y);
+    assert!(hovered(&mut desk, middle));
+    for at in [
+        [20.0, 10.0],
+        [100.0, 300.0],
+        [1200.0, 300.0],
+        [600.0, 714.0],
+    ] {
+        assert!(!hovered(&mut desk, at.into()), "{at:?}");
+    }
+    // The divider is the panels', what is beside it the scene's.
+    desk.world().resource_mut::<Viewport>().show = Show::Split;
+    desk.settle();
+    assert!(!hovered(&mut desk, middle));
+    assert!(hovered(&mut desk, middle + vec2(30.0, 0.0)));
+    desk.drag(middle, vec2(80.0, 0.0));
+    let expected = 0.5 + 80.0 / rect.width();
+    let divider = desk.world().resource::<Viewport>().divider;
+    assert!(
+        (divider - expected).abs() < 0.01,
+        "{divider}, not {expected}"
+    );
+    // An open menu has both.
+    desk.click_on("View");
+    let viewport = desk.world().resource::<Viewport>().clone();
+    assert!(!viewport.takes_keys);
+    desk.key(Key::Escape);
+    desk.settle();
+    assert!(desk.world().resource::<Viewport>().takes_keys);
+}
+
+#[test]
+fn a_dialog_takes_everything_until_escape() {
+    let mut desk = Desk::open("triangle");
+    desk.world().write_message(Action::ToggleHelp);
+    desk.settle();
+    assert_eq!(desk.world().resource::<Panels>().dialog, Some(Dialog::Keys));
+    assert!(desk.find("Keys and mouse").is_some());
+    let viewport = desk.world().resource::<Viewport>().clone();
+    assert!(!viewport.takes_keys);
+    let middle = Pos2::new(640.0, 360.0);
+    desk.point(middle);
+    assert!(!desk.world().resource::<Viewport>().hovered);
+    desk.key(Key::Escape);
+    desk.settle();
+    assert_eq!(desk.world().resource::<Panels>().dialog, None);
+    assert!(desk.world().resource::<Viewport>().takes_keys);
+}
+
+#[test]
+fn unsaved_changes_are_asked_about_and_cancel_leaves_everything() {
+    let mut desk = Desk::open("triangle");
+    let ids = desk.ids();
+    desk.select([ids[0]]);
+    desk.world().write_message(Action::Duplicate);
+    desk.settle();
+    assert_eq!(desk.ids().len(), ids.len() + 1);
+    desk.world().write_message(Action::New);
+    desk.settle();
+    assert!(desk.find("Don't save").is_some());
+    desk.click_on("Cancel");
+    desk.settle();
+    assert!(desk.find("Don't save").is_none());
+    assert_eq!(desk.ids().len(), ids.len() + 1);
+}
+
+#[test]
+fn searching_leaves_what_was_searched_for_and_its_keys_go_nowhere_else() {
+    let mut desk = Desk::open("cornell-box");
+    let all = desk.world().resource::<Panels>().rows_drawn;
+    let hint = desk.place_of("Search");
+    desk.click(hint);
+    desk.frame(vec![Event::Text("camera".into())]);
+    desk.settle();
+    assert!(!desk.world().resource::<Viewport>().takes_keys);
+    let found = desk.world().resource::<Panels>().rows_drawn;
+    assert!(found >= 1 && found < all, "{found} of {all}");
+}
+
+#[test]
+fn the_picture_alone_fills_the_window_until_escape() {
+    let mut desk = Desk::open("cornell-box");
+    let rect = |desk: &mut Desk| desk.world().resource::<Viewport>().rect;
+    let before = rect(&mut desk);
+    desk.world().write_message(Action::TogglePanels);
+    desk.settle();
+    assert_eq!(rect(&mut desk).size(), Vec2::new(USUAL[0], USUAL[1]));
+    assert_eq!(desk.find("Object"), None);
+    desk.world().write_message(Action::SelectNone);
+    desk.settle();
+    assert_eq!(rect(&mut desk), before);
+    assert!(desk.find("Object").is_some());
+}
