@@ -14,6 +14,7 @@
 //! alike; everything that is not a time follows from the seed.
 
 mod document;
+mod editing;
 pub mod features;
 mod fit;
 pub mod kernels;
