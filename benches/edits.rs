@@ -1,4 +1,4 @@
-//! From an edit to what is seen of it: `cargo bench --bench edits`.
+//! From an edit to what is seen of it: `cargo bench --bench edits [-- --csv FILE]`.
 //!
 //! Each edit changes one component of a scene that is being rendered at 1280 × 720, as a gesture does:
 //! the render before it is under way. Per edit, the median and the 95th percentile of the milliseconds
@@ -10,7 +10,8 @@
 //!   is built in the background, and the picture before goes on meanwhile;
 //! - sample: every pixel has a sample (in every fourth round);
 //!
-//! and what of the tracer's world was redone. Times are wall-clock, on all the machine's cores: on a
+//! and what of the tracer's world was redone. With `--csv` the figures are also written as a table, which
+//! `glassbox report --editing FILE` takes in. Times are wall-clock, on all the machine's cores: on a
 //! machine that is busy with other things they say little.
 //!
 //! `cargo bench --bench edits -- lines`: what a hundred thousand lines of gizmos that stand cost in a
@@ -33,6 +34,7 @@ use glassbox::app::headless_app;
 use glassbox::film::{Progressive, Snapshot, develop_rgba8};
 use glassbox::io::builtin;
 use glassbox::io::shapes::mesh;
+use glassbox::report::{Cell, Table};
 use glassbox::scene::{
     MeshSource, ParallelogramLamp, Phong, PointLamp, RenderSettings, SceneCamera, Shape,
 };
@@ -49,11 +51,28 @@ const BETWEEN: Duration = Duration::from_millis(20);
 /// Frames follow one another so soon while something is being built.
 const FRAME: Duration = Duration::from_millis(4);
 
+/// What is written: a row for each edit of each scene.
+const COLUMNS: [&str; 10] = [
+    "scene",
+    "objects",
+    "edit",
+    "frame p50 ms",
+    "frame p95 ms",
+    "picture p50 ms",
+    "picture p95 ms",
+    "sample p50 ms",
+    "sample p95 ms",
+    "redone",
+];
+
 fn main() {
     #[cfg(feature = "view")]
     if std::env::args().any(|argument| argument == "lines") {
         return lines::main();
     }
+    let mut arguments = std::env::args().skip_while(|argument| argument != "--csv");
+    let file = arguments.nth(1);
+    let mut table = Table::new("editing", "Edits", &COLUMNS);
     println!("{} threads", rayon::current_num_threads());
     for (scene, instances) in [
         ("cornell-box", 0),
@@ -72,6 +91,10 @@ fn main() {
             "sample"
         );
         session.edits(instances > 0);
+        table.rows.append(&mut session.rows);
+    }
+    if let Some(file) = file {
+        std::fs::write(&file, table.csv()).unwrap_or_else(|error| panic!("{file}: {error}"));
     }
 }
 
@@ -86,6 +109,9 @@ struct Session {
     light: Entity,
     camera: Entity,
     instances: Vec<Entity>,
+    name: String,
+    /// The table's.
+    rows: Vec<Vec<Cell>>,
 }
 
 /// Milliseconds of one round.
@@ -129,6 +155,8 @@ impl Session {
             instances,
             app,
             render: None,
+            name: scene.to_owned(),
+            rows: Vec::new(),
             snapshot: Snapshot::black(SIZE),
             show: show.expect("a thread"),
         }
@@ -241,7 +269,29 @@ impl Session {
             }
             thread::sleep(BETWEEN);
         }
-        print_row(name, &rounds, &names(redone));
+        self.note(name, &rounds, &names(redone));
+    }
+
+    /// Prints a row and keeps it for the table.
+    fn note(&mut self, name: &str, rounds: &[Times], redone: &str) {
+        let figures = [
+            percentiles(rounds, |t| Some(t.frame)),
+            percentiles(rounds, |t| Some(t.picture)),
+            percentiles(rounds, |t| t.sample),
+        ];
+        let [frame, picture, sample] = figures.map(|figures| {
+            figures.map_or(String::new(), |[half, most]| {
+                format!("{half:.1} / {most:.1}")
+            })
+        });
+        println!("{name:<18}{frame:>16}{picture:>16}{sample:>16}  {redone}");
+        let objects = self.traced().world.objects.len();
+        let mut row: Vec<Cell> = vec![self.name.as_str().into(), objects.into(), name.into()];
+        for figures in figures {
+            row.extend([0, 1].map(|i| Cell::from(figures.map(|figures| figures[i]))));
+        }
+        row.push(redone.into());
+        self.rows.push(row);
     }
 
     /// The exposure of a picture that stands: developed again, without a ray.
@@ -270,7 +320,7 @@ impl Session {
         let traced = rays(self)
             .zip(before)
             .map_or(0, |(after, before)| after - before);
-        print_row("exposure", &rounds, &format!("{traced} rays"));
+        self.note("exposure", &rounds, &format!("{traced} rays"));
     }
 
     fn restart(&mut self) {
@@ -354,20 +404,10 @@ fn names(changes: Changes) -> String {
     names.join(", ")
 }
 
-fn print_row(name: &str, rounds: &[Times], redone: &str) {
-    let figures = |value: fn(&Times) -> Option<f64>| {
-        let mut values: Vec<f64> = rounds.iter().filter_map(value).collect();
-        values.sort_by(f64::total_cmp);
-        let at = |part: usize| values.get(values.len() * part / 100);
-        match (at(50), at(95)) {
-            (Some(half), Some(most)) => format!("{half:.1} / {most:.1}"),
-            _ => String::new(),
-        }
-    };
-    println!(
-        "{name:<18}{:>16}{:>16}{:>16}  {redone}",
-        figures(|t| Some(t.frame)),
-        figures(|t| Some(t.picture)),
-        figures(|t| t.sample)
-    );
+/// The median and the 95th percentile.
+fn percentiles(rounds: &[Times], value: fn(&Times) -> Option<f64>) -> Option<[f64; 2]> {
+    let mut values: Vec<f64> = rounds.iter().filter_map(value).collect();
+    values.sort_by(f64::total_cmp);
+    let at = |part: usize| values.get(values.len() * part / 100).copied();
+    Some([at(50)?, at(95)?])
 }

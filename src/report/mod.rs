@@ -16,6 +16,7 @@
 //! Apart from reports: [`performance`], a scene's picture timed with each builder.
 
 mod document;
+mod editing;
 pub mod features;
 mod fit;
 pub mod kernels;

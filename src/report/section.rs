@@ -1,6 +1,6 @@
 //! What a report is made of, and which parts are asked for.
 
-use super::{Machine, Plot, Subject, Table, features, kernels, sampling, stability};
+use super::{Machine, Plot, Subject, Table, editing, features, kernels, sampling, stability};
 use crate::film::views::Shown;
 
 /// A part of the report.
@@ -103,9 +103,11 @@ impl Report {
         };
         let mut sentences: Vec<String> =
             (chosen.iter()).filter_map(|&(s, i)| found(s, i)).collect();
-        // The fourth part shares the third sentence.
-        if let (Some(last), Some(more)) = (sentences.last_mut(), found(3, 0)) {
-            *last = format!("{}; {more}", last.trim_end_matches('.'));
+        // The parts after the third share its sentence.
+        for more in (3..sections().count()).filter_map(|section| found(section, 0)) {
+            if let Some(last) = sentences.last_mut() {
+                *last = format!("{}; {more}", last.trim_end_matches('.'));
+            }
         }
         sentences
     }
@@ -133,7 +135,7 @@ pub fn run(subjects: &[Subject], options: &Options, watch: Watch) -> Report {
             Part::Stability => stability::measure(options, watch),
         })
         .collect();
-    sections.extend(options.editing.clone().map(editing));
+    sections.extend(options.editing.clone().map(editing::section));
     Report {
         options: options.clone(),
         machine,
@@ -143,17 +145,6 @@ pub fn run(subjects: &[Subject], options: &Options, watch: Watch) -> Report {
             .collect(),
         sections,
         seconds: start.elapsed().as_secs_f64(),
-    }
-}
-
-/// The figures of an editing benchmark as a section.
-fn editing(table: Table) -> Section {
-    Section {
-        title: "Editing: what is redone, and how soon it is seen".into(),
-        method: vec!["Figures of a benchmark of its own, as it wrote them.".into()],
-        tables: vec![table],
-        summary: Some(0),
-        ..Section::default()
     }
 }
 
@@ -183,8 +174,8 @@ mod tests {
         assert_eq!(report(&["a"]).findings(), ["a 1.", "a 2.", "a 3."]);
         assert_eq!(report(&["a", "b"]).findings(), ["a 1.", "a 2.", "b 1."]);
         assert_eq!(
-            report(&["a", "b", "c", "d"]).findings(),
-            ["a 1.", "b 1.", "c 1; d 1."]
+            report(&["a", "b", "c", "d", "e"]).findings(),
+            ["a 1.", "b 1.", "c 1; d 1; e 1."]
         );
     }
 }

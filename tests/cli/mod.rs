@@ -3,6 +3,7 @@
 
 mod failures;
 mod pictures;
+mod report;
 mod statistics;
 mod views;
 

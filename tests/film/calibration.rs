@@ -158,13 +158,14 @@ fn the_estimated_error_is_the_true_one_within_a_factor_of_one_and_a_half() {
     assert!(40 * outside <= all, "{table}");
 }
 
-/// One scene is apart: where the ceiling light's edge runs along a row of pixels, each covered by it
-/// for the same small part, the squared error goes up and down with the fraction of that part times N
-/// (see `film/error.rs`), and the dark pixels of that row make most of the relative error: at 96 × 96
-/// pixels, eighteen of them hold 96 % of it. Measured: 0.33 to 2.5 times the true one.
+/// One scene is apart: the ceiling light's edges run exactly along rows of pixels, and the upper one covers
+/// each of its dark row for the same thirtieth part. Then what a doubling wins says little of what is left,
+/// in every pixel alike, and that row holds 96 % of the picture's relative error (`film/error.rs` has the
+/// formula). Measured with 16, 32 and 64 samples, means over six to eight seeds: 0.8, 1.5 and 2.0 times the
+/// true error at 64 × 64 pixels, 0.7 to 2.1 at 48 × 48, 0.9 to 2.3 at 96 × 96, and 1.2 to 4.1 at 112 × 112.
 fn bounds(scene: &str) -> std::ops::Range<f64> {
     if scene == "cornell-box-parallelogram-light" {
-        0.3..2.7
+        0.7..3.6
     } else {
         0.8..1.5
     }

@@ -288,7 +288,8 @@ fn front_plot(
         .map(|(row, _)| (row.speed(), row.errors.t_mean))
         .collect();
     best.sort_by(|a, b| a.0.total_cmp(&b.0));
-    series.insert(0, Series::new("Pareto front", best).joined(Dash::Short));
+    let best = Series::new("Pareto front", best).joined(Dash::Short);
+    series.insert(0, best.marked(Marker::Halo));
     Plot {
         file: format!("kernels-{}", subject.file()),
         title: format!(

@@ -1,5 +1,6 @@
 //! Drawing with plotters, into SVG or pixels alike.
 
+use super::labels;
 use super::raster::Raster;
 use super::ticks::Scale;
 use super::{Dash, Marker, Plot, Series};
@@ -15,6 +16,8 @@ const SIZE: (u32, u32) = (1200, 600);
 const LEGEND: u32 = 380;
 /// Height of letters.
 const LETTERS: i32 = 17;
+/// Width of a letter, about: an SVG's reader has a font of their own.
+const LETTER_WIDTH: i32 = 10;
 /// Half of a marker.
 const RADIUS: i32 = 5;
 /// Colours that differ in brightness and for the colour-blind (Okabe and Ito 2008, "Color Universal Design").
@@ -87,19 +90,57 @@ fn draw<B: DrawingBackend>(area: &Area<B>, plot: &Plot) -> Result<(), Fault<B>> 
         let points: Vec<(f64, f64)> = series.points.iter().filter_map(place).collect();
         let color = COLORS[number % COLORS.len()];
         draw_series(&mut chart, series, &points, color)?;
-        let labelled = series.points.iter().zip(&series.labels);
-        for (point, label) in labelled.filter_map(|(p, l)| Some((place(p)?, l))) {
-            let style = font
-                .into_font()
-                .color(&BLACK)
-                .pos(Pos::new(HPos::Center, VPos::Bottom));
-            chart.draw_series(std::iter::once(
-                EmptyElement::at(point) + Text::new(label.clone(), (0, -RADIUS - 3), style),
-            ))?;
-        }
     }
+    let place = |&(at, value): &(f64, f64)| Some((x.place(at)?, y.place(value)?));
+    draw_labels(&area, &chart, plot, place)?;
     draw_legend(&legend, plot)?;
     legend.present()
+}
+
+/// The words beside points.
+fn draw_labels<B: DrawingBackend>(
+    area: &Area<B>,
+    chart: &Chart<B>,
+    plot: &Plot,
+    place: impl Fn(&(f64, f64)) -> Option<(f64, f64)>,
+) -> Result<(), Fault<B>> {
+    let style = ("sans-serif", LETTERS)
+        .into_font()
+        .color(&BLACK)
+        .pos(Pos::new(HPos::Center, VPos::Center));
+    let (left, top) = area.get_base_pixel();
+    let pixel = |point: &(f64, f64)| {
+        let (x, y) = chart.backend_coord(&place(point)?);
+        Some((x - left, y - top))
+    };
+    let marked = plot.series.iter().filter(|series| series.marker.is_some());
+    let points: Vec<_> = marked
+        .flat_map(|series| series.points.iter().filter_map(&pixel))
+        .collect();
+    let (mut texts, mut words) = (Vec::new(), Vec::new());
+    for series in &plot.series {
+        for (point, label) in series.points.iter().zip(&series.labels) {
+            let Some(at) = pixel(point) else { continue };
+            texts.push(label);
+            let width = LETTER_WIDTH * label.chars().count() as i32;
+            words.push((at, (width / 2, LETTERS / 2)));
+        }
+    }
+    let (width, height) = area.dim_in_pixel();
+    let places = labels::places(&points, RADIUS + 1, &words, (width as i32, height as i32));
+    for ((text, (point, half)), place) in texts.into_iter().zip(words).zip(places) {
+        if place.led {
+            // To the word's nearer edge, not through it.
+            let (x, y) = place.at;
+            let end = (
+                point.0.clamp(x - half.0, x + half.0),
+                point.1.clamp(y - half.1, y + half.1),
+            );
+            area.draw(&PathElement::new([point, end], BLACK.mix(0.5)))?;
+        }
+        area.draw(&Text::new(text.clone(), place.at, style.clone()))?;
+    }
+    Ok(())
 }
 
 fn draw_legend<B: DrawingBackend>(area: &Area<B>, plot: &Plot) -> Result<(), Fault<B>> {
@@ -218,6 +259,7 @@ impl<C, B: DrawingBackend> Drawable<B> for Mark<C> {
                 let corners = [at(0, -r - 2), at(r + 2, 0), at(0, r + 2), at(-r - 2, 0)];
                 backend.fill_polygon(corners, &style)
             }
+            Marker::Halo => backend.draw_circle((x, y), 2 * r as u32, &style, false),
             Marker::Cross => {
                 backend.draw_line(at(-r, -r), at(r, r), &style)?;
                 backend.draw_line(at(-r, r), at(r, -r), &style)

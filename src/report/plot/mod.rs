@@ -1,6 +1,7 @@
 //! Plots that can be read in black and white: every series has a marker and a dash of its own.
 
 mod draw;
+mod labels;
 mod raster;
 mod ticks;
 
@@ -99,10 +100,12 @@ pub enum Marker {
     Triangle,
     Diamond,
     Cross,
+    /// A circle around another marker.
+    Halo,
 }
 
 impl Marker {
-    /// All of them, the easiest to tell apart first.
+    /// Those that stand for themselves, the easiest to tell apart first.
     pub const ALL: [Self; 7] = [
         Self::Circle,
         Self::Square,

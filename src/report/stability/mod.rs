@@ -313,7 +313,15 @@ pub fn measure(options: &Options, watch: Watch) -> Section {
     let mut table = Table::new(
         "stability",
         "The hard cases",
-        &["#", "case", "counted", "figures", "passes when", "verdict"],
+        &[
+            "#",
+            "case",
+            "counted",
+            "figures",
+            "passes when",
+            "verdict",
+            "seconds",
+        ],
     );
     let mut section = Section {
         title: "Stability: the hard cases".into(),
@@ -327,7 +335,9 @@ pub fn measure(options: &Options, watch: Watch) -> Section {
             done as u64,
             CASES.len() as u64,
         );
+        let start = std::time::Instant::now();
         let outcome = (case.run)(&effort);
+        let seconds = start.elapsed().as_secs_f64();
         rays += outcome.counted;
         let passed = outcome.faults.is_empty();
         table.push([
@@ -337,6 +347,7 @@ pub fn measure(options: &Options, watch: Watch) -> Section {
             outcome.figures.into(),
             case.passes.into(),
             (if passed { "passes" } else { "FAILS" }).into(),
+            seconds.into(),
         ]);
         let faults = outcome.faults.into_iter();
         section
@@ -346,7 +357,7 @@ pub fn measure(options: &Options, watch: Watch) -> Section {
     let failed = table
         .rows
         .iter()
-        .filter(|row| row.last() == Some(&"FAILS".into()))
+        .filter(|row| row.contains(&"FAILS".into()))
         .count();
     section.findings.push(format!(
         "{} of the {} hard cases pass, over {} rays, pixels and edits counted.",
