@@ -61,6 +61,12 @@ pub struct DrawnLines {
     pub on_top: bool,
 }
 
+/// On a gizmo that is drawn before everything. It writes the depth of that, so what has to be seen
+/// beside it is drawn first: gizmos are drawn in the order in which a query finds them, and that goes
+/// component set by component set, the one without this mark being the older.
+#[derive(Component)]
+struct BeforeAll;
+
 /// Makes the gizmos of those sets that changed.
 pub(super) fn draw_lines(
     mut commands: Commands,
@@ -95,7 +101,10 @@ pub(super) fn draw_lines(
                 },
                 depth_bias,
             };
-            commands.spawn((gizmo, layers.clone(), ChildOf(entity)));
+            let mut child = commands.spawn((gizmo, layers.clone(), ChildOf(entity)));
+            if depth_bias <= -1.0 {
+                child.insert(BeforeAll);
+            }
         };
         if drawn.on_top {
             draw(1.0, -1.0);
@@ -116,4 +125,35 @@ fn asset(lines: &[Line], strength: f32) -> GizmoAsset {
         asset.line_gradient(line.ends[0], line.ends[1], colors[0], colors[1]);
     }
     asset
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::ecs::system::RunSystemOnce;
+    use bevy::ecs::world::World;
+    use bevy::prelude::{Has, With};
+
+    #[test]
+    fn faint_lines_are_drawn_after_all_others_whichever_set_was_made_last() {
+        let mut world = World::new();
+        world.insert_resource(Assets::<GizmoAsset>::default());
+        let line = Line::new(Vec3::ZERO, Vec3::X, LinearRgba::WHITE);
+        let set = DrawnLines {
+            lines: vec![line],
+            ..DrawnLines::default()
+        };
+        let mut sets: Vec<Entity> = (0..4).map(|_| world.spawn(set.clone()).id()).collect();
+        world.run_system_once(draw_lines).unwrap();
+        for again in [0, 2, 1, 0] {
+            // A new set in place of the old one.
+            world.despawn(sets[again]);
+            sets[again] = world.spawn(set.clone()).id();
+            world.run_system_once(draw_lines).unwrap();
+            let mut gizmos = world.query_filtered::<Has<BeforeAll>, With<Gizmo>>();
+            let faint: Vec<bool> = gizmos.iter(&world).collect();
+            assert!(faint.is_sorted(), "{faint:?}");
+            assert!(faint.contains(&true) && faint.contains(&false));
+        }
+    }
 }
