@@ -125,6 +125,12 @@ impl Fade {
     }
 }
 
+/// On a gizmo that is drawn before everything. It writes the depth of that, so what has to be seen
+/// beside it is drawn first: gizmos are drawn in the order in which a query finds them, and that goes
+/// component set by component set, the one without this mark being the older.
+#[derive(Component)]
+struct BeforeAll;
+
 /// Makes the gizmos of those sets that changed, and of those that the viewer has moved away from.
 pub(super) fn draw_lines(
     mut commands: Commands,
@@ -190,7 +196,10 @@ pub(super) fn draw_lines(
                 },
                 depth_bias,
             };
-            commands.spawn((gizmo, layers.clone(), ChildOf(entity)));
+            let mut child = commands.spawn((gizmo, layers.clone(), ChildOf(entity)));
+            if depth_bias <= -1.0 {
+                child.insert(BeforeAll);
+            }
         }
     }
 }
@@ -214,6 +223,9 @@ fn asset(lines: &[Line], strength: f32, fading: Option<Fading>) -> GizmoAsset {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bevy::ecs::system::RunSystemOnce;
+    use bevy::ecs::world::World;
+    use bevy::prelude::{Has, With};
 
     #[test]
     fn far_lines_are_fainter_than_near_ones_and_none_is_lost() {
@@ -238,5 +250,28 @@ mod tests {
         let fade = Fade(Some(fading));
         assert!(fade.fits(Some(Vec3::X * 0.9)) && !fade.fits(Some(Vec3::X * 1.1)));
         assert!(!fade.fits(None) && Fade(None).fits(None) && !Fade(None).fits(Some(Vec3::X)));
+    }
+
+    #[test]
+    fn faint_lines_are_drawn_after_all_others_whichever_set_was_made_last() {
+        let mut world = World::new();
+        world.insert_resource(Assets::<GizmoAsset>::default());
+        let line = Line::new(Vec3::ZERO, Vec3::X, LinearRgba::WHITE);
+        let set = DrawnLines {
+            lines: vec![line],
+            ..DrawnLines::default()
+        };
+        let mut sets: Vec<Entity> = (0..4).map(|_| world.spawn(set.clone()).id()).collect();
+        world.run_system_once(draw_lines).unwrap();
+        for again in [0, 2, 1, 0] {
+            // A new set in place of the old one.
+            world.despawn(sets[again]);
+            sets[again] = world.spawn(set.clone()).id();
+            world.run_system_once(draw_lines).unwrap();
+            let mut gizmos = world.query_filtered::<Has<BeforeAll>, With<Gizmo>>();
+            let faint: Vec<bool> = gizmos.iter(&world).collect();
+            assert!(faint.is_sorted(), "{faint:?}");
+            assert!(faint.contains(&true) && faint.contains(&false));
+        }
     }
 }

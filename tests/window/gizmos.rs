@@ -210,8 +210,8 @@ fn the_rays_of_a_picked_pixel_show_what_each_system_did() {
     let at = |x: f32, y: f32| [320.0 + 100.0 * x, 370.0 - 100.0 * y];
     let (camera, floor) = (at(-2.5, 1.0), at(1.5, 0.0));
     // The floor, which has the ray's own colour, begins 339 pixels from the top; the lamp's symbol, as
-    // white as what it sends, ends at 190.
-    let (above_floor, below_lamp) = (at(0.2, 0.325), at(1.5, 1.75));
+    // white as what it sends, ends at 221.
+    let (above_floor, below_lamp) = (at(0.2, 0.325), at(1.5, 1.4));
 
     // S1. The lamp stands 2 m above the floor: 3.6 π W/sr / 4 m² · kd / π = 0.9 kd, which is
     // (0.72, 0.36, 0.18); on the screen (221, 162, 118).
@@ -403,7 +403,7 @@ fn trees_normals_and_motion_are_drawn_where_they_are() {
     ]);
     // Nothing between two balls of a box: that is the next level.
     let [x, y] = turned([-1.0, 0.5, 0.4]);
-    one.leaves(&[[x - 8.0, y - 30.0, x + 8.0, y + 12.0]]);
+    one.leaves(&[[x - 8.0, y - 30.0, x + 8.0, y + 2.0]]);
     pictures.pair("s05", "s05-off").shows(&[
         edge([-1.1, 0.9, 0.4], [-1.1, 0.1, 0.4], DEEPEST),
         edge([0.9, 0.9, 0.4], [0.9, 0.1, 0.4], DEEPEST),
