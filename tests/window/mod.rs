@@ -7,6 +7,7 @@
 mod clicks;
 mod handling;
 mod pictures;
+mod rays;
 mod scripts;
 mod startup;
 mod story;

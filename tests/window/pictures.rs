@@ -13,6 +13,16 @@ impl Shot {
         Self(picture.to_rgb8())
     }
 
+    /// Columns and rows.
+    pub fn size(&self) -> [u32; 2] {
+        self.0.dimensions().into()
+    }
+
+    /// The colour of a pixel of the window.
+    pub fn pixel(&self, x: u32, y: u32) -> [u8; 3] {
+        self.0.get_pixel(x, y).0
+    }
+
     /// How far pixels differ on average, in levels of 255, in a part of the window given from
     /// (0, 0) to (1, 1).
     pub fn difference(&self, other: &Self, area: [f32; 4]) -> f64 {
