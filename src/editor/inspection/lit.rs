@@ -31,7 +31,7 @@ const THIN: f32 = 1.6;
 /// Half the arm of the cross at a hit, as a part of its distance from the viewer.
 const CROSS: f32 = 0.008;
 /// More triangles below a node are not outlined: they would fill the box.
-const MOST_TRIANGLES: usize = 2000;
+const MOST_TRIANGLES: usize = 300;
 
 /// Thick lines in front of everything, and thin ones that are hidden by what stands before them.
 #[derive(Default, PartialEq)]

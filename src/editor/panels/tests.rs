@@ -15,7 +15,7 @@ use crate::io::builtin::{self, SCENES};
 use crate::io::{OpenOptions, SceneSource, open};
 use crate::scene::{Environment, PointLamp, RenderSettings, SceneId};
 use crate::view::TracedView;
-use bevy::app::{App, Last};
+use bevy::app::{App, Last, Plugin};
 use bevy::ecs::change_detection::DetectChanges;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::message::Messages;
@@ -50,17 +50,18 @@ impl Desk {
 
     fn empty(size: [f32; 3]) -> Self {
         let mut app = headless_editor();
-        app.add_plugins(RaysPlugin)
-            .insert_resource(Preferences {
-                hint_seen: true,
-                ..Preferences::default()
-            })
-            .init_resource::<Panels>()
-            .init_resource::<Outline>()
-            .init_resource::<Viewport>()
-            .init_resource::<Notices>()
-            .add_message::<Action>()
-            .add_systems(Last, outline_scene);
+        app.insert_resource(Preferences {
+            hint_seen: true,
+            ..Preferences::default()
+        })
+        .init_resource::<Panels>()
+        .init_resource::<Outline>()
+        .init_resource::<Viewport>()
+        .init_resource::<Notices>()
+        .add_message::<Action>()
+        .add_systems(Last, outline_scene);
+        // The app is finished already, and takes no more plugins by itself.
+        RaysPlugin.build(&mut app);
         app.world_mut().spawn((EditorCamera, TracedView::default()));
         let context = egui::Context::default();
         context.options_mut(|options| options.max_passes = std::num::NonZero::new(1).unwrap());

@@ -45,6 +45,17 @@ fn hovered_ui(context: &egui::Context, free: Rect, world: &World, tales: &mut Ta
         tales.hovered = None;
         return;
     };
+    let chosen = world.resource::<Inspected>().node();
+    let is_chosen = |stands| match stands {
+        Stands::Node { instance, node } => {
+            chosen.is_some_and(|chosen| (chosen.instance, chosen.node) == (instance, node))
+        }
+        _ => false,
+    };
+    if is_chosen(stands.0) {
+        // Its figures stand in the corner.
+        return;
+    }
     let traced = &world.resource::<Traced>().world;
     let ray = world.resource::<DebugRay>();
     let names = world.resource::<Names>();
