@@ -8,6 +8,7 @@ mod clicks;
 mod gizmos;
 mod handling;
 mod pictures;
+mod rays;
 mod scripts;
 mod startup;
 mod story;

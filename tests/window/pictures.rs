@@ -13,6 +13,11 @@ impl Shot {
         Self(picture.to_rgb8())
     }
 
+    /// Columns and rows.
+    pub fn size(&self) -> [u32; 2] {
+        self.0.dimensions().into()
+    }
+
     /// As it is on the screen, from the top left.
     pub fn pixel(&self, x: u32, y: u32) -> [u8; 3] {
         self.0.get_pixel(x, y).0

@@ -108,21 +108,21 @@ pub(in crate::editor) const COLUMNS: [Heading; 18] = [
     heading(
         Column::Barycentric,
         "u v",
-        88.0,
+        104.0,
         true,
         "Barycentric weights of the triangle's second and third corner",
     ),
     heading(
         Column::Geometric,
         "face normal",
-        122.0,
+        132.0,
         true,
         "Unit normal of the triangle, turned to the viewer",
     ),
     heading(
         Column::Normal,
         "normal",
-        122.0,
+        132.0,
         true,
         "Unit normal that shading used",
     ),
@@ -320,7 +320,7 @@ pub(in crate::editor) fn meets(ray: &TracedRay, names: &Names) -> String {
     let hit = ray.hit.map(|hit| names.of(hit.object));
     match (&ray.light, hit, ray.met_light) {
         (Some(light), Some(hit), _) if ray.end == RayEnd::Blocked => {
-            format!("{} ← {hit}", names.of(light.id))
+            format!("{}, by {hit}", names.of(light.id))
         }
         (Some(light), _, _) => names.of(light.id),
         (None, Some(hit), _) => hit,

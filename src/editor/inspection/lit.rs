@@ -7,7 +7,7 @@ use super::stepper::Stepper;
 use crate::bvh::{TreeRef, primitives_below};
 use crate::editor::preferences::Preferences;
 use crate::editor::viewport::EditorCamera;
-use crate::inspect::{StepKind, TreeView};
+use crate::inspect::{InspectSettings, StepKind, TreeView};
 use crate::trace::{RayEnd, TracedRay, World};
 use crate::view::{DrawnLines, Line, TracedRender};
 use bevy::color::LinearRgba;
@@ -31,7 +31,7 @@ const THIN: f32 = 1.6;
 /// Half the arm of the cross at a hit, as a part of its distance from the viewer.
 const CROSS: f32 = 0.008;
 /// More triangles below a node are not outlined: they would fill the box.
-const MOST_TRIANGLES: usize = 2000;
+const MOST_TRIANGLES: usize = 300;
 
 /// Thick lines in front of everything, and thin ones that are hidden by what stands before them.
 #[derive(Default, PartialEq)]
@@ -57,10 +57,15 @@ struct MadeOf {
 }
 
 /// Draws them again where they are others.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "a system's parameters are the list of what it reads"
+)]
 pub(super) fn draw_lit(
     mut commands: Commands,
     inspected: Res<Inspected>,
     ray: Res<DebugRay>,
+    inspect: Res<InspectSettings>,
     preferences: Option<Res<Preferences>>,
     render: Single<&TracedRender, With<EditorCamera>>,
     mut sets: Query<&mut DrawnLines>,
@@ -71,13 +76,14 @@ pub(super) fn draw_lit(
         .map_or(Vec3::ZERO, |(_, camera, _)| camera.position);
     let is_open = preferences.is_none_or(|preferences| preferences.show_rays);
     let steps = is_open && inspected.side == Side::Steps && inspected.stepper.len() > 0;
-    let chosen = inspected.ray().and_then(|index| {
+    // The master switch hides what is chosen too.
+    let chosen = inspected.ray().filter(|_| inspect.on).and_then(|index| {
         let rays = ray.rays()?;
         Some((index, rays.rays.get(index as usize)?))
     });
     let made_of = MadeOf {
         ray: chosen.map(|(index, _)| (ray.number(), index)),
-        node: inspected.node().map(|node| {
+        node: inspected.node().filter(|_| inspect.on).map(|node| {
             let world = Arc::as_ptr(&node.world) as usize;
             (world, node.instance, node.node)
         }),
@@ -95,7 +101,7 @@ pub(super) fn draw_lit(
         };
         lit.ray(traced, eye, far);
     }
-    if let Some(node) = inspected.node() {
+    if let Some(node) = inspected.node().filter(|_| inspect.on) {
         lit.node(&node.world, node.instance, node.node);
     }
     if made_of.step.is_some()

@@ -83,15 +83,15 @@ impl Plugin for InspectionPlugin {
             .init_resource::<Hovered>()
             .add_systems(
                 Update,
-                debug_ray::shoot_at_pointer.after(super::pointer::use_pointer),
+                (debug_ray::shoot_at_pointer, hover::find_hovered)
+                    .after(super::pointer::use_pointer),
             )
             .add_systems(
                 PostUpdate,
                 (draw::draw_inspection, lit::draw_lit)
                     .chain()
                     .after(stepper::play),
-            )
-            .add_systems(bevy::app::Last, hover::find_hovered);
+            );
     }
 }
 

@@ -74,8 +74,10 @@ pub(in crate::editor) fn tree_name(
     names: &Names,
 ) -> Option<String> {
     Some(match instance {
-        None if world.aggregate.options().levels == Levels::One => "over all triangles".into(),
-        None => "over the objects".into(),
+        None if world.aggregate.options().levels == Levels::One => {
+            "the tree of all triangles".into()
+        }
+        None => "the top tree".into(),
         Some(instance) => names.of(world.objects.get(instance as usize)?.id),
     })
 }

@@ -13,7 +13,7 @@ use crate::io::{OpenOptions, SceneSource, open};
 use crate::scene::{RenderSettings, SceneId};
 use crate::sync::{Traced, TracedCameras};
 use crate::trace::{RayCost, RayTree, Samples, probe};
-use bevy::app::App;
+use bevy::app::{App, Plugin};
 use bevy::camera::visibility::Visibility;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::query::With;
@@ -34,7 +34,8 @@ pub(super) struct Bench {
 impl Bench {
     pub fn open(scene: &str) -> Self {
         let mut app = headless_editor();
-        app.add_plugins(RaysPlugin);
+        // The app is finished already, and takes no more plugins by itself.
+        RaysPlugin.build(&mut app);
         let source = SceneSource::Builtin(builtin::find(scene).unwrap());
         open(app.world_mut(), &source, OpenOptions::default()).unwrap();
         app.world_mut().resource_mut::<RenderSettings>().spp = 8;

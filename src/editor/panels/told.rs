@@ -45,6 +45,17 @@ fn hovered_ui(context: &egui::Context, free: Rect, world: &World, tales: &mut Ta
         tales.hovered = None;
         return;
     };
+    let chosen = world.resource::<Inspected>().node();
+    let is_chosen = |stands| match stands {
+        Stands::Node { instance, node } => {
+            chosen.is_some_and(|chosen| (chosen.instance, chosen.node) == (instance, node))
+        }
+        _ => false,
+    };
+    if is_chosen(stands.0) {
+        // Its figures stand in the corner.
+        return;
+    }
     let traced = &world.resource::<Traced>().world;
     let ray = world.resource::<DebugRay>();
     let names = world.resource::<Names>();
@@ -72,7 +83,7 @@ fn hovered_ui(context: &egui::Context, free: Rect, world: &World, tales: &mut Ta
         (false, true) => Align2::RIGHT_TOP,
         (false, false) => Align2::RIGHT_BOTTOM,
     };
-    let side = |away: bool| if away { 16.0 } else { -12.0 };
+    let side = |away: bool| if away { 18.0 } else { -14.0 };
     egui::Area::new(Id::new("what is under the pointer"))
         .order(Order::Tooltip)
         .interactable(false)
@@ -87,17 +98,19 @@ fn hovered_ui(context: &egui::Context, free: Rect, world: &World, tales: &mut Ta
 }
 
 fn figures_ui(ui: &mut Ui, told: &Told) {
-    ui.label(RichText::new(&told.title).strong());
+    // Small: it lies over what it is about.
+    ui.spacing_mut().interact_size.y = 0.0;
+    ui.label(RichText::new(&told.title).strong().size(12.0));
     if told.figures.is_empty() {
         return;
     }
     Grid::new(("figures", &told.title))
         .num_columns(2)
-        .spacing([10.0, 1.0])
+        .spacing([8.0, 0.0])
         .show(ui, |ui| {
             for (name, value) in &told.figures {
-                ui.weak(*name);
-                ui.label(RichText::new(value).monospace().size(11.0));
+                ui.label(RichText::new(*name).weak().size(11.0));
+                ui.label(RichText::new(value).monospace().size(10.5));
                 ui.end_row();
             }
         });

@@ -21,7 +21,7 @@ use bevy::input::ButtonState;
 use bevy::input::keyboard::KeyCode;
 use bevy::math::Vec2;
 use bevy::prelude::IntoScheduleConfigs;
-use bevy::window::{PrimaryWindow, Window, WindowEvent, WindowResized};
+use bevy::window::{PrimaryWindow, Window, WindowResized};
 use bevy_egui::EguiPostUpdateSet;
 use std::collections::VecDeque;
 use std::io::Write;

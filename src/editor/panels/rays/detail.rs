@@ -38,6 +38,7 @@ pub(super) fn detail_ui(ui: &mut Ui, world: &mut World, inspected: &mut Inspecte
     });
     let names = world.resource::<Names>();
     let lines = figures(ray, rays, names);
+    ui.spacing_mut().interact_size.y = 0.0;
     Grid::new("figures of a ray")
         .num_columns(2)
         .spacing([10.0, 1.0])

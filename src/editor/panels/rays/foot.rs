@@ -25,8 +25,8 @@ pub(super) fn foot_ui(ui: &mut Ui, world: &mut World, rays: &RayTree) {
     let of_film = addition.says_of_film(rays, film);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 6.0;
-        statement_ui(ui, &of_rays, "What each ray adds by itself, summed in the order in which the tracer added it, against the sample's value");
-        statement_ui(ui, &of_film, "The samples' values against what the film of this picture added for the pixel, as exact sums");
+        statement_ui(ui, &of_rays, ";", "What each ray adds by itself, summed in the order in which the tracer added it, against the sample's value");
+        statement_ui(ui, &of_film, ".", "The samples' values against what the film of this picture added for the pixel, as exact sums");
         if rays.left_out > 0 {
             let text = format!(
                 "{} samples were left out: there would have been too many rays",
@@ -40,12 +40,12 @@ pub(super) fn foot_ui(ui: &mut Ui, world: &mut World, rays: &RayTree) {
     });
 }
 
-fn statement_ui(ui: &mut Ui, statement: &Statement, says: &str) {
+fn statement_ui(ui: &mut Ui, statement: &Statement, end: &str, says: &str) {
     let color = match statement.is_fault {
         true => ui.visuals().error_fg_color,
         false => ui.visuals().text_color(),
     };
-    let text = format!("{};", statement.text);
+    let text = format!("{}{end}", statement.text);
     ui.label(RichText::new(text).small().color(color))
         .says(says);
 }

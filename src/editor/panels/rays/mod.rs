@@ -89,10 +89,12 @@ pub(super) fn window_ui(
         (0.9 * screen.x).min(980.0),
         preferences.rays_height.min(0.6 * screen.y),
     );
-    let corner = free.left_bottom() - vec2(0.0, size.y + 40.0);
+    // Above the status line, over the picture's lower part.
+    let bottom = context.content_rect().max.y;
+    let corner = egui::pos2(free.min.x + 12.0, bottom - size.y - 80.0);
     egui::Window::new("Ray inspector")
         .id(egui::Id::new("rays in a window"))
-        .title_bar(false)
+        .collapsible(false)
         .default_size(size)
         .default_pos(corner)
         .min_size(vec2(420.0, LEAST_HEIGHT))

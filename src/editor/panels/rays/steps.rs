@@ -50,9 +50,9 @@ pub(super) fn steps_ui(
     }
     let [entered, missed, pruned, triangles] = inspected.stepper.counts();
     ui.weak(format!(
-        "so far {entered} nodes entered, {missed} boxes missed, {pruned} pruned, {triangles} triangles tested"
+        "so far: {entered} entered, {missed} missed, {pruned} pruned, {triangles} triangles"
     ))
-    .says("Of the single-ray traversal of the binary trees, without caches or packets");
+    .says("Nodes entered, boxes missed, nodes pruned and triangles tested, by the single-ray traversal of the binary trees, without caches or packets");
     stack_ui(ui, inspected, &tell);
     ui.add_space(4.0);
     list_ui(ui, inspected, &tell);
@@ -132,7 +132,7 @@ struct Tell<'a> {
 impl Tell<'_> {
     fn node(&self, instance: Option<u32>, node: u32) -> String {
         match tree_name(self.world, instance, self.names) {
-            Some(tree) => format!("{node} {tree}"),
+            Some(tree) => format!("{node} of {tree}"),
             None => node.to_string(),
         }
     }

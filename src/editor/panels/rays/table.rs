@@ -204,7 +204,7 @@ fn row_ui(
     let fill = match (is_chosen, response.hovered(), at % 2) {
         (true, ..) => visuals.selection.bg_fill,
         (_, true, _) => visuals.widgets.noninteractive.bg_stroke.color,
-        (_, _, 1) => visuals.faint_bg_color.gamma_multiply(0.6),
+        (_, _, 1) => visuals.faint_bg_color,
         _ => Color32::TRANSPARENT,
     };
     ui.painter().rect_filled(seen, 0.0, fill);

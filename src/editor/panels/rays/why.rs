@@ -41,6 +41,7 @@ pub(super) fn why_ui(ui: &mut Ui, names: &Names, why: &mut Why, (rays, number): 
         ui.add(Label::new("• every camera ray ends at a light").wrap());
     }
     ui.add_space(4.0);
+    ui.spacing_mut().interact_size.y = 0.0;
     Grid::new("sources")
         .num_columns(3)
         .spacing([10.0, 2.0])

@@ -48,6 +48,7 @@ impl Desk {
 
     pub fn empty(size: [f32; 3]) -> Self {
         let mut app = headless_editor();
+        // The app is finished already, and takes no more plugins by itself.
         RaysPlugin.build(&mut app);
         TreeStudyPlugin.build(&mut app);
         app.insert_resource(Preferences {

@@ -1,15 +1,20 @@
 //! The tab BVH: builders compared and timed, and two trees at once.
 
-use super::desk::*;
+use super::super::state::{Panels, Tab};
+use super::desk::{Desk, USUAL};
 use crate::bvh::Builder;
+use crate::editor::action::Action;
 use crate::editor::history::History;
 use crate::editor::trees::measure::{BUILDERS, Measurements, Stale};
 use crate::editor::trees::pair::{SideState, TreePair};
 use crate::inspect::{
     BoxChoice, BoxRange, BuilderFigures, InspectPreset, InspectSettings, compare_builders,
 };
-use crate::scene;
+use crate::scene::{self, RenderSettings, SceneId};
 use crate::sync::{Traced, TracedCameras};
+use crate::view::TracedView;
+use bevy::ecs::query::With;
+use bevy::ecs::world::World;
 use bevy::transform::components::Transform;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
