@@ -68,6 +68,10 @@ fn draw(world: &mut World) {
         return;
     };
     let context = context.get_mut().clone();
+    if super::script::is_playing(world) {
+        // A script presses and releases in two frames, however long these take.
+        context.options_mut(|options| options.input_options.max_click_duration = f64::INFINITY);
+    }
     panels_ui(&context, world);
 }
 
