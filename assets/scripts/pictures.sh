@@ -26,7 +26,7 @@ play() {
 lighter() {
     local picture
     for picture in "$@"; do
-        convert "$picture" -strip -dither None -colors 256 "PNG8:$picture"
+        convert "$picture" -strip -dither FloydSteinberg -colors 256 "PNG8:$picture"
     done
 }
 

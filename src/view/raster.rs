@@ -22,6 +22,7 @@ use bevy::asset::{Asset, Assets, Handle, embedded_asset};
 use bevy::camera::Exposure;
 use bevy::camera::visibility::{InheritedVisibility, RenderLayers, Visibility};
 use bevy::color::{Color, ColorToComponents, LinearRgba};
+use bevy::light::cluster::GlobalClusterSettings;
 use bevy::light::{AmbientLight, DirectionalLight, PointLight, RectLight, SpotLight};
 use bevy::math::{Quat, Vec3, Vec4};
 use bevy::mesh::Mesh3d;
@@ -32,7 +33,7 @@ use bevy::platform::collections::HashMap;
 use bevy::prelude::{
     AlphaMode, App, Changed, Commands, Component, DetectChanges, DetectChangesMut, Entity,
     IntoScheduleConfigs, Or, Plugin, PostUpdate, Query, Ref, RemovedComponents, Res, ResMut,
-    Resource, With, Without,
+    Resource, Startup, With, Without,
 };
 use bevy::reflect::TypePath;
 use bevy::render::render_resource::AsBindGroup;
@@ -48,7 +49,7 @@ const REACH: f32 = 1.0e4;
 
 /// What a white surface shows where no light reaches it. The tracer shows black there; a little more
 /// keeps an unlit scene in sight.
-const AMBIENT: f32 = 0.02;
+const AMBIENT: f32 = 0.1;
 
 /// Shows a scene of our components in Bevy's renderer. Not for scenes of Bevy's own materials,
 /// which it shows anyway.
@@ -60,6 +61,7 @@ impl Plugin for RasterPlugin {
         app.add_plugins(MaterialPlugin::<RasterMaterial>::default());
         app.init_resource::<RasterMaterials>()
             .init_resource::<Divider>()
+            .add_systems(Startup, sort_lights_here)
             .add_systems(
                 PostUpdate,
                 (give_materials, end_at_divider, give_lights, move_lights)
@@ -67,6 +69,14 @@ impl Plugin for RasterPlugin {
                     .after(TransformSystems::Propagate)
                     .after(crate::sync::SyncSystems),
             );
+    }
+}
+
+/// A scene has few lights: the processor sorts them into the view's parts at no cost, and every driver
+/// gets them right. Bevy would have the GPU do it.
+fn sort_lights_here(settings: Option<ResMut<GlobalClusterSettings>>) {
+    if let Some(mut settings) = settings {
+        settings.gpu_clustering = None;
     }
 }
 

@@ -251,7 +251,8 @@ fn the_rays_of_a_picked_pixel_show_what_each_system_did() {
     // x = 1 and 1.75, each in an eighth of that.
     let tube = |t: f32| at(0.5 + 1.5 * t, 2.4);
     // The panel's front edge is 4.4 m away: 480 / 4.4 = 109.1 pixels a metre, its height 0.9 m above
-    // the view's axis: y = 240 - 98.2, x from 320 - 1.5 · 109.1 on. Magenta to cyan.
+    // the view's axis: y = 240 - 98.2, x from 320 - 1.5 · 109.1 on. Magenta to cyan; the
+    // legend lies over all but its end, (0.03, 0.97, 1).
     let front = |t: f32| [320.0 - 109.1 * (1.5 - t), 141.8];
     // Its back edge is 5.2 m away, 92.3 pixels a metre: yellow to green.
     let back = |t: f32| [320.0 - 92.3 * (1.5 - t), 156.9];
@@ -260,8 +261,7 @@ fn the_rays_of_a_picked_pixel_show_what_each_system_did() {
         Line(tube(0.1), tube(0.1), [243, 0, 89]),
         Line(tube(0.5), tube(0.5), [188, 0, 188]),
         Line(tube(0.9), tube(0.9), [89, 0, 243]),
-        Line(front(0.1), front(0.1), [243, 89, 255]),
-        Line(front(0.9), front(0.9), [89, 243, 255]),
+        Line(front(0.97), front(0.97), [48, 252, 255]),
         Line(back(0.1), back(0.1), [243, 255, 0]),
         Line(back(0.9), back(0.9), [89, 255, 0]),
     ]);
