@@ -216,7 +216,7 @@ mod tests {
         for (film, part) in [
             (None, "another picture"),
             (Some((Sum::default(), 0)), "no sample"),
-            (Some((sum, count + 1)), "their mean"),
+            (Some((sum, rays.samples.len() as u32 + 1)), "their mean"),
         ] {
             let said = ray.addition().says_of_film(rays, film);
             assert!(!said.is_fault && said.text.contains(part), "{said:?}");

@@ -257,21 +257,23 @@ mod tests {
 
     #[test]
     fn a_stack_entry_tells_where_it_is_entered_and_is_pruned_only_once_a_nearer_hit_is_known() {
-        let (mut stepper, _) = stepper_of("knot", [400, 300], 0);
         let mut pruned = 0;
-        for at in 0..stepper.len() {
-            stepper.go(at);
-            for (node, mark) in stepper.stack() {
-                let rest = &stepper.steps()[at + 1..];
-                let turn = rest
-                    .iter()
-                    .position(|step| step.triangle.is_none() && (step.instance, step.node) == node);
-                let Some(turn) = turn else { continue };
-                assert_eq!(mark.t, rest[turn].t, "step {at}");
-                let hit_first = rest[..turn].iter().any(|step| step.kind == StepKind::Hit);
-                let is = rest[turn].kind == StepKind::Pruned && !hit_first;
-                assert_eq!(mark.is_pruned, is, "step {at}, {node:?}");
-                pruned += usize::from(is);
+        for pixel in [[300, 240], [260, 200], [340, 260], [300, 300]] {
+            let (mut stepper, _) = stepper_of("knot", pixel, 0);
+            for at in 0..stepper.len() {
+                stepper.go(at);
+                for (node, mark) in stepper.stack() {
+                    let rest = &stepper.steps()[at + 1..];
+                    let turn = rest
+                        .iter()
+                        .position(|s| s.triangle.is_none() && (s.instance, s.node) == node);
+                    let Some(turn) = turn else { continue };
+                    assert_eq!(mark.t, rest[turn].t, "step {at}");
+                    let hit_first = rest[..turn].iter().any(|s| s.kind == StepKind::Hit);
+                    let is = rest[turn].kind == StepKind::Pruned && !hit_first;
+                    assert_eq!(mark.is_pruned, is, "step {at}, {node:?}");
+                    pruned += usize::from(is);
+                }
             }
         }
         assert!(pruned > 0, "nothing was ever pruned");

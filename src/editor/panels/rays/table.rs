@@ -80,7 +80,9 @@ pub(super) fn table_ui(ui: &mut Ui, shown: &Shown, inspected: &mut Inspected) ->
         if let Some(goal) = goal.filter(|&goal| goal < count) {
             let top = corner + vec2(seen.min.x, goal as f32 * ROW);
             let rect = Rect::from_min_size(top, vec2(1.0, ROW));
-            ui.scroll_to_rect(rect, Some(Align::Center));
+            // At once: what was clicked in the view is looked for here.
+            let at_once = egui::style::ScrollAnimation::none();
+            ui.scroll_to_rect_animation(rect, Some(Align::Center), at_once);
         }
         let first = (seen.min.y / ROW).floor().max(0.0) as usize;
         let last = ((seen.max.y / ROW).ceil().max(0.0) as usize).min(count);
