@@ -57,9 +57,8 @@ impl Plugin for TreesPlugin {
     }
 }
 
-/// Lines of a system at most where a processor draws them too: so many take it about 30 ms of a
-/// frame at 1280 x 720 (two cores of an EPYC, Mesa's llvmpipe; boxes of the 87,000 triangles of the
-/// scene `knot`).
+/// Lines of a system at most where a processor draws them too: each frame then takes its time from
+/// the tracer. Chosen by eye, at a third of the default; a person may set more.
 const LINES_WITHOUT_GPU: u32 = 30_000;
 
 /// No more lines than the machine draws quickly; what is left out is said.
