@@ -8,8 +8,6 @@ use bevy_egui::egui::{self, Align2, Id, Label, Rect, RichText, Ui, vec2};
 
 /// How many messages are shown at most: more would hide the picture.
 const MOST: usize = 4;
-/// Points beside a message's text: its button and the frame's margins.
-const BESIDE: f32 = 40.0;
 
 /// Messages, the newest below; true where the pointer is over them.
 pub(super) fn notices_ui(context: &egui::Context, free: Rect, world: &mut World) -> bool {
@@ -31,16 +29,14 @@ pub(super) fn notices_ui(context: &egui::Context, free: Rect, world: &mut World)
         .order(egui::Order::Foreground)
         .show(context, |ui| {
             ui.set_max_width(width);
-            ui.with_layout(egui::Layout::top_down(egui::Align::Max), |ui| {
-                if earlier > 0 && earlier_ui(ui, earlier) {
-                    closed = Some(Closed::All);
+            if earlier > 0 && earlier_ui(ui, earlier) {
+                closed = Some(Closed::All);
+            }
+            for (i, notice) in all.iter().enumerate().skip(earlier) {
+                if notice_ui(ui, notice, width) {
+                    closed = Some(Closed::One(i));
                 }
-                for (i, notice) in all.iter().enumerate().skip(earlier) {
-                    if notice_ui(ui, notice, width) {
-                        closed = Some(Closed::One(i));
-                    }
-                }
-            });
+            }
         });
     match closed {
         Some(Closed::One(i)) => notices.close(i),
@@ -69,21 +65,17 @@ fn earlier_ui(ui: &mut Ui, earlier: usize) -> bool {
     frame.inner
 }
 
-/// One message, as wide as its text asks for; true where it was closed.
+/// One message; true where it was closed.
 fn notice_ui(ui: &mut Ui, notice: &Notice, width: f32) -> bool {
     let color = match notice.is_fault {
         true => ui.visuals().error_fg_color,
         false => ui.visuals().text_color(),
     };
-    let font = egui::TextStyle::Body.resolve(ui.style());
-    let galley = ui
-        .painter()
-        .layout(notice.text.clone(), font, color, width - BESIDE);
-    let room = galley.size().x.ceil() + 1.0;
     let frame = egui::Frame::popup(ui.style()).show(ui, |ui| {
         ui.horizontal_top(|ui| {
-            ui.set_width(room + BESIDE - 14.0);
+            ui.set_width(width);
             let text = RichText::new(&notice.text).color(color);
+            let room = ui.available_width() - 30.0;
             ui.allocate_ui(vec2(room, 0.0), |ui| {
                 ui.set_width(room);
                 ui.add(Label::new(text).wrap().selectable(true));

@@ -146,7 +146,8 @@ fn visuals(theme: Theme, palette: &Palette) -> Visuals {
     visuals.window_fill = palette.raised;
     visuals.window_stroke = Stroke::new(1.0, palette.line);
     visuals.extreme_bg_color = palette.well;
-    visuals.faint_bg_color = palette.raised;
+    // Every other row of a grid, which stands in popups and dialogs.
+    visuals.faint_bg_color = palette.panel;
     visuals.code_bg_color = palette.button[0];
     visuals.hyperlink_color = palette.accent;
     visuals.warn_fg_color = palette.warn;
