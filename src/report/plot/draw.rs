@@ -20,6 +20,8 @@ const LETTERS: i32 = 17;
 const LETTER_WIDTH: i32 = 10;
 /// Half of a marker.
 const RADIUS: i32 = 5;
+/// Radius of the circle around another marker.
+const HALO: i32 = 10;
 /// Colours that differ in brightness and for the colour-blind (Okabe and Ito 2008, "Color Universal Design").
 const COLORS: [RGBColor; 6] = [
     RGBColor(0, 0, 0),
@@ -113,10 +115,15 @@ fn draw_labels<B: DrawingBackend>(
         let (x, y) = chart.backend_coord(&place(point)?);
         Some((x - left, y - top))
     };
-    let marked = plot.series.iter().filter(|series| series.marker.is_some());
-    let points: Vec<_> = marked
-        .flat_map(|series| series.points.iter().filter_map(&pixel))
-        .collect();
+    let mut markers = Vec::new();
+    for series in &plot.series {
+        let half = match series.marker {
+            None => continue,
+            Some(Marker::Halo) => HALO + 1,
+            Some(_) => RADIUS + 1,
+        };
+        markers.extend(series.points.iter().filter_map(&pixel).map(|at| (at, half)));
+    }
     let (mut texts, mut words) = (Vec::new(), Vec::new());
     for series in &plot.series {
         for (point, label) in series.points.iter().zip(&series.labels) {
@@ -127,7 +134,7 @@ fn draw_labels<B: DrawingBackend>(
         }
     }
     let (width, height) = area.dim_in_pixel();
-    let places = labels::places(&points, RADIUS + 1, &words, (width as i32, height as i32));
+    let places = labels::places(&markers, &words, (width as i32, height as i32));
     for ((text, (point, half)), place) in texts.into_iter().zip(words).zip(places) {
         if place.led {
             // To the word's nearer edge, not through it.
@@ -259,7 +266,7 @@ impl<C, B: DrawingBackend> Drawable<B> for Mark<C> {
                 let corners = [at(0, -r - 2), at(r + 2, 0), at(0, r + 2), at(-r - 2, 0)];
                 backend.fill_polygon(corners, &style)
             }
-            Marker::Halo => backend.draw_circle((x, y), 2 * r as u32, &style, false),
+            Marker::Halo => backend.draw_circle((x, y), HALO as u32, &style, false),
             Marker::Cross => {
                 backend.draw_line(at(-r, -r), at(r, r), &style)?;
                 backend.draw_line(at(-r, r), at(r, -r), &style)

@@ -42,20 +42,19 @@ pub(super) struct Place {
     pub led: bool,
 }
 
-/// A place for each word, in their order: the first around its point that is free. `points` are all markers of the
-/// plot, `marker` is half of one; `size` is the area's.
+/// A place for each word, in their order: the first around its point that is free. `markers` are all of the plot, each
+/// its middle and half its width; `size` is the area's.
 /// Where no place is free it is the one that covers least.
 pub(super) fn places(
-    points: &[(i32, i32)],
-    marker: i32,
+    markers: &[((i32, i32), i32)],
     words: &[Word],
     size: (i32, i32),
 ) -> Vec<Place> {
-    let mut taken: Vec<Frame> = points
+    let mut taken: Vec<Frame> = markers
         .iter()
-        .map(|&middle| Frame {
+        .map(|&(middle, half)| Frame {
             middle,
-            half: (marker, marker),
+            half: (half, half),
         })
         .collect();
     let mut places = Vec::with_capacity(words.len());
@@ -64,6 +63,8 @@ pub(super) fn places(
             let covers = taken.iter().filter(|other| frame.meets(other)).count() as i32;
             1000 * covers + frame.beyond(size)
         };
+        let here = markers.iter().filter(|(at, _)| *at == point);
+        let marker = here.map(|(_, half)| *half).max().unwrap_or(0);
         // `min_by_key` takes the first of equals: the nearest.
         let best = around(point, half, marker).min_by_key(|(_, frame)| cost(frame));
         let Some((ring, frame)) = best else { continue };
@@ -106,10 +107,17 @@ mod tests {
 
     #[test]
     fn a_word_alone_stands_above_its_point() {
-        let places = places(&[(100, 100)], 5, &[((100, 100), WORD)], SIZE);
+        let places = places(&[((100, 100), 5)], &[((100, 100), WORD)], SIZE);
         assert_eq!(places.len(), 1);
         assert_eq!(places[0].at, (100, 100 - 5 - GAP - 8));
         assert!(!places[0].led);
+        // Above all markers that are there.
+        let places = super::places(
+            &[((100, 100), 5), ((100, 100), 10)],
+            &[((100, 100), WORD)],
+            SIZE,
+        );
+        assert_eq!(places[0].at, (100, 100 - 10 - GAP - 8));
     }
 
     #[test]
@@ -117,7 +125,8 @@ mod tests {
         for (dx, dy) in [(1, 0), (9, 1), (3, -3), (0, 0)] {
             let points: Vec<(i32, i32)> = (0..8).map(|i| (60 + i * dx, 590 + i * dy)).collect();
             let words: Vec<_> = points.iter().map(|&point| (point, WORD)).collect();
-            let places = places(&points, 5, &words, SIZE);
+            let markers: Vec<_> = points.iter().map(|&point| (point, 5)).collect();
+            let places = places(&markers, &words, SIZE);
             assert_eq!(places.len(), words.len());
             let frames: Vec<Frame> = places
                 .iter()

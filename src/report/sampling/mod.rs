@@ -97,8 +97,8 @@ fn method(effort: &Effort) -> Vec<String> {
          with as many cells as samples. Adaptive sampling gets as its goal what the film estimates for our sequence with the \
          same number of samples for every pixel. Slopes are least squares through logarithms; where 1 % lies beyond what was \
          measured (~), along the fitted line. The film's own slope is that of its estimates over its last two doublings, as the \
-         editor shows it while it renders. The estimate is calibrated from 16 samples on, and is known to be off where the edge \
-         of a bright lamp runs exactly along a row of pixels.",
+         editor shows it while it renders. The estimate is calibrated for our sequence and for independent numbers from 16 samples on; \
+         it is known to be off where the edge of a bright lamp runs exactly along a row of pixels.",
         effort.side, effort.seeds, effort.reference
     )]
 }
