@@ -36,12 +36,13 @@ pub(super) use draw::Drawings;
 pub(super) use hover::Hovered;
 pub(super) use names::Names;
 
+use super::schedule::EditorUpdate;
 use super::viewport::EditorCamera;
 use crate::inspect::InspectSettings;
 use crate::sync::SyncSystems;
 use crate::trace::Camera;
 use crate::view::TracedRender;
-use bevy::app::{App, Plugin, PostUpdate, Update};
+use bevy::app::{App, Plugin, PostUpdate};
 use bevy::ecs::query::With;
 use bevy::ecs::world::World;
 use bevy::math::UVec2;
@@ -58,7 +59,7 @@ impl Plugin for RaysPlugin {
             .init_resource::<DebugRay>()
             .init_resource::<Inspected>()
             .init_resource::<Names>()
-            .add_systems(Update, choice::obey)
+            .add_systems(EditorUpdate, choice::obey)
             .add_systems(
                 PostUpdate,
                 (
@@ -82,7 +83,7 @@ impl Plugin for InspectionPlugin {
             .init_resource::<Drawings>()
             .init_resource::<Hovered>()
             .add_systems(
-                Update,
+                EditorUpdate,
                 (debug_ray::shoot_at_pointer, hover::find_hovered)
                     .after(super::pointer::use_pointer),
             )

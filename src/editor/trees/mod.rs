@@ -16,12 +16,13 @@ pub(super) mod pair;
 
 pub(super) use obey::BoxRanges;
 
+use super::schedule::EditorUpdate;
 use crate::bvh;
 use crate::inspect::InspectSettings;
 use crate::scene;
 use crate::sync::SyncSystems;
 use crate::view::Adapter;
-use bevy::app::{App, Plugin, PostUpdate, Startup, Update};
+use bevy::app::{App, Plugin, PostUpdate, Startup};
 use bevy::prelude::{IntoScheduleConfigs, ResMut};
 
 /// The part that needs no window: measurements, actions, the trees of a pair.
@@ -35,7 +36,7 @@ impl Plugin for TreeStudyPlugin {
             .init_resource::<measure::Measurements>()
             .init_resource::<pair::TreePair>()
             .init_resource::<BoxRanges>()
-            .add_systems(Update, (measure::carry_on, obey::obey))
+            .add_systems(EditorUpdate, (measure::carry_on, obey::obey))
             .add_systems(PostUpdate, pair::build_pair.after(SyncSystems));
     }
 }
