@@ -192,13 +192,18 @@ impl Fate {
         if self.blocked > 0 {
             let list: Vec<String> = self.blockers.iter().map(|&id| named(names, id)).collect();
             parts.push(format!(
-                "{} are blocked by {}",
+                "{} {} blocked by {}",
                 self.blocked,
+                if self.blocked == 1 { "is" } else { "are" },
                 list.join(", ")
             ));
         }
         if self.behind > 0 {
-            parts.push(format!("{} come from behind the surface", self.behind));
+            parts.push(format!(
+                "{} come{} from behind the surface",
+                self.behind,
+                one(self.behind)
+            ));
         }
         if self.unlit > self.behind {
             let others = self.unlit - self.behind;

@@ -75,7 +75,8 @@ pub(super) fn table_ui(ui: &mut Ui, shown: &Shown, inspected: &mut Inspected) ->
         .auto_shrink([false, false]);
     let out = scroll.show_viewport(ui, |ui, seen| {
         ui.set_width(width);
-        ui.set_height(count as f32 * ROW);
+        // The bar below lies over what is there.
+        ui.set_height(count as f32 * ROW + ui.spacing().scroll.bar_width);
         let corner = ui.max_rect().min;
         if let Some(goal) = goal.filter(|&goal| goal < count) {
             let top = corner + vec2(seen.min.x, goal as f32 * ROW);
