@@ -16,7 +16,8 @@ use bevy::gizmos::retained::Gizmo;
 use bevy::math::Vec3;
 use bevy::prelude::{
     App, ChildOf, Children, Commands, Component, DetectChanges, Entity, Has, IntoScheduleConfigs,
-    Local, Plugin, PostUpdate, Projection, Query, Ref, ResMut, Transform, Visibility, With,
+    Local, Plugin, PostUpdate, Projection, Query, Ref, ResMut, Startup, Transform, Visibility,
+    With,
 };
 use bevy::transform::TransformSystems;
 use bevy::transform::components::GlobalTransform;
@@ -26,8 +27,35 @@ pub struct LinesPlugin;
 
 impl Plugin for LinesPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(PostUpdate, draw_lines.after(TransformSystems::Propagate));
+        app.add_systems(Startup, spawn_first).add_systems(
+            PostUpdate,
+            draw_lines
+                .after(TransformSystems::Propagate)
+                .run_if(renderer_knows_the_first),
+        );
     }
+}
+
+/// Frames until the renderer has looked at the gizmo of [`spawn_first`] for sure.
+const UNTIL_KNOWN: u32 = 2;
+
+/// A gizmo of no line without [`BeforeAll`], which stays.
+///
+/// A query goes through component sets in the order in which it learns of them, but of several that
+/// are new to it in no order at all. So the renderer has to know this one before there is another.
+fn spawn_first(mut commands: Commands, mut assets: ResMut<Assets<GizmoAsset>>) {
+    let parent = commands.spawn((Transform::default(), Visibility::default()));
+    let parent = parent.id();
+    let gizmo = Gizmo {
+        handle: assets.add(GizmoAsset::new()),
+        ..Gizmo::default()
+    };
+    commands.spawn((gizmo, RenderLayers::default(), ChildOf(parent)));
+}
+
+fn renderer_knows_the_first(mut frames: Local<u32>) -> bool {
+    *frames = frames.saturating_add(1);
+    *frames > UNTIL_KNOWN
 }
 
 /// How much of a line is left where something stands before it.
@@ -127,7 +155,7 @@ impl Fade {
 
 /// On a gizmo that is drawn before everything. It writes the depth of that, so what has to be seen
 /// beside it is drawn first: gizmos are drawn in the order in which a query finds them, and that goes
-/// component set by component set, the one without this mark being the older.
+/// component set by component set, the one without this mark being the older ([`spawn_first`]).
 #[derive(Component)]
 struct BeforeAll;
 

@@ -22,7 +22,6 @@ use bevy::asset::{Asset, Assets, Handle, embedded_asset};
 use bevy::camera::Exposure;
 use bevy::camera::visibility::{InheritedVisibility, RenderLayers, Visibility};
 use bevy::color::{Color, ColorToComponents, LinearRgba};
-use bevy::light::cluster::GlobalClusterSettings;
 use bevy::light::{AmbientLight, DirectionalLight, PointLight, RectLight, SpotLight};
 use bevy::math::{Quat, Vec3, Vec4};
 use bevy::mesh::Mesh3d;
@@ -33,7 +32,7 @@ use bevy::platform::collections::HashMap;
 use bevy::prelude::{
     AlphaMode, App, Changed, Commands, Component, DetectChanges, DetectChangesMut, Entity,
     IntoScheduleConfigs, Or, Plugin, PostUpdate, Query, Ref, RemovedComponents, Res, ResMut,
-    Resource, Startup, With, Without,
+    Resource, With, Without,
 };
 use bevy::reflect::TypePath;
 use bevy::render::render_resource::AsBindGroup;
@@ -61,7 +60,6 @@ impl Plugin for RasterPlugin {
         app.add_plugins(MaterialPlugin::<RasterMaterial>::default());
         app.init_resource::<RasterMaterials>()
             .init_resource::<Divider>()
-            .add_systems(Startup, sort_lights_here)
             .add_systems(
                 PostUpdate,
                 (give_materials, end_at_divider, give_lights, move_lights)
@@ -69,14 +67,6 @@ impl Plugin for RasterPlugin {
                     .after(TransformSystems::Propagate)
                     .after(crate::sync::SyncSystems),
             );
-    }
-}
-
-/// A scene has few lights: the processor sorts them into the view's parts at no cost, and every driver
-/// gets them right. Bevy would have the GPU do it.
-fn sort_lights_here(settings: Option<ResMut<GlobalClusterSettings>>) {
-    if let Some(mut settings) = settings {
-        settings.gpu_clustering = None;
     }
 }
 
@@ -305,7 +295,7 @@ type EditedLamp = Or<(
 /// The lights are few: a change of one makes all twins again.
 fn give_lights(
     mut commands: Commands,
-    edited: Query<(), EditedLamp>,
+    edited: Query<(), (AnyLamp, EditedLamp)>,
     mut no_point: RemovedComponents<PointLamp>,
     mut no_directional: RemovedComponents<DirectionalLamp>,
     mut no_segment: RemovedComponents<SegmentLamp>,
