@@ -74,6 +74,10 @@ const MOVED: f32 = 0.1;
 /// frames' worth of a moving hand.
 const MOST_WHILE_MOVING: usize = 5000;
 
+/// So many lines of a set are a crowd, in which depth has to be told. Fewer, as the rays of a pixel, one
+/// of which may begin at the viewer, are all meant to be seen.
+const CROWD: usize = 300;
+
 /// A line from one point to another in world space, its colour linear between the ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {
@@ -94,7 +98,7 @@ impl Line {
 }
 
 /// A set of lines that is drawn as long as the entity lives. In a perspective view of the tracer's
-/// ([`TracedView`]) the farther ones are fainter, but for symbols ([`SymbolOf`]) and what is on top.
+/// ([`TracedView`]) the farther ones of many are fainter, but for symbols ([`SymbolOf`]) and what is on top.
 #[derive(Component, Clone, Debug, Default, PartialEq)]
 #[require(Transform, Visibility, Fade)]
 pub struct DrawnLines {
@@ -181,7 +185,8 @@ pub(super) fn draw_lines(
     });
     let rests = std::mem::replace(&mut *before, viewer) == viewer;
     for (entity, drawn, mut fade, children, layers, is_symbol) in &mut sets {
-        let viewer = viewer.filter(|_| !(is_symbol || drawn.on_top));
+        let fades = !is_symbol && !drawn.on_top && drawn.lines.len() >= CROWD;
+        let viewer = viewer.filter(|_| fades);
         let may_fade = rests || drawn.lines.len() <= MOST_WHILE_MOVING;
         if !drawn.is_changed() && (fade.fits(viewer) || !may_fade) {
             continue;
