@@ -315,7 +315,8 @@ fn the_rays_of_a_picked_pixel_show_what_each_system_did() {
     pictures
         .pair("s14", "s14-off")
         .shows(&[
-            Line(plate, at(0.6925, 0.277), CYAN),
+            // Nearer to the plate the rays lie over it.
+            Line(at(0.277, 0.111), at(0.6925, 0.277), CYAN),
             Line(top, top, CYAN),
             Line(bottom, bottom, CYAN),
         ])
