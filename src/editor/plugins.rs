@@ -40,9 +40,9 @@ use bevy::app::{App, Plugin, PluginGroup, PluginGroupBuilder};
 /// [`NotTraced`](crate::scene::NotTraced) are left out. The view begins where the app's first camera
 /// stands.
 ///
-/// **While it is on** ([`Editing`], which the app may switch) the app's cameras of that window rest.
+/// **While it is on** ([`Editing`](super::Editing), which the app may switch) the app's cameras of that window rest.
 /// The app's systems go on; those that shall not are given the run condition `not(editing)`
-/// ([`editing`]). What they do to the scene is shown and is no step: undo takes back only what was
+/// ([`editing`](super::editing)). What they do to the scene is shown and is no step: undo takes back only what was
 /// done in the editor. A deleted entity that undo brings back is another `Entity` with the same
 /// components; children that are no part of the scene are lost.
 ///
