@@ -49,6 +49,7 @@ mod visits;
 mod wide_boxes;
 
 pub use box_range::BoxRange;
+pub(crate) use builders::corners;
 pub use builders::{
     BuilderFigures, BuilderRates, Tell, build_time, builder_name, compare_builders,
     compare_builders_told, csv, markdown, rebuilt, same_geometry,

@@ -1,5 +1,6 @@
 //! What is measured: a scene as the tracer has it.
 
+use crate::inspect::corners;
 use crate::scene::RenderSettings;
 use crate::trace::{Camera, World};
 use glam::Vec3;
@@ -27,15 +28,6 @@ impl Subject {
 
     /// Corners of all its triangles that are traced, in world space, as they stand at time 0.
     pub(super) fn triangles(&self) -> Vec<[Vec3; 3]> {
-        let instances = self.world.aggregate.instances().iter();
-        instances
-            .flat_map(|instance| {
-                let mesh = &instance.mesh;
-                (0..mesh.traced()).map(move |place| {
-                    let corners = mesh.triangles().corners(mesh.triangle_at(place));
-                    corners.map(|corner| instance.to_world_point(corner))
-                })
-            })
-            .collect()
+        corners(&self.world)
     }
 }

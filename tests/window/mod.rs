@@ -7,6 +7,7 @@
 mod clicks;
 mod gizmos;
 mod handling;
+mod marks;
 mod pictures;
 mod rays;
 mod scripts;

@@ -126,7 +126,7 @@ pub fn build_time(world: &World) -> Duration {
 
 /// Corners in the world of every primitive of a tree over all triangles, in the order in which
 /// `Aggregate::build` numbers them: object by object, each in its mesh's leaf order.
-fn corners(world: &World) -> Vec<[Vec3; 3]> {
+pub(crate) fn corners(world: &World) -> Vec<[Vec3; 3]> {
     let instances = world.aggregate.instances().iter();
     instances
         .flat_map(|instance| {

@@ -5,6 +5,7 @@ mod rates;
 mod rebuilt;
 mod text;
 
+pub(crate) use figures::corners;
 pub use figures::{BuilderFigures, build_time, builder_name};
 pub use rates::BuilderRates;
 pub use rebuilt::{rebuilt, same_geometry};
