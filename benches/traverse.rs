@@ -85,9 +85,7 @@ fn closest_ours_watched(bencher: Bencher, name: &str) {
         aggregate, rays, ..
     } = of(name);
     let hit = |ray: &Ray| aggregate.closest_hit_with(ray, &mut ()).is_some();
-    bencher
-        .counter(ItemsCount::new(rays.len()))
-        .bench_local(|| black_box(rays).iter().filter(|ray| hit(ray)).count());
+    one_by_one(bencher, rays, hit);
 }
 
 #[divan::bench(args = NAMES)]
@@ -98,9 +96,7 @@ fn closest_obvhs_bvh2(bencher: Bencher, name: &str) {
         let mut hit = RayHit::none();
         tree.ray_traverse(theirs(ray), &mut hit, |ray, i| triangles[i].intersect(ray))
     };
-    bencher
-        .counter(ItemsCount::new(rays.len()))
-        .bench_local(|| black_box(rays).iter().filter(|ray| hit(ray)).count());
+    one_by_one(bencher, rays, hit);
 }
 
 #[divan::bench(args = NAMES)]
@@ -111,9 +107,7 @@ fn closest_obvhs_cwbvh(bencher: Bencher, name: &str) {
         let mut hit = RayHit::none();
         tree.ray_traverse(theirs(ray), &mut hit, |ray, i| triangles[i].intersect(ray))
     };
-    bencher
-        .counter(ItemsCount::new(rays.len()))
-        .bench_local(|| black_box(rays).iter().filter(|ray| hit(ray)).count());
+    one_by_one(bencher, rays, hit);
 }
 
 #[divan::bench(args = NAMES)]
@@ -133,9 +127,7 @@ fn any_obvhs_bvh2(bencher: Bencher, name: &str) {
     let (tree, triangles) = bvh2;
     let hit =
         |ray: &Ray| !tree.ray_traverse_miss(theirs(ray), |ray, i| triangles[i].intersect(ray));
-    bencher
-        .counter(ItemsCount::new(rays.len()))
-        .bench_local(|| black_box(rays).iter().filter(|ray| hit(ray)).count());
+    one_by_one(bencher, rays, hit);
 }
 
 #[divan::bench(args = NAMES)]
@@ -144,6 +136,11 @@ fn any_obvhs_cwbvh(bencher: Bencher, name: &str) {
     let (tree, triangles) = cwbvh;
     let hit =
         |ray: &Ray| !tree.ray_traverse_miss(theirs(ray), |ray, i| triangles[i].intersect(ray));
+    one_by_one(bencher, rays, hit);
+}
+
+/// How long it takes to ask this of each ray.
+fn one_by_one(bencher: Bencher, rays: &[Ray], hit: impl Fn(&Ray) -> bool) {
     bencher
         .counter(ItemsCount::new(rays.len()))
         .bench_local(|| black_box(rays).iter().filter(|ray| hit(ray)).count());

@@ -289,17 +289,8 @@ impl Picked<'_> {
 /// What was left out of lines, and why there are none.
 fn tell_of_lines(sets: &[LineSet]) {
     for set in sets {
-        if let Some(thinned) = &set.thinned {
-            tell(
-                "note",
-                format_args!(
-                    "{:?}: {} of {} {} are drawn: {}",
-                    set.system, thinned.drawn, thinned.of, thinned.what, thinned.rule
-                ),
-            );
-        }
-        for note in &set.notes {
-            tell("note", format_args!("{:?}: {note}", set.system));
+        for text in set.says() {
+            tell("note", format_args!("{:?}: {text}", set.system));
         }
     }
 }

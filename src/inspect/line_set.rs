@@ -4,6 +4,7 @@ use super::System;
 use bevy::color::LinearRgba;
 use glam::Vec3;
 use serde::Serialize;
+use std::fmt;
 
 /// What one system shows. World space, metres; colours are linear, alpha is how much covers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -113,6 +114,18 @@ pub struct Thinned {
     pub rule: &'static str,
 }
 
+impl fmt::Display for Thinned {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self {
+            what,
+            drawn,
+            of,
+            rule,
+        } = self;
+        write!(f, "{drawn} of {of} {what} are drawn: {rule}")
+    }
+}
+
 impl LineSet {
     /// An empty set.
     pub fn new(system: System) -> Self {
@@ -133,6 +146,12 @@ impl LineSet {
             && self.points.is_empty()
             && self.planes.is_empty()
             && self.labels.is_empty()
+    }
+
+    /// What it says of itself in words: what was left out first.
+    pub fn says(&self) -> impl Iterator<Item = String> {
+        let left_out = self.thinned.as_ref().map(Thinned::to_string);
+        left_out.into_iter().chain(self.notes.iter().cloned())
     }
 
     /// A line of one colour.

@@ -43,13 +43,13 @@ impl System {
         Self::Rays,
     ];
 
-    /// Whether the settings ask for it, of the trees that are traced.
-    pub fn is_on(self, inspect: &InspectSettings) -> bool {
+    /// Whether the settings ask for it.
+    pub fn is_wanted(self, inspect: &InspectSettings) -> bool {
         let rays = &inspect.rays;
         inspect.on
             && match self {
-                Self::Boxes => inspect.boxes.on && !inspect.pair.on,
-                Self::Visits => rays.on && (rays.visited || rays.pruned) && !inspect.pair.on,
+                Self::Boxes => inspect.boxes.on,
+                Self::Visits => rays.on && (rays.visited || rays.pruned),
                 Self::Rays => rays.on,
                 Self::Lobes => inspect.lobes,
                 Self::Normals => inspect.normals.on,
@@ -57,6 +57,18 @@ impl System {
                 Self::Lens => inspect.lens,
                 Self::Motion => inspect.motion,
             }
+    }
+
+    /// Whether the settings ask for it of the trees that are traced: where there is a pair of trees,
+    /// what is of trees is drawn of those.
+    pub fn is_on(self, inspect: &InspectSettings) -> bool {
+        let in_pair = inspect.pair.on && matches!(self, Self::Boxes | Self::Visits);
+        self.is_wanted(inspect) && !in_pair
+    }
+
+    /// Whether there is nothing to show without the rays of a pixel.
+    pub fn needs_rays(self) -> bool {
+        matches!(self, Self::Visits | Self::Rays | Self::Lobes)
     }
 
     /// What it shows, whether it is on or not.

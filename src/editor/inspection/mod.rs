@@ -4,14 +4,14 @@
 //! | module | does |
 //! |---|---|
 //! | [`debug_ray`] | a pixel, traced again with every ray written down |
-//! | [`draw`] | each system's lines as one set of retained gizmos |
+//! | [`draw`], [`drawn_set`] | each system's lines as one set of retained gizmos |
 //! | [`lit`] | what is selected, in front of them |
 //! | [`hover`] | which line is under the pointer |
 //! | [`tell`] | what a line stands for, in words and numbers |
 //! | [`list`], [`column`] | the rays as a table: sorted, filtered, folded |
 //! | [`names`] | what objects, lights and materials are called |
 //! | [`addition`] | what the rays add up to, against the film |
-//! | [`json`] | all of it as text
+//! | [`json`] | all of it as text |
 //! | [`stepper`] | plays a traversal forwards and back |
 //! | [`choice`] | which ray and which node are meant, and what keys do to them |
 //!
@@ -22,6 +22,7 @@ pub(super) mod choice;
 pub(super) mod column;
 pub(super) mod debug_ray;
 mod draw;
+mod drawn_set;
 pub(super) mod hover;
 pub(super) mod json;
 pub(super) mod list;
@@ -33,6 +34,7 @@ pub(super) mod tell;
 pub(super) use choice::Inspected;
 pub(super) use debug_ray::{DebugRay, Which};
 pub(super) use draw::Drawings;
+pub(super) use drawn_set::{DrawnSet, Source};
 pub(super) use hover::Hovered;
 pub(super) use names::Names;
 

@@ -6,7 +6,7 @@ use super::says::Says;
 use super::state::Panels;
 use crate::editor::inspection::{DebugRay, Drawings};
 use crate::editor::pick::to_window;
-use crate::inspect::{InspectSettings, Label, Meaning, Thinned, legend};
+use crate::inspect::{InspectSettings, Label, LineSet, Meaning, legend};
 use crate::trace::RayTree;
 use bevy::color::{ColorToPacked, LinearRgba, Srgba};
 use bevy::ecs::world::World;
@@ -31,18 +31,6 @@ pub(super) struct LineTexts {
 
 impl LineTexts {
     fn of(drawings: &Drawings, inspect: &InspectSettings, rays: Option<&RayTree>) -> Self {
-        let notes = drawings.sets().flat_map(|set| {
-            let left_out = set.thinned.as_ref().map(|thinned| {
-                let Thinned {
-                    what,
-                    drawn,
-                    of,
-                    rule,
-                } = thinned;
-                format!("{drawn} of {of} {what} are drawn: {rule}")
-            });
-            left_out.into_iter().chain(set.notes.clone())
-        });
         Self {
             version: drawings.version(),
             meanings: drawings
@@ -50,7 +38,7 @@ impl LineTexts {
                 .filter(|set| !set.is_empty())
                 .flat_map(|set| legend(set.system, inspect, rays))
                 .collect(),
-            notes: notes.collect(),
+            notes: drawings.sets().flat_map(LineSet::says).collect(),
             labels: drawings.sets().flat_map(|set| set.labels.clone()).collect(),
         }
     }

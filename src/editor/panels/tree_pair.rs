@@ -52,8 +52,7 @@ pub(super) fn labels_ui(ui: &Ui, free: Rect, world: &World, split: bool) {
             continue;
         }
         let at = x + MARGIN * (end - x).signum();
-        let heading = heading(builder, side);
-        let mut texts = vec![heading.as_str()];
+        let mut texts = vec![heading(builder, side)];
         for text in side.says() {
             if !texts.contains(&text) {
                 texts.push(text);
@@ -61,7 +60,7 @@ pub(super) fn labels_ui(ui: &Ui, free: Rect, world: &World, split: bool) {
         }
         let mut y = top;
         for text in texts {
-            let rect = label_within(ui, pos2(at, y), align, text, width.min(MOST_WIDTH));
+            let rect = label_within(ui, pos2(at, y), align, &text, width.min(MOST_WIDTH));
             y = rect.max.y + 7.0;
         }
     }

@@ -8,27 +8,21 @@
 use super::background::{Background, Outcome};
 use super::of_setting;
 use crate::bvh::BuildOptions;
-use crate::editor::inspection::DebugRay;
+use crate::editor::inspection::{DebugRay, DrawnSet, Source};
 use crate::editor::viewport::EditorCamera;
 use crate::inspect::{InspectSettings, LineSet, Subject, System, rebuilt};
 use crate::scene::{Builder, RenderSettings};
 use crate::sync::{Traced, TracedCameras};
-use crate::trace::{RayTree, World};
-use crate::view::{DrawnLines, Line, TracedRender};
+use crate::trace::World;
+use crate::view::{DrawnLines, TracedRender};
 use bevy::camera::visibility::RenderLayers;
-use bevy::ecs::component::Component;
-use bevy::ecs::entity::Entity;
 use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Commands, Query, Res, ResMut, Single};
-use bevy::math::Vec3;
-use std::borrow::Borrow;
 use std::sync::Arc;
 
 /// The layers of the two sides.
 pub(super) const LAYERS: [usize; 2] = [20, 21];
-/// Logical pixels.
-const WIDTH: f32 = 1.2;
 /// What is drawn of each side.
 const SYSTEMS: [System; 2] = [System::Boxes, System::Visits];
 
@@ -49,15 +43,7 @@ pub(in crate::editor) struct Side {
     /// With this side's trees; those of before while others are being built.
     world: Option<Arc<World>>,
     failed: Option<String>,
-    drawn: [Option<Drawn>; SYSTEMS.len()],
-}
-
-struct Drawn {
-    entity: Entity,
-    key: u64,
-    says: Vec<String>,
-    /// Kept, so that a key that is made of places in memory cannot come again.
-    _world: Arc<World>,
+    drawn: [DrawnSet; SYSTEMS.len()],
 }
 
 /// How far a side is.
@@ -73,10 +59,6 @@ pub(in crate::editor) enum SideState {
     Failed(String),
 }
 
-/// On the lines of a side.
-#[derive(Component)]
-pub(super) struct OfSide;
-
 impl Side {
     /// How far it is.
     pub fn state(&self) -> SideState {
@@ -91,9 +73,9 @@ impl Side {
     }
 
     /// What its lines say of themselves: what was left out, and why.
-    pub fn says(&self) -> impl Iterator<Item = &str> {
-        let drawn = self.drawn.iter().flatten();
-        drawn.flat_map(|drawn| drawn.says.iter().map(String::as_str))
+    pub fn says(&self) -> impl Iterator<Item = String> {
+        let sets = self.drawn.iter().filter_map(DrawnSet::set);
+        sets.flat_map(LineSet::says)
     }
 
     /// The world whose trees are shown.
@@ -184,15 +166,14 @@ pub(super) fn draw_pair(
     cameras: Res<TracedCameras>,
     ray: Res<DebugRay>,
     render: Single<&TracedRender, With<EditorCamera>>,
-    mut sets: Query<&mut DrawnLines, With<OfSide>>,
+    mut lines: Query<&mut DrawnLines>,
     mut pair: ResMut<TreePair>,
 ) {
     let subject = render.subject();
-    let rays = ray.rays().map(Borrow::<RayTree>::borrow);
     for (side, layer) in pair.sides.iter_mut().zip(LAYERS) {
         let Some((world, (_, camera, rendered))) = side.world.clone().zip(subject) else {
-            for drawn in side.drawn.iter_mut().filter_map(Option::take) {
-                commands.entity(drawn.entity).despawn();
+            for drawn in &mut side.drawn {
+                drawn.clear(&mut commands);
             }
             continue;
         };
@@ -200,80 +181,22 @@ pub(super) fn draw_pair(
             size: rendered.size,
             ..settings.clone()
         };
+        let source = Source {
+            world,
+            rays: ray.rays().cloned(),
+        };
+        let rays = source.rays.as_deref();
         let of_scene = cameras.0.first().map(|camera| &camera.camera);
         let photographer = of_scene.unwrap_or(camera);
-        let subject = Subject::new(&world, photographer, &settings, &inspect, rays).seen_by(camera);
-        for (system, known) in SYSTEMS.into_iter().zip(&mut side.drawn) {
-            let is_on = match system {
-                System::Boxes => inspect.boxes.on,
-                _ => {
-                    let wanted = &inspect.rays;
-                    wanted.on && (wanted.visited || wanted.pruned) && rays.is_some()
-                }
-            };
-            if !is_on {
-                if let Some(drawn) = known.take() {
-                    commands.entity(drawn.entity).despawn();
-                }
-                continue;
+        let subject =
+            Subject::new(&source.world, photographer, &settings, &inspect, rays).seen_by(camera);
+        for (system, drawn) in SYSTEMS.into_iter().zip(&mut side.drawn) {
+            if system.is_wanted(&inspect) && (rays.is_some() || !system.needs_rays()) {
+                let beside = RenderLayers::layer(layer);
+                drawn.draw(system, &subject, &source, beside, &mut commands, &mut lines);
+            } else {
+                drawn.clear(&mut commands);
             }
-            let key = system.key(&subject);
-            if known.as_ref().is_some_and(|known| known.key == key) {
-                continue;
-            }
-            let set = system.lines(&subject);
-            let wanted = DrawnLines {
-                lines: lines_of(&set),
-                width: WIDTH,
-                on_top: false,
-            };
-            let entity = match known {
-                Some(known) => {
-                    if let Ok(mut lines) = sets.get_mut(known.entity) {
-                        *lines = wanted;
-                    }
-                    known.entity
-                }
-                None => commands
-                    .spawn((wanted, OfSide, RenderLayers::layer(layer)))
-                    .id(),
-            };
-            *known = Some(Drawn {
-                entity,
-                key,
-                says: says(&set),
-                _world: world.clone(),
-            });
         }
     }
-}
-
-/// Lines as they are, planes as their outlines.
-fn lines_of(set: &LineSet) -> Vec<Line> {
-    let segments = set.segments.iter().map(|segment| Line {
-        ends: segment.ends,
-        colors: segment.colors,
-    });
-    let outlines = set.planes.iter().flat_map(|plane| {
-        let [x, y] = plane.edges;
-        let corners = [Vec3::ZERO, x, x + y, y].map(|edge| plane.corner + edge);
-        let color = bevy::color::LinearRgba {
-            alpha: 1.0,
-            ..plane.color
-        };
-        (0..4).map(move |i| Line::new(corners[i], corners[(i + 1) % 4], color))
-    });
-    segments.chain(outlines).collect()
-}
-
-/// What a set says of itself, what was left out first.
-fn says(set: &LineSet) -> Vec<String> {
-    let thinned = set.thinned.map(|thinned| {
-        let (drawn, of, what) = (thinned.drawn, thinned.of, thinned.what);
-        format!("{drawn} of {of} {what} are drawn: {}", thinned.rule)
-    });
-    thinned
-        .into_iter()
-        .chain(set.notes.iter().cloned())
-        .collect()
 }

@@ -5,6 +5,7 @@ use super::super::state::Panels;
 use super::figure_table::{Cell, Row, color, figure_table_ui, short};
 use super::measuring::{measure_ui, switch_builder};
 use super::save_text::{SaveText, save_text_ui};
+use super::still_plot::still_plot;
 use crate::bvh::{Builder, LARGEST_LEAF_BIN};
 use crate::editor::trees::measure::{BUILDERS, Measurements, compare};
 use crate::editor::trees::of_setting;
@@ -12,7 +13,7 @@ use crate::inspect::{BuilderFigures, builder_name, csv, markdown};
 use crate::scene::RenderSettings;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{Label, RichText, Ui};
-use egui_plot::{Line, Plot, PlotPoints};
+use egui_plot::{Line, PlotPoints};
 
 /// What the panel keeps of it.
 #[derive(Default)]
@@ -218,12 +219,7 @@ fn histogram_ui(
     ui.weak(title).says(
         "A line for each builder, in the colour of its heading; a tree that is one leaf is left out",
     );
-    Plot::new(id)
-        .height(90.0)
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
+    still_plot(id, 90.0)
         .include_y(0.0)
         .label_formatter(|name, at| {
             let bin = at.x.round();

@@ -10,6 +10,7 @@ use super::builders::builders_ui;
 use super::pair::pair_ui;
 use super::performance::performance_ui;
 use super::render::settings_ui;
+use super::still_plot::still_plot;
 use crate::bvh::{LARGEST_LEAF_BIN, TreeStats};
 use crate::scene::{Builder, RenderSettings, TreeSettings};
 use crate::sync::Traced;
@@ -17,7 +18,7 @@ use crate::trace;
 use bevy::ecs::world::World;
 use bevy::platform::collections::HashSet;
 use bevy_egui::egui::{ComboBox, Grid, Ui};
-use egui_plot::{Bar, BarChart, Plot};
+use egui_plot::{Bar, BarChart};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -229,16 +230,9 @@ fn histogram_ui(ui: &mut Ui, id: &str, axis: &str, counts: &[u32], is_clipped: b
         let more = if more { " or more" } else { "" };
         format!("{}{more}: {} leaves", bar.argument, bar.value)
     };
-    Plot::new(id)
-        .height(90.0)
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
-        .include_y(0.0)
-        .show(ui, |plot| {
-            plot.bar_chart(BarChart::new(axis, bars).element_formatter(Box::new(label)));
-        });
+    still_plot(id, 90.0).include_y(0.0).show(ui, |plot| {
+        plot.bar_chart(BarChart::new(axis, bars).element_formatter(Box::new(label)));
+    });
 }
 
 #[cfg(test)]

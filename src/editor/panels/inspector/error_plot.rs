@@ -4,9 +4,10 @@
 use super::super::says::Says;
 use super::super::status::percent;
 use super::super::theme::accent;
+use super::still_plot::still_plot;
 use crate::film::{Status, TrendPoint};
 use bevy_egui::egui::{Stroke, Ui};
-use egui_plot::{GridInput, GridMark, Line, LineStyle, Plot, PlotPoints, Points};
+use egui_plot::{GridInput, GridMark, Line, LineStyle, PlotPoints, Points};
 use std::ops::RangeInclusive;
 
 /// A curve that is kept for comparison.
@@ -49,12 +50,7 @@ pub(super) fn error_plot_ui(ui: &mut Ui, status: Option<&Status>, curve: &mut Er
         let start = places[0][0];
         vec![[start, error + 0.5 * (time - start)], [time, error]]
     });
-    Plot::new("error-of-time")
-        .height(170.0)
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
+    still_plot("error-of-time", 170.0)
         .show_axes([true, true])
         .x_grid_spacer(decades)
         .y_grid_spacer(decades)

@@ -20,6 +20,7 @@ mod presets;
 mod render;
 mod save_text;
 mod shape;
+mod still_plot;
 mod transform;
 
 use super::says::Says;
