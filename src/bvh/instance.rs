@@ -260,12 +260,12 @@ impl Instance {
             return Some(*world);
         }
         let stands = self.translation + self.velocity * time;
-        let origin = self.object_from_world * (Vec3A::from(world.origin) - stands);
-        let direction = self.object_from_world * Vec3A::from(world.direction);
+        let origin = self.object_from_world * (world.origin - stands);
+        let direction = self.object_from_world * world.direction;
         let size = direction.abs().max_element();
         ((SMALLEST_DIRECTION..=1.0 / SMALLEST_DIRECTION).contains(&size)
             && origin.abs().max_element() < f32::MAX)
-            .then(|| ObjectRay::new(origin.into(), direction.into()))
+            .then(|| ObjectRay::new(origin, direction, size))
     }
 }
 

@@ -53,14 +53,14 @@ macro_rules! arranged {
 }
 
 impl Aggregate {
-    /// Hands the nearest hit of each ray to `found`.
-    pub(super) fn ask_closest(&self, rays: &[Ray], found: impl FnMut(Option<Hit>)) {
-        arranged!(self, of => answer(Closest { of, rays, found }));
+    /// Puts the nearest hit of each ray into its place in `hits`, where there is `None` before.
+    pub(super) fn ask_closest(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
+        arranged!(self, of => answer(Closest { of, rays, hits }));
     }
 
-    /// Hands to `found` whether each ray hits anything.
-    pub(super) fn ask_any(&self, rays: &[Ray], found: impl FnMut(bool)) {
-        arranged!(self, of => answer(Any { of, rays, found }));
+    /// Sets those of `occluded`, all false before, whose rays hit anything.
+    pub(super) fn ask_any(&self, rays: &[Ray], occluded: &mut [bool]) {
+        arranged!(self, of => answer(Any { of, rays, occluded }));
     }
 
     /// [`Arrangement::each_hit`].
@@ -77,14 +77,13 @@ impl Aggregate {
 impl Aggregate {
     /// What [`Aggregate::closest_hits`] and [`Aggregate::occlusions`] find on a machine without vector instructions.
     pub(super) fn ask_portably(&self, rays: &[Ray]) -> (Vec<Option<Hit>>, Vec<bool>) {
-        let (mut hits, mut occluded) = (Vec::new(), Vec::new());
+        let (mut all_hits, mut all_occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
+        let (hits, occluded) = (all_hits.as_mut_slice(), all_occluded.as_mut_slice());
         arranged!(self, of => {
-            let found = |hit| hits.push(hit);
-            Closest { of, rays, found }.ask::<Portable>();
-            let found = |any| occluded.push(any);
-            Any { of, rays, found }.ask::<Portable>();
+            Closest { of, rays, hits }.ask::<Portable>();
+            Any { of, rays, occluded }.ask::<Portable>();
         });
-        (hits, occluded)
+        (all_hits, all_occluded)
     }
 }
 
@@ -104,53 +103,49 @@ macro_rules! stack_for {
 }
 
 /// The nearest hit of each ray.
-pub(super) struct Closest<'a, Of, Found> {
-    pub(super) of: Of,
-    pub(super) rays: &'a [Ray],
-    pub(super) found: Found,
+struct Closest<'a, Of> {
+    of: Of,
+    rays: &'a [Ray],
+    hits: &'a mut [Option<Hit>],
 }
 
-impl<Of: Arrangement, Found: FnMut(Option<Hit>)> Query for Closest<'_, Of, Found> {
+impl<Of: Arrangement> Query for Closest<'_, Of> {
     type Answer = ();
 
     #[inline(always)]
-    fn ask<E: Eight>(mut self) {
+    fn ask<E: Eight>(self) {
         stack_for!(self.of, stack);
-        for ray in self.rays {
-            let mut closest = None;
+        for (ray, closest) in self.rays.iter().zip(self.hits) {
             if let Some(ray) = SafeRay::new(ray) {
                 let mut best = Best::NONE;
                 let offer = |hit, limit| best.offer(hit, limit);
                 self.of.each_hit::<E, true>(&ray, stack, offer);
-                closest = best.found(&ray);
+                *closest = best.found(&ray);
             }
-            (self.found)(closest);
         }
     }
 }
 
 /// Whether each ray hits anything.
-pub(super) struct Any<'a, Of, Found> {
-    pub(super) of: Of,
-    pub(super) rays: &'a [Ray],
-    pub(super) found: Found,
+struct Any<'a, Of> {
+    of: Of,
+    rays: &'a [Ray],
+    occluded: &'a mut [bool],
 }
 
-impl<Of: Arrangement, Found: FnMut(bool)> Query for Any<'_, Of, Found> {
+impl<Of: Arrangement> Query for Any<'_, Of> {
     type Answer = ();
 
     #[inline(always)]
-    fn ask<E: Eight>(mut self) {
+    fn ask<E: Eight>(self) {
         stack_for!(self.of, stack);
-        for ray in self.rays {
-            let mut occluded = false;
+        for (ray, occluded) in self.rays.iter().zip(self.occluded) {
             if let Some(ray) = SafeRay::new(ray) {
                 self.of.each_hit::<E, false>(&ray, stack, |_, _| {
-                    occluded = true;
+                    *occluded = true;
                     STOP
                 });
             }
-            (self.found)(occluded);
         }
     }
 }
@@ -284,7 +279,7 @@ impl Aggregate {
     #[inline(always)]
     pub(crate) fn top_slab(&self, world: &ObjectRay) -> SlabRay {
         let pad = world.origin.abs().max_element() * self.ray_pad;
-        SlabRay::new(world.origin, world.direction, pad)
+        world.slab.with_pad(world.origin, pad)
     }
 
     /// The ray in an instance's space and its frame there, made anew when the instance is not the last one; `None`

@@ -230,38 +230,38 @@ struct MeshLeaves<'a, At> {
 
 impl<E: Eight, At: FnMut(u32, Crossing, f32) -> f32> Leaves<E> for MeshLeaves<'_, At> {
     #[inline(always)]
-    fn visit(&mut self, first: u32, mut limit: f32, _: &mut [u64]) -> f32 {
+    fn visit(&mut self, block: u32, limit: f32, _: &mut [u64]) -> f32 {
         let ray = self.ray;
         let shear = match &mut self.shear {
             Some(shear) => shear,
             none => none.insert(Shear::new(ray.origin, ray.direction)),
         };
-        for block in &self.blocks[first as usize..] {
-            limit = block.cross::<E>(shear, &ray.slab, limit, &mut self.at);
-            if limit == STOP || !block.continues() {
-                break;
-            }
-        }
-        limit
+        self.blocks[block as usize].cross::<E>(shear, &ray.slab, limit, &mut self.at)
+    }
+
+    #[inline(always)]
+    fn rest(&self, block: u32) -> Option<u32> {
+        let continues = self.blocks[block as usize].continues();
+        continues.then_some(block + 1)
     }
 }
 
 /// A ray in a mesh's own space, with what the slab test needs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ObjectRay {
-    pub(crate) origin: Vec3,
-    pub(crate) direction: Vec3,
+    pub(crate) origin: Vec3A,
+    pub(crate) direction: Vec3A,
     pub(crate) slab: SlabRay,
 }
 
 impl ObjectRay {
-    /// The direction's largest component must lie within the range that [`SlabRay`] asks for.
+    /// `longest` is the size of the direction's largest component, and lies within the range that [`SlabRay`] asks for.
     #[inline(always)]
-    pub(crate) fn new(origin: Vec3, direction: Vec3) -> Self {
+    pub(crate) fn new(origin: Vec3A, direction: Vec3A, longest: f32) -> Self {
         Self {
             origin,
             direction,
-            slab: SlabRay::new(origin, direction, SlabRay::pad_of(origin)),
+            slab: SlabRay::new(origin, direction, longest, SlabRay::pad_of(origin)),
         }
     }
 }

@@ -13,29 +13,29 @@ impl Aggregate {
     /// The nearest hit; equal `t` by the smaller (instance, triangle).
     pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
         let mut closest = None;
-        self.ask_closest(slice::from_ref(ray), |hit| closest = hit);
+        self.ask_closest(slice::from_ref(ray), slice::from_mut(&mut closest));
         closest
     }
 
     /// The nearest hit of every ray, in their order. `hits` is cleared first. Faster than one call a ray.
     pub fn closest_hits(&self, rays: &[Ray], hits: &mut Vec<Option<Hit>>) {
         hits.clear();
-        hits.reserve(rays.len());
-        self.ask_closest(rays, |hit| hits.push(hit));
+        hits.resize(rays.len(), None);
+        self.ask_closest(rays, hits);
     }
 
     /// Whether anything is hit in `0 < t < t_max`.
     pub fn occluded(&self, ray: &Ray) -> bool {
         let mut occluded = false;
-        self.ask_any(slice::from_ref(ray), |hit| occluded = hit);
+        self.ask_any(slice::from_ref(ray), slice::from_mut(&mut occluded));
         occluded
     }
 
     /// Whether each ray is occluded, in their order. `occluded` is cleared first. Faster than one call a ray.
     pub fn occlusions(&self, rays: &[Ray], occluded: &mut Vec<bool>) {
         occluded.clear();
-        occluded.reserve(rays.len());
-        self.ask_any(rays, |hit| occluded.push(hit));
+        occluded.resize(rays.len(), false);
+        self.ask_any(rays, occluded);
     }
 
     /// The next hit behind `after`, a hit of the same ray: the ray goes straight on through what it met, and meets every

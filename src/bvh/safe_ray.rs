@@ -1,6 +1,6 @@
 //! A ray that is safe to trace: finite, in range, without a negative zero.
 
-use glam::Vec3;
+use glam::Vec3A;
 
 use super::{
     mesh_tree::ObjectRay,
@@ -30,19 +30,22 @@ impl SafeRay {
     #[inline(always)]
     pub(crate) fn new(ray: &Ray) -> Option<Self> {
         // -0.0 becomes +0.0, so that both mean the same.
-        let (origin, mut direction) = (ray.origin + 0.0, ray.direction + 0.0);
-        let size = direction.abs().max_element();
+        let origin = Vec3A::from(ray.origin) + 0.0;
+        let mut direction = Vec3A::from(ray.direction) + 0.0;
+        let size = direction.abs();
+        let mut longest = size.max_element();
         let mut scale = 1.0;
-        if !(ORDINARY..=1.0 / ORDINARY).contains(&size) {
-            (direction, scale) = rescale(direction)?;
+        // Packed comparisons, which a NaN fails; the largest of several numbers may hide one.
+        let ordinary = size.cmple(Vec3A::splat(1.0 / ORDINARY)).all();
+        if !(ordinary & (longest >= ORDINARY)) {
+            scale = ordinary_scale(direction)?;
+            direction *= scale;
+            longest *= scale;
         }
-        let sane = origin.is_finite()
-            && direction.is_finite()
-            && origin.abs().max_element() <= REACH
-            && ray.t_max > 0.0
-            && (0.0..=1.0).contains(&ray.time);
+        let near = origin.abs().cmple(Vec3A::splat(REACH)).all();
+        let sane = near & (ray.t_max > 0.0) & (ray.time >= 0.0) & (ray.time <= 1.0);
         sane.then(|| Self {
-            world: ObjectRay::new(origin, direction),
+            world: ObjectRay::new(origin, direction, longest),
             end: ray.t_max / scale,
             time: ray.time,
             scale,
@@ -76,16 +79,13 @@ impl SafeRay {
     }
 }
 
-/// A very short or long direction, times a power of two.
+/// The power of two that brings a very short or long direction into range.
 #[cold]
-fn rescale(direction: Vec3) -> Option<(Vec3, f32)> {
-    if !direction.is_finite() || direction == Vec3::ZERO {
+fn ordinary_scale(direction: Vec3A) -> Option<f32> {
+    if !direction.is_finite() || direction == Vec3A::ZERO {
         return None;
     }
-    let scale = if direction.abs().max_element() < 1.0 {
-        (1u128 << 100) as f32
-    } else {
-        1.0 / (1u128 << 100) as f32
-    };
-    Some((direction * scale, scale))
+    let short = direction.abs().max_element() < 1.0;
+    let large = (1u128 << 100) as f32;
+    Some(if short { large } else { 1.0 / large })
 }

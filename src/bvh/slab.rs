@@ -29,7 +29,7 @@
 //! A component of the direction smaller than 2⁻³² of the largest is raised to that. This moves no crossing by more than
 //! 2⁻³²M, which is nothing beside the pads, and makes 0 · ∞ impossible.
 
-use glam::{Vec3, Vec3A};
+use glam::Vec3A;
 use obvhs::aabb::Aabb;
 
 /// Slack of triangle boxes and of ray origins, relative to their largest coordinate: 12 half ulps (see the module).
@@ -60,23 +60,28 @@ pub(crate) struct SlabRay {
 }
 
 impl SlabRay {
-    /// `pad` is the absolute slack around the origin. `origin` and `direction` are finite, the direction's largest
-    /// component between [`SMALLEST_DIRECTION`] and its reciprocal.
+    /// `pad` is the absolute slack around the origin. `origin` and `direction` are finite; `longest`, the size of the
+    /// direction's largest component, lies between [`SMALLEST_DIRECTION`] and its reciprocal.
     #[inline(always)]
-    pub(crate) fn new(origin: Vec3, direction: Vec3, pad: f32) -> Self {
-        let origin = Vec3A::from(origin);
-        let direction = Vec3A::from(direction);
-        let least = Vec3A::splat(direction.abs().max_element() * (1.0 / (1u64 << 32) as f32));
-        let direction = Vec3A::select(
-            direction.cmplt(Vec3A::ZERO),
-            direction.min(-least),
-            direction.max(least),
-        );
+    pub(crate) fn new(origin: Vec3A, direction: Vec3A, longest: f32, pad: f32) -> Self {
+        let least = Vec3A::splat(longest * (1.0 / (1u64 << 32) as f32));
+        let direction = direction.abs().max(least).copysign(direction);
+        let slab = Self {
+            above: origin,
+            below: origin,
+            inverse: direction.recip(),
+        };
+        slab.with_pad(origin, pad)
+    }
+
+    /// The same ray from `origin`, its own, with another slack.
+    #[inline(always)]
+    pub(crate) fn with_pad(self, origin: Vec3A, pad: f32) -> Self {
         let pad = Vec3A::splat(pad);
         Self {
             above: origin + pad,
             below: origin - pad,
-            inverse: direction.recip(),
+            ..self
         }
     }
 
@@ -101,7 +106,7 @@ impl SlabRay {
 
     /// The slack that the object-space test of a ray from `origin` needs.
     #[inline(always)]
-    pub(crate) fn pad_of(origin: Vec3) -> f32 {
+    pub(crate) fn pad_of(origin: Vec3A) -> f32 {
         origin.abs().max_element() * PAD
     }
 }

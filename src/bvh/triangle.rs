@@ -25,7 +25,7 @@
 //! passed the tests above and may be the nearest pay for it, one or two a ray; measured, it costs at most a few per
 //! cent of a ray.
 
-use glam::{DVec3, Vec3, Vec3A, Vec3Swizzles};
+use glam::{Vec3, Vec3A, Vec3Swizzles};
 
 use super::slab::{SlabRay, triangle_box};
 
@@ -67,8 +67,8 @@ impl LeafTriangle {
 /// The ray's frame: which axis is z, and the shear that turns the direction into it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shear {
-    origin: DVec3,
-    direction: DVec3,
+    origin: Vec3A,
+    direction: Vec3A,
     /// Which axes are x, y and z in the frame.
     pub(crate) axes: [usize; 3],
     /// The origin along those axes.
@@ -83,7 +83,7 @@ const FRAMES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
 impl Shear {
     /// The frame of a ray. `direction` is finite and not zero.
     #[inline(always)]
-    pub(crate) fn new(origin: Vec3, direction: Vec3) -> Self {
+    pub(crate) fn new(origin: Vec3A, direction: Vec3A) -> Self {
         let size = direction.abs();
         // Chosen without a branch, since rays that follow each other may go anywhere.
         let in_plane = usize::from(size.x <= size.y);
@@ -93,8 +93,8 @@ impl Shear {
         let [x, y, z] = axes;
         let (from, along) = (origin.to_array(), direction.to_array());
         Self {
-            origin: origin.as_dvec3(),
-            direction: direction.as_dvec3(),
+            origin,
+            direction,
             axes,
             from: [from[x], from[y], from[z]],
             slope: [along[x] / along[z], along[y] / along[z]],
@@ -178,7 +178,7 @@ fn plane(shear: &Shear, corners: [Vec3; 3]) -> f32 {
     let [a, b, c] = corners;
     let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
     let normal = (b - a).cross(c - a);
-    let height = normal.dot(a - shear.origin);
-    let rate = normal.dot(shear.direction);
+    let height = normal.dot(a - shear.origin.as_dvec3());
+    let rate = normal.dot(shear.direction.as_dvec3());
     (height / rate) as f32
 }

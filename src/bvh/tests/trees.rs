@@ -110,7 +110,7 @@ fn a_tree_as_deep_as_any_is_walked_to_its_last_leaf() {
     for leaf_first in [true, false] {
         let nodes = chain(MAX_DEPTH, leaf_first);
         assert_eq!(depth(&nodes), MAX_DEPTH);
-        let slab = SlabRay::new(Vec3::ZERO, Vec3::new(0.3, 0.4, 0.5), 0.0);
+        let slab = SlabRay::new(Vec3A::ZERO, Vec3A::new(0.3, 0.4, 0.5), 0.5, 0.0);
         let mut seen = vec![0; MAX_DEPTH + 1];
         walk(
             &nodes,

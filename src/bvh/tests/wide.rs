@@ -192,7 +192,7 @@ fn a_tree_as_deep_as_any_is_walked_to_its_last_leaf_within_its_stack() {
             "{} pending",
             wide.most_pending()
         );
-        let slab = SlabRay::new(Vec3::ZERO, Vec3::new(0.3, -0.4, 0.5), 0.0);
+        let slab = SlabRay::new(Vec3A::ZERO, Vec3A::new(0.3, -0.4, 0.5), 0.5, 0.0);
         let ray = WideRay::<Portable>::new(&slab);
         let mut visits = Visits(vec![0; leaves as usize]);
         let end = f32::INFINITY;

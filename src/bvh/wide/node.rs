@@ -9,9 +9,9 @@ pub(crate) const LEAF: u32 = 1 << 31;
 /// The row of the children's numbers.
 const CHILDREN: usize = 6;
 
-/// 256 bytes, four cache lines: eight rows of eight numbers, a lane a child. Rows 0 to 2 are the lower faces of the
-/// children's boxes (x, y, z), 3 to 5 the upper ones, 6 the bits of their numbers, 7 is not used. Rows instead of
-/// fields, because a ray picks the faces that it meets first by a number, and that of eight needs no check.
+/// 256 bytes, four cache lines: eight rows of eight numbers, a lane a child. Rows 0, 2 and 4 are the lower faces of the
+/// children's boxes (x, y, z), each followed by the upper one; 6 the bits of their numbers, 7 is not used. Rows instead
+/// of fields, because a ray picks the faces that it meets first by a number, and that of eight needs no check.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct WideNode {
@@ -23,10 +23,10 @@ impl WideNode {
     pub(super) const EMPTY: Self = Self {
         rows: [
             [f32::INFINITY; 8],
-            [f32::INFINITY; 8],
+            [f32::NEG_INFINITY; 8],
             [f32::INFINITY; 8],
             [f32::NEG_INFINITY; 8],
-            [f32::NEG_INFINITY; 8],
+            [f32::INFINITY; 8],
             [f32::NEG_INFINITY; 8],
             [0.0; 8],
             [0.0; 8],
@@ -36,8 +36,8 @@ impl WideNode {
     /// Puts a child into a lane. Its box is finite.
     pub(super) fn set(&mut self, lane: usize, bounds: &Aabb, child: u32) {
         for axis in 0..3 {
-            self.rows[axis][lane] = bounds.min[axis];
-            self.rows[axis + 3][lane] = bounds.max[axis];
+            self.rows[2 * axis][lane] = bounds.min[axis];
+            self.rows[2 * axis + 1][lane] = bounds.max[axis];
         }
         self.rows[CHILDREN][lane] = f32::from_bits(child);
     }
@@ -59,10 +59,10 @@ impl WideNode {
         (0..8)
             .map(|lane| {
                 let corner = |first: usize| {
-                    let [x, y, z] = [0, 1, 2].map(|axis| self.rows[first + axis][lane]);
+                    let [x, y, z] = [0, 2, 4].map(|axis| self.rows[first + axis][lane]);
                     Vec3A::new(x, y, z)
                 };
-                (Aabb::new(corner(0), corner(3)), self.child(lane as u32))
+                (Aabb::new(corner(0), corner(1)), self.child(lane as u32))
             })
             .filter(|(bounds, _)| bounds.min.x <= bounds.max.x)
     }

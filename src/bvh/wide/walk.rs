@@ -24,9 +24,9 @@ pub(crate) fn few_hold(most_pending: usize) -> bool {
 /// What the slab test needs of a ray, eight times over.
 #[derive(Clone, Copy)]
 pub(crate) struct WideRay<E> {
-    /// The rows of a node that hold the faces which the ray meets first, axis by axis, and those it meets last.
+    /// The rows of a node that hold the faces which the ray meets first, axis by axis. Those it meets last are their
+    /// neighbours.
     near: [usize; 3],
-    far: [usize; 3],
     /// What those are measured from: the origin, moved against the ray or along it.
     near_origin: [E; 3],
     far_origin: [E; 3],
@@ -41,12 +41,9 @@ impl<E: Eight> WideRay<E> {
         let backwards = inverse.cmplt(Vec3A::ZERO);
         let near = Vec3A::select(backwards, below, above);
         let far = Vec3A::select(backwards, above, below);
-        let x = usize::from(backwards.test(0));
-        let y = usize::from(backwards.test(1));
-        let z = usize::from(backwards.test(2));
+        let upper = backwards.bitmask() as usize;
         Self {
-            near: [3 * x, 1 + 3 * y, 2 + 3 * z],
-            far: [3 - 3 * x, 4 - 3 * y, 5 - 3 * z],
+            near: [upper & 1, 2 | upper >> 1 & 1, 4 | upper >> 2],
             near_origin: [E::splat(near.x), E::splat(near.y), E::splat(near.z)],
             far_origin: [E::splat(far.x), E::splat(far.y), E::splat(far.z)],
             inverse: [
@@ -62,17 +59,17 @@ impl<E: Eight> WideRay<E> {
     /// differences and products are monotone.
     #[inline(always)]
     fn enter(&self, node: &WideNode, limit: f32) -> (u32, E) {
-        let [x, y, z] = self.faces(node, &self.near, &self.near_origin);
+        let [x, y, z] = self.faces(node, self.near, &self.near_origin);
         // Zero last, so that no entry is -0.0 and their bits are in order.
         let entry = x.max(y).max(z).max(E::splat(0.0));
-        let [x, y, z] = self.faces(node, &self.far, &self.far_origin);
+        let [x, y, z] = self.faces(node, self.near.map(|row| row ^ 1), &self.far_origin);
         let exit = x.min(y).min(z).min(E::splat(limit));
         (E::bits(entry.le(exit)), entry)
     }
 
     /// Where the ray meets three faces of each child.
     #[inline(always)]
-    fn faces(&self, node: &WideNode, rows: &[usize; 3], origin: &[E; 3]) -> [E; 3] {
+    fn faces(&self, node: &WideNode, rows: [usize; 3], origin: &[E; 3]) -> [E; 3] {
         let [x, y, z] = [node.row(rows[0]), node.row(rows[1]), node.row(rows[2])];
         [
             E::load(x).sub(origin[0]).mul(self.inverse[0]),
@@ -94,6 +91,12 @@ pub(crate) trait Leaves<E> {
     /// Tests the ray against a leaf, and returns the new limit: the `t` beyond which nothing matters any more, or
     /// [`STOP`]. The rest of the walk's stack may be used.
     fn visit(&mut self, leaf: u32, limit: f32, stack: &mut [u64]) -> f32;
+
+    /// What to visit next, where that leaf was only a part of one.
+    #[inline(always)]
+    fn rest(&self, _leaf: u32) -> Option<u32> {
+        None
+    }
 }
 
 /// Walks a tree along the ray and visits each leaf it reaches: with `NEAREST_FIRST` in the order in which it enters
@@ -115,9 +118,14 @@ pub(crate) fn walk<E: Eight, const NEAREST_FIRST: bool>(
     let mut pending = 0;
     loop {
         if next & LEAF != 0 {
-            limit = leaves.visit(next & !LEAF, limit, &mut stack[pending..]);
+            let leaf = next & !LEAF;
+            limit = leaves.visit(leaf, limit, &mut stack[pending..]);
             if limit == STOP {
                 return STOP;
+            }
+            if let Some(rest) = leaves.rest(leaf) {
+                next = LEAF | rest;
+                continue;
             }
         } else {
             let node = &tree.nodes[next as usize];
