@@ -1,9 +1,10 @@
 //! Glassbox: a scene editor whose ray tracer you can see into.
 //!
-//! Bevy entities are the scene. Systems sync them into a CPU ray tracer whose trees obvhs builds;
-//! the tracer draws a picture, and can show what it did to get there.
+//! Bevy entities are the scene. Systems carry what changed of them to a CPU ray tracer; the tracer
+//! draws a picture, and can show what it did to get there.
 //!
-//! The rooms, from the ground up; each uses only those before it:
+//! The crate is divided into rooms, its modules, in layers: from the ground up, each uses only those
+//! before it.
 //!
 //! | room | holds |
 //! |---|---|
@@ -14,10 +15,10 @@
 //! | [`inspect`] | what the tracer did, as lines and figures: rays, nodes, normals, samples, motion |
 //! | [`sync`] | entities to the tracer's world: what changed, and only that |
 //! | [`io`] | scene files, OBJ, glTF, pictures, shapes, built-in scenes |
-//! | [`report`] | speed against error: kernels, sampling, features, stability |
+//! | [`app`] | the rooms above as one app without a window |
+//! | [`report`] | speed against error: kernels, sampling, features, hard cases |
 //! | `view` | the traced picture in a Bevy camera, gizmos; the only room that knows Bevy's renderer |
 //! | `editor` | the window: panels, gestures, undo, files; the only room that knows egui |
-//! | [`app`] | the rooms up to `io` as one app without a window |
 //! | [`cli`] | the command line: parses, calls, prints |
 //!
 //! [`bvh`] and [`trace`] need no ECS: see `examples/plain_rust.rs`.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Makes the editor's pictures in assets/ again: those of the README, of the tutorial, and the sheet of
-# all gizmos. From the repository's root, after a build:
+# all gizmos, numbered as in the README's table of systems. From the repository's root, after a build:
 #     assets/scripts/pictures.sh [readme] [tutorial] [gizmos]      # all of them without a word
 # Needs Xvfb, a Vulkan driver and ImageMagick (Debian: xvfb, mesa-vulkan-drivers, imagemagick).
 # GLASSBOX names another program than target/release/glassbox.

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use glam::{Vec3, Vec3A};
+use glam::Vec3A;
 use obvhs::{aabb::Aabb, bvh2::Bvh2};
 
 use super::{

@@ -1,4 +1,4 @@
-//! `glassbox bench`: the original report's performance test, for every builder.
+//! `glassbox bench`: the performance test: the same picture rendered with each builder.
 
 use super::Failure;
 use super::output::say;

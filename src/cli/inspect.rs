@@ -247,7 +247,7 @@ impl Picked<'_> {
             say(format_args!("  {sentence}"))?;
         }
         let mut rows =
-            vec![["from", "mean r", "g", "b", "deviation", "variance"].map(String::from)];
+            vec![["from", "mean r", "g", "b", "deviation", "share of variance"].map(String::from)];
         rows.extend(sources(rays).iter().map(|source| {
             let [r, g, b] = source
                 .mean
@@ -267,14 +267,9 @@ impl Picked<'_> {
         let equal = (0..count as u32).all(|i| rays.sum(i) == rays.samples[i as usize].value);
         let first = rays.samples.first().map_or(0, |sample| sample.index);
         say(format_args!(
-            "rays of sample {first} ({} the sum of all that rays add {} the value, bit for bit; \
-             counters are the single-ray traversal's):",
-            if count == 1 {
-                "it is the only one;"
-            } else {
-                "of all samples"
-            },
-            if equal { "is" } else { "IS NOT" },
+            "rays of sample {first} (for every sample, what its rays add sums to its value, bit for \
+             bit: {}; node and triangle counts are those of the single-ray traversal):",
+            if equal { "yes" } else { "NO" },
         ))?;
         let mut rows = vec![RayLine::HEADER.map(String::from).to_vec()];
         rows.extend(

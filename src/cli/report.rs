@@ -21,17 +21,18 @@ const DEFAULT_SCENES: [&str; 5] = [
 
 #[derive(Args)]
 pub(super) struct Report {
-    /// Parts: kernels, sampling, features, stability or all (default: all); then scenes, files or
-    /// built-in ones (default: five built-in ones). A file that is called like a part is ./NAME
+    /// Parts: kernels, sampling, features, stability (the hard cases) or all (default: all); then
+    /// scenes, files or built-in ones (default: five built-in ones). A file that is called like a part
+    /// is ./NAME
     #[arg(value_name = "PART|SCENE")]
     what: Vec<PathBuf>,
     /// Folder for report.md, its tables (CSV) and its plots (SVG and PNG); or a file NAME.md
     #[arg(short, long, value_name = "DIR", default_value = "report")]
     output: PathBuf,
-    /// Folder for tables and plots, where they shall not be beside the report
+    /// Folder for tables and plots, where they are not to lie beside the report
     #[arg(long, value_name = "DIR")]
     files: Option<PathBuf>,
-    /// Fewer rays, rounds and samples: about two minutes for a scene
+    /// Fewer rays, rounds and samples: about two minutes for a scene on two cores
     #[arg(long)]
     quick: bool,
     /// Chooses the random numbers
@@ -40,7 +41,7 @@ pub(super) struct Report {
     /// Threads to render pictures on (default: all of the machine's); kernels are timed on one
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
     threads: Option<u32>,
-    /// Table (CSV) of an editing benchmark, to be part of the report
+    /// Table of edit latencies for the report: `cargo bench --bench edits -- --csv FILE.csv` writes it
     #[arg(long, value_name = "FILE.csv")]
     editing: Option<PathBuf>,
     /// Let scenes refer to files outside their own folder

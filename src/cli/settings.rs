@@ -13,7 +13,7 @@ pub(super) struct SettingArgs {
     /// Size of the picture in pixels
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<UVec2>,
-    /// Least samples of each pixel
+    /// Samples of each pixel (effects may ask for more); the most with an error or a time to stop at
     #[arg(long, value_name = "N")]
     pub spp: Option<u32>,
     /// Chooses the random numbers
@@ -36,7 +36,7 @@ pub(super) enum BuilderArg {
     Median,
     /// Binned surface area heuristic
     Sah,
-    /// obvhs: clustering with reinsertion
+    /// obvhs: merges neighbours bottom-up, then improves the tree
     Ploc,
 }
 

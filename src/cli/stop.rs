@@ -15,7 +15,8 @@ pub(super) struct StopArgs {
     /// Stop after this many seconds of tracing
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub time: Option<f32>,
-    /// With --error or --time: whether samples go where the error is
+    /// With --error or --time: whether samples go where the error is (default: as the scene says; on
+    /// in a new one)
     #[arg(long, value_name = "on|off", action = ArgAction::Set, value_parser = parse_switch)]
     pub adaptive: Option<bool>,
     /// Render only samples A to B-1 of each pixel, to an .exr that `glassbox merge` adds to others
@@ -27,7 +28,7 @@ pub(super) struct StopArgs {
     pub samples: Option<SampleRange>,
 }
 
-/// Samples of a pixel that --error and --time end at, where --spp does not say: the length of the
+/// The most samples of a pixel with --error and --time, where --spp does not say: the length of the
 /// sequence of sample points.
 const MOST: u32 = 1 << 16;
 /// As many as --spp takes.

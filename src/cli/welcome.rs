@@ -63,7 +63,9 @@ pub(super) fn run(scene: Option<PathBuf>) -> Result<(), Failure> {
          \x20 glassbox merge PART… -o OUT    parts of a picture's samples to one picture\n\
          \x20 glassbox scenes                the built-in scenes\n\
          \x20 glassbox bvh SCENE             statistics of its trees, builder by builder\n\
+         \x20 glassbox inspect SCENE         why a pixel has its colour: every ray of it\n\
          \x20 glassbox bench SCENE           rendering times, builder by builder\n\
+         \x20 glassbox report                speed against error, measured on this machine\n\
          \x20 glassbox convert IN OUT        .scn.ron, .obj and .glb from one to the other\n\
          Each explains itself with --help.",
         env!("CARGO_PKG_VERSION")

@@ -250,14 +250,24 @@ impl Action {
 impl Keys {
     /// As menus show it: `Ctrl+Shift+S`.
     pub fn text(&self) -> String {
-        let name = format!("{:?}", self.key);
-        let name = ["Key", "Digit"]
-            .iter()
-            .find_map(|prefix| name.strip_prefix(prefix))
-            .unwrap_or(&name);
         let ctrl = if self.ctrl { "Ctrl+" } else { "" };
         let shift = if self.shift { "Shift+" } else { "" };
-        format!("{ctrl}{shift}{name}")
+        let name = format!("{:?}", self.key);
+        let name = match self.key {
+            // Shift is in the character.
+            KeyCode::Slash if self.shift => return format!("{ctrl}?"),
+            KeyCode::Slash => "/",
+            KeyCode::Period => ".",
+            KeyCode::Comma => ",",
+            _ => ["Key", "Digit"]
+                .iter()
+                .find_map(|prefix| name.strip_prefix(prefix))
+                .unwrap_or(&name),
+        };
+        match name.strip_prefix("Numpad") {
+            Some(number) => format!("{ctrl}{shift}Num {number}"),
+            None => format!("{ctrl}{shift}{name}"),
+        }
     }
 }
 
@@ -377,5 +387,8 @@ mod tests {
         assert_eq!(ctrl_shift(KeyCode::KeyS).text(), "Ctrl+Shift+S");
         assert_eq!(key(KeyCode::F12).text(), "F12");
         assert_eq!(key(KeyCode::Digit1).text(), "1");
+        assert_eq!(shift(KeyCode::Slash).text(), "?");
+        assert_eq!(key(KeyCode::Period).text(), ".");
+        assert_eq!(ctrl(KeyCode::Numpad1).text(), "Ctrl+Num 1");
     }
 }

@@ -4,7 +4,6 @@
 //! processor with the traced view, and stops by the rules of its own settings: samples, error, time.
 
 use super::notice::Notices;
-use super::schedule::EditorUpdate;
 use crate::film::{Ending, Progressive, State, Status};
 use crate::io::{
     FileError, PictureFormat, check_size, check_writable, picture_notes, write_rendered,
@@ -12,7 +11,7 @@ use crate::io::{
 use crate::scene::{RenderSettings, SceneId, SettingProblem, setting_problems};
 use crate::sync::{Traced, TracedCameras};
 use crate::trace;
-use bevy::app::{App, Plugin};
+use bevy::app::{App, Last, Plugin};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::{Mut, World};
 use std::path::PathBuf;
@@ -117,6 +116,13 @@ impl RenderJob {
             self.job = None;
         }
     }
+
+    /// Another scene was opened: what has not begun would be rendered of that one. Which file is not
+    /// written then.
+    pub(super) fn forget_scene(&mut self) -> Option<PathBuf> {
+        let waits = |job: &mut Job| matches!(job.stage, Stage::Waiting);
+        Some(self.job.take_if(waits)?.request.file)
+    }
 }
 
 /// Of the rule that ends it first.
@@ -178,7 +184,8 @@ impl Plugin for RenderJobPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<RenderJob>()
             .init_resource::<Notices>()
-            .add_systems(EditorUpdate, carry_on);
+            // Whether the editor is on or not, and when the scene is traced as it is now.
+            .add_systems(Last, carry_on);
     }
 }
 

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 /// Tracing the first picture should take this long, in seconds: two frames of a screen, 33 ms, have
 /// to hold besides what is done before and after it.
-const FIRST_PICTURE: f64 = 0.010;
+const FIRST_PICTURE: f64 = 0.008;
 /// The coarsest picture, as long as its long side keeps `LEAST_SIDE` pixels.
 const COARSEST: u32 = 32;
 const LEAST_SIDE: u32 = 64;

@@ -139,7 +139,7 @@ pub fn explanation(tree: &RayTree, names: &BTreeMap<u64, String>) -> Vec<String>
     }
     if lights.is_empty() && !objects.is_empty() {
         sentences.push(
-            "no light is asked: there is none, shading is off, or the surface is fully transparent"
+            "no shadow ray was cast: there is no light, shading is off, or the surface is fully transparent"
                 .into(),
         );
     }

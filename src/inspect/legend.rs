@@ -48,7 +48,7 @@ pub fn legend(system: System, inspect: &InspectSettings, rays: Option<&RayTree>)
                     say(&scale, "leaves, from few triangles to many");
                     say(&[GREY], "inner nodes");
                 }
-                BoxColor::Cost => say(&scale, "boxes, from cheap to dear"),
+                BoxColor::Cost => say(&scale, "boxes, from low to high cost"),
                 BoxColor::Visits => say(&scale, "boxes, from never entered to most often"),
             }
             if boxes.form == TreeForm::Wide {
@@ -97,7 +97,7 @@ pub fn legend(system: System, inspect: &InspectSettings, rays: Option<&RayTree>)
             if shown.iter().any(|ray| !is_light(&ray)) {
                 say(
                     &[ORANGE, WHITE, CYAN],
-                    "rays, in the colour they bring back",
+                    "rays, in the colour of their radiance",
                 );
             }
             let missed = shown.iter().any(|ray| ray.end == RayEnd::Background);
@@ -116,8 +116,8 @@ pub fn legend(system: System, inspect: &InspectSettings, rays: Option<&RayTree>)
                 say(&[YELLOW], "triangles that were hit");
             }
             if inspect.rays.hit_normals {
-                say(&[GREEN], "normals that shade");
-                say(&[BLUE], "normals of the triangles");
+                say(&[GREEN], "shading normals");
+                say(&[BLUE], "geometric normals");
             }
         }
     }

@@ -53,7 +53,8 @@ impl InspectPreset {
             }
             Self::IsTheTreeGood => {
                 "Boxes of the trees, bright where rays pay most. Point and press R: white boxes are \
-                 visited by the pixel's rays, red ones were hit but skipped. Good trees show few."
+                 visited by the pixel's rays, red ones were hit but skipped. A good tree shows few red \
+                 boxes."
             }
             Self::WhereIsTheNoiseFrom => {
                 "Point and press R: the pixel's rays with every random choice that they took, on lens, \

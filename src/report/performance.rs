@@ -1,4 +1,4 @@
-//! The original report's performance test: a picture rendered some times with each builder's trees.
+//! The performance test: the same picture rendered several times with each builder's trees.
 
 use super::timing::median;
 use crate::bvh::{BuildOptions, Builder, Levels};
@@ -240,13 +240,11 @@ fn shape(world: &World) -> (u32, u32) {
 /// A row of the table: its name, and its cell for a builder.
 type Row = (&'static str, fn(&PerformanceColumn) -> String);
 
-/// The rows of the table, as the original report has them and a few more.
+/// The rows of the table.
 const ROWS: [Row; 10] = [
     ("Triangles", |column| column.triangles.to_string()),
     ("Time to create", |column| milliseconds(column.build_ms)),
-    ("Time to render, least", |column| {
-        milliseconds(column.least())
-    }),
+    ("Time to render, min", |column| milliseconds(column.least())),
     ("Time to render, mean", |column| milliseconds(column.mean())),
     ("Time to render, sigma", |column| {
         milliseconds(column.sigma())
@@ -254,7 +252,7 @@ const ROWS: [Row; 10] = [
     ("Time to render, median", |column| {
         milliseconds(column.median())
     }),
-    ("Time to render, most", |column| milliseconds(column.most())),
+    ("Time to render, max", |column| milliseconds(column.most())),
     ("Million rays/s, median", |column| {
         format!("{:.3}", column.mrays_per_s())
     }),
@@ -314,8 +312,8 @@ impl Performance {
     /// Comma-separated values with a header: a line for each builder, with all digits, each
     /// rendering's time in the last column with spaces between them.
     pub fn csv(&self) -> String {
-        let mut text = "builder,triangles,build ms,render least ms,render mean ms,render sigma ms,\
-                        render median ms,render most ms,Mray/s,levels,largest leaf,width,height,spp,\
+        let mut text = "builder,triangles,build ms,render min ms,render mean ms,render sigma ms,\
+                        render median ms,render max ms,Mray/s,levels,largest leaf,width,height,spp,\
                         threads,renders ms\n"
             .to_owned();
         for column in &self.columns {

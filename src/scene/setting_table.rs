@@ -55,7 +55,7 @@ pub const SETTINGS: &[Setting] = {
         row(
             "spp",
             Integer(1, 1 << 20),
-            "least samples of each pixel; effects may ask for more",
+            "samples of each pixel (effects may ask for more); the most with an error or a time to stop at",
         ),
         row(
             "jitter",
@@ -138,7 +138,7 @@ pub const SETTINGS: &[Setting] = {
             "rays through a translucent surface at the first hit",
         ),
         row("texture_filter", Choice, "how texels are read"),
-        row("tree.builder", Choice, "splitting rule of the trees"),
+        row("tree.builder", Choice, "how the trees are built"),
         row(
             "tree.levels",
             Choice,

@@ -50,7 +50,8 @@ pub struct EnvironmentMap(pub Option<Handle<Image>>);
 pub struct RenderSettings {
     /// Pixels, 1 to 65,536 each and at most 2^28 together.
     pub size: UVec2,
-    /// Samples of each pixel, 1 to 2^20: at least so many; effects may ask for more.
+    /// Samples of each pixel, 1 to 2^20; effects may ask for more. The most a pixel gets where
+    /// `sampling` has an error or a time to stop at.
     pub spp: u32,
     /// n of n × n jittered samples of each pixel, 1–16: they ask for n² samples.
     pub jitter: u32,
@@ -161,8 +162,8 @@ pub enum Lighting {
     /// Radiometric: inverse square, cosine at emitters, lights add up.
     #[default]
     Physical,
-    /// A light's colour arrives unattenuated, lights are averaged, normals are taken as the mesh
-    /// gives them, textures are not decoded, emission is ignored.
+    /// As simple Phong ray tracers do it, not physical: a light's colour arrives unattenuated, lights are
+    /// averaged, normals are taken as the mesh gives them, textures are not decoded, emission is ignored.
     Classic,
 }
 
@@ -235,7 +236,7 @@ pub enum TextureFilter {
 #[derive(Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Default, Clone, PartialEq, Debug)]
 pub struct TreeSettings {
-    /// The splitting rule.
+    /// Who puts the triangles together.
     pub builder: Builder,
     /// Two levels (a tree per mesh and one over the objects), or one tree over all triangles.
     pub levels: Levels,
@@ -263,8 +264,8 @@ impl Default for TreeSettings {
 }
 
 impl TreeSettings {
-    /// The tree of the original report: median split, at most ten levels, one tree for all.
-    pub const ORIGINAL: Self = Self {
+    /// A simple textbook tree, to compare with: median split, at most ten levels, one tree for all.
+    pub const SIMPLE: Self = Self {
         builder: Builder::Median,
         levels: Levels::One,
         max_depth: 10,
@@ -274,7 +275,7 @@ impl TreeSettings {
     };
 }
 
-/// The splitting rule of a tree.
+/// How a tree is built.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[reflect(Default, Clone, PartialEq, Debug, Hash)]
 pub enum Builder {
@@ -284,7 +285,8 @@ pub enum Builder {
     Median,
     /// Binned surface area heuristic.
     Sah,
-    /// obvhs: parallel locally-ordered clustering with reinsertion.
+    /// obvhs: parallel locally-ordered clustering merges neighbours bottom-up, then reinsertion
+    /// improves the tree.
     #[default]
     Ploc,
 }

@@ -237,7 +237,7 @@ mod tests {
         let settings = RenderSettings::default();
         let mut other = RenderSettings {
             spp: 999,
-            tree: TreeSettings::ORIGINAL,
+            tree: TreeSettings::SIMPLE,
             ..settings.clone()
         };
         other.output.exposure = 2.0;

@@ -9,7 +9,7 @@
 //! | parallelogram | `L(x) · cos θ · area / d²` for a uniform point x of it, θ at the emitter |
 //!
 //! With Classic lighting the colour itself arrives, whatever the distance and the angle; a
-//! parallelogram shines to both sides then, as the original program's did.
+//! parallelogram shines to both sides then, as in simple Phong ray tracers.
 
 use super::disc::concentric;
 use crate::scene::Lighting;

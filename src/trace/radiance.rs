@@ -299,7 +299,7 @@ impl<R: Recorder> Batch<'_, R> {
 
     /// Radiance of the nearest visible light that the path's ray meets before its hit.
     fn visible_light(&mut self, path: &Path, hit: Option<&Hit>) -> Option<Vec3> {
-        // Classic lights are nowhere to be seen, as in the original program.
+        // Classic lights are nowhere to be seen, as in simple Phong ray tracers.
         if !self.world.needs.visible_lights || self.settings.lighting == Lighting::Classic {
             return None;
         }

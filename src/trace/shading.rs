@@ -2,7 +2,7 @@
 //!
 //! Physical: `n·l · (kd/π + ks·(s+2)/(2π)·max(r·v,0)^s)`, Phong's lobe normalised to keep energy
 //! (Lafortune, Willems 1994, "Using the modified Phong reflectance model", eq. 7).
-//! Classic: `kd·max(n·l,0) + ks·max(r·v,0)^s`, as the original program has it.
+//! Classic: `kd·max(n·l,0) + ks·max(r·v,0)^s`, as simple Phong ray tracers have it.
 
 use super::{LightPoint, Surface};
 use crate::scene::Lighting;

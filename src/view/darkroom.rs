@@ -19,7 +19,7 @@ use std::time::{Duration, Instant};
 
 /// How long the film is looked at between two prints, at the least and at the most.
 const INTERVAL: [Duration; 2] = [Duration::from_millis(50), Duration::from_millis(500)];
-/// How long until it is looked at again while there is no picture yet.
+/// How long until it is looked at again while there is no picture yet, and one is being traced.
 const FIRST: Duration = Duration::from_millis(2);
 /// Pixels of the depth that gizmos are hidden by, at most: it is traced besides the picture.
 const MOST_DEPTHS: f32 = 120_000.0;
@@ -101,6 +101,11 @@ impl Darkroom {
             .unwrap_or_else(PoisonError::into_inner)
             .take()
     }
+}
+
+/// Whether a view becomes another with every pass. First hits are traced once for each render.
+fn follows_samples(view: View) -> bool {
+    view.source() != Source::FirstHits
 }
 
 /// In place of a print that nobody has taken. Its depths, which come only when they are others, are
@@ -248,8 +253,10 @@ impl Job {
     ) -> Option<Print> {
         let status = self.render.status();
         let ended = matches!(status.state, State::Ended(_));
+        let paused = status.state == State::Paused;
         if status.divider.is_none() && !ended {
-            self.next = Instant::now() + FIRST;
+            let wait = if paused { INTERVAL[0] } else { FIRST };
+            self.next = Instant::now() + wait;
             return None;
         }
         let changed = self.render.refresh(snapshot);
@@ -271,8 +278,8 @@ impl Job {
                 true => FIRST,
                 false => (age / 10).clamp(INTERVAL[0], INTERVAL[1]),
             };
-        let stands = self.printed && self.order.view == View::Shaded;
-        if !changed && depths.is_none() && !ended && stands {
+        let stands = self.printed && !(changed && follows_samples(self.order.view));
+        if stands && depths.is_none() && !ended {
             return None;
         }
         self.ended = ended;
@@ -351,6 +358,21 @@ mod tests {
             scale: None,
             of,
         }
+    }
+
+    #[test]
+    fn only_views_of_first_hits_stand_while_samples_come() {
+        let standing = View::ALL.into_iter().filter(|view| !follows_samples(*view));
+        let standing: Vec<View> = standing.collect();
+        let of_first_hits = [
+            View::Albedo,
+            View::Normal,
+            View::Depth,
+            View::Object,
+            View::Nodes,
+            View::Triangles,
+        ];
+        assert_eq!(standing, of_first_hits);
     }
 
     #[test]

@@ -66,6 +66,9 @@ const DEPTH_BIAS: f32 = -0.0004;
 const FARTHEST: f32 = 0.25;
 /// The part of the lines' ends that are so near that they do not fade.
 const NEAR_PART: f32 = 0.1;
+/// Ends that are nearer than this part of the farthest's distance are at the viewer, as where camera
+/// rays begin: they say nothing of how near the lines are.
+const AT_VIEWER: f32 = 0.01;
 /// Of so many ends at most that part is looked for.
 const LOOKED_AT: usize = 2048;
 /// How far the viewer moves before lines fade anew, as a part of the distance from which they do.
@@ -127,6 +130,9 @@ impl Fading {
         let step = lines.len().div_ceil(LOOKED_AT).max(1);
         let ends = lines.iter().step_by(step).flat_map(|line| line.ends);
         let mut distances: Vec<f32> = ends.map(|end| end.distance(viewer)).collect();
+        let finite = distances.iter().filter(|distance| distance.is_finite());
+        let at_viewer = AT_VIEWER * finite.fold(0.0, |most: f32, &distance| most.max(distance));
+        distances.retain(|&distance| distance > at_viewer);
         let place = (distances.len() as f32 * NEAR_PART) as usize;
         let from = match distances.len() {
             0 => 0.0,
@@ -272,6 +278,15 @@ mod tests {
         assert_eq!(fading.strength(Vec3::Z * 4.0), 9.0 / 16.0);
         assert_eq!(fading.strength(Vec3::Z * 1e9), FARTHEST);
         assert_eq!(Fading::of(&[], Vec3::ONE).from, 0.0);
+    }
+
+    #[test]
+    fn rays_that_begin_at_the_viewer_do_not_make_all_of_them_faint() {
+        let line = |z: f32| Line::new(Vec3::Z * 1e-3, Vec3::Z * z, LinearRgba::WHITE);
+        let lines: Vec<Line> = (1..=20).map(|z| line(z as f32)).collect();
+        assert_eq!(Fading::of(&lines, Vec3::ZERO).from, 3.0);
+        let points = [Line::new(Vec3::ONE, Vec3::ONE, LinearRgba::WHITE); 3];
+        assert_eq!(Fading::of(&points, Vec3::ONE).from, 0.0);
     }
 
     #[test]

@@ -220,18 +220,22 @@ fn draw_symbols(
             other = true;
         }
     }
-    if other {
-        redo.extend(symbols.lines.keys());
-        redo.extend(&lasting);
-        if !outlined.0.is_empty() {
-            let wanted: HashSet<SceneId> = outlined.0.iter().copied().collect();
-            let chosen = selected.iter().filter(|(_, id)| wanted.contains(*id));
-            redo.extend(chosen.map(|(entity, _)| entity));
-        }
-    }
     for entity in &edited {
         if symbols.lines.contains_key(&entity) || lasting.contains(entity) {
             redo.insert(entity);
+        }
+    }
+    if !other && redo.is_empty() {
+        return;
+    }
+    // Thousands may be selected: none is looked for in all of them.
+    let chosen: HashSet<SceneId> = outlined.0.iter().copied().collect();
+    if other {
+        redo.extend(symbols.lines.keys());
+        redo.extend(&lasting);
+        if !chosen.is_empty() {
+            let selected = selected.iter().filter(|(_, id)| chosen.contains(*id));
+            redo.extend(selected.map(|(entity, _)| entity));
         }
     }
     for entity in redo {
@@ -246,7 +250,7 @@ fn draw_symbols(
             ..Sketch::default()
         };
         let visible = visible.is_none_or(|visible| visible.get());
-        let outline = switches.outlines && outlined.0.contains(id);
+        let outline = switches.outlines && chosen.contains(id);
         let active = outlined.0.last() == Some(id);
         sketch.tint = outline.then_some(if active {
             colors::ACTIVE

@@ -264,78 +264,116 @@ fn follow(
         if render.failed {
             continue;
         }
-        let size = camera.physical_viewport_size().unwrap_or_default() / view.pixel_size.max(1);
-        let seen = camera.is_active && view.divider < 1.0 && size.min_element() > 0;
         let optics = view.optics_of.and_then(|id| {
             let found = cameras.0.iter().find(|camera| camera.id == id)?;
             Some(&found.camera)
         });
-        let camera = traced_camera(transform, projection, optics);
-        let (Some(camera), true) = (camera, seen) else {
+        let seen_from = traced_camera(transform, projection, optics);
+        let Some((size, camera)) = seen_size(view, camera).zip(seen_from) else {
             if render.running.is_some() {
                 render.retire();
             }
             continue;
         };
-        let order = Order {
-            output: settings.output,
-            view: view.view,
-            range: view.range,
+        let wanted = Wanted {
+            world: traced.world.clone(),
+            camera,
+            settings: RenderSettings {
+                size,
+                // Only developing depends on it.
+                output: Output::default(),
+                ..settings.clone()
+            },
+            order: Order {
+                output: settings.output,
+                view: view.view,
+                range: view.range,
+            },
         };
-        let wanted = RenderSettings {
-            size,
-            // Only developing depends on it.
-            output: Output::default(),
-            ..settings.clone()
-        };
-        let same = render.running.as_ref().is_some_and(|running| {
-            Arc::ptr_eq(&running.world, &traced.world)
-                && running.camera == camera
-                && running.settings == wanted
-        });
-        if !same && render.is_awaited(size) {
+        if render.renders(&wanted) {
+            render.develop(wanted.order);
+        } else if render.is_awaited(size) {
             continue;
-        }
-        if !same {
-            let started = Instant::now();
-            render.retire();
-            let world = (*traced.world).clone();
-            match Progressive::start(world, camera.clone(), wanted.clone()) {
-                Ok(progressive) => {
-                    let running = Running {
-                        render: Arc::new(progressive),
-                        world: traced.world.clone(),
-                        camera,
-                        settings: wanted,
-                        order: order.clone(),
-                        started,
-                        paused: false,
-                        focus: Vec2::splat(0.5),
-                    };
-                    if let Some(darkroom) = &render.darkroom {
-                        darkroom.develop(&running.render, &running.subject(), order);
-                    }
-                    render.running = Some(running);
-                }
-                Err(problem) => {
-                    render.failed = true;
-                    error!("the traced view cannot render: {problem}");
-                    continue;
-                }
-            }
-        } else if render.running.as_ref().is_some_and(|r| r.order != order)
-            && let TracedRender {
-                running: Some(running),
-                darkroom: Some(darkroom),
-                ..
-            } = &mut *render
-        {
-            running.order = order.clone();
-            darkroom.develop(&running.render, &running.subject(), order);
+        } else {
+            render.begin(wanted);
         }
         if let Some(running) = render.running.as_mut() {
             running.direct(view);
         }
+    }
+}
+
+/// The film's size; `None` where nothing of it would be seen.
+fn seen_size(view: &TracedView, camera: &Camera) -> Option<UVec2> {
+    let size = camera.physical_viewport_size()? / view.pixel_size.max(1);
+    let seen = camera.is_active && view.divider < 1.0 && size.min_element() > 0;
+    seen.then_some(size)
+}
+
+/// What a view shall show.
+struct Wanted {
+    world: Arc<trace::World>,
+    camera: trace::Camera,
+    settings: RenderSettings,
+    order: Order,
+}
+
+impl TracedRender {
+    /// Whether it is what is being rendered.
+    fn renders(&self, wanted: &Wanted) -> bool {
+        self.running.as_ref().is_some_and(|running| {
+            Arc::ptr_eq(&running.world, &wanted.world)
+                && running.camera == wanted.camera
+                && running.settings == wanted.settings
+        })
+    }
+
+    /// Prints are made in this way from now on.
+    fn develop(&mut self, order: Order) {
+        if let Self {
+            running: Some(running),
+            darkroom: Some(darkroom),
+            ..
+        } = self
+            && running.order != order
+        {
+            running.order = order.clone();
+            darkroom.develop(&running.render, &running.subject(), order);
+        }
+    }
+
+    /// Renders this instead of what was rendered before.
+    fn begin(&mut self, wanted: Wanted) {
+        let started = Instant::now();
+        self.retire();
+        let Wanted {
+            world,
+            camera,
+            settings,
+            order,
+        } = wanted;
+        let render = match Progressive::start((*world).clone(), camera.clone(), settings.clone()) {
+            Ok(render) => Arc::new(render),
+            Err(problem) => {
+                self.failed = true;
+                error!("the traced view cannot render: {problem}");
+                return;
+            }
+        };
+        let running = Running {
+            render,
+            world,
+            camera,
+            settings,
+            order: order.clone(),
+            started,
+            paused: false,
+            focus: Vec2::splat(0.5),
+        };
+        if let Some(darkroom) = &self.darkroom {
+            darkroom.develop(&running.render, &running.subject(), order);
+        }
+        self.running = Some(running);
     }
 }
 

@@ -137,9 +137,9 @@ fn bench_prints_a_markdown_table_with_a_column_per_builder() {
             .collect()
     };
     let (least, median, most) = (
-        times("Time to render, least"),
+        times("Time to render, min"),
         times("Time to render, median"),
-        times("Time to render, most"),
+        times("Time to render, max"),
     );
     for i in 0..4 {
         assert!(least[i] <= median[i] && median[i] <= most[i], "{text}");

@@ -1,4 +1,4 @@
-//! The built-in scenes with our sequence and with independent random numbers.
+//! The built-in scenes with Owen-scrambled Sobol points and with independent random numbers.
 
 use glam::UVec2;
 use glassbox::app::headless_app;

@@ -96,7 +96,7 @@ fn rich_scene(world: &mut World, picture: &str) {
     world.insert_resource(RenderSettings {
         size: UVec2::new(123, 45),
         lighting: Lighting::Classic,
-        tree: TreeSettings::ORIGINAL,
+        tree: TreeSettings::SIMPLE,
         ..Default::default()
     });
     world.insert_resource(Environment {

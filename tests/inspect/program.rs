@@ -14,7 +14,7 @@ fn a_pixel_is_explained_as_text_and_as_json_and_both_say_the_same() {
     let line = "inspect cornell-box --size 40x40 --spp 4 --pixel 12,30";
     let text = run(folder.path(), line);
     assert!(text.contains("the mean of 4 samples"), "{text}");
-    assert!(text.contains("is the value, bit for bit"), "{text}");
+    assert!(text.contains("bit for bit: yes"), "{text}");
     assert!(
         text.contains("camera 0") && text.contains("  shadow"),
         "{text}"

@@ -8,6 +8,7 @@
 
 use super::Display;
 use super::marks::{Line, Pictures, apart, is_mixed, pixels};
+use super::pictures::Shot;
 use std::path::{Path, PathBuf};
 
 const WHITE: [u8; 3] = [255, 255, 255];

@@ -7,6 +7,7 @@ use crate::editor::edits;
 use crate::editor::history::{Gesture, History};
 use crate::editor::notice::Notices;
 use crate::editor::preferences::Preferences;
+use crate::editor::render_job::RenderJob;
 use crate::editor::selection::Selection;
 use crate::io::{OpenOptions, Problem, SceneSource, open, open_empty, save};
 use bevy::app::AppExit;
@@ -55,10 +56,25 @@ pub(super) fn perform_now(world: &mut World, action: &Action) {
         },
         Action::SaveAs(path) => save_to(world, path),
         Action::Quit => {
-            world.write_message(AppExit::Success);
+            let job = world.get_resource::<RenderJob>();
+            let rendered = job.and_then(RenderJob::progress);
+            match rendered.map(|progress| progress.file) {
+                Some(file) => {
+                    world.resource_mut::<Document>().question = Some(Question::Rendering { file });
+                }
+                None => quit(world),
+            }
         }
         _ => {}
     }
+}
+
+/// Ends the app, and a render to a file with it.
+pub(super) fn quit(world: &mut World) {
+    if let Some(mut job) = world.get_resource_mut::<RenderJob>() {
+        job.cancel();
+    }
+    world.write_message(AppExit::Success);
 }
 
 /// Whether saving writes back to such a file: a model's would lose most of a scene.

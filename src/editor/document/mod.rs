@@ -23,12 +23,18 @@ pub use recovery::{Recovered, RecoveryFolder};
 
 use super::action::Action;
 use super::history::{History, commit};
+use super::inspection::DebugRay;
 use super::notice::Notices;
+use super::render_job::RenderJob;
+use super::viewport::EditorCamera;
 use crate::editor::schedule::EditorUpdate;
+use crate::inspect::InspectSettings;
 use crate::io::LoadProblems;
+use crate::view::TracedView;
 use bevy::app::{App, Last, Plugin};
 use bevy::ecs::change_detection::{DetectChanges, DetectChangesMut};
 use bevy::ecs::message::{MessageCursor, Messages};
+use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::schedule::IntoScheduleConfigs;
 use bevy::ecs::system::{Local, Res, ResMut};
@@ -49,6 +55,8 @@ pub struct Document {
     unsaved: bool,
     /// What was waiting for the scene to be saved.
     then: Option<Action>,
+    /// Counts the scenes that were opened.
+    scene: u64,
 }
 
 impl Default for Document {
@@ -60,6 +68,7 @@ impl Default for Document {
             saved: None,
             unsaved: false,
             then: None,
+            scene: 0,
         }
     }
 }
@@ -68,6 +77,11 @@ impl Document {
     /// Whether anything would be lost if it were closed now.
     pub fn unsaved(&self) -> bool {
         self.unsaved
+    }
+
+    /// Another number for another scene: what is known by a `SceneId` is true of one scene only.
+    pub(in crate::editor) fn scene(&self) -> u64 {
+        self.scene
     }
 
     /// For the window's title: the name, with an asterisk where something is unsaved.
@@ -131,7 +145,36 @@ pub fn adopt(world: &mut World, name: impl Into<String>, path: Option<&Path>) {
     let mut document = world.resource_mut::<Document>();
     document.opened(name.into(), path, state);
     document.question = None;
+    document.scene += 1;
+    forget_scene(world);
     crate::editor::navigation::start(world);
+}
+
+/// Lets go of what was picked, chosen and begun in the scene that was open before. The panels do so
+/// by themselves.
+fn forget_scene(world: &mut World) {
+    if let Some(mut ray) = world.get_resource_mut::<DebugRay>() {
+        ray.clear();
+    }
+    if let Some(mut inspect) = world.get_resource_mut::<InspectSettings>() {
+        inspect.boxes.object = 0;
+        inspect.normals.object = 0;
+        inspect.pattern.light = 0;
+    }
+    let mut views = world.query_filtered::<&mut TracedView, With<EditorCamera>>();
+    for mut view in views.iter_mut(world) {
+        if view.region.is_some() || view.range.is_some() {
+            (view.region, view.range) = (None, None);
+        }
+    }
+    let waited = world.get_resource_mut::<RenderJob>();
+    if let Some(file) = waited.and_then(|mut job| job.forget_scene()) {
+        let text = format!(
+            "{}: not rendered: another scene was opened before the trees of this one were built",
+            file.display()
+        );
+        world.resource_mut::<Notices>().fault(text);
+    }
 }
 
 /// Brings [`Document::unsaved`] up to date with the history.

@@ -40,6 +40,11 @@ pub enum Question {
         /// What it refers to.
         says: String,
     },
+    /// Whether to quit although a picture is being rendered to a file. Answers: `Yes`, `Cancel`.
+    Rendering {
+        /// What would not be written.
+        file: PathBuf,
+    },
     /// Whether work that was not saved before a crash is to be opened. Answers: `Yes`, `No` deletes
     /// it, `Cancel` asks again next time.
     Recover(recovery::Recovered),
@@ -59,7 +64,7 @@ pub enum Purpose {
 /// What a person decided.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Answer {
-    /// Save, replace, allow, recover.
+    /// Save, replace, allow, quit, recover.
     Yes,
     /// Go on without saving; delete what could be recovered.
     No,
@@ -94,6 +99,7 @@ pub fn answer(world: &mut World, answer: Answer) {
         }
         (Question::Replace { then, .. }, Answer::Yes) => perform_now(world, &then),
         (Question::Outside { file, .. }, Answer::Yes) => files::open_file(world, &file, true),
+        (Question::Rendering { .. }, Answer::Yes) => files::quit(world),
         (Question::Recover(found), Answer::Yes) => recovery::recover(world, &found),
         (Question::Recover(found), Answer::No) => found.delete(),
         (_, Answer::Cancel) => world.resource_mut::<Document>().then = None,
@@ -139,6 +145,63 @@ pub(super) fn chosen(purpose: Purpose, path: &Path) -> Action {
 mod tests {
     use super::*;
     use crate::editor::headless_editor;
+    use crate::editor::notice::Notices;
+    use crate::editor::render_job::{RenderFrom, RenderJob, RenderRequest, start_render};
+    use crate::io::{OpenOptions, SceneSource, builtin, open};
+    use crate::scene::RenderSettings;
+    use bevy::app::AppExit;
+    use bevy::ecs::message::Messages;
+
+    #[test]
+    fn quitting_asks_while_a_picture_is_rendered_to_a_file_and_not_otherwise() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut app = headless_editor();
+        let source = SceneSource::Builtin(builtin::find("cornell-box").unwrap());
+        open(app.world_mut(), &source, OpenOptions::default()).unwrap();
+        app.update();
+        app.update();
+        let world = app.world_mut();
+        let file = folder.path().join("a.png");
+        let request = RenderRequest {
+            file: file.clone(),
+            camera: RenderFrom::FirstCamera,
+            settings: world.resource::<RenderSettings>().clone(),
+        };
+        start_render(world, request).unwrap();
+        for (given, goes_on) in [(Answer::Cancel, true), (Answer::Yes, false)] {
+            perform_now(world, &Action::Quit);
+            let asked = world.resource::<Document>().question.clone();
+            assert_eq!(asked, Some(Question::Rendering { file: file.clone() }));
+            answer(world, given);
+            let exits = world.resource::<Messages<AppExit>>();
+            assert_eq!(exits.is_empty(), goes_on);
+            let progress = world.resource::<RenderJob>().progress();
+            assert_eq!(progress.is_some(), goes_on);
+        }
+        perform_now(world, &Action::Quit);
+        assert_eq!(world.resource::<Document>().question, None);
+    }
+
+    #[test]
+    fn a_render_that_has_not_begun_ends_with_the_scene_that_it_is_of() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut app = headless_editor();
+        let source = SceneSource::Builtin(builtin::find("cornell-box").unwrap());
+        open(app.world_mut(), &source, OpenOptions::default()).unwrap();
+        app.update();
+        app.update();
+        let world = app.world_mut();
+        let request = RenderRequest {
+            file: folder.path().join("a.png"),
+            camera: RenderFrom::FirstCamera,
+            settings: world.resource::<RenderSettings>().clone(),
+        };
+        start_render(world, request).unwrap();
+        world.resource_mut::<Notices>().close_all();
+        perform_now(world, &Action::New);
+        assert!(world.resource::<RenderJob>().progress().is_none());
+        assert!(!world.resource::<Notices>().is_empty(), "it is said");
+    }
 
     #[test]
     fn who_waits_for_a_dialog_that_does_not_come_can_type_the_path() {

@@ -1,6 +1,6 @@
 //! Which ray and which node are meant, wherever they were chosen: in the list, in the view, by keys.
 
-use super::debug_ray::{DebugRay, Shot};
+use super::debug_ray::{DebugRay, NO_VIEW, Shot};
 use super::list::{Arrangement, List};
 use super::stepper::Stepper;
 use super::view_of;
@@ -157,8 +157,7 @@ pub(in crate::editor) fn shoot_pixel(world: &mut World, pixel: UVec2) {
         // While nothing is traced the picture is the one before.
         (None, Some(known)) => Shot { pixel, ..known },
         (None, None) => {
-            let text = "The debug ray is one of the traced view's pixels: show it (key 2) first";
-            world.resource_mut::<Notices>().tell(text);
+            world.resource_mut::<Notices>().tell(NO_VIEW);
             return;
         }
     };

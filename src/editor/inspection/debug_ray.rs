@@ -9,7 +9,7 @@ use crate::editor::notice::Notices;
 use crate::editor::viewport::Viewport;
 use crate::scene::{Output, RenderSettings};
 use crate::sync::Traced;
-use crate::trace::{Camera, ProbeError, RayTree, Samples, World, probe, samples_per_pixel};
+use crate::trace::{Camera, RayTree, Samples, World, probe, samples_per_pixel};
 use bevy::ecs::message::{MessageCursor, Messages};
 use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
@@ -20,6 +20,10 @@ use bevy::window::{PrimaryWindow, Window};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Arc, Mutex};
 use std::thread;
+
+/// Why nothing is shot where nothing is traced.
+pub(super) const NO_VIEW: &str =
+    "The debug ray is one of the traced view's pixels: show it (key 2) first";
 
 /// Which of the pixel's samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -43,6 +47,9 @@ impl Which {
     }
 }
 
+/// What is said where the thread that traced is gone.
+const LOST: &str = "The pixel's rays could not be traced, by a bug that was reported where Glassbox was started: pick another pixel, or trace its first sample alone";
+
 /// A pixel of a picture: all that is needed to trace it again.
 #[derive(Clone)]
 pub(in crate::editor) struct Shot {
@@ -63,7 +70,7 @@ pub(in crate::editor) struct DebugRay {
     rays: Option<Arc<RayTree>>,
     /// What `rays` were traced with.
     of: Option<Of>,
-    problem: Option<ProbeError>,
+    problem: Option<String>,
     addition: Addition,
     /// Counts the trees of rays that there were, and the pixels that were picked.
     number: u64,
@@ -71,10 +78,17 @@ pub(in crate::editor) struct DebugRay {
     /// What the first camera ray met, by number and name, when the pixel was picked.
     met: Option<(u64, String)>,
     lost: Option<String>,
-    under_way: Option<Mutex<Receiver<Found>>>,
+    under_way: Option<UnderWay>,
 }
 
-type Found = (Of, Result<(RayTree, Addition), ProbeError>);
+/// What is being traced on a thread of its own.
+struct UnderWay {
+    of: Of,
+    found: Mutex<Receiver<Found>>,
+}
+
+/// The rays, or why there are none.
+type Found = Result<(RayTree, Addition), String>;
 
 /// All that rays depend on.
 #[derive(Clone)]
@@ -95,10 +109,11 @@ impl Of {
             && self.settings == other.settings
     }
 
-    fn trace(&self) -> Result<(RayTree, Addition), ProbeError> {
+    fn trace(&self) -> Found {
         let (world, camera, settings) = (&self.world, &self.camera, &self.settings);
         let samples = self.which.samples();
-        let rays = probe(world, camera, settings, self.pixel, &samples)?;
+        let rays = probe(world, camera, settings, self.pixel, &samples);
+        let rays = rays.map_err(|problem| problem.to_string())?;
         let addition = Addition::of(world, camera, settings, &rays);
         Ok((rays, addition))
     }
@@ -168,8 +183,8 @@ impl DebugRay {
 
     /// Why there is nothing to see, or less than expected; `None` where all is as asked for.
     pub fn says(&self) -> Option<String> {
-        if let Some(problem) = self.problem {
-            return Some(problem.to_string());
+        if self.problem.is_some() {
+            return self.problem.clone();
         }
         if self.shot.is_none() {
             return Some(
@@ -191,16 +206,21 @@ impl DebugRay {
         settings: &RenderSettings,
         names: &Names,
     ) {
-        if let Some(receiver) = &self.under_way {
-            let received = match receiver.lock() {
-                Ok(receiver) => receiver.try_recv(),
+        if let Some(UnderWay { of, found }) = self.under_way.take() {
+            let received = match found.lock() {
+                Ok(found) => found.try_recv(),
                 Err(_) => Err(TryRecvError::Disconnected),
             };
-            if matches!(received, Err(TryRecvError::Empty)) {
-                return;
-            }
-            self.under_way = None;
-            if let Ok((of, found)) = received {
+            let found = match received {
+                Ok(found) => found,
+                Err(TryRecvError::Empty) => {
+                    self.under_way = Some(UnderWay { of, found });
+                    return;
+                }
+                // Not tried again until something else is asked for: it would end so in every frame.
+                Err(TryRecvError::Disconnected) => Err(LOST.into()),
+            };
+            if self.asks_for(&of) {
                 // Shown even where the scene has moved on: the next ones follow.
                 self.take(of, found, names);
             }
@@ -229,17 +249,19 @@ impl DebugRay {
             return;
         }
         // Thousands of samples may take seconds, and no frame waits for them.
-        let (send, receive) = channel();
+        let (send, found) = channel();
         let traces = of.clone();
         // The pool's threads belong to the picture, which may keep them for long.
         let thread = thread::Builder::new().name("debug ray".into());
         let started = thread.spawn(move || {
-            let found = traces.trace();
             // Nobody may be waiting any more.
-            let _ = send.send((traces, found));
+            let _ = send.send(traces.trace());
         });
         match started {
-            Ok(_) => self.under_way = Some(Mutex::new(receive)),
+            Ok(_) => {
+                let found = Mutex::new(found);
+                self.under_way = Some(UnderWay { of, found });
+            }
             // A system without another thread: then a frame has to wait.
             Err(_) => {
                 let found = of.trace();
@@ -248,7 +270,15 @@ impl DebugRay {
         }
     }
 
-    fn take(&mut self, of: Of, found: Result<(RayTree, Addition), ProbeError>, names: &Names) {
+    /// Whether these are rays of the pixel that is picked now, and those of its samples.
+    fn asks_for(&self, of: &Of) -> bool {
+        let is_of = |shot: &Shot| {
+            shot.pixel == of.pixel && shot.size == of.settings.size && shot.camera == of.camera
+        };
+        self.which == of.which && self.shot.as_ref().is_some_and(is_of)
+    }
+
+    fn take(&mut self, of: Of, found: Found, names: &Names) {
         self.number += 1;
         (self.rays, self.addition, self.problem) = match found {
             Ok((rays, addition)) => (Some(Arc::new(rays)), addition, None),
@@ -303,9 +333,7 @@ pub(super) fn shoot_at_pointer(world: &mut world::World, mut cursor: Local<Messa
         return;
     }
     let Some((camera, size)) = view_of(world) else {
-        world
-            .resource_mut::<Notices>()
-            .tell("The debug ray is one of the traced view's pixels: show it (key 2) first");
+        world.resource_mut::<Notices>().tell(NO_VIEW);
         return;
     };
     let pixel = (place * size.as_vec2()).as_uvec2().min(size - 1);
@@ -325,5 +353,61 @@ pub(super) fn trace_again(
 ) {
     if ray.shot.is_some() || ray.under_way.is_some() {
         ray.bring_up_to_date(&traced.world, &settings, &names);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{Bench, SIZE};
+    use super::*;
+    use crate::sync::TracedCameras;
+    use std::time::{Duration, Instant};
+
+    #[test]
+    fn rays_of_a_pixel_that_is_picked_no_more_are_not_taken() {
+        let mut bench = Bench::open("cornell-box");
+        bench.ray().which = Which::All;
+        bench.shoot([300, 240]);
+        let camera = bench.app.world().resource::<TracedCameras>().0[0]
+            .camera
+            .clone();
+        let pixel = UVec2::new(10, 12);
+        bench.ray().shoot(Shot {
+            pixel,
+            camera,
+            size: SIZE,
+        });
+        let start = Instant::now();
+        loop {
+            assert!(start.elapsed() < Duration::from_secs(60), "no rays came");
+            bench.app.update();
+            let ray = bench.ray();
+            if let Some(rays) = ray.rays() {
+                assert_eq!(rays.pixel, pixel);
+                return;
+            }
+            thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    #[test]
+    fn a_thread_that_is_lost_is_said_and_not_started_anew_in_every_frame() {
+        let mut bench = Bench::open("cornell-box");
+        bench.ray().which = Which::All;
+        bench.shoot([300, 240]);
+        bench.wait();
+        let mut ray = bench.ray();
+        let of = ray.of.take().unwrap();
+        let found = Mutex::new(channel().1);
+        ray.under_way = Some(UnderWay { of, found });
+        for _ in 0..3 {
+            bench.app.update();
+            let ray = bench.ray();
+            assert_eq!(ray.says().as_deref(), Some(LOST));
+            assert!(!ray.is_busy() && ray.rays().is_none());
+        }
+        bench.shoot([10, 10]);
+        bench.wait();
+        assert_eq!(bench.ray().says(), None);
     }
 }

@@ -2,15 +2,15 @@
 
 use super::debug_ray::DebugRay;
 use super::drawn_set::{DrawnSet, Source};
+use super::{Seen, seen_from};
 use crate::editor::viewport::EditorCamera;
 use crate::inspect::{InspectSettings, LineSet, Subject, System};
 use crate::scene::RenderSettings;
 use crate::sync::{Traced, TracedCameras};
-use crate::view::{DrawnLines, TracedRender};
+use crate::view::DrawnLines;
 use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Commands, Query, Res, ResMut, Single};
-use std::sync::Arc;
 
 /// What is drawn now.
 #[derive(Resource, Default)]
@@ -48,15 +48,16 @@ pub(super) fn draw_inspection(
     traced: Res<Traced>,
     cameras: Res<TracedCameras>,
     ray: Res<DebugRay>,
-    render: Single<&TracedRender, With<EditorCamera>>,
+    view: Single<Seen, With<EditorCamera>>,
     mut lines: Query<&mut DrawnLines>,
     mut drawings: ResMut<Drawings>,
 ) {
-    let Some((_, camera, rendered)) = render.subject() else {
+    let (render, view, camera, place, projection) = *view;
+    let Some((camera, size)) = seen_from(render, view, camera, place, projection) else {
         return;
     };
     let settings = RenderSettings {
-        size: rendered.size,
+        size,
         ..settings.clone()
     };
     let source = Source {
@@ -66,9 +67,9 @@ pub(super) fn draw_inspection(
     let rays = source.rays.as_deref();
     let shot = ray.shot().map(|shot| &shot.camera);
     let of_scene = cameras.0.first().map(|camera| &camera.camera);
-    let photographer = of_scene.or(shot).unwrap_or(camera);
+    let photographer = of_scene.or(shot).unwrap_or(&camera);
     let subject =
-        Subject::new(&source.world, photographer, &settings, &inspect, rays).seen_by(camera);
+        Subject::new(&source.world, photographer, &settings, &inspect, rays).seen_by(&camera);
     let Drawings { sets, version } = &mut *drawings;
     for (system, set) in System::ALL.into_iter().zip(sets) {
         let is_on = system.is_on(&inspect) && (rays.is_some() || !system.needs_rays());
@@ -78,5 +79,36 @@ pub(super) fn draw_inspection(
             set.clear(&mut commands)
         };
         *version += u64::from(is_other);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{Bench, SIZE};
+    use super::*;
+    use crate::view::TracedView;
+    use bevy::camera::{Camera, Viewport};
+    use bevy::ecs::system::RunSystemOnce;
+
+    #[test]
+    fn lines_follow_their_switches_while_nothing_is_traced() {
+        let mut bench = Bench::open("cornell-box");
+        let world = bench.app.world_mut();
+        world.init_resource::<Drawings>();
+        let viewport = Viewport {
+            physical_size: SIZE,
+            ..Viewport::default()
+        };
+        let camera = Camera {
+            viewport: Some(viewport),
+            ..Camera::default()
+        };
+        world.spawn((EditorCamera, TracedView::default(), camera));
+        for is_on in [true, false, true] {
+            let mut inspect = world.resource_mut::<InspectSettings>();
+            (inspect.on, inspect.boxes.on) = (is_on, true);
+            world.run_system_once(draw_inspection).unwrap();
+            assert_eq!(world.resource::<Drawings>().is_empty(), !is_on);
+        }
     }
 }

@@ -4,12 +4,13 @@
 use super::choice::{Inspected, Side};
 use super::debug_ray::DebugRay;
 use super::stepper::Stepper;
+use super::{Seen, seen_from};
 use crate::bvh::{TreeRef, primitives_below};
 use crate::editor::preferences::Preferences;
 use crate::editor::viewport::EditorCamera;
 use crate::inspect::{InspectSettings, StepKind, TreeView};
 use crate::trace::{RayEnd, TracedRay, World};
-use crate::view::{DrawnLines, Line, TracedRender};
+use crate::view::{DrawnLines, Line};
 use bevy::color::LinearRgba;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::query::With;
@@ -67,13 +68,13 @@ pub(super) fn draw_lit(
     ray: Res<DebugRay>,
     inspect: Res<InspectSettings>,
     preferences: Option<Res<Preferences>>,
-    render: Single<&TracedRender, With<EditorCamera>>,
+    view: Single<Seen, With<EditorCamera>>,
     mut sets: Query<&mut DrawnLines>,
     mut known: Local<Known>,
 ) {
-    let eye = render
-        .subject()
-        .map_or(Vec3::ZERO, |(_, camera, _)| camera.position);
+    let (render, seen, camera, place, projection) = *view;
+    let seen = seen_from(render, seen, camera, place, projection);
+    let eye = seen.map_or(Vec3::ZERO, |(camera, _)| camera.position);
     let is_open = preferences.is_none_or(|preferences| preferences.show_rays);
     let steps = is_open && inspected.side == Side::Steps && inspected.stepper.len() > 0;
     // The master switch hides what is chosen too.

@@ -43,12 +43,14 @@ use super::viewport::EditorCamera;
 use crate::inspect::InspectSettings;
 use crate::sync::SyncSystems;
 use crate::trace::Camera;
-use crate::view::TracedRender;
+use crate::view::{TracedRender, TracedView, traced_camera};
 use bevy::app::{App, Plugin, PostUpdate};
+use bevy::camera::{self, Projection};
 use bevy::ecs::query::With;
 use bevy::ecs::world::World;
 use bevy::math::UVec2;
 use bevy::prelude::IntoScheduleConfigs;
+use bevy::transform::components::GlobalTransform;
 
 /// The part that needs no window: the debug ray, the choice, the stepper.
 pub(super) struct RaysPlugin;
@@ -96,6 +98,32 @@ impl Plugin for InspectionPlugin {
                     .after(stepper::play),
             );
     }
+}
+
+/// What the view's camera consists of.
+pub(super) type Seen = (
+    &'static TracedRender,
+    &'static TracedView,
+    &'static camera::Camera,
+    &'static GlobalTransform,
+    &'static Projection,
+);
+
+/// From where lines are looked at, and the picture's size in pixels: as the view traces it, and where
+/// it traces nothing, as Bevy's camera shows it.
+pub(super) fn seen_from(
+    render: &TracedRender,
+    view: &TracedView,
+    camera: &camera::Camera,
+    place: &GlobalTransform,
+    projection: &Projection,
+) -> Option<(Camera, UVec2)> {
+    if let Some((_, camera, settings)) = render.subject() {
+        return Some((camera.clone(), settings.size));
+    }
+    let size = camera.physical_viewport_size()? / view.pixel_size.max(1);
+    let camera = traced_camera(place, projection, None)?;
+    (size.min_element() > 0).then_some((camera, size))
 }
 
 /// The camera and the size of the picture that the view traces; `None` while it traces none.

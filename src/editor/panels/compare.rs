@@ -27,10 +27,8 @@ pub(super) fn keep_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     if !button.clicked() {
         return;
     }
-    if let Some(kept) = panels.kept.take() {
-        if let Some(mut textures) = world.get_resource_mut::<EguiUserTextures>() {
-            textures.remove_image(&kept.handle);
-        }
+    if on {
+        forget(world, panels);
         return;
     }
     let mut query = world.query_filtered::<&TracedRender, With<EditorCamera>>();
@@ -41,6 +39,15 @@ pub(super) fn keep_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     if let Some(mut textures) = world.get_resource_mut::<EguiUserTextures>() {
         let texture = textures.add_image(EguiTextureHandle::Strong(handle.clone()));
         panels.kept = Some(Kept { handle, texture });
+    }
+}
+
+/// Lets go of the kept picture.
+pub(super) fn forget(world: &mut World, panels: &mut Panels) {
+    if let Some(kept) = panels.kept.take()
+        && let Some(mut textures) = world.get_resource_mut::<EguiUserTextures>()
+    {
+        textures.remove_image(&kept.handle);
     }
 }
 

@@ -38,7 +38,7 @@ pub(super) fn hierarchy_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) 
     ui.add_space(2.0);
     let outline = world.resource::<Outline>();
     let selection = world.resource::<Selection>();
-    let rows = outline.rows(&panels.folded, &panels.search);
+    let rows = panels.rows.of(outline, &panels.folded, &panels.search);
     if rows.is_empty() {
         let text = match outline.items.is_empty() {
             true => "The scene is empty. The menu Add puts something into it.",
@@ -46,7 +46,7 @@ pub(super) fn hierarchy_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) 
         };
         ui.weak(text);
     }
-    let mut deed = None;
+    let mut deeds = Vec::new();
     ui.spacing_mut().item_spacing.y = 0.0;
     let mut drawn = 0;
     let area = ScrollArea::vertical().auto_shrink([false, false]);
@@ -54,8 +54,7 @@ pub(super) fn hierarchy_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) 
         drawn = range.len();
         for row in range {
             let item = &outline.items[rows[row]];
-            let found = row_ui(ui, item, rows[row], selection, panels);
-            deed = found.or(deed.take());
+            row_ui(ui, item, rows[row], selection, panels, &mut deeds);
         }
     });
     panels.rows_drawn = drawn;
@@ -68,13 +67,15 @@ pub(super) fn hierarchy_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) 
     if below.height() > 1.0 {
         let response = ui.interact(below, ui.id().with("below"), Sense::click());
         if response.clicked() {
-            deed = Some(Deed::Drop(Vec::new(), None));
+            deeds.push(Deed::Drop(Vec::new(), None));
         }
         if let Some(dragged) = response.dnd_release_payload::<Dragged>() {
-            deed = Some(Deed::Drop(dragged.0.clone(), None));
+            deeds.push(Deed::Drop(dragged.0.clone(), None));
         }
     }
-    if let Some(deed) = deed {
+    // A click on another row ends a renaming: both count, the name first.
+    deeds.sort_by_key(|deed| !matches!(deed, Deed::Rename(_)));
+    for deed in deeds {
         perform(ui, world, panels, &rows, deed);
     }
 }
@@ -101,7 +102,8 @@ fn row_ui(
     at: usize,
     selection: &Selection,
     panels: &mut Panels,
-) -> Option<Deed> {
+    deeds: &mut Vec<Deed>,
+) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
     let id = ui.id().with(("row", item.id.0));
     let body = Rect::from_min_max(rect.min, pos2(rect.max.x - EYE, rect.max.y));
@@ -119,10 +121,9 @@ fn row_ui(
         (false, true) => visuals.selection.stroke.color,
         _ => visuals.widgets.inactive.fg_stroke.color,
     };
-    let mut deed = None;
     let mut x = rect.min.x + 2.0 + INDENT * item.depth as f32;
     if item.end > at + 1 {
-        deed = fold_ui(ui, item, pos2(x, rect.center().y), panels);
+        deeds.extend(fold_ui(ui, item, pos2(x, rect.center().y), panels));
     }
     x += INDENT;
     let glyphs = FontId::new(12.0, FontFamily::Monospace);
@@ -147,7 +148,7 @@ fn row_ui(
             pos2(body.max.x, rect.max.y),
         );
         if rename_ui(ui, field, renaming) {
-            deed = Some(Deed::Rename(at));
+            deeds.push(Deed::Rename(at));
         }
     } else {
         let clip = Rect::from_min_max(pos2(x, rect.min.y), body.max).intersect(ui.clip_rect());
@@ -156,9 +157,9 @@ fn row_ui(
             .with_clip_rect(clip)
             .text(text_at, Align2::LEFT_CENTER, &item.name, font, ink);
     }
-    deed = deed.or(eye_ui(ui, item, at, rect, selected));
+    deeds.extend(eye_ui(ui, item, at, rect, selected));
     if response.clicked() {
-        deed = deed.or(Some(Deed::Click(at)));
+        deeds.push(Deed::Click(at));
     }
     if response.double_clicked() {
         panels.renaming = Some(Renaming {
@@ -167,14 +168,14 @@ fn row_ui(
             focused: false,
         });
     }
-    deed.or(drag_ui(ui, item, body, &response, selection))
+    deeds.extend(drag_ui(ui, item, body, &response, selection));
 }
 
 /// The triangle that folds; what was done with it.
 fn fold_ui(ui: &Ui, item: &Item, left: egui::Pos2, panels: &Panels) -> Option<Deed> {
     let rect = Rect::from_center_size(left + vec2(5.0, 0.0), vec2(14.0, ROW));
     let response = ui.interact(rect, ui.id().with(("fold", item.id.0)), Sense::click());
-    let folded = panels.folded.contains(&item.id) && panels.search.trim().is_empty();
+    let folded = panels.folded.contains(item.id) && panels.search.trim().is_empty();
     let c = rect.center();
     let triangle = if folded {
         [vec2(-2.5, -4.0), vec2(3.0, 0.0), vec2(-2.5, 4.0)]
@@ -265,11 +266,7 @@ fn perform(ui: &Ui, world: &mut World, panels: &mut Panels, rows: &[usize], deed
             let modifiers = ui.input(|input| input.modifiers);
             click(world, panels, rows, at, modifiers.command, modifiers.shift);
         }
-        Deed::Fold(id) => {
-            if !panels.folded.remove(&id) {
-                panels.folded.insert(id);
-            }
-        }
+        Deed::Fold(id) => panels.folded.toggle(id),
         Deed::Hide(at) => {
             let item = &world.resource::<Outline>().items[at];
             let (entity, hidden) = (item.entity, item.hidden);

@@ -44,6 +44,7 @@ mod tree_pair;
 #[cfg(test)]
 mod tests;
 
+use super::document::Document;
 use super::embed::Editing;
 use super::history::within;
 use super::preferences::{Preferences, PreferencesPlugin};
@@ -101,6 +102,8 @@ fn panels_ui(context: &egui::Context, world: &mut World) {
     let mut ui = egui::Ui::new(context.clone(), "window".into(), window);
     world.resource_scope(|world, mut panels: bevy::prelude::Mut<Panels>| {
         let panels = &mut *panels;
+        forget_scene(world, panels);
+        inspector::settle(context, world, panels);
         dialogs::answer_actions(world, panels);
         let free = around_ui(&mut ui, world, panels, &preferences);
         compare::compare_ui(&mut ui, free, world, panels);
@@ -112,6 +115,15 @@ fn panels_ui(context: &egui::Context, world: &mut World) {
         gesture::note_gesture(context, world, panels);
         note_viewport(context, free, over_overlay, world);
     });
+}
+
+/// Lets go of what belongs to the scene that was open before.
+fn forget_scene(world: &mut World, panels: &mut Panels) {
+    let scene = world.resource::<Document>().scene();
+    if std::mem::replace(&mut panels.scene, scene) != scene {
+        compare::forget(world, panels);
+        panels.forget_scene();
+    }
 }
 
 /// The panels around the picture; returns what they leave free.

@@ -15,6 +15,7 @@ use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Query, ResMut};
 use bevy::mesh::Mesh3d;
 use bevy::platform::collections::{HashMap, HashSet};
+use std::sync::Arc;
 
 /// What an entity is, by its components.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -121,6 +122,57 @@ impl Outline {
             }
         }
         rows
+    }
+}
+
+/// Entities whose descendants the list does not show.
+#[derive(Default)]
+pub(super) struct Folded {
+    ids: HashSet<SceneId>,
+    /// Another number for other entities.
+    version: u64,
+}
+
+impl Folded {
+    /// Whether what is below it is not shown.
+    pub fn contains(&self, id: SceneId) -> bool {
+        self.ids.contains(&id)
+    }
+
+    /// Folds it where it is not, and the other way round.
+    pub fn toggle(&mut self, id: SceneId) {
+        if !self.ids.remove(&id) {
+            self.ids.insert(id);
+        }
+        self.version += 1;
+    }
+
+    /// Everything is shown again.
+    pub fn clear(&mut self) {
+        self.ids.clear();
+        self.version += 1;
+    }
+}
+
+/// [`Outline::rows`], found again only where the list, what is folded or the search is another.
+#[derive(Default)]
+pub(super) struct Rows {
+    /// Of the list and of what is folded.
+    versions: Option<(u64, u64)>,
+    search: String,
+    rows: Arc<Vec<usize>>,
+}
+
+impl Rows {
+    /// The rows as they are now.
+    pub fn of(&mut self, outline: &Outline, folded: &Folded, search: &str) -> Arc<Vec<usize>> {
+        let versions = (outline.versions, folded.version);
+        if self.versions != Some(versions) || self.search != search {
+            self.rows = Arc::new(outline.rows(&folded.ids, search));
+            self.versions = Some(versions);
+            search.clone_into(&mut self.search);
+        }
+        self.rows.clone()
     }
 }
 
@@ -352,6 +404,25 @@ mod tests {
         );
         assert_eq!(found("door"), ["House", "Door"]);
         assert_eq!(found("chimney"), [""; 0]);
+    }
+
+    #[test]
+    fn rows_are_found_again_for_another_list_search_or_fold_and_only_then() {
+        let mut app = village();
+        let (mut rows, mut folded) = (Rows::default(), Folded::default());
+        let outline = app.world().resource::<Outline>();
+        let first = rows.of(outline, &folded, "");
+        assert_eq!(first.len(), 6);
+        assert!(Arc::ptr_eq(&first, &rows.of(outline, &folded, "")));
+        assert_eq!(rows.of(outline, &folded, "door").len(), 2);
+        folded.toggle(SceneId(10));
+        assert_eq!(rows.of(outline, &folded, "").len(), 3);
+        folded.clear();
+        assert_eq!(rows.of(outline, &folded, "").len(), 6);
+        spawn(app.world_mut(), 30, "Well", None);
+        app.update();
+        let outline = app.world().resource::<Outline>();
+        assert_eq!(rows.of(outline, &folded, "").len(), 7);
     }
 
     #[test]

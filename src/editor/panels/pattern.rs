@@ -30,6 +30,15 @@ pub(super) struct PatternOf {
     pattern: Pattern,
 }
 
+/// What the points are: those of all of the pixel's samples, or of as many as are drawn.
+fn heading(points: usize, [drawn, all]: [u64; 2], pixel: UVec2) -> String {
+    let UVec2 { x, y } = pixel;
+    match drawn < all {
+        true => format!("the first {drawn} of {all} samples of pixel {x}, {y}"),
+        false => format!("{points} samples of pixel {x}, {y}"),
+    }
+}
+
 /// Draws it, where it is switched on and a pixel is picked.
 pub(super) fn pattern_ui(ui: &Ui, free: Rect, scene: &Scene, panels: &mut Panels) {
     let inspect = scene.get_resource::<InspectSettings>();
@@ -51,7 +60,8 @@ pub(super) fn pattern_ui(ui: &Ui, free: Rect, scene: &Scene, panels: &mut Panels
         light: light_of(&world.lights, choice, &selected),
         ..choice.clone()
     };
-    let count = u64::from(samples_per_pixel(world, &shot.camera, settings)).min(MOST);
+    let all = u64::from(samples_per_pixel(world, &shot.camera, settings));
+    let count = all.min(MOST);
     let of = (world.clone(), settings.clone(), choice, pixel, count);
     let same = panels.pattern.as_ref().is_some_and(|known| {
         Arc::ptr_eq(&known.of.0, &of.0)
@@ -62,7 +72,8 @@ pub(super) fn pattern_ui(ui: &Ui, free: Rect, scene: &Scene, panels: &mut Panels
         panels.pattern = Some(PatternOf { of, pattern });
     }
     if let Some(PatternOf { pattern, .. }) = &panels.pattern {
-        inset_ui(ui, free, pattern, pixel);
+        let heading = heading(pattern.points.len(), [count, all], pixel);
+        inset_ui(ui, free, pattern, heading);
     }
 }
 
@@ -82,7 +93,7 @@ fn side(free: Rect) -> f32 {
     (PART * free.size().min_elem()).min(LARGEST).floor()
 }
 
-fn inset_ui(ui: &Ui, free: Rect, pattern: &Pattern, pixel: UVec2) {
+fn inset_ui(ui: &Ui, free: Rect, pattern: &Pattern, heading: String) {
     let side = side(free);
     if side < 40.0 {
         return;
@@ -106,7 +117,7 @@ fn inset_ui(ui: &Ui, free: Rect, pattern: &Pattern, pixel: UVec2) {
     }
     painter.rect_stroke(square, 0.0, Stroke::new(1.0, INK), StrokeKind::Outside);
     for (row, text) in [
-        format!("{count} samples of pixel {}, {}", pixel.x, pixel.y),
+        heading,
         format!("across: {}   down: {}", name(pattern.x), name(pattern.y)),
     ]
     .into_iter()
@@ -152,6 +163,17 @@ mod tests {
         assert_eq!(cells(17, 160.0), 1);
         assert_eq!(cells(1024, 160.0), 1);
         assert_eq!(cells(0, 160.0), 1);
+    }
+
+    #[test]
+    fn the_heading_says_how_many_samples_there_are_and_how_many_of_them_are_shown() {
+        let pixel = UVec2::new(3, 7);
+        // Of a light's points each sample may have several.
+        assert_eq!(heading(64, [16, 16], pixel), "64 samples of pixel 3, 7");
+        assert_eq!(
+            heading(4096, [4096, 9000], pixel),
+            "the first 4096 of 9000 samples of pixel 3, 7"
+        );
     }
 
     #[test]

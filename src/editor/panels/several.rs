@@ -41,6 +41,11 @@ impl<C: Component<Mutability = Mutable> + Clone + PartialEq> Several<C> {
         self.values.len()
     }
 
+    /// Whether any of them is so.
+    pub fn any(&self, is_so: impl FnMut(&C) -> bool) -> bool {
+        self.values.iter().any(is_so)
+    }
+
     /// Lets `draw` show the active one's property and whether others differ. Where it returns true
     /// all of them get what it left.
     pub fn field<T: Clone + PartialEq>(

@@ -4,6 +4,7 @@ use super::compare::Kept;
 use super::dialogs::{Gallery, RenderForm};
 use super::inspector::{Builders, ErrorCurve, PerformanceForm, Thumbnails, Trees, Turns};
 use super::line_legend::LineTexts;
+use super::outline::{Folded, Rows};
 use super::pattern::PatternOf;
 use super::rays::RaysPanel;
 use super::status::{Memory, Numbers};
@@ -14,7 +15,6 @@ use crate::trace::{Camera, FirstHit};
 use bevy::ecs::message::MessageCursor;
 use bevy::ecs::resource::Resource;
 use bevy::math::UVec2;
-use bevy::platform::collections::HashSet;
 use bevy_egui::egui::Pos2;
 
 /// The inspector's tabs.
@@ -53,6 +53,8 @@ pub(super) struct Renaming {
 /// What the panels remember between two frames.
 #[derive(Resource, Default)]
 pub(super) struct Panels {
+    /// Which of the scenes that were opened the rest belongs to.
+    pub scene: u64,
     pub tab: Tab,
     /// The picture fills the window, and the panels are not drawn.
     pub only_picture: bool,
@@ -68,7 +70,9 @@ pub(super) struct Panels {
     /// What is searched for in the hierarchy.
     pub search: String,
     /// Entities whose descendants the hierarchy does not show.
-    pub folded: HashSet<SceneId>,
+    pub folded: Folded,
+    /// What the hierarchy shows.
+    pub rows: Rows,
     /// Where a range of rows begins.
     pub anchor: Option<SceneId>,
     pub renaming: Option<Renaming>,
@@ -102,4 +106,16 @@ pub(super) struct Panels {
     pub tales: Tales,
     /// What the pixel under the pointer shows, and of which world, pixel and camera that is.
     pub under_pointer: Option<(PixelOf, FirstHit)>,
+}
+
+impl Panels {
+    /// Another scene was opened: the numbers of its entities are those of others.
+    pub fn forget_scene(&mut self) {
+        self.folded.clear();
+        self.anchor = None;
+        self.renaming = None;
+        self.naming = None;
+        self.under_pointer = None;
+        self.thumbnails.forget_fields();
+    }
 }

@@ -10,7 +10,11 @@ use bevy::window::WindowEvent;
 /// A key with the modifiers before it.
 pub(super) fn parse(text: &str) -> Result<Vec<KeyCode>, String> {
     let mut names: Vec<&str> = text.split('+').collect();
-    let last = names.pop().unwrap_or_default();
+    let mut last = names.pop().unwrap_or_default();
+    if last == "?" {
+        names.push("Shift");
+        last = "/";
+    }
     let mut keys = Vec::with_capacity(names.len() + 1);
     for name in names {
         let modifier = modifier(name)
@@ -34,11 +38,20 @@ fn modifier(name: &str) -> Option<KeyCode> {
 }
 
 fn key(name: &str) -> Option<KeyCode> {
+    match name {
+        "/" => return Some(KeyCode::Slash),
+        "." => return Some(KeyCode::Period),
+        "," => return Some(KeyCode::Comma),
+        _ => {}
+    }
     let mut letters = name.chars();
     if let (Some(letter), None) = (letters.next(), letters.next()) {
         let digit = letter.to_digit(10).map(|digit| DIGITS[digit as usize]);
         return digit.or_else(|| letter_key(letter));
     }
+    let numpad = name.strip_prefix("Num ");
+    let numpad = numpad.map(|digit| format!("Numpad{digit}"));
+    let name = numpad.as_deref().unwrap_or(name);
     let mut named = NAMED.iter();
     named.find(|(other, _)| *other == name).map(|(_, key)| *key)
 }

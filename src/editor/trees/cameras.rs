@@ -4,14 +4,17 @@
 use super::pair::LAYERS;
 use crate::editor::viewport::{EditorCamera, Viewport};
 use crate::inspect::InspectSettings;
-use crate::view::lines_camera;
+use crate::scene::NotTraced;
+use crate::view::{draws_handles, lines_camera};
+use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{Camera, Projection, SubCameraView, Viewport as Part};
 use bevy::ecs::component::Component;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::hierarchy::ChildOf;
-use bevy::ecs::query::{With, Without};
-use bevy::ecs::system::{Commands, Query, Res, Single};
+use bevy::ecs::query::{Has, With, Without};
+use bevy::ecs::system::{Commands, Local, Query, Res, Single};
 use bevy::math::{UVec2, Vec2};
+use bevy_egui::PrimaryEguiContext;
 
 /// The first one's place among the cameras of the window: next after the editor's.
 const ORDER: isize = 1;
@@ -25,6 +28,22 @@ fn left_width(width: u32, divider: f32) -> u32 {
     ((width as f32 * divider.clamp(0.0, 1.0)).round() as u32).min(width)
 }
 
+/// Those that may draw over the sides: the handles' and the panels'. Others are the app's own.
+type Others<'w, 's> = Query<
+    'w,
+    's,
+    (
+        &'static mut Camera,
+        Option<&'static RenderLayers>,
+        Has<PrimaryEguiContext>,
+    ),
+    (Without<SideCamera>, Without<EditorCamera>),
+>;
+
+fn comes_later(layers: Option<&RenderLayers>, shows_panels: bool) -> bool {
+    shows_panels || draws_handles(layers)
+}
+
 /// Two cameras while there is a pair to be seen, and none else: a camera costs time even where it
 /// draws nothing.
 pub(super) fn fit_cameras(
@@ -33,21 +52,35 @@ pub(super) fn fit_cameras(
     viewport: Res<Viewport>,
     editor: Single<(Entity, &Camera, &Projection), With<EditorCamera>>,
     mut sides: Query<(Entity, &SideCamera, &mut Camera, &mut Projection), Without<EditorCamera>>,
-    mut others: Query<&mut Camera, (Without<SideCamera>, Without<EditorCamera>)>,
+    mut others: Others,
+    mut moved: Local<isize>,
 ) {
     let (parent, editor, seen) = editor.into_inner();
     if !(inspect.on && inspect.pair.on) {
         for (entity, ..) in &sides {
             commands.entity(entity).despawn();
         }
+        let back = std::mem::take(&mut *moved);
+        if back != 0 {
+            for (mut camera, layers, shows_panels) in &mut others {
+                if comes_later(layers, shows_panels) && camera.order >= ORDER + back {
+                    camera.order -= back;
+                }
+            }
+        }
         return;
     }
     // Those of the handles, which begin with an empty depth, and of the panels come later.
     let ours = ORDER..ORDER + LAYERS.len() as isize;
-    if others.iter().any(|camera| ours.contains(&camera.order)) {
-        for mut camera in &mut others {
-            if camera.order >= ORDER {
-                camera.order += LAYERS.len() as isize;
+    let is_in_the_way = |(camera, layers, shows_panels): (&Camera, Option<&RenderLayers>, bool)| {
+        comes_later(layers, shows_panels) && ours.contains(&camera.order)
+    };
+    if others.iter().any(is_in_the_way) {
+        let room = LAYERS.len() as isize;
+        *moved += room;
+        for (mut camera, layers, shows_panels) in &mut others {
+            if comes_later(layers, shows_panels) && camera.order >= ORDER {
+                camera.order += room;
             }
         }
     }
@@ -55,6 +88,7 @@ pub(super) fn fit_cameras(
         for (side, layer) in LAYERS.into_iter().enumerate() {
             commands.spawn((
                 SideCamera(side),
+                NotTraced,
                 lines_camera(ORDER + side as isize, layer),
                 seen.clone(),
                 ChildOf(parent),
@@ -129,6 +163,31 @@ fn same_projection(a: &Projection, b: &Projection) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bevy::ecs::world::World;
+
+    #[test]
+    fn handles_and_panels_make_room_for_the_sides_and_go_back_and_no_other_camera_moves() {
+        let mut world = World::new();
+        world.init_resource::<InspectSettings>();
+        world.init_resource::<Viewport>();
+        world.spawn((EditorCamera, Camera::default(), Projection::default()));
+        let camera = |order| Camera {
+            order,
+            ..Camera::default()
+        };
+        let panels = world.spawn((PrimaryEguiContext, camera(2))).id();
+        let of_the_app = world.spawn(camera(1)).id();
+        let fit = world.register_system(fit_cameras);
+        for (is_on, order) in [(true, 4), (true, 4), (false, 2), (true, 4)] {
+            world.resource_mut::<InspectSettings>().pair.on = is_on;
+            world.run_system(fit).unwrap();
+            let order_of = |entity| world.get::<Camera>(entity).unwrap().order;
+            assert_eq!((order_of(panels), order_of(of_the_app)), (order, 1));
+            let mut sides = world.query_filtered::<&SideCamera, With<NotTraced>>();
+            let count = if is_on { LAYERS.len() } else { 0 };
+            assert_eq!(sides.iter(&world).count(), count);
+        }
+    }
 
     #[test]
     fn the_sides_make_up_the_view_wherever_it_is_divided() {

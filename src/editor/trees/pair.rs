@@ -8,13 +8,13 @@
 use super::background::{Background, Outcome};
 use super::of_setting;
 use crate::bvh::BuildOptions;
-use crate::editor::inspection::{DebugRay, DrawnSet, Source};
+use crate::editor::inspection::{DebugRay, DrawnSet, Seen, Source, seen_from};
 use crate::editor::viewport::EditorCamera;
 use crate::inspect::{InspectSettings, LineSet, Subject, System, rebuilt};
 use crate::scene::{Builder, RenderSettings};
 use crate::sync::{Traced, TracedCameras};
 use crate::trace::World;
-use crate::view::{DrawnLines, TracedRender};
+use crate::view::DrawnLines;
 use bevy::camera::visibility::RenderLayers;
 use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
@@ -35,9 +35,9 @@ pub(in crate::editor) struct TreePair {
 /// One side of the view.
 #[derive(Default)]
 pub(in crate::editor) struct Side {
-    /// Whose trees are wanted.
+    /// Whose trees are shown, or being built.
     builder: Builder,
-    /// The world that is traced, of which they shall be.
+    /// The world of which they are: that which was traced when they were begun.
     of: Option<Arc<World>>,
     building: Option<Background<Arc<World>>>,
     /// With this side's trees; those of before while others are being built.
@@ -66,9 +66,10 @@ impl Side {
             return SideState::Failed(why.clone());
         }
         match (&self.world, &self.of) {
+            _ if self.building.is_some() => SideState::Building,
             (Some(world), Some(of)) if Arc::ptr_eq(world, of) => SideState::Traced,
-            (Some(_), _) if self.building.is_none() => SideState::Built,
-            _ => SideState::Building,
+            (Some(_), _) => SideState::Built,
+            (None, _) => SideState::Building,
         }
     }
 
@@ -97,11 +98,17 @@ impl Side {
             }
             return;
         }
+        let is_traced = *traced.aggregate.options() == options;
+        if self.building.is_some() && !is_traced {
+            // While something is dragged every frame brings another world: what was begun is
+            // finished and shown, and the newest comes next.
+            return;
+        }
         self.builder = builder;
         self.of = Some(traced.clone());
         self.building = None;
         self.failed = None;
-        if *traced.aggregate.options() == options {
+        if is_traced {
             self.world = Some(traced.clone());
             return;
         }
@@ -149,8 +156,9 @@ pub(super) fn build_pair(
         return;
     }
     for (side, builder) in pair.sides.iter_mut().zip([wanted.left, wanted.right]) {
-        side.want(builder, &traced.world, options(&traced.world, builder));
+        // What is done makes room for the next build within the same frame.
         side.carry_on();
+        side.want(builder, &traced.world, options(&traced.world, builder));
     }
 }
 
@@ -165,20 +173,21 @@ pub(super) fn draw_pair(
     settings: Res<RenderSettings>,
     cameras: Res<TracedCameras>,
     ray: Res<DebugRay>,
-    render: Single<&TracedRender, With<EditorCamera>>,
+    view: Single<Seen, With<EditorCamera>>,
     mut lines: Query<&mut DrawnLines>,
     mut pair: ResMut<TreePair>,
 ) {
-    let subject = render.subject();
+    let (render, view, camera, place, projection) = *view;
+    let seen = seen_from(render, view, camera, place, projection);
     for (side, layer) in pair.sides.iter_mut().zip(LAYERS) {
-        let Some((world, (_, camera, rendered))) = side.world.clone().zip(subject) else {
+        let Some((world, (camera, size))) = side.world.clone().zip(seen.as_ref()) else {
             for drawn in &mut side.drawn {
                 drawn.clear(&mut commands);
             }
             continue;
         };
         let settings = RenderSettings {
-            size: rendered.size,
+            size: *size,
             ..settings.clone()
         };
         let source = Source {
@@ -198,5 +207,58 @@ pub(super) fn draw_pair(
                 drawn.clear(&mut commands);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::headless_editor;
+    use crate::io::{OpenOptions, SceneSource, builtin, open};
+    use std::thread::sleep;
+    use std::time::{Duration, Instant};
+
+    #[test]
+    fn one_build_at_a_time_goes_on_and_the_newest_world_comes_next() {
+        let mut app = headless_editor();
+        let source = SceneSource::Builtin(builtin::find("head").unwrap());
+        open(app.world_mut(), &source, OpenOptions::default()).unwrap();
+        app.update();
+        app.update();
+        let first = app.world().resource::<Traced>().world.clone();
+        // The same objects at another place in memory.
+        let newer = || {
+            let objects = Arc::new((*first.objects).clone());
+            Arc::new(World {
+                objects,
+                ..(*first).clone()
+            })
+        };
+        let worlds = [newer(), newer()];
+        let is_of = |side: &Side, world: &Arc<World>| {
+            let of = side.of.as_ref();
+            of.is_some_and(|of| Arc::ptr_eq(of, world))
+        };
+        let mut side = Side::default();
+        for world in [&first, &worlds[0], &worlds[1]] {
+            side.want(Builder::Median, world, options(world, Builder::Median));
+        }
+        assert!(is_of(&side, &first) && side.state() == SideState::Building);
+        let start = Instant::now();
+        while side.building.is_some() {
+            assert!(
+                start.elapsed() < Duration::from_secs(120),
+                "it is never built"
+            );
+            sleep(Duration::from_millis(1));
+            side.carry_on();
+        }
+        assert!(side.world.is_some());
+        side.want(
+            Builder::Median,
+            &worlds[1],
+            options(&worlds[1], Builder::Median),
+        );
+        assert!(is_of(&side, &worlds[1]) && side.building.is_some());
     }
 }

@@ -24,9 +24,10 @@ pub struct BuilderFigures {
     pub leaves: usize,
     /// Triangles of the largest leaf.
     pub largest_leaf: u32,
-    /// Of a random ray that meets the root's box.
+    /// Expected cost of a random ray that hits the root's box, from surface areas.
     pub sah_cost: f64,
-    /// Effective parent overlap.
+    /// Effective parent overlap: how much of the surface lies inside boxes of nodes that do not hold it
+    /// (Aila et al. 2013).
     pub epo: f64,
     /// Nodes of the wide form, which unwatched rays walk.
     pub wide_nodes: usize,

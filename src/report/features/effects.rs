@@ -6,7 +6,7 @@ use glam::Vec3;
 
 /// A system of the picture.
 pub struct Effect {
-    /// Its number among the systems.
+    /// Its number in the README's table of systems.
     pub row: &'static str,
     /// What it is called.
     pub name: &'static str,

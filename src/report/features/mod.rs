@@ -55,8 +55,8 @@ fn measure_alone(subjects: &[Subject], options: &Options, watch: Watch) -> Secti
             "Each system is rendered in three states that take turns on one thread, {side}x{side} pixels, {spp} samples, {} \
              rounds: off in a scene without it, on in the same scene (absent), and on in a scene that uses it. Absent must cost \
              what off costs. Change is the RMSE of the scene that uses it with the switch on and off, over the root mean \
-             square of the picture. Where every scene uses a system there is no absent. S17, S19 and S20 are ways to use the \
-             program and S18 its scenes: they have no cost in a picture.",
+             square of the picture. Where every scene uses a system there is no absent. The systems are numbered as in the \
+             README's table of systems.",
             rounds(options)
         )],
         ..Section::default()
@@ -65,7 +65,7 @@ fn measure_alone(subjects: &[Subject], options: &Options, watch: Watch) -> Secti
         "features",
         "Systems: milliseconds for a picture, and how it changes",
         &[
-            "row",
+            "number",
             "system",
             "off",
             "absent",
@@ -155,7 +155,7 @@ fn finding(ratios: &[(f64, &'static str)]) -> String {
     let worst = ratios.iter().max_by(|a, b| a.0.total_cmp(&b.0));
     let (most, name) = worst.copied().unwrap_or((f64::NAN, "none"));
     format!(
-        "A system that is on but that the scene lacks costs {} % of the picture's time in the median of {} systems, at most \
+        "Switching on a system that the scene does not use changes the render time by {} % (median of {} systems), at most \
          {} % ({name}).",
         signed_percent(typical),
         ratios.len(),

@@ -173,7 +173,7 @@ fn method(candidates: &[Candidate], options: &Options) -> Vec<String> {
     let embree = match embree {
         Some(library) => format!("Embree is {library}."),
         None => {
-            "Embree was not found: set EMBREE_LIB to its library, or install libembree3-3.".into()
+            "Embree was not found: set EMBREE_LIB to its library, or install it (Debian: libembree3-3).".into()
         }
     };
     vec![
@@ -329,7 +329,7 @@ fn over_all(candidates: &[Candidate], leaks: &[Leaks], standings: &[Vec<f64>]) -
             let leaks = 0.5 * (leaks[i].edges + leaks[i].vertices);
             let (ratio, leaks) = (digits(ratio, 2), digits(leaks, 2));
             format!(
-                "{ratio} times that of {} ({leaks} leaks a million)",
+                "{ratio}x as fast as {} ({leaks} leaks)",
                 candidates[i].name()
             )
         })
@@ -337,10 +337,11 @@ fn over_all(candidates: &[Candidate], leaks: &[Leaks], standings: &[Vec<f64>]) -
     let ours = 0.5 * (leaks[0].edges + leaks[0].vertices);
     (!standings.is_empty()).then(|| {
         format!(
-            "Over {} scenes the speed of Glassbox on one thread, with {} leaks a million rays at edges and vertices, is {}.",
+            "Over {} scenes (geometric mean, one thread) Glassbox is {}; its own leaks per million rays aimed at edges and \
+             vertices: {}.",
             standings.len(),
-            digits(ours, 2),
-            said.join(", ")
+            said.join("; "),
+            digits(ours, 2)
         )
     })
 }
@@ -358,8 +359,8 @@ fn finding(
     let fastest = others.max_by(|a, b| a.speed().total_cmp(&b.speed()))?;
     let leak = |row: &Row| 0.5 * (leaks[row.candidate].edges + leaks[row.candidate].vertices);
     Some(format!(
-        "On {} Glassbox traces {} million rays a second on one thread, {} times the fastest of the others ({}), with a mean \
-         relative error of t of {} against {} and {} against {} leaks a million rays at edges and vertices.",
+        "On {} Glassbox traces {} million rays/s on one thread, {}x the fastest other kernel ({}); mean relative error of t: \
+         {} (other: {}); leaks per million rays aimed at edges and vertices: {} (other: {}).",
         subject.name,
         digits(ours.speed(), 3),
         digits(ours.speed() / fastest.speed(), 3),

@@ -11,7 +11,7 @@ use glam::UVec2;
 pub(super) enum Way {
     Independent,
     Jittered,
-    Ours,
+    Sobol,
     Adaptive,
 }
 
@@ -19,7 +19,7 @@ impl Way {
     pub const ALL: [Self; 4] = [
         Self::Independent,
         Self::Jittered,
-        Self::Ours,
+        Self::Sobol,
         Self::Adaptive,
     ];
 
@@ -27,8 +27,8 @@ impl Way {
         match self {
             Self::Independent => "independent random",
             Self::Jittered => "stratified jitter",
-            Self::Ours => "our sequence",
-            Self::Adaptive => "our sequence, adaptive",
+            Self::Sobol => "Owen-scrambled Sobol",
+            Self::Adaptive => "Owen-scrambled Sobol, adaptive",
         }
     }
 }
@@ -142,7 +142,7 @@ pub(super) fn curve(
                     settings.sequence = Sequence::Jittered;
                     settings.jitter = count.isqrt();
                 }
-                Way::Ours => {}
+                Way::Sobol => {}
                 Way::Adaptive => {
                     // What the uniform picture would have.
                     let Some(goal) = rendered(subject, &settings).status.error() else {

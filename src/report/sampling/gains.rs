@@ -8,11 +8,11 @@ use super::curve::{Point, Way};
 /// What the sequence and adaptive sampling gain, over all scenes.
 #[derive(Default)]
 pub(super) struct Gains {
-    /// ln of our error over that of independent numbers, at the most samples.
+    /// ln of the Sobol points' error over that of independent numbers, at the most samples.
     against_independent: Vec<f64>,
-    /// ln of our error over that of jitter.
+    /// ln of the Sobol points' error over that of jitter.
     against_jitter: Vec<f64>,
-    /// ln of the seconds to 1 % of ours over those of independent numbers.
+    /// ln of the Sobol points' seconds to 1 % over those of independent numbers.
     time: Vec<f64>,
     /// ln of rays that adaptive sampling takes, over those of the same samples for every pixel at the same true error.
     adaptive: Vec<f64>,
@@ -22,23 +22,24 @@ pub(super) struct Gains {
 
 impl Gains {
     pub fn add(&mut self, curves: &[Vec<Point>; Way::ALL.len()]) {
-        let [independent, jittered, ours, adaptive] = curves;
+        let [independent, jittered, sobol, adaptive] = curves;
         let last = |curve: &[Point]| curve.last().map_or(f64::NAN, Point::relative);
         self.against_independent
-            .push((last(ours) / last(independent)).ln());
-        self.against_jitter.push((last(ours) / last(jittered)).ln());
+            .push((last(sobol) / last(independent)).ln());
+        self.against_jitter
+            .push((last(sobol) / last(jittered)).ln());
         let seconds = |curve: &[Point]| {
             let points: Vec<(f64, f64)> = curve.iter().map(|p| (p.seconds, p.relative())).collect();
             reaches(&points, GOAL).map_or(f64::NAN, |(at, _)| at)
         };
-        self.time.push((seconds(ours) / seconds(independent)).ln());
-        let rays: Vec<(f64, f64)> = ours.iter().map(|p| (p.rays, p.relative())).collect();
+        self.time.push((seconds(sobol) / seconds(independent)).ln());
+        let rays: Vec<(f64, f64)> = sobol.iter().map(|p| (p.rays, p.relative())).collect();
         if let Some(point) = adaptive.last()
             && let Some((uniform, _)) = reaches(&rays, point.relative())
         {
             self.adaptive.push((point.rays / uniform).ln());
         }
-        let estimated = ours.iter().chain(adaptive);
+        let estimated = sobol.iter().chain(adaptive);
         self.estimates
             .extend(estimated.filter_map(|p| Some(p.estimate? / p.relative())));
     }
@@ -53,18 +54,20 @@ impl Gains {
         let most = self.estimates.iter().copied().fold(0.0, f64::max);
         vec![
             format!(
-                "With as many samples our sequence leaves {} of the error of independent random numbers and {} of that of \
-                 stratified jitter (means over the scenes), and reaches an error of 1 % in {} of the random numbers' time.",
+                "With the same number of samples the error with Owen-scrambled Sobol points is {} times that with independent \
+                 random numbers and {} times that with stratified jitter; they reach an error of 1 % in {} times the random \
+                 numbers' time (geometric means over the scenes).",
                 mean(&self.against_independent),
                 mean(&self.against_jitter),
                 mean(&self.time),
             ),
             format!(
-                "For the same true error adaptive sampling takes {} times the rays of the same samples for every pixel.",
+                "To reach the same true error, adaptive sampling needs {} times the rays of uniform sampling (geometric mean \
+                 over the scenes).",
                 mean(&self.adaptive),
             ),
             format!(
-                "The film's own estimate was {} to {} times the true error.",
+                "The film's own estimate of the error was {} to {} times the true error.",
                 digits(least, 2),
                 digits(most, 2),
             ),

@@ -94,10 +94,10 @@ fn method(effort: &Effort) -> Vec<String> {
         "Pictures of {} pixels on the longer side, {} seeds each, against a reference of {} samples a pixel with another seed. \
          Squared errors are averaged over seeds; seconds are the median. `relative MSE` is the mean over pixels of squared \
          error / (value² + {RELATIVE_FLOOR}), each averaged over the channels, `relative error` its root. Jitter is on a grid \
-         with as many cells as samples. Adaptive sampling gets as its goal what the film estimates for our sequence with the \
+         with as many cells as samples. Adaptive sampling gets as its goal what the film estimates for Sobol points with the \
          same number of samples for every pixel. Slopes are least squares through logarithms; where 1 % lies beyond what was \
          measured (~), along the fitted line. The film's own slope is that of its estimates over its last two doublings, as the \
-         editor shows it while it renders. The estimate is calibrated for our sequence and for independent numbers from 16 samples on; \
+         editor shows it while it renders. The estimate is calibrated for Sobol points and for independent numbers from 16 samples on; \
          it is known to be off where the edge of a bright lamp runs exactly along a row of pixels.",
         effort.side, effort.seeds, effort.reference
     )]

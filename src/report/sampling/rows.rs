@@ -75,8 +75,7 @@ pub(super) fn plot(
         })
         .collect();
     let estimates = (curves[2].iter()).filter_map(|point| Some((x(point), point.estimate?)));
-    series
-        .push(Series::new("the film's estimate of ours", estimates.collect()).marked(Marker::Ring));
+    series.push(Series::new("film's estimate, Sobol", estimates.collect()).marked(Marker::Ring));
     Plot {
         file: format!("sampling-{}-{name}", subject.file()),
         title: format!("{}: error against {label}", subject.name),

@@ -38,6 +38,8 @@ const MOUSE: &[(&str, &str)] = &[
 ];
 
 pub(super) fn keys_ui(ui: &mut Ui) {
+    ui.weak("On a Mac, Command works as Ctrl.");
+    ui.add_space(4.0);
     ui.label(RichText::new("Mouse and held keys").strong());
     grid_ui(
         ui,

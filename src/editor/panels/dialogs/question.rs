@@ -26,6 +26,7 @@ pub(super) fn question_ui(context: &egui::Context, world: &mut World, panels: &m
         Question::Waiting { .. } => "A file dialog is open",
         Question::Replace { .. } => "The file exists",
         Question::Outside { .. } => "Files outside the folder",
+        Question::Rendering { .. } => "A picture is being rendered",
         Question::Recover(_) => "Unsaved work was found",
     };
     let stays = modal_ui(context, title, 460.0, |ui| match &question {
@@ -82,6 +83,20 @@ pub(super) fn question_ui(context: &egui::Context, world: &mut World, panels: &m
                         Answer::Yes,
                     ),
                     ("Cancel", "Leaves the open scene as it is", Answer::Cancel),
+                ],
+            );
+        }
+        Question::Rendering { file } => {
+            ui.label(format!("{} is not finished.", file.display()));
+            answered = buttons_ui(
+                ui,
+                &[
+                    (
+                        "Go on",
+                        "Leaves everything as it is: it is rendered and written",
+                        Answer::Cancel,
+                    ),
+                    ("Quit", "The picture is not written", Answer::Yes),
                 ],
             );
         }

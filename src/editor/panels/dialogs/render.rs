@@ -80,7 +80,7 @@ pub(super) fn render_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
             ui.add(field).says("Pixels");
         }
     });
-    let says = "Samples of each pixel, at least";
+    let says = "Samples of each pixel (effects may ask for more); the most with an error or a time to stop at";
     integer(ui, "Samples", says, &mut settings.spp, 1..=1 << 20, false);
     let says = "Stops when the estimated relative error has fallen to this; 0: never";
     let error = &mut settings.sampling.error;

@@ -1,19 +1,20 @@
 //! Which boxes of the trees are drawn, and how.
 
-use super::super::fields::{integer, row, switch};
+use super::super::fields::{choice, integer, row, switch};
 use super::super::says::Says;
 use super::super::status::grouped;
 use crate::editor::action::Action;
-use crate::editor::inspection::DebugRay;
+use crate::editor::inspection::{DebugRay, Names};
 use crate::editor::selection::Selection;
 use crate::editor::trees::BoxRanges;
 use crate::inspect::{
     BoxChoice, BoxColor, BoxRange, BoxSettings, InspectSettings, TreeChoice, TreeForm,
 };
+use crate::scene::SceneId;
 use crate::sync::Traced;
 use crate::trace::RayHit;
 use bevy::ecs::world::{Mut, World};
-use bevy_egui::egui::{Button, ComboBox, Label, RichText, Slider, SliderClamping, Ui};
+use bevy_egui::egui::{Button, Label, RichText, Slider, SliderClamping, Ui};
 
 pub(super) fn boxes_ui(ui: &mut Ui, world: &mut World, settings: &mut InspectSettings) {
     let boxes = &mut settings.boxes;
@@ -29,28 +30,28 @@ pub(super) fn boxes_ui(ui: &mut Ui, world: &mut World, settings: &mut InspectSet
     }
     let says = "Binary: as the builder made them, and as debug rays walk them. Wide: up to eight children a \
                 node, made of the binary form, through which pictures are traced";
-    enum_ui(ui, "Form", says, &mut boxes.form, &FORMS);
+    choice(ui, "Form", says, &mut boxes.form, &FORMS, false);
     if boxes.form == TreeForm::Binary {
         let says = "A range of levels, one leaf, or the way to a triangle";
-        enum_ui(ui, "Which", says, &mut boxes.choice, &CHOICES);
+        choice(ui, "Which", says, &mut boxes.choice, &CHOICES, false);
     }
-    let choice = match boxes.form {
+    let which = match boxes.form {
         TreeForm::Binary => boxes.choice,
         TreeForm::Wide => BoxChoice::Levels,
     };
-    match choice {
+    match which {
         BoxChoice::Levels => levels_ui(ui, boxes, range),
         BoxChoice::Leaf => leaf_ui(ui, world, boxes, range),
         BoxChoice::Path => path_ui(ui, world, boxes),
     }
-    if choice != BoxChoice::Path {
+    if which != BoxChoice::Path {
         object_ui(ui, world, boxes);
     }
     let says = "The one over the objects, those of the meshes, or both";
-    enum_ui(ui, "Trees", says, &mut boxes.trees, &TREES);
+    choice(ui, "Trees", says, &mut boxes.trees, &TREES, false);
     if boxes.form == TreeForm::Binary {
         let says = "What a box's colour says: dark is little, bright is much";
-        enum_ui(ui, "Colour", says, &mut boxes.color, &COLORS);
+        choice(ui, "Colour", says, &mut boxes.color, &COLORS, false);
         let says =
             "The plane between each drawn node's children, with its axis: x red, y green, z blue";
         switch(ui, "Split planes", says, &mut boxes.split_planes, false);
@@ -65,48 +66,62 @@ pub(super) fn boxes_ui(ui: &mut Ui, world: &mut World, settings: &mut InspectSet
     ui.add(Label::new(RichText::new(text).weak()).wrap());
 }
 
-const FORMS: [(TreeForm, &str); 2] = [(TreeForm::Binary, "Binary"), (TreeForm::Wide, "Wide")];
-const CHOICES: [(BoxChoice, &str); 3] = [
-    (BoxChoice::Levels, "Levels"),
-    (BoxChoice::Leaf, "One leaf"),
-    (BoxChoice::Path, "Way to a triangle"),
+const FORMS: [(TreeForm, &str, &str); 2] = [
+    (
+        TreeForm::Binary,
+        "Binary",
+        "As the builder made them, and as debug rays walk them",
+    ),
+    (
+        TreeForm::Wide,
+        "Wide",
+        "Up to eight children a node: what pictures are traced through",
+    ),
 ];
-const TREES: [(TreeChoice, &str); 3] = [
-    (TreeChoice::Both, "Both"),
-    (TreeChoice::Top, "Over the objects"),
-    (TreeChoice::Meshes, "Of the meshes"),
+const CHOICES: [(BoxChoice, &str, &str); 3] = [
+    (
+        BoxChoice::Levels,
+        "Levels",
+        "All nodes from one level to another",
+    ),
+    (BoxChoice::Leaf, "One leaf", "A single leaf, by its number"),
+    (
+        BoxChoice::Path,
+        "Way to a triangle",
+        "From the root to the leaf that holds a triangle",
+    ),
 ];
-const COLORS: [(BoxColor, &str); 4] = [
-    (BoxColor::Level, "Level"),
-    (BoxColor::LeafSize, "Leaf size"),
-    (BoxColor::Cost, "SAH cost"),
-    (BoxColor::Visits, "Visits"),
+const TREES: [(TreeChoice, &str, &str); 3] = [
+    (TreeChoice::Both, "Both", "All trees"),
+    (
+        TreeChoice::Top,
+        "Over the objects",
+        "The tree whose leaves are objects",
+    ),
+    (
+        TreeChoice::Meshes,
+        "Of the meshes",
+        "The trees whose leaves are triangles",
+    ),
 ];
-
-fn enum_ui<T: Copy + PartialEq>(
-    ui: &mut Ui,
-    label: &str,
-    says: &str,
-    value: &mut T,
-    all: &[(T, &str)],
-) {
-    let name = all
-        .iter()
-        .find(|(one, _)| one == value)
-        .map_or("", |(_, name)| name);
-    row(ui, label, says, |ui| {
-        ComboBox::from_id_salt(label)
-            .selected_text(name)
-            .width((ui.available_width() - 12.0).max(60.0))
-            .show_ui(ui, |ui| {
-                for &(one, name) in all {
-                    ui.selectable_value(value, one, name);
-                }
-            })
-            .response
-            .says(says);
-    });
-}
+const COLORS: [(BoxColor, &str, &str); 4] = [
+    (BoxColor::Level, "Level", "How deep the node is"),
+    (
+        BoxColor::LeafSize,
+        "Leaf size",
+        "How many triangles or objects a leaf holds",
+    ),
+    (
+        BoxColor::Cost,
+        "SAH cost",
+        "What the node adds to the cost of a random ray",
+    ),
+    (
+        BoxColor::Visits,
+        "Visits",
+        "How many of the debug ray's rays entered the node",
+    ),
+];
 
 fn levels_ui(ui: &mut Ui, boxes: &mut BoxSettings, range: BoxRange) {
     let deepest = range.deepest.max(1);
@@ -208,28 +223,73 @@ fn path_ui(ui: &mut Ui, world: &mut World, boxes: &mut BoxSettings) {
     integer(ui, "Triangle", says, &mut boxes.triangle, 0..=last, false);
 }
 
+/// Why the trees of what is selected cannot be drawn; `None` where they can.
+fn no_tree(traced: &Traced, selected: Option<SceneId>) -> Option<&'static str> {
+    let Some(id) = selected else {
+        return Some("Nothing is selected: click an object first");
+    };
+    let objects = &traced.world.objects;
+    match objects.iter().any(|object| object.id == id.0) {
+        true => None,
+        false => {
+            Some("What is selected has no tree: it is no object, or is hidden, or cannot be traced")
+        }
+    }
+}
+
 /// Of one object, or of all.
 fn object_ui(ui: &mut Ui, world: &World, boxes: &mut BoxSettings) {
     let says = "Trees of all objects, or of the selected one alone";
     let selected = world
         .get_resource::<Selection>()
         .and_then(Selection::active);
+    let why_not = no_tree(world.resource::<Traced>(), selected);
     row(ui, "Of", says, |ui| {
         let all = Button::selectable(boxes.object == 0, "All");
         if ui.add(all).says("Trees of all objects").clicked() {
             boxes.object = 0;
         }
         let is_one = boxes.object != 0;
-        let name = match is_one {
-            true => format!("Object {}", boxes.object),
-            false => "Selected".to_owned(),
+        let name = match (is_one, world.get_resource::<Names>()) {
+            (true, Some(names)) => names.of(boxes.object),
+            (true, None) => format!("#{}", boxes.object),
+            (false, _) => "Selected".to_owned(),
         };
-        let one = ui.add_enabled(selected.is_some(), Button::selectable(is_one, name));
+        let one = ui.add_enabled(why_not.is_none(), Button::selectable(is_one, name));
         let says = "Of the selected object alone; select another one and press again";
-        if one.says(says).clicked()
+        if one.says(why_not.unwrap_or(says)).clicked()
             && let Some(id) = selected
         {
             boxes.object = id.0;
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::headless_editor;
+    use crate::io::{OpenOptions, SceneSource, builtin, open};
+
+    #[test]
+    fn what_is_no_object_that_is_traced_has_no_tree_and_that_is_said() {
+        let mut app = headless_editor();
+        let source = SceneSource::Builtin(builtin::find("cornell-box").unwrap());
+        open(app.world_mut(), &source, OpenOptions::default()).unwrap();
+        app.update();
+        let traced = app.world().resource::<Traced>();
+        let object = SceneId(traced.world.objects[0].id);
+        assert_eq!(no_tree(traced, Some(object)), None);
+        assert!(no_tree(traced, Some(SceneId(u64::MAX))).is_some());
+        assert!(no_tree(traced, None).is_some());
+    }
+
+    #[test]
+    fn every_choice_says_what_it_means() {
+        let says = FORMS.iter().map(|choice| choice.2);
+        let says = says.chain(CHOICES.iter().map(|choice| choice.2));
+        let says = says.chain(TREES.iter().map(|choice| choice.2));
+        let mut says = says.chain(COLORS.iter().map(|choice| choice.2));
+        assert!(says.all(|text| !text.is_empty()));
+    }
 }

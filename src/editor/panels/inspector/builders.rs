@@ -22,8 +22,8 @@ pub(in super::super) struct Builders {
 }
 
 pub(super) fn builders_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
-    let about =
-        "One tree over all triangles by each builder, and this view's own rays in the scene's.";
+    let about = "The tree figures are of one tree over all triangles; the ray rates use the scene's own \
+                 trees and this view's rays.";
     ui.add(Label::new(RichText::new(about).weak()).wrap());
     let start = measure_ui(
         ui,
@@ -110,20 +110,20 @@ fn table(rows: &[BuilderFigures]) -> Vec<Row> {
         ),
         (
             "Largest leaf",
-            "Triangles in it",
+            "The most triangles that one leaf holds",
             |row| Some(f64::from(row.largest_leaf)),
             Neither,
         ),
         (
             "SAH cost",
-            "What a random ray that meets the root pays, by areas; lower is better",
+            "Expected cost of a random ray that hits the root's box, from surface areas; lower is better",
             |row| Some(row.sah_cost),
             Less,
         ),
         (
             "EPO",
-            "Effective parent overlap: cost of triangles that reach into boxes which are not theirs; \
-             lower is better",
+            "Effective parent overlap: how much of the mesh's surface lies inside boxes of nodes that do \
+             not hold it (Aila et al. 2013); lower is better",
             |row| Some(row.epo),
             Less,
         ),

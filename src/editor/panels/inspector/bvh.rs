@@ -11,7 +11,7 @@ use super::pair::pair_ui;
 use super::performance::performance_ui;
 use super::render::settings_ui;
 use super::still_plot::still_plot;
-use crate::bvh::{LARGEST_LEAF_BIN, TreeStats};
+use crate::bvh::{LARGEST_LEAF_BIN, MeshTree, TreeStats};
 use crate::scene::{Builder, RenderSettings, TreeSettings};
 use crate::sync::Traced;
 use crate::trace;
@@ -35,13 +35,15 @@ pub(super) const SETTINGS_OF_TREES: &[&str] = &[
 /// One of the trees that are traced.
 struct Tree {
     name: String,
+    /// Of a mesh. Held, so that no other takes its place in memory while the figures are kept.
+    mesh: Option<Arc<MeshTree>>,
     stats: TreeStats,
     build_time: Duration,
     /// What its leaves hold.
     primitives: &'static str,
 }
 
-/// The trees of a traced world, looked at once for each world.
+/// The trees of a traced world, looked at once for each world, and those of meshes once at all.
 #[derive(Default)]
 pub(in super::super) struct Trees {
     of: Option<Arc<trace::World>>,
@@ -55,6 +57,7 @@ impl Trees {
             return;
         }
         self.of = Some(world.clone());
+        let mut before = std::mem::take(&mut self.trees);
         let aggregate = &world.aggregate;
         let one = aggregate.options().levels == crate::bvh::Levels::One;
         self.trees = vec![Tree {
@@ -62,6 +65,7 @@ impl Trees {
                 true => "All triangles".into(),
                 false => format!("Over {} objects", aggregate.instances().len()),
             },
+            mesh: None,
             stats: aggregate.stats(),
             build_time: aggregate.build_time(),
             primitives: if one { "triangles" } else { "objects" },
@@ -76,19 +80,34 @@ impl Trees {
             meshes.truncate(50);
             self.trees.extend(meshes.into_iter().map(|object| {
                 let tree = &object.mesh.tree;
+                let is_known = |known: &Tree| {
+                    let mesh = known.mesh.as_ref();
+                    mesh.is_some_and(|mesh| Arc::ptr_eq(mesh, tree))
+                };
+                let known = before.iter().position(is_known);
                 Tree {
                     name: format!(
                         "Mesh of object {}, {} triangles",
                         object.id,
                         grouped(tree.traced() as u64)
                     ),
-                    stats: tree.stats(),
+                    mesh: Some(tree.clone()),
+                    stats: match known {
+                        Some(at) => before.swap_remove(at).stats,
+                        None => tree.stats(),
+                    },
                     build_time: tree.build_time(),
                     primitives: "triangles",
                 }
             }));
         }
         self.shown = self.shown.min(self.trees.len().saturating_sub(1));
+    }
+
+    /// Keeps nothing but which one is shown.
+    fn forget(&mut self) {
+        self.of = None;
+        self.trees.clear();
     }
 }
 
@@ -102,9 +121,9 @@ pub(super) fn bvh_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
             if ui.button("Default").says(says).clicked() {
                 settings.tree = TreeSettings::default();
             }
-            let says = "One tree, median split, at most ten levels, as in the original report";
-            if ui.button("Original").says(says).clicked() {
-                settings.tree = TreeSettings::ORIGINAL;
+            let says = "One tree, median split, at most ten levels: a simple textbook BVH, to compare with";
+            if ui.button("Simple").says(says).clicked() {
+                settings.tree = TreeSettings::SIMPLE;
             }
         });
     });
@@ -120,8 +139,15 @@ pub(super) fn bvh_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     });
     let traced = world.resource::<Traced>().world.clone();
     let trees = &mut panels.trees;
-    trees.update(&traced);
-    section(ui, "Trees that are traced", true, |ui| trees_ui(ui, trees));
+    let mut is_open = false;
+    section(ui, "Trees that are traced", true, |ui| {
+        is_open = true;
+        trees.update(&traced);
+        trees_ui(ui, trees);
+    });
+    if !is_open {
+        trees.forget();
+    }
 }
 
 /// Those settings that the builder reads.
@@ -175,7 +201,7 @@ fn trees_ui(ui: &mut Ui, trees: &mut Trees) {
                 ),
                 (
                     "Largest leaf",
-                    "What it holds",
+                    "The most that one leaf holds",
                     match stats.largest_leaf {
                         1 => format!("1 {}", tree.primitives.trim_end_matches('s')),
                         n => format!("{} {}", grouped(n.into()), tree.primitives),
@@ -183,7 +209,7 @@ fn trees_ui(ui: &mut Ui, trees: &mut Trees) {
                 ),
                 (
                     "SAH cost",
-                    "What a random ray that meets the root pays, by areas; lower is better",
+                    "Expected cost of a random ray that hits the root's box, from surface areas; lower is better",
                     format!("{:.2}", stats.sah_cost),
                 ),
                 (
@@ -238,6 +264,37 @@ fn histogram_ui(ui: &mut Ui, id: &str, axis: &str, counts: &[u32], is_clipped: b
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::editor::headless_editor;
+    use crate::io::{OpenOptions, SceneSource, builtin, open};
+    use bevy::ecs::query::With;
+    use bevy::mesh::Mesh3d;
+    use bevy::transform::components::Transform;
+
+    #[test]
+    fn figures_of_a_mesh_are_kept_while_its_objects_move() {
+        let mut app = headless_editor();
+        let source = SceneSource::Builtin(builtin::find("cornell-box").unwrap());
+        open(app.world_mut(), &source, OpenOptions::default()).unwrap();
+        let mut trees = Trees::default();
+        // Where the numbers of each mesh lie in memory.
+        let mut places = Vec::new();
+        for _ in 0..2 {
+            let world = app.world_mut();
+            let mut objects = world.query_filtered::<&mut Transform, With<Mesh3d>>();
+            for mut place in objects.iter_mut(world) {
+                place.translation.y += 0.125;
+            }
+            app.update();
+            let before = trees.of.clone();
+            trees.update(&app.world().resource::<Traced>().world);
+            assert!(before.is_none_or(|before| !Arc::ptr_eq(&before, trees.of.as_ref().unwrap())));
+            let of_meshes = trees.trees.iter().filter(|tree| tree.mesh.is_some());
+            let stats = of_meshes.map(|tree| tree.stats.depths.as_ptr());
+            places.push(stats.collect::<Vec<_>>());
+        }
+        assert!(!places[0].is_empty());
+        assert_eq!(places[0], places[1]);
+    }
 
     #[test]
     fn a_builder_shows_the_settings_that_it_reads() {

@@ -2,7 +2,7 @@
 
 use super::super::fields::{Number, angle, radiant, section};
 use super::super::state::Panels;
-use super::maps::{Map, map_ui};
+use super::maps::{Map, Owner, map_ui};
 use crate::scene::{Environment, EnvironmentMap};
 use bevy::ecs::world::World;
 use bevy_egui::egui::Ui;
@@ -18,6 +18,7 @@ pub(super) fn environment_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels
             label: "Picture",
             says: "A panorama around the scene: background and reflections; it does not light surfaces",
             loaded: loaded.as_ref(),
+            owner: Owner::Environment,
         };
         map_ui(ui, world, panels, &map, &mut environment.map, false);
         if environment.map.is_some() {

@@ -261,7 +261,21 @@ fn choices_of(value: &dyn PartialReflect) -> Vec<&'static str> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::render::about;
     use super::*;
+
+    #[test]
+    fn every_choice_says_what_it_means() {
+        let mut settings = InspectSettings::default();
+        for row in [RAYS, NORMALS, OTHERS].into_iter().flatten() {
+            if !matches!(row.2, Field::Choice) {
+                continue;
+            }
+            for choice in choices_of(settings.reflect_path_mut(row.0).unwrap()) {
+                assert_ne!(about(choice), "", "{}: {choice}", row.0);
+            }
+        }
+    }
 
     #[test]
     fn every_row_fits_the_type_of_its_setting() {

@@ -48,51 +48,65 @@ fn point_ui(ui: &mut Ui, several: &mut Several<PointLamp>) {
     several.number(ui, "Intensity", says, intensity("W/sr"), |lamp| {
         &mut lamp.intensity
     });
-    several.field(
-        |lamp| &mut lamp.cone,
-        |value, mixed| {
-            let mut is_spot = value.is_some();
-            let says = "Only within a cone around the light's -Z axis";
-            let changed = switch(ui, "Spot", says, &mut is_spot, mixed);
-            if changed {
-                *value = is_spot.then(Cone::default);
-            }
-            changed
-        },
-    );
-    if several.first().cone.is_none() {
-        return;
+    cone_ui(ui, several);
+}
+
+/// Whether they are spots, and the angles of those that are.
+fn cone_ui(ui: &mut Ui, several: &mut Several<PointLamp>) {
+    let mut is_spot = several.first().cone.is_some();
+    let mixed = several.any(|lamp| lamp.cone.is_some() != is_spot);
+    let says = "Only within a cone around the light's -Z axis";
+    if switch(ui, "Spot", says, &mut is_spot, mixed) {
+        several.change(|lamp| lamp.cone = is_spot.then(|| lamp.cone.unwrap_or_default()));
     }
-    several.field(
-        |lamp| &mut lamp.cone,
-        |value, mixed| {
-            let Some(cone) = value else { return false };
-            let mut changed = angle(
-                ui,
-                "Full within",
-                "Half-angle of the cone that has full strength",
-                &mut cone.inner,
-                [0.0, 90.0],
-                mixed,
-            );
-            if changed {
-                cone.outer = cone.outer.max(cone.inner);
-            }
-            let outer = angle(
-                ui,
-                "None outside",
-                "Half-angle outside of which there is no light; between the two it fades",
-                &mut cone.outer,
-                [0.0, 90.0],
-                mixed,
-            );
-            if outer {
-                cone.inner = cone.inner.min(cone.outer);
-            }
-            changed |= outer;
-            changed
-        },
-    );
+    let Some(mut cone) = several.first().cone else {
+        return;
+    };
+    let differ = |part: fn(&Cone) -> f32| {
+        several.any(|lamp| {
+            let other = lamp.cone.as_ref();
+            other.is_some_and(|other| part(other) != part(&cone))
+        })
+    };
+    let mixed = [differ(|cone| cone.inner), differ(|cone| cone.outer)];
+    let says = "Half-angle of the cone that has full strength";
+    if angle(
+        ui,
+        "Full within",
+        says,
+        &mut cone.inner,
+        [0.0, 90.0],
+        mixed[0],
+    ) {
+        several.change(|lamp| set_inner(lamp, cone.inner));
+    }
+    let says = "Half-angle outside of which there is no light; between the two it fades";
+    if angle(
+        ui,
+        "None outside",
+        says,
+        &mut cone.outer,
+        [0.0, 90.0],
+        mixed[1],
+    ) {
+        several.change(|lamp| set_outer(lamp, cone.outer));
+    }
+}
+
+/// The other angle gives way, and stays as it is where it need not.
+fn set_inner(lamp: &mut PointLamp, inner: f32) {
+    if let Some(cone) = &mut lamp.cone {
+        cone.inner = inner;
+        cone.outer = cone.outer.max(inner);
+    }
+}
+
+/// As [`set_inner`].
+fn set_outer(lamp: &mut PointLamp, outer: f32) {
+    if let Some(cone) = &mut lamp.cone {
+        cone.outer = outer;
+        cone.inner = cone.inner.min(outer);
+    }
 }
 
 fn directional_ui(ui: &mut Ui, several: &mut Several<DirectionalLamp>) {
@@ -102,7 +116,7 @@ fn directional_ui(ui: &mut Ui, several: &mut Several<DirectionalLamp>) {
         &mut lamp.intensity
     });
     let says = "Angle under which the source is seen: 0 gives hard shadows, the sun has 0.53°";
-    several.angle(ui, "Diameter", says, [0.0, 90.0], |lamp| {
+    several.angle(ui, "Angular diameter", says, [0.0, 90.0], |lamp| {
         &mut lamp.angular_diameter
     });
     several.integer(ui, "Samples", SAMPLES, 1..=1000, |lamp| &mut lamp.samples);
@@ -154,8 +168,34 @@ fn parallelogram_ui(ui: &mut Ui, several: &mut Several<ParallelogramLamp>) {
         several.point(ui, name, says, POINT, |lamp| &mut lamp.edges[i]);
     }
     let says = "Whether the back shines too";
-    several.switch(ui, "Both sides", says, |lamp| &mut lamp.two_sided);
+    several.switch(ui, "Two-sided", says, |lamp| &mut lamp.two_sided);
     let says = "Whether the camera and mirrors see the light itself";
-    several.switch(ui, "Seen", says, |lamp| &mut lamp.visible);
+    several.switch(ui, "Visible to camera", says, |lamp| &mut lamp.visible);
     several.integer(ui, "Samples", SAMPLES, 1..=1000, |lamp| &mut lamp.samples);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_angle_reaches_spots_alone_and_leaves_their_other_angle_where_it_can() {
+        let spot = |inner, outer| PointLamp {
+            cone: Some(Cone { inner, outer }),
+            ..PointLamp::default()
+        };
+        let no_spot = PointLamp {
+            cone: None,
+            ..PointLamp::default()
+        };
+        let mut lamps = [spot(0.1, 0.9), spot(0.2, 0.3), no_spot];
+        let cones = |lamps: &[PointLamp; 3]| {
+            let cone = |lamp: &PointLamp| lamp.cone.map(|cone| (cone.inner, cone.outer));
+            lamps.each_ref().map(cone)
+        };
+        lamps.iter_mut().for_each(|lamp| set_inner(lamp, 0.5));
+        assert_eq!(cones(&lamps), [Some((0.5, 0.9)), Some((0.5, 0.5)), None]);
+        lamps.iter_mut().for_each(|lamp| set_outer(lamp, 0.4));
+        assert_eq!(cones(&lamps), [Some((0.4, 0.4)), Some((0.4, 0.4)), None]);
+    }
 }

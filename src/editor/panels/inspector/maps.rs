@@ -3,9 +3,10 @@
 use super::super::fields::row;
 use super::super::says::Says;
 use super::super::state::Panels;
+use crate::editor::edits::scene_entity;
 use crate::io::SceneFiles;
 use crate::io::shapes::PICTURES;
-use crate::scene::TextureSource;
+use crate::scene::{Environment, Phong, SceneId, TextureSource};
 use bevy::asset::{AssetId, Assets, Handle};
 use bevy::color::ColorToPacked;
 use bevy::ecs::world::World;
@@ -13,9 +14,10 @@ use bevy::image::Image;
 use bevy::platform::cell::SyncCell;
 use bevy::platform::collections::HashMap;
 use bevy_egui::egui::{
-    self, Color32, ColorImage, Sense, TextEdit, TextureHandle, TextureOptions, Ui, vec2,
+    self, Color32, ColorImage, Key, Sense, TextEdit, TextureHandle, TextureOptions, Ui, vec2,
 };
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
 
@@ -30,18 +32,102 @@ pub(super) struct Map<'a> {
     pub says: &'static str,
     /// The picture as it was loaded.
     pub loaded: Option<&'a Handle<Image>>,
+    /// Whose picture it is.
+    pub owner: Owner,
+}
+
+/// A material's picture.
+pub(super) type MapOf = fn(&mut Phong) -> &mut Option<TextureSource>;
+
+/// Whose picture a field is. What is chosen for it may come when something else is selected.
+#[derive(Clone)]
+pub(super) enum Owner {
+    Environment,
+    /// The materials of these numbers, which outlive undo.
+    Materials(Arc<[SceneId]>, MapOf),
+}
+
+impl Owner {
+    /// Where a path for it is typed.
+    fn field(&self, label: &str) -> egui::Id {
+        let first = match self {
+            Self::Environment => None,
+            Self::Materials(ids, _) => ids.first().map(|id| id.0),
+        };
+        egui::Id::new(("path of a picture", label, first))
+    }
+
+    /// Gives it a picture, or none. What has it already is not touched.
+    fn give(&self, world: &mut World, picture: Option<&TextureSource>) {
+        match self {
+            Self::Environment => {
+                let mut environment = world.resource_mut::<Environment>();
+                if environment.map.as_ref() != picture {
+                    environment.map = picture.cloned();
+                }
+            }
+            Self::Materials(ids, map) => {
+                for &id in ids.iter() {
+                    let Some(entity) = scene_entity(world, id) else {
+                        continue;
+                    };
+                    let Some(before) = world.get::<Phong>(entity) else {
+                        continue;
+                    };
+                    let mut after = before.clone();
+                    *map(&mut after) = picture.cloned();
+                    if after != *before
+                        && let Some(mut phong) = world.get_mut::<Phong>(entity)
+                    {
+                        *phong = after;
+                    }
+                }
+            }
+        }
+    }
 }
 
 /// Small copies of pictures, made once each, and the file dialog that may be open.
 #[derive(Default)]
 pub(in super::super) struct Thumbnails {
     made: HashMap<AssetId<Image>, TextureHandle>,
-    asking: Option<(egui::Id, SyncCell<Receiver<Option<PathBuf>>>)>,
-    /// A path that is being typed, and in which field.
-    typed: Option<(egui::Id, String)>,
+    asking: Option<Asking>,
+    typed: Option<Typed>,
 }
 
-/// The field; true where another picture was chosen.
+/// A file dialog that is open.
+struct Asking {
+    owner: Owner,
+    answer: SyncCell<Receiver<Option<PathBuf>>>,
+}
+
+/// A path that is being typed.
+struct Typed {
+    field: egui::Id,
+    owner: Owner,
+    text: String,
+    /// What the field showed before.
+    shown: String,
+}
+
+/// What was typed and what was chosen in a file dialog becomes the picture of those whose field it
+/// was.
+pub(super) fn settle_pictures(
+    context: &egui::Context,
+    world: &mut World,
+    thumbnails: &mut Thumbnails,
+) {
+    if let Some((owner, file)) = thumbnails.answer() {
+        let path = world.resource::<SceneFiles>().folder.name_of(&file);
+        owner.give(world, Some(&TextureSource { path }));
+    }
+    if let Some((owner, path)) = thumbnails.left_field(context) {
+        let picture = (!path.is_empty()).then_some(TextureSource { path });
+        owner.give(world, picture.as_ref());
+    }
+}
+
+/// The field; true where another picture was chosen from its menu.
 pub(super) fn map_ui(
     ui: &mut Ui,
     world: &World,
@@ -51,11 +137,7 @@ pub(super) fn map_ui(
     mixed: bool,
 ) -> bool {
     let thumbnails = &mut panels.thumbnails;
-    let id = ui.id().with(map.label);
     let mut chosen: Option<Option<String>> = None;
-    if let Some(path) = thumbnails.answer(id) {
-        chosen = Some(Some(world.resource::<SceneFiles>().folder.name_of(&path)));
-    }
     row(ui, map.label, map.says, |ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(36.0, 36.0), Sense::hover());
         ui.painter()
@@ -83,7 +165,7 @@ pub(super) fn map_ui(
                         }
                     }
                     if ui.button("A file…").says("PNG, JPEG, HDR or EXR").clicked() {
-                        thumbnails.ask(id);
+                        thumbnails.ask(map.owner.clone());
                         ui.close();
                     }
                 })
@@ -95,9 +177,7 @@ pub(super) fn map_ui(
                 (false, Some(source)) => source.path.clone(),
                 (false, None) => String::new(),
             };
-            if let Some(path) = thumbnails.path_ui(ui, id, shown) {
-                chosen = Some((!path.is_empty()).then_some(path));
-            }
+            thumbnails.path_ui(ui, map, shown);
         });
     });
     let Some(chosen) = chosen else {
@@ -131,34 +211,40 @@ impl Thumbnails {
         Some(texture)
     }
 
-    /// A path as it is typed; `Some` when it is finished and another.
-    fn path_ui(&mut self, ui: &mut Ui, id: egui::Id, shown: String) -> Option<String> {
-        let is_typed = self.typed.as_ref().is_some_and(|(of, _)| *of == id);
-        let mut text = match &self.typed {
-            Some((_, text)) if is_typed => text.clone(),
-            _ => shown.clone(),
-        };
-        let field = TextEdit::singleline(&mut text)
-            .id(id.with("path"))
+    /// A path as it is typed. It counts when the field has lost the keys.
+    fn path_ui(&mut self, ui: &mut Ui, map: &Map, shown: String) {
+        let field = map.owner.field(map.label);
+        let typed = self.typed.as_ref().filter(|typed| typed.field == field);
+        let mut text = typed.map_or_else(|| shown.clone(), |typed| typed.text.clone());
+        let edit = TextEdit::singleline(&mut text)
+            .id(field)
             .hint_text("path")
             .desired_width((ui.available_width() - 10.0).max(40.0));
         let response = ui
-            .add(field)
+            .add(edit)
             .says("Relative to the scene file's folder, with / between its parts");
         if response.changed() {
-            self.typed = Some((id, text));
+            self.typed = Some(Typed {
+                field,
+                owner: map.owner.clone(),
+                text,
+                shown,
+            });
         }
-        if response.lost_focus()
-            && let Some((_, text)) = self.typed.take_if(|(of, _)| *of == id)
-        {
-            let text = text.trim().to_owned();
-            return (text != shown).then_some(text);
-        }
-        None
+    }
+
+    /// The path that was typed into a field that has lost the keys, where it is another than before.
+    /// Escape leaves the old one.
+    fn left_field(&mut self, context: &egui::Context) -> Option<(Owner, String)> {
+        let has_keys = |field| context.memory(|memory| memory.has_focus(field));
+        let typed = self.typed.take_if(|typed| !has_keys(typed.field))?;
+        let cancelled = context.input(|input| input.key_pressed(Key::Escape));
+        let path = typed.text.trim();
+        (!cancelled && path != typed.shown).then(|| (typed.owner, path.to_owned()))
     }
 
     /// Opens the system's file dialog beside the editor, which goes on.
-    fn ask(&mut self, id: egui::Id) {
+    fn ask(&mut self, owner: Owner) {
         let (sender, answer) = channel();
         let dialog = thread::Builder::new().name("file dialog".into());
         let spawned = dialog.spawn(move || {
@@ -169,27 +255,26 @@ impl Thumbnails {
             let _ = sender.send(file);
         });
         if spawned.is_ok() {
-            self.asking = Some((id, SyncCell::new(answer)));
+            let answer = SyncCell::new(answer);
+            self.asking = Some(Asking { owner, answer });
         }
     }
 
-    /// The file that was chosen for this field.
-    fn answer(&mut self, id: egui::Id) -> Option<PathBuf> {
-        let (of, answer) = self.asking.as_mut()?;
-        if *of != id {
-            return None;
-        }
-        match answer.get().try_recv() {
-            Ok(file) => {
-                self.asking = None;
-                file
-            }
-            Err(TryRecvError::Disconnected) => {
-                self.asking = None;
-                None
-            }
-            Err(TryRecvError::Empty) => None,
-        }
+    /// The file that was chosen, and for whom.
+    fn answer(&mut self) -> Option<(Owner, PathBuf)> {
+        let file = match self.asking.as_mut()?.answer.get().try_recv() {
+            Ok(file) => file,
+            Err(TryRecvError::Disconnected) => None,
+            Err(TryRecvError::Empty) => return None,
+        };
+        let asked = self.asking.take()?;
+        Some((asked.owner, file?))
+    }
+
+    /// Another scene is open: what is still typed or chosen belongs to nobody.
+    pub fn forget_fields(&mut self) {
+        self.asking = None;
+        self.typed = None;
     }
 }
 
@@ -221,7 +306,61 @@ fn smaller(image: &Image) -> Option<ColorImage> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::editor::headless_editor;
     use crate::io::shapes::texture;
+
+    #[test]
+    fn a_path_that_was_typed_reaches_those_for_whom_it_was_typed_whatever_is_selected_now() {
+        let mut app = headless_editor();
+        let world = app.world_mut();
+        let ids = [1, 2, 3].map(SceneId);
+        let materials = ids.map(|id| world.spawn((id, Phong::default())).id());
+        let map: MapOf = |phong| &mut phong.opacity_map;
+        let owner = Owner::Materials(Arc::from(&ids[..2]), map);
+        let mut thumbnails = Thumbnails::default();
+        let typed = |text: &str| Typed {
+            field: owner.field("Opacity map"),
+            owner: owner.clone(),
+            text: text.into(),
+            shown: String::new(),
+        };
+        // Its field has no keys, in an egui that never drew it.
+        let context = egui::Context::default();
+        thumbnails.typed = Some(typed(" a.png "));
+        settle_pictures(&context, world, &mut thumbnails);
+        let paths = materials.map(|material| {
+            let map = world.get::<Phong>(material).unwrap().opacity_map.clone();
+            map.map(|source| source.path)
+        });
+        let path = Some("a.png".to_owned());
+        assert_eq!(paths, [path.clone(), path, None]);
+        assert!(thumbnails.typed.is_none());
+    }
+
+    #[test]
+    fn a_file_that_was_chosen_reaches_the_environment_and_nothing_of_another_scene() {
+        let mut app = headless_editor();
+        let world = app.world_mut();
+        let mut thumbnails = Thumbnails::default();
+        let context = egui::Context::default();
+        for is_forgotten in [true, false] {
+            let (sender, answer) = channel();
+            thumbnails.asking = Some(Asking {
+                owner: Owner::Environment,
+                answer: SyncCell::new(answer),
+            });
+            settle_pictures(&context, world, &mut thumbnails);
+            assert!(thumbnails.asking.is_some(), "it waits");
+            if is_forgotten {
+                thumbnails.forget_fields();
+            }
+            let sent = sender.send(Some(PathBuf::from("sky.exr")));
+            assert_eq!(sent.is_err(), is_forgotten);
+            settle_pictures(&context, world, &mut thumbnails);
+            let map = world.resource::<Environment>().map.clone();
+            assert_eq!(map.is_some(), !is_forgotten);
+        }
+    }
 
     #[test]
     fn a_thumbnail_keeps_the_picture_s_shape_and_colours() {

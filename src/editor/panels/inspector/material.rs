@@ -5,12 +5,15 @@ use super::super::outline::{Kind, Outline};
 use super::super::says::Says;
 use super::super::several::Several;
 use super::super::state::Panels;
-use super::maps::{Map, map_ui};
+use super::maps::{Map, MapOf, Owner, map_ui};
 use super::presets::PRESETS;
-use crate::scene::{Phong, PhongMaps, TextureSource, UsesMaterial};
+use crate::scene::{MeshSource, Phong, PhongMaps, SceneId, UsesMaterial};
 use bevy::ecs::entity::Entity;
 use bevy::ecs::world::World;
+use bevy::mesh::Mesh3d;
+use bevy::platform::collections::HashSet;
 use bevy_egui::egui::{ComboBox, Ui};
+use std::sync::Arc;
 
 pub(super) fn material_ui(
     ui: &mut Ui,
@@ -18,13 +21,12 @@ pub(super) fn material_ui(
     entities: &[Entity],
     panels: &mut Panels,
 ) {
-    let mut owners: Vec<Entity> = Vec::new();
-    for &entity in entities {
-        let owner = owner_of(world, entity);
-        if world.get::<Phong>(owner).is_some() && !owners.contains(&owner) {
-            owners.push(owner);
-        }
-    }
+    let mut seen = HashSet::new();
+    let owners: Vec<Entity> = entities
+        .iter()
+        .map(|&entity| owner_of(world, entity))
+        .filter(|&owner| world.get::<Phong>(owner).is_some() && seen.insert(owner))
+        .collect();
     let Some(mut several) = Several::<Phong>::of(world, &owners) else {
         return;
     };
@@ -48,17 +50,21 @@ pub(super) fn material_ui(
             .get::<PhongMaps>(owners[0])
             .cloned()
             .unwrap_or_default();
-        let mut map =
-            |label, says, loaded, property: fn(&mut Phong) -> &mut Option<TextureSource>| {
-                let map = Map {
-                    label,
-                    says,
-                    loaded,
-                };
-                several.field(property, |value, mixed| {
-                    map_ui(ui, world, panels, &map, value, mixed)
-                });
+        let numbers = owners
+            .iter()
+            .filter_map(|&owner| world.get::<SceneId>(owner));
+        let numbers: Arc<[SceneId]> = numbers.copied().collect();
+        let mut map = |label, says, loaded, property: MapOf| {
+            let map = Map {
+                label,
+                says,
+                loaded,
+                owner: Owner::Materials(numbers.clone(), property),
             };
+            several.field(property, |value, mixed| {
+                map_ui(ui, world, panels, &map, value, mixed)
+            });
+        };
         map(
             "Diffuse map",
             "A picture that takes the place of the diffuse colour",
@@ -137,12 +143,14 @@ fn assign_ui(ui: &mut Ui, world: &mut World, entities: &[Entity], owner: Entity)
             .selected_text(current)
             .width((ui.available_width() - 8.0).max(60.0))
             .show_ui(ui, |ui| {
-                if ui.selectable_label(!is_shared, "Its own").clicked() {
+                let own = ui.selectable_label(!is_shared, "Its own");
+                if own.says("A material that no other object has").clicked() {
                     chosen = Some(None);
                 }
                 for (entity, name) in &shared {
                     let on = is_shared && *entity == owner;
-                    if ui.selectable_label(on, name).clicked() {
+                    let says = "A shared material: a change of it reaches all its objects";
+                    if ui.selectable_label(on, name).says(says).clicked() {
                         chosen = Some(Some(*entity));
                     }
                 }
@@ -170,10 +178,9 @@ fn assign_ui(ui: &mut Ui, world: &mut World, entities: &[Entity], owner: Entity)
     }
 }
 
+/// What the outline calls one, without a search through all of it.
 fn is_object(world: &World, entity: Entity) -> bool {
-    let outline = world.resource::<Outline>();
-    let item = outline.items.iter().find(|item| item.entity == entity);
-    item.is_some_and(|item| item.kind == Kind::Object)
+    world.get::<Mesh3d>(entity).is_some() || world.get::<MeshSource>(entity).is_some()
 }
 
 fn assign(world: &mut World, objects: &[Entity], material: Entity) {

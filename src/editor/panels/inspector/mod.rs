@@ -26,7 +26,7 @@ mod transform;
 use super::says::Says;
 use super::state::{Panels, Tab};
 use bevy::ecs::world::World;
-use bevy_egui::egui::{ScrollArea, Ui};
+use bevy_egui::egui::{self, ScrollArea, Ui};
 
 pub(super) use builders::Builders;
 pub(super) use bvh::Trees;
@@ -34,6 +34,13 @@ pub(super) use error_plot::ErrorCurve;
 pub(super) use maps::Thumbnails;
 pub(super) use performance::PerformanceForm;
 pub(super) use transform::Turns;
+
+/// What was typed into a field that is drawn no more, and what was chosen in a file dialog, reaches
+/// those for whom it was meant: another object may be selected by now.
+pub(super) fn settle(context: &egui::Context, world: &mut World, panels: &mut Panels) {
+    object::settle_name(context, world, panels);
+    maps::settle_pictures(context, world, &mut panels.thumbnails);
+}
 
 pub(super) fn inspector_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     ui.horizontal(|ui| {

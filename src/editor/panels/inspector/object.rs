@@ -7,9 +7,10 @@ use super::super::state::{Panels, Renaming};
 use super::{camera, lamps, material, shape, transform};
 use crate::editor::action::Action;
 use crate::editor::selection::Selection;
+use crate::scene::SceneId;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::world::World;
-use bevy_egui::egui::{TextEdit, Ui};
+use bevy_egui::egui::{self, Id, Key, TextEdit, Ui};
 
 pub(super) fn object_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     let outline = world.resource::<Outline>();
@@ -43,14 +44,13 @@ pub(super) fn object_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
         "Name",
         "What the list calls it; also kept in files",
         |ui| {
-            let key = ui.id().with("name");
             let mut text = panels
                 .naming
                 .as_ref()
                 .filter(|naming| naming.id == active.id)
                 .map_or_else(|| active.name.clone(), |naming| naming.text.clone());
             let field = TextEdit::singleline(&mut text)
-                .id(key)
+                .id(name_field(active.id))
                 .char_limit(200)
                 .desired_width(ui.available_width() - 12.0);
             let response = ui
@@ -63,13 +63,8 @@ pub(super) fn object_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
                     focused: true,
                 });
             }
-            if response.lost_focus()
-                && let Some(naming) = panels.naming.take()
-            {
-                let name = naming.text.trim();
-                if naming.id == active.id && !name.is_empty() && name != active.name {
-                    world.write_message(Action::Rename(naming.id, name.to_owned()));
-                }
+            if response.lost_focus() {
+                settle_name(ui.ctx(), world, panels);
             }
         },
     );
@@ -82,4 +77,25 @@ pub(super) fn object_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     shape::shape_ui(ui, world, &entities);
     material::material_ui(ui, world, &entities, panels);
     camera::motion_ui(ui, world, &entities);
+}
+
+/// The field for an entity's name.
+fn name_field(id: SceneId) -> Id {
+    Id::new(("name in the inspector", id.0))
+}
+
+/// Gives the name that was typed, once its field has lost the keys, to whose field it was. Escape
+/// leaves the old one.
+pub(super) fn settle_name(context: &egui::Context, world: &mut World, panels: &mut Panels) {
+    let has_keys = |id| context.memory(|memory| memory.has_focus(name_field(id)));
+    let Some(naming) = panels.naming.take_if(|naming| !has_keys(naming.id)) else {
+        return;
+    };
+    let name = naming.text.trim();
+    let item = world.resource::<Outline>().find(naming.id);
+    let is_other = item.is_some_and(|item| item.name != name);
+    let cancelled = context.input(|input| input.key_pressed(Key::Escape));
+    if is_other && !name.is_empty() && !cancelled {
+        world.write_message(Action::Rename(naming.id, name.to_owned()));
+    }
 }

@@ -2,6 +2,7 @@
 
 use super::super::fields::{row, switch};
 use super::super::says::Says;
+use super::render::about;
 use crate::editor::trees::of_setting;
 use crate::editor::trees::pair::{Side, SideState, TreePair};
 use crate::inspect::InspectSettings;
@@ -10,7 +11,18 @@ use crate::scene::Builder;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{ComboBox, Label, RichText, Ui};
 
-const BUILDERS: [Builder; 4] = [Builder::None, Builder::Median, Builder::Sah, Builder::Ploc];
+pub(super) const BUILDERS: [Builder; 4] =
+    [Builder::None, Builder::Median, Builder::Sah, Builder::Ploc];
+
+/// As the list of the setting says it.
+pub(super) fn about_builder(builder: Builder) -> &'static str {
+    about(match builder {
+        Builder::None => "None",
+        Builder::Median => "Median",
+        Builder::Sah => "Sah",
+        Builder::Ploc => "Ploc",
+    })
+}
 
 pub(super) fn pair_ui(ui: &mut Ui, world: &mut World) {
     let Some(before) = world.get_resource::<InspectSettings>().cloned() else {
@@ -33,7 +45,8 @@ pub(super) fn pair_ui(ui: &mut Ui, world: &mut World) {
                 .width(84.0)
                 .show_ui(ui, |ui| {
                     for choice in BUILDERS {
-                        ui.selectable_value(builder, choice, title(of_setting(choice)));
+                        ui.selectable_value(builder, choice, title(of_setting(choice)))
+                            .says(about_builder(choice));
                     }
                 })
                 .response

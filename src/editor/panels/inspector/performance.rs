@@ -1,4 +1,4 @@
-//! The original report's performance test: the view rendered some times with each builder's trees.
+//! The performance test: the view rendered several times with each builder's trees.
 
 use super::super::fields::integer;
 use super::super::says::Says;
@@ -33,7 +33,7 @@ impl Default for PerformanceForm {
 
 pub(super) fn performance_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     let form = &mut panels.performance;
-    let about = "The view rendered some times with each builder, taking turns.";
+    let about = "The view rendered several times with each builder, taking turns.";
     ui.add(Label::new(RichText::new(about).weak()).wrap());
     let says = "Renderings with each builder";
     integer(ui, "Renderings", says, &mut form.runs, 1..=1000, false);
@@ -97,20 +97,21 @@ fn table(performance: &Performance) -> Vec<Row> {
             Cell::less,
         ),
         (
-            "Least, ms",
+            "Min, ms",
             "The shortest rendering",
             PerformanceColumn::least,
             Cell::less,
         ),
         (
-            "Most, ms",
+            "Max, ms",
             "The longest rendering",
             PerformanceColumn::most,
             Cell::less,
         ),
         (
             "Sigma, ms",
-            "Standard deviation of the renderings: differences below it say nothing",
+            "Standard deviation of one rendering; the mean is uncertain by about this over the root of the \
+             number of renderings",
             PerformanceColumn::sigma,
             neither,
         ),
@@ -128,7 +129,7 @@ fn table(performance: &Performance) -> Vec<Row> {
         ),
         (
             "Largest leaf",
-            "Triangles in it",
+            "The most triangles that one leaf holds",
             |column| f64::from(column.largest_leaf),
             neither,
         ),

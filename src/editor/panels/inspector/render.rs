@@ -69,13 +69,33 @@ const GROUPS: &[Group] = &[
     ),
 ];
 
-/// Sizes of pictures.
-const SIZES: [(&str, UVec2); 5] = [
-    ("Square", UVec2::new(800, 800)),
-    ("HD", UVec2::new(1280, 720)),
-    ("Full HD", UVec2::new(1920, 1080)),
-    ("Square, large", UVec2::new(2048, 2048)),
-    ("4K", UVec2::new(3840, 2160)),
+/// Sizes of pictures, and what they are for.
+const SIZES: [(&str, UVec2, &str); 5] = [
+    (
+        "Square",
+        UVec2::new(800, 800),
+        "As wide as high: quick to render",
+    ),
+    (
+        "HD",
+        UVec2::new(1280, 720),
+        "16 to 9, as small as videos are",
+    ),
+    (
+        "Full HD",
+        UVec2::new(1920, 1080),
+        "16 to 9, as most screens have it",
+    ),
+    (
+        "Square, large",
+        UVec2::new(2048, 2048),
+        "As wide as high, for prints and textures",
+    ),
+    (
+        "4K",
+        UVec2::new(3840, 2160),
+        "16 to 9, four times the pixels of Full HD",
+    ),
 ];
 
 pub(super) fn render_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
@@ -89,7 +109,8 @@ pub(super) fn render_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
         ui.colored_label(ui.visuals().warn_fg_color, problem.to_string());
     }
     ui.horizontal(|ui| {
-        let says = "Sets everything of this tab but the size to what it is in a new scene";
+        let says =
+            "Sets features, sampling and output, but not the size, to what they are in a new scene";
         if ui.button("Reset").says(says).clicked() {
             settings = RenderSettings {
                 size: settings.size,
@@ -208,9 +229,9 @@ fn size_ui(ui: &mut Ui, label: &str, says: &str, value: &mut UVec2, side: u32, p
         }
         let says = "Sizes that are often wanted";
         ui.menu_button("…", |ui| {
-            for (name, size) in SIZES {
+            for (name, size, says) in SIZES {
                 let text = format!("{name}: {} × {}", size.x, size.y);
-                if ui.button(text).clicked() {
+                if ui.button(text).says(says).clicked() {
                     *value = size;
                     ui.close();
                 }
@@ -282,7 +303,7 @@ fn words(variant: &str) -> String {
 }
 
 /// What a choice means.
-fn about(variant: &str) -> &'static str {
+pub(super) fn about(variant: &str) -> &'static str {
     match variant {
         "Sobol" => {
             "Well spread points: the error falls faster than one over the root of the samples"
@@ -293,26 +314,51 @@ fn about(variant: &str) -> &'static str {
         "Center" => "All at the pixel's centre: jagged edges",
         "Corner" => "All at the pixel's lower left corner",
         "Physical" => "Inverse square, lights add up",
-        "Classic" => "Colours arrive unattenuated, lights are averaged, as in old course work",
+        "Classic" => {
+            "Light colours are not attenuated, and lights are averaged: simple, not physical"
+        }
         "Nearest" => "The texel that the point falls into: squares when near",
         "Bilinear" => "Between the four nearest texels",
-        "Mipmap" => "From a picture as small as the ray is wide: no flicker far away",
+        "Mipmap" => {
+            "Trilinear: from smaller copies of the texture, by the width of the ray; no flicker far away"
+        }
         "None" => "No tree: every ray tests every triangle",
         "Median" => "Half of the triangles on either side, along the longest axis",
-        "Sah" => "Binned surface area heuristic: the split that costs least",
-        "Ploc" => "Joins neighbours, then improves the tree: the quickest to trace",
+        "Sah" => "Binned surface area heuristic: splits where the estimated cost is lowest",
+        "Ploc" => {
+            "Merges neighbours bottom-up, then improves the tree: usually best for large meshes"
+        }
+        "Fastest" => "The quickest to build, and the slowest to trace",
+        "Fast" => "Quick to build: a little improvement",
+        "Medium" => "A middle way between building and tracing",
+        "Slow" => "Much improvement: slow to build, quick to trace",
+        "VerySlow" => "Improves every node, again and again: the quickest to trace",
         "One" => "One tree over every triangle of every object",
         "Two" => "A tree for each mesh, and one over the objects: moving rebuilds little",
         "Raw" => "Clamped to the screen's range, nothing else",
         "Srgb" => "Clamped, then the sRGB curve",
         "AgX" => "Fits very bright light into the screen's range without hard clipping",
+        "Carried" => "The light that the ray carries: the background's, or that of its picture",
+        "Red" => "Red, whatever the ray carries",
+        "PixelX" => "The place in the pixel, from the left",
+        "PixelY" => "The place in the pixel, from the top",
+        "LensU" => "The first number of the place on the lens",
+        "LensV" => "The second number of the place on the lens",
+        "Time" => "When the shutter is open",
+        "LightU" => "The first number of the place on a light",
+        "LightV" => "The second number of the place on a light",
+        "GlossU" => "The first number of the place in a blurred reflection's disc",
+        "GlossV" => "The second number of the place in a blurred reflection's disc",
         _ => "",
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::pair::{BUILDERS, about_builder};
+    use super::super::shape::about_shape;
     use super::*;
+    use crate::editor::action::shapes;
 
     #[test]
     fn every_setting_of_the_table_has_its_field_in_this_tab_or_in_that_of_the_trees() {
@@ -331,10 +377,16 @@ mod tests {
 
     #[test]
     fn every_choice_says_what_it_means() {
-        for setting in SETTINGS.iter().filter(|s| s.path != "tree.preset") {
+        for setting in SETTINGS {
             for choice in setting.choices() {
                 assert_ne!(about(choice), "", "{}: {choice}", setting.path);
             }
+        }
+        for (name, ..) in shapes() {
+            assert_ne!(about_shape(name), "", "{name}");
+        }
+        for builder in BUILDERS {
+            assert_ne!(about_builder(builder), "", "{builder:?}");
         }
     }
 

@@ -97,7 +97,8 @@ fn kind_ui(ui: &mut Ui, several: &mut Several<MeshSource>, shape: &Shape) {
         ui.menu_button(name, |ui| {
             for (name, other) in &known {
                 let is_current = kind(other) == kind(shape);
-                if ui.selectable_label(is_current, *name).clicked() {
+                let label = ui.selectable_label(is_current, *name);
+                if label.says(about_shape(name)).clicked() {
                     if !is_current {
                         several.change(|source| *source = MeshSource::Shape(other.clone()));
                     }
@@ -108,6 +109,25 @@ fn kind_ui(ui: &mut Ui, several: &mut Several<MeshSource>, shape: &Shape) {
         .response
         .says(says);
     });
+}
+
+/// What a shape of the list looks like.
+pub(super) fn about_shape(name: &str) -> &'static str {
+    match name {
+        "Cuboid" => "A block with flat sides, its edges along the axes",
+        "Sphere" => "Divided by longitude and latitude, its poles on the y axis",
+        "Cylinder" => "Around the y axis, with flat caps",
+        "Torus" => "A ring around the y axis",
+        "Ground" => "A level rectangle, facing up; its texture repeats",
+        "Quad" => "A flat parallelogram: a corner and the two edges that leave it",
+        "Quadrilateral" => "Two triangles between four corners, which need not lie in one plane",
+        "Triangle" => "A single triangle, by its corners",
+        "Prism" => "An upright block over a convex polygon",
+        "Teapot" => "Newell's teapot, of 32 curved patches",
+        "Head" => "A smooth head with a neck, facing +Z",
+        "Knot" => "A torus knot around the y axis, its tube with ripples",
+        _ => "",
+    }
 }
 
 fn numbers_ui(ui: &mut Ui, shape: &mut Shape, mixed: bool) -> bool {

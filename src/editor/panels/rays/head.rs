@@ -18,6 +18,8 @@ pub(super) struct Head {
     pixel: [u32; 2],
     /// The shot that they were filled from.
     of: u64,
+    /// Samples of the pixel, while they are not known those of the one before.
+    samples: Option<u64>,
 }
 
 /// More columns or rows than any picture has.
@@ -29,7 +31,7 @@ pub(super) fn head_ui(ui: &mut Ui, world: &mut World, head: &mut Head) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 5.0;
         pixel_ui(ui, world, head);
-        samples_ui(ui, world);
+        samples_ui(ui, world, head);
         ui.separator();
         kinds_ui(ui, world);
         ui.separator();
@@ -86,9 +88,12 @@ fn pixel_ui(ui: &mut Ui, world: &mut World, head: &mut Head) {
     }
 }
 
-fn samples_ui(ui: &mut Ui, world: &mut World) {
+fn samples_ui(ui: &mut Ui, world: &mut World, head: &mut Head) {
     let mut ray = world.resource_mut::<DebugRay>();
-    let count = ray.sample_count();
+    // Nobody knows it from the moment a pixel is picked until it is traced.
+    let known = ray.sample_count();
+    head.samples = known.or(head.samples);
+    let count = head.samples;
     let before = ray.which;
     let mut which = before;
     ui.label("sample")
@@ -105,14 +110,17 @@ fn samples_ui(ui: &mut Ui, world: &mut World) {
         which = Which::Number(0);
     }
     if let Which::Number(number) = &mut which {
-        let last = count.unwrap_or(1).saturating_sub(1);
+        let last = count.map_or(*number, |count| count.saturating_sub(1));
         ui.spacing_mut().slider_width = 70.0;
         let slider = Slider::new(number, 0..=last.max(1)).clamping(egui::SliderClamping::Edits);
-        ui.add(slider).says(&format!(
-            "Which sample, from 0; the pixel has {}",
-            count.unwrap_or(1)
-        ));
-        *number = (*number).min(last);
+        let says = match count {
+            Some(count) => format!("Which sample, from 0; the pixel has {count}"),
+            None => "Which sample, from 0".to_owned(),
+        };
+        ui.add(slider).says(&says);
+        if known.is_some() {
+            *number = (*number).min(last);
+        }
     }
     let all = match count {
         Some(count) => format!("all {count}"),

@@ -3,9 +3,8 @@
 use super::super::says::Says;
 use super::none_chosen_ui;
 use crate::editor::action::Action;
-use crate::editor::inspection::Inspected;
-use crate::editor::inspection::Names;
 use crate::editor::inspection::tell::tree_name;
+use crate::editor::inspection::{DebugRay, Inspected, Names};
 use crate::inspect::{Step, StepKind};
 use crate::sync::Traced;
 use crate::trace::{RayTree, World};
@@ -38,7 +37,10 @@ pub(super) fn steps_ui(
         return;
     }
     controls_ui(ui, inspected);
-    let traced = &world.resource::<Traced>().world;
+    // The steps are those of the world that the ray was traced in; the scene may have moved on.
+    let traced_with = world.resource::<DebugRay>().traced_with();
+    let present = &world.resource::<Traced>().world;
+    let traced = traced_with.map_or(present, |(world, _)| world);
     let names = world.resource::<Names>();
     let tell = Tell {
         world: traced,

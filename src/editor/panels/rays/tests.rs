@@ -46,6 +46,31 @@ fn shoot(desk: &mut Desk, which: Which) {
     desk.settle();
 }
 
+#[test]
+fn the_chosen_sample_stays_when_another_pixel_is_picked() {
+    let mut desk = open("cornell-box");
+    shoot(&mut desk, Which::Number(40));
+    let shot = desk.world().resource::<DebugRay>().shot().cloned().unwrap();
+    for x in 0..3 {
+        let pixel = UVec2::new(100 + x, 240);
+        let shot = Shot {
+            pixel,
+            ..shot.clone()
+        };
+        desk.world().resource_mut::<DebugRay>().shoot(shot);
+        // Drawn before it is traced.
+        desk.draw(Vec::new());
+        desk.frame(Vec::new());
+        let ray = desk.world().resource::<DebugRay>();
+        assert_eq!(ray.which, Which::Number(40));
+    }
+    // There is no such sample.
+    shoot(&mut desk, Which::Number(1 << 20));
+    let ray = desk.world().resource::<DebugRay>();
+    let last = ray.sample_count().unwrap() - 1;
+    assert_eq!(ray.which, Which::Number(last));
+}
+
 fn rows_drawn(desk: &mut Desk) -> usize {
     desk.world().resource::<Panels>().rays.rows_drawn
 }

@@ -1,16 +1,23 @@
 //! What pointer and keys do.
 
 use super::super::outline::Outline;
-use super::super::state::{Dialog, Panels, Tab};
+use super::super::state::{Dialog, Panels, Renaming, Tab};
 use super::desk::{Desk, USUAL};
 use crate::editor::action::Action;
+use crate::editor::document::adopt;
+use crate::editor::inspection::DebugRay;
+use crate::editor::inspection::debug_ray::Shot;
 use crate::editor::selection::Selection;
 use crate::editor::viewport::{Show, Viewport};
+use crate::inspect::InspectSettings;
 use crate::scene::{PointLamp, RenderSettings, SceneId};
+use crate::sync::TracedCameras;
+use crate::view::TracedView;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::message::Messages;
+use bevy::ecs::name::Name;
 use bevy::ecs::query::With;
-use bevy::math::Vec2;
+use bevy::math::{Rect, UVec2, Vec2};
 use bevy_egui::egui::{Event, Key, Modifiers, Pos2, vec2};
 
 #[test]
@@ -204,4 +211,83 @@ fn the_picture_alone_fills_the_window_until_escape() {
     desk.settle();
     assert_eq!(rect(&mut desk), before);
     assert!(desk.find("Object").is_some());
+}
+
+/// The first entities of the list.
+fn first_names(desk: &mut Desk) -> Vec<String> {
+    let outline = desk.world().resource::<Outline>();
+    let items = outline.items.iter();
+    items.take(5).map(|item| item.name.clone()).collect()
+}
+
+#[test]
+fn a_name_typed_in_the_inspector_stays_when_another_row_is_clicked_and_goes_with_escape() {
+    let mut desk = Desk::open("cornell-box");
+    let names = first_names(&mut desk);
+    let (entity, id) = desk.named(&names[0]);
+    let name = |desk: &mut Desk| desk.world().get::<Name>(entity).unwrap().to_string();
+    desk.select([id]);
+    let field = desk.place_of("Name") + vec2(150.0, 0.0);
+    desk.click(field);
+    desk.frame(vec![Event::Text("qqq".into())]);
+    desk.key(Key::Escape);
+    desk.settle();
+    assert_eq!(name(&mut desk), names[0]);
+    desk.click(field);
+    desk.frame(vec![Event::Text("zzz".into())]);
+    desk.click_on(&names[1]);
+    desk.settle();
+    let now = name(&mut desk);
+    assert!(now.contains("zzz") && !now.contains("qqq"), "{now}");
+    let (_, other) = desk.named(&names[1]);
+    assert_eq!(desk.world().resource::<Selection>().ids(), [other]);
+}
+
+#[test]
+fn a_click_on_a_row_below_the_one_that_is_renamed_keeps_the_name_and_selects() {
+    let mut desk = Desk::open("cornell-box");
+    let names = first_names(&mut desk);
+    let (entity, id) = desk.named(&names[1]);
+    let (_, below) = desk.named(&names[3]);
+    desk.world().resource_mut::<Panels>().renaming = Some(Renaming {
+        id,
+        text: "Renamed".into(),
+        focused: false,
+    });
+    desk.settle();
+    desk.click_on(&names[3]);
+    desk.settle();
+    let name = desk.world().get::<Name>(entity).unwrap();
+    assert_eq!(name.as_str(), "Renamed");
+    assert_eq!(desk.world().resource::<Selection>().ids(), [below]);
+}
+
+#[test]
+fn what_was_picked_and_folded_in_a_scene_is_forgotten_with_it() {
+    let mut desk = Desk::open("cornell-box");
+    let id = desk.ids()[0];
+    let camera = desk.world().resource::<TracedCameras>().0[0].camera.clone();
+    desk.world().resource_mut::<DebugRay>().shoot(Shot {
+        pixel: UVec2::ZERO,
+        camera,
+        size: UVec2::new(40, 30),
+    });
+    desk.world().resource_mut::<InspectSettings>().boxes.object = id.0;
+    let mut views = desk.world().query::<&mut TracedView>();
+    let mut view = views.single_mut(desk.app.world_mut()).unwrap();
+    view.region = Some(Rect::new(0.0, 0.0, 0.5, 0.5));
+    view.range = Some([1.0, 2.0]);
+    let mut panels = desk.world().resource_mut::<Panels>();
+    panels.folded.toggle(id);
+    panels.anchor = Some(id);
+    adopt(desk.world(), "another", None);
+    desk.settle();
+    assert!(desk.world().resource::<DebugRay>().shot().is_none());
+    let boxes = &desk.world().resource::<InspectSettings>().boxes;
+    assert_eq!(boxes.object, 0);
+    let mut views = desk.world().query::<&TracedView>();
+    let view = views.single(desk.app.world()).unwrap();
+    assert_eq!((view.region, view.range), (None, None));
+    let panels = desk.world().resource::<Panels>();
+    assert!(!panels.folded.contains(id) && panels.anchor.is_none());
 }
