@@ -242,9 +242,9 @@ mod tests {
     fn the_first_picture_is_as_fine_as_its_time_allows() {
         let size = UVec2::new(800, 800);
         assert_eq!(first_divider(size, 1e-9), 1);
-        // 640,000 samples of a microsecond take 640 ms: 1/64 of them takes 10 ms, 1/16 takes 40 ms.
-        assert_eq!(first_divider(size, 0.99e-6), 8);
-        assert_eq!(first_divider(size, 0.24e-6), 4);
+        // 640,000 samples of a microsecond take 640 ms: 1/64 of them takes 10 ms, 1/16 takes 40 ms; 8 are given.
+        assert_eq!(first_divider(size, 0.79e-6), 8);
+        assert_eq!(first_divider(size, 0.19e-6), 4);
         assert_eq!(first_divider(size, 1.0), coarsest_divider(size));
         assert_eq!(coarsest_divider(size), 8);
         assert_eq!(coarsest_divider(UVec2::new(4096, 100)), 32);
