@@ -16,7 +16,7 @@ use super::pointer::PointerPlugin;
 use super::render_job::RenderJobPlugin;
 use super::selection::Selection;
 use super::trees::TreesPlugin;
-use super::viewport::Viewport;
+use super::viewport::{Viewport, forget_region};
 use crate::view::{GlassboxPlugins, RasterPlugin, SymbolsPlugin};
 use bevy::app::{App, Plugin, PluginGroup, PluginGroupBuilder};
 
@@ -86,13 +86,14 @@ pub(super) fn parts(document: DocumentPlugin) -> PluginGroupBuilder {
 }
 
 /// What several of the plugins read and write.
-struct StatePlugin;
+pub(super) struct StatePlugin;
 
 impl Plugin for StatePlugin {
     fn build(&self, app: &mut App) {
         app.add_message::<Action>()
             .init_resource::<Selection>()
             .init_resource::<Viewport>()
-            .init_resource::<Notices>();
+            .init_resource::<Notices>()
+            .add_observer(forget_region);
     }
 }

@@ -3,6 +3,7 @@
 //! The job takes the scene as it is when it begins; edits that follow do not reach it. It shares the
 //! processor with the traced view, and stops by the rules of its own settings: samples, error, time.
 
+use super::document::SceneOpened;
 use super::notice::Notices;
 use crate::film::{Ending, Progressive, State, Status};
 use crate::io::{
@@ -12,7 +13,9 @@ use crate::scene::{RenderSettings, SceneId, SettingProblem, setting_problems};
 use crate::sync::{Traced, TracedCameras};
 use crate::trace;
 use bevy::app::{App, Last, Plugin};
+use bevy::ecs::observer::On;
 use bevy::ecs::resource::Resource;
+use bevy::ecs::system::ResMut;
 use bevy::ecs::world::{Mut, World};
 use std::path::PathBuf;
 use std::thread::{self, JoinHandle};
@@ -116,12 +119,16 @@ impl RenderJob {
             self.job = None;
         }
     }
+}
 
-    /// Another scene was opened: what has not begun would be rendered of that one. Which file is not
-    /// written then.
-    pub(super) fn forget_scene(&mut self) -> Option<PathBuf> {
-        let waits = |job: &mut Job| matches!(job.stage, Stage::Waiting);
-        Some(self.job.take_if(waits)?.request.file)
+/// What has not begun when another scene is opened would be rendered of that one.
+fn forget_waiting(_: On<SceneOpened>, mut job: ResMut<RenderJob>, mut notices: ResMut<Notices>) {
+    let waits = |job: &mut Job| matches!(job.stage, Stage::Waiting);
+    if let Some(waited) = job.job.take_if(waits) {
+        notices.fault(format!(
+            "{}: not rendered: another scene was opened before the trees of this one were built",
+            waited.request.file.display()
+        ));
     }
 }
 
@@ -184,6 +191,7 @@ impl Plugin for RenderJobPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<RenderJob>()
             .init_resource::<Notices>()
+            .add_observer(forget_waiting)
             // Whether the editor is on or not, and when the scene is traced as it is now.
             .add_systems(Last, carry_on);
     }

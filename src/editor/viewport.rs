@@ -1,13 +1,30 @@
 //! The part of the window that shows the scene, and how it shows it.
 
+use super::document::SceneOpened;
+use crate::view::TracedView;
 use bevy::ecs::component::Component;
+use bevy::ecs::observer::On;
+use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
+use bevy::ecs::system::Query;
 use bevy::math::{Rect, Vec2};
 use serde::{Deserialize, Serialize};
 
 /// The camera that the editor looks at the scene with. It is no entity of the scene.
 #[derive(Component, Default)]
 pub struct EditorCamera;
+
+/// The part of the picture, and the numbers, that one scene was looked at for say nothing about another.
+pub(super) fn forget_region(
+    _: On<SceneOpened>,
+    mut views: Query<&mut TracedView, With<EditorCamera>>,
+) {
+    for mut view in &mut views {
+        if view.region.is_some() || view.range.is_some() {
+            (view.region, view.range) = (None, None);
+        }
+    }
+}
 
 /// Which of the pictures is shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -23,23 +23,23 @@ pub use recovery::{Recovered, RecoveryFolder};
 
 use super::action::Action;
 use super::history::{History, commit};
-use super::inspection::DebugRay;
 use super::notice::Notices;
-use super::render_job::RenderJob;
-use super::viewport::EditorCamera;
 use crate::editor::schedule::EditorUpdate;
-use crate::inspect::InspectSettings;
 use crate::io::LoadProblems;
-use crate::view::TracedView;
 use bevy::app::{App, Last, Plugin};
 use bevy::ecs::change_detection::{DetectChanges, DetectChangesMut};
+use bevy::ecs::event::Event;
 use bevy::ecs::message::{MessageCursor, Messages};
-use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::schedule::IntoScheduleConfigs;
 use bevy::ecs::system::{Local, Res, ResMut};
 use bevy::ecs::world::World;
 use std::path::{Path, PathBuf};
+
+/// Another scene is open. What was picked, chosen or begun is of the one before, and numbers of
+/// entities mean others.
+#[derive(Event, Clone, Copy, Debug)]
+pub struct SceneOpened;
 
 /// The open scene as a file.
 #[derive(Resource, Debug)]
@@ -146,35 +146,7 @@ pub fn adopt(world: &mut World, name: impl Into<String>, path: Option<&Path>) {
     document.opened(name.into(), path, state);
     document.question = None;
     document.scene += 1;
-    forget_scene(world);
-    crate::editor::navigation::start(world);
-}
-
-/// Lets go of what was picked, chosen and begun in the scene that was open before. The panels do so
-/// by themselves.
-fn forget_scene(world: &mut World) {
-    if let Some(mut ray) = world.get_resource_mut::<DebugRay>() {
-        ray.clear();
-    }
-    if let Some(mut inspect) = world.get_resource_mut::<InspectSettings>() {
-        inspect.boxes.object = 0;
-        inspect.normals.object = 0;
-        inspect.pattern.light = 0;
-    }
-    let mut views = world.query_filtered::<&mut TracedView, With<EditorCamera>>();
-    for mut view in views.iter_mut(world) {
-        if view.region.is_some() || view.range.is_some() {
-            (view.region, view.range) = (None, None);
-        }
-    }
-    let waited = world.get_resource_mut::<RenderJob>();
-    if let Some(file) = waited.and_then(|mut job| job.forget_scene()) {
-        let text = format!(
-            "{}: not rendered: another scene was opened before the trees of this one were built",
-            file.display()
-        );
-        world.resource_mut::<Notices>().fault(text);
-    }
+    world.trigger(SceneOpened);
 }
 
 /// Brings [`Document::unsaved`] up to date with the history.

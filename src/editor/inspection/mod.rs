@@ -38,6 +38,7 @@ pub(super) use drawn_set::{DrawnSet, Source};
 pub(super) use hover::Hovered;
 pub(super) use names::Names;
 
+use super::document::SceneOpened;
 use super::schedule::EditorUpdate;
 use super::viewport::EditorCamera;
 use crate::inspect::InspectSettings;
@@ -46,7 +47,9 @@ use crate::trace::Camera;
 use crate::view::{TracedRender, TracedView, traced_camera};
 use bevy::app::{App, Plugin, PostUpdate};
 use bevy::camera::{self, Projection};
+use bevy::ecs::observer::On;
 use bevy::ecs::query::With;
+use bevy::ecs::system::ResMut;
 use bevy::ecs::world::World;
 use bevy::math::UVec2;
 use bevy::prelude::IntoScheduleConfigs;
@@ -63,6 +66,7 @@ impl Plugin for RaysPlugin {
             .init_resource::<DebugRay>()
             .init_resource::<Inspected>()
             .init_resource::<Names>()
+            .add_observer(forget_scene)
             .add_systems(EditorUpdate, choice::obey)
             .add_systems(
                 PostUpdate,
@@ -76,6 +80,18 @@ impl Plugin for RaysPlugin {
                     .after(SyncSystems),
             );
     }
+}
+
+/// The pixel and the entities that were picked are of another scene.
+fn forget_scene(
+    _: On<SceneOpened>,
+    mut ray: ResMut<DebugRay>,
+    mut inspect: ResMut<InspectSettings>,
+) {
+    ray.clear();
+    inspect.boxes.object = 0;
+    inspect.normals.object = 0;
+    inspect.pattern.light = 0;
 }
 
 /// All of it, in a window.

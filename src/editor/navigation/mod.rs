@@ -16,15 +16,17 @@ pub(super) use drag::{ViewDrag, begin_drag, drag, end_drag, wheel};
 pub use eye::Eye;
 pub(super) use lens::{field_of_view, set_field_of_view, widen};
 
+use super::document::SceneOpened;
 use super::edits::AddAt;
 use super::extent::scene_extent;
 use super::schedule::EditorUpdate;
 use super::viewport::Viewport;
 use crate::scene::{Projection as SceneProjection, SceneCamera, SceneId};
 use bevy::app::{App, Plugin, PostUpdate};
+use bevy::ecs::observer::On;
 use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
-use bevy::ecs::system::{Res, ResMut};
+use bevy::ecs::system::{Query, Res, ResMut};
 use bevy::ecs::world::World;
 use bevy::prelude::IntoScheduleConfigs;
 use bevy::transform::TransformSystems;
@@ -44,6 +46,7 @@ impl Plugin for NavigationPlugin {
             .init_resource::<Eye>()
             .init_resource::<LookThrough>()
             .init_resource::<drag::FlySpeed>()
+            .add_observer(start)
             .add_systems(
                 EditorUpdate,
                 (
@@ -81,21 +84,21 @@ pub struct LookThrough {
 }
 
 /// For a scene that was just opened: looks through its first camera, or at all of it where it has
-/// none. Does nothing in an app that has no view.
-pub fn start(world: &mut World) {
-    if !world.contains_resource::<Eye>() {
-        return;
-    }
-    let mut cameras = world.query_filtered::<&SceneId, With<SceneCamera>>();
-    let cameras = cameras.iter(world).filter(|id| !id.is_unassigned());
-    let first = cameras.min().copied();
-    *world.resource_mut::<LookThrough>() = LookThrough {
-        camera: first,
-        locked: world.resource::<LookThrough>().locked,
+/// none.
+fn start(
+    _: On<SceneOpened>,
+    cameras: Query<&SceneId, With<SceneCamera>>,
+    mut through: ResMut<LookThrough>,
+    mut eye: ResMut<Eye>,
+) {
+    let cameras = cameras.iter().filter(|id| !id.is_unassigned());
+    *through = LookThrough {
+        camera: cameras.min().copied(),
+        locked: through.locked,
         settles: SETTLE,
         ..LookThrough::default()
     };
-    *world.resource_mut::<Eye>() = Eye::default();
+    *eye = Eye::default();
 }
 
 /// Once the scene that was opened has its places and sizes, the pivot goes into its middle.

@@ -27,17 +27,15 @@ fn places(trend: &[TrendPoint]) -> Vec<[f64; 2]> {
 
 pub(super) fn error_plot_ui(ui: &mut Ui, status: Option<&Status>, curve: &mut ErrorCurve) {
     let places = status.map_or_else(Vec::new, |status| places(&status.trend));
-    if places.is_empty() && curve.kept.is_empty() {
-        ui.weak("No error is known yet: it shows after a few samples of the traced view.");
-        return;
-    }
     let slope = status.and_then(Status::decline);
     let label = match (slope, places.last()) {
         (Some(slope), Some(last)) => {
             let error = percent(10_f64.powf(last[1]));
             format!("{error} now, falling as t^-{slope:.2}")
         }
-        _ => "too early for a slope".to_owned(),
+        // The plot stays where it is, so that what is below it does not jump with every edit.
+        (_, None) => "known after a few samples".to_owned(),
+        (None, Some(_)) => "too early for a slope".to_owned(),
     };
     ui.label(label)
         .says("The slope in this plot: 0.5 is plain random sampling, more is better");

@@ -3,14 +3,13 @@
 use super::super::outline::{Outline, outline_scene};
 use super::super::panels_ui;
 use super::super::state::Panels;
-use crate::editor::action::Action;
 use crate::editor::headless_editor;
 use crate::editor::inspection::RaysPlugin;
-use crate::editor::notice::Notices;
+use crate::editor::plugins::StatePlugin;
 use crate::editor::preferences::Preferences;
 use crate::editor::selection::Selection;
 use crate::editor::trees::TreeStudyPlugin;
-use crate::editor::viewport::{EditorCamera, Viewport};
+use crate::editor::viewport::EditorCamera;
 use crate::io::builtin;
 use crate::io::{OpenOptions, SceneSource, open};
 use crate::scene::{Environment, RenderSettings, SceneId};
@@ -51,15 +50,13 @@ impl Desk {
         // The app is finished already, and takes no more plugins by itself.
         RaysPlugin.build(&mut app);
         TreeStudyPlugin.build(&mut app);
+        StatePlugin.build(&mut app);
         app.insert_resource(Preferences {
             hint_seen: true,
             ..Preferences::default()
         })
         .init_resource::<Panels>()
         .init_resource::<Outline>()
-        .init_resource::<Viewport>()
-        .init_resource::<Notices>()
-        .add_message::<Action>()
         .add_systems(Last, outline_scene);
         app.world_mut().spawn((EditorCamera, TracedView::default()));
         let context = egui::Context::default();
