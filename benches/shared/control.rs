@@ -162,8 +162,8 @@ fn walk(
             let children = &nodes[left as usize..][..2];
             let (left_entry, left_exit) = slab.span_ahead(children[0].aabb());
             let (right_entry, right_exit) = slab.span_ahead(children[1].aabb());
-            let left_hit = left_entry <= left_exit && left_entry <= limit;
-            let right_hit = right_entry <= right_exit && right_entry <= limit;
+            let left_hit = (left_entry <= left_exit) & (left_entry <= limit);
+            let right_hit = (right_entry <= right_exit) & (right_entry <= limit);
             match (left_hit, right_hit) {
                 (true, true) => {
                     let (near, far) = if right_entry < left_entry {

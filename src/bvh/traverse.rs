@@ -59,10 +59,10 @@ pub(crate) fn walk<V: Visitor>(
             let children = &nodes[left as usize..][..2];
             let (left_entry, left_exit) = slab.span_ahead(children[0].aabb());
             let (right_entry, right_exit) = slab.span_ahead(children[1].aabb());
-            let left_hit = left_entry <= left_exit && left_entry <= limit;
-            let right_hit = right_entry <= right_exit && right_entry <= limit;
+            let left_hit = (left_entry <= left_exit) & (left_entry <= limit);
+            let right_hit = (right_entry <= right_exit) & (right_entry <= limit);
             let mut settle = |node, hit: bool, entry: f32, exit: f32| {
-                if !hit {
+                if V::LOOKS && !hit {
                     let event = if entry <= exit {
                         NodeEvent::Pruned
                     } else {

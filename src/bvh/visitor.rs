@@ -25,6 +25,9 @@ pub enum NodeEvent {
 /// Every method has an empty body, and `()` implements the trait: a traversal with `()` compiles to the same code as
 /// one without a visitor.
 pub trait Visitor {
+    /// Whether it looks at all. What is worked out for a visitor's sake alone is left out where it does not.
+    const LOOKS: bool = true;
+
     /// A node's box was tested. Every tested node gets exactly one event, at the moment its fate is known.
     /// `t_entry` is where the ray enters the box (0 where it starts inside); meaningless when `Missed`.
     #[inline(always)]
@@ -35,7 +38,9 @@ pub trait Visitor {
     fn triangle(&mut self, _instance: u32, _triangle: u32, _hit: bool) {}
 }
 
-impl Visitor for () {}
+impl Visitor for () {
+    const LOOKS: bool = false;
+}
 
 /// Counts what a ray cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
