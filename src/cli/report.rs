@@ -86,6 +86,9 @@ fn measure(args: &Report, parts: Vec<Part>, scenes: &[PathBuf]) -> Result<(), Fa
         .map(|scene| subject(scene, args))
         .collect::<Result<Vec<Subject>, Failure>>()?;
     let editing = args.editing.as_deref().map(table).transpose()?;
+    if parts.contains(&Part::Kernels) {
+        report::kernels::check_embree().map_err(Failure::System)?;
+    }
     let (file, folder) = places(args);
     check_writable_in(&file)?;
     let options = Options {

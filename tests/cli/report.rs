@@ -1,6 +1,7 @@
 //! `glassbox report`: what it writes and what it takes in.
 
 use super::{files, glassbox, succeeds, texts};
+use std::process::Command;
 
 #[test]
 fn an_editing_benchmarks_figures_are_a_section_of_the_report() {
@@ -52,6 +53,24 @@ fn editing_figures_that_are_no_table_are_refused_before_anything_is_measured() {
         let (_, err) = texts(&output);
         assert_eq!(output.status.code(), Some(1), "{err}");
         assert!(err.contains(said), "{err}");
+        assert!(!folder.path().join("report").exists());
+    }
+}
+
+#[test]
+fn an_embree_that_is_named_and_is_none_is_refused_before_anything_is_measured() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("text.so"), "not a library").unwrap();
+    for name in ["./text.so", "./missing.so"] {
+        let output = Command::new(env!("CARGO_BIN_EXE_glassbox"))
+            .args(["report", "kernels", "triangle", "--quick"])
+            .env("EMBREE_LIB", name)
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        let (_, err) = texts(&output);
+        assert_eq!(output.status.code(), Some(1), "{err}");
+        assert!(err.contains(&format!("EMBREE_LIB={name}: ")), "{err}");
         assert!(!folder.path().join("report").exists());
     }
 }

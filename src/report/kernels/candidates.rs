@@ -74,7 +74,7 @@ pub(super) fn candidates() -> Vec<Candidate> {
         Candidate::new(wide, OBVHS, Wide::<ObvhsTest>::build),
         Candidate::new(wide, F64, Wide::<Exact>::build),
     ];
-    if let Some(library) = embree::find() {
+    if let Ok(Some(library)) = embree::find() {
         let (library, name) = (Rc::new(library), "Embree");
         for (test, robust) in [("default", false), ("robust", true)] {
             let of = library.clone();

@@ -127,13 +127,16 @@ impl Drop for Embree4Or3 {
     }
 }
 
-/// Looks at `EMBREE_LIB`, then where systems install it, then where pip puts the one of the package embreex.
-pub(super) fn find() -> Option<Embree4Or3> {
+/// Looks at `EMBREE_LIB`, then where systems install it, then where pip puts the one of the package embreex. What
+/// `EMBREE_LIB` names has to be there; the others need not.
+pub(super) fn find() -> Result<Option<Embree4Or3>, String> {
     if let Some(path) = std::env::var_os("EMBREE_LIB") {
-        return load(Path::new(&path));
+        let path = Path::new(&path);
+        let cannot = |why| format!("EMBREE_LIB={}: {why}", path.display());
+        return load(path).map(Some).map_err(cannot);
     }
-    let installed = NAMES.iter().find_map(|name| load(Path::new(name)));
-    installed.or_else(|| from_python().iter().find_map(|path| load(path)))
+    let installed = NAMES.iter().find_map(|name| load(Path::new(name)).ok());
+    Ok(installed.or_else(|| from_python().iter().find_map(|path| load(path).ok())))
 }
 
 fn from_python() -> Vec<PathBuf> {
@@ -162,10 +165,15 @@ fn from_python() -> Vec<PathBuf> {
     files.filter(is_embree).collect()
 }
 
-fn load(path: &Path) -> Option<Embree4Or3> {
+fn load(path: &Path) -> Result<Embree4Or3, String> {
     // SAFETY: loading runs the library's initialisers. It is Embree by its name, or what the user names in EMBREE_LIB;
     // Embree's initialisers have no preconditions.
-    let library = unsafe { Library::new(path) }.ok()?;
+    let library = unsafe { Library::new(path) }.map_err(|error| error.to_string())?;
+    of_library(path, library).ok_or_else(|| "it is not the library of Embree 3 or 4".into())
+}
+
+/// `None` where it is another library, or another version's.
+fn of_library(path: &Path, library: Library) -> Option<Embree4Or3> {
     // SAFETY: the types are those of the C declarations; they are the same in versions 3 and 4.
     let device = unsafe {
         let new_device: Symbol<unsafe extern "C" fn(*const c_char) -> Device> =

@@ -69,6 +69,11 @@ struct Leaks {
     vertices: f64,
 }
 
+/// Why the library that `EMBREE_LIB` names cannot take part; all is well where it names none.
+pub fn check_embree() -> Result<(), String> {
+    embree::find().map(|_| ())
+}
+
 /// Measures all kernels on all scenes.
 pub fn measure(subjects: &[Subject], options: &Options, watch: Watch) -> Section {
     let candidates = candidates();
