@@ -1,9 +1,9 @@
-use std::fmt;
+use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// What went wrong with a file: which one, where in it, and what would help. One line.
-#[derive(Debug, thiserror::Error)]
-#[error("{}{place}: {problem}", file.display())]
+/// What went wrong with a file: which one, where in it, and what would help. One line, whatever the names in
+/// the file hold.
+#[derive(Debug)]
 pub struct FileError {
     /// The file as the user or the file that refers to it named it.
     pub file: PathBuf,
@@ -41,6 +41,34 @@ impl FileError {
     /// What the operating system said about a file that was to be written.
     pub(crate) fn writing(file: &Path, error: &std::io::Error) -> Self {
         Self::new(file, Problem::Unwritable(error.to_string()))
+    }
+}
+
+impl std::error::Error for FileError {}
+
+impl fmt::Display for FileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            file,
+            place,
+            problem,
+        } = self;
+        write!(OneLine(f), "{}{place}: {problem}", file.display())
+    }
+}
+
+/// Writes on, with a space for each control character: line breaks, and what steers a terminal.
+struct OneLine<'a, 'b>(&'a mut fmt::Formatter<'b>);
+
+impl fmt::Write for OneLine<'_, '_> {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        for (i, part) in text.split(char::is_control).enumerate() {
+            if i > 0 {
+                self.0.write_char(' ')?;
+            }
+            self.0.write_str(part)?;
+        }
+        Ok(())
     }
 }
 
@@ -170,4 +198,23 @@ pub enum Problem {
     UnsupportedExtension(String),
     #[error("{0}; correct the numbers of the shape")]
     Shape(String),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_is_one_line_whatever_the_names_in_the_file_hold() {
+        let problem = Problem::UnknownComponent {
+            name: "be(\n),\x1b[2J".into(),
+        };
+        let error = FileError::at("a\nb.scn.ron", Place::LineColumn(3, 19), problem);
+        assert!(
+            error
+                .to_string()
+                .starts_with("a b.scn.ron:3:19: `be( ), [2J` is not"),
+            "{error}"
+        );
+    }
 }
