@@ -149,25 +149,32 @@ mod tests {
     use crate::editor::render_job::{RenderFrom, RenderJob, RenderRequest, start_render};
     use crate::io::{OpenOptions, SceneSource, builtin, open};
     use crate::scene::RenderSettings;
-    use bevy::app::AppExit;
+    use bevy::app::{App, AppExit};
     use bevy::ecs::message::Messages;
 
-    #[test]
-    fn quitting_asks_while_a_picture_is_rendered_to_a_file_and_not_otherwise() {
-        let folder = tempfile::tempdir().unwrap();
+    /// Cornell's box in an editor, of which a picture has just been asked for.
+    fn rendering(file: &Path) -> App {
         let mut app = headless_editor();
         let source = SceneSource::Builtin(builtin::find("cornell-box").unwrap());
         open(app.world_mut(), &source, OpenOptions::default()).unwrap();
         app.update();
         app.update();
         let world = app.world_mut();
-        let file = folder.path().join("a.png");
         let request = RenderRequest {
-            file: file.clone(),
+            file: file.to_path_buf(),
             camera: RenderFrom::FirstCamera,
             settings: world.resource::<RenderSettings>().clone(),
         };
         start_render(world, request).unwrap();
+        app
+    }
+
+    #[test]
+    fn quitting_asks_while_a_picture_is_rendered_to_a_file_and_not_otherwise() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.png");
+        let mut app = rendering(&file);
+        let world = app.world_mut();
         for (given, goes_on) in [(Answer::Cancel, true), (Answer::Yes, false)] {
             perform_now(world, &Action::Quit);
             let asked = world.resource::<Document>().question.clone();
@@ -185,18 +192,8 @@ mod tests {
     #[test]
     fn a_render_that_has_not_begun_ends_with_the_scene_that_it_is_of() {
         let folder = tempfile::tempdir().unwrap();
-        let mut app = headless_editor();
-        let source = SceneSource::Builtin(builtin::find("cornell-box").unwrap());
-        open(app.world_mut(), &source, OpenOptions::default()).unwrap();
-        app.update();
-        app.update();
+        let mut app = rendering(&folder.path().join("a.png"));
         let world = app.world_mut();
-        let request = RenderRequest {
-            file: folder.path().join("a.png"),
-            camera: RenderFrom::FirstCamera,
-            settings: world.resource::<RenderSettings>().clone(),
-        };
-        start_render(world, request).unwrap();
         world.resource_mut::<Notices>().close_all();
         perform_now(world, &Action::New);
         assert!(world.resource::<RenderJob>().progress().is_none());

@@ -28,6 +28,7 @@ mod line_legend;
 mod menu_bar;
 mod notices;
 mod outline;
+mod outline_rows;
 mod overlays;
 mod pattern;
 mod rays;

@@ -14,8 +14,7 @@ use bevy::ecs::query::{Added, Changed, Has, Or, With};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Query, ResMut};
 use bevy::mesh::Mesh3d;
-use bevy::platform::collections::{HashMap, HashSet};
-use std::sync::Arc;
+use bevy::platform::collections::HashMap;
 
 /// What an entity is, by its components.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,87 +91,6 @@ impl Outline {
     /// The entity of that number.
     pub fn find(&self, id: SceneId) -> Option<&Item> {
         self.items.get(*self.places.get(&id)?)
-    }
-
-    /// What is to be seen of the list: nothing below a folded entity; while something is searched
-    /// for, what contains it and the ancestors of that. Places in [`Self::items`].
-    pub fn rows(&self, folded: &HashSet<SceneId>, search: &str) -> Vec<usize> {
-        let needle = search.trim().to_lowercase();
-        let mut rows = Vec::with_capacity(self.items.len());
-        if needle.is_empty() {
-            let mut at = 0;
-            while let Some(item) = self.items.get(at) {
-                rows.push(at);
-                at = if folded.contains(&item.id) {
-                    item.end
-                } else {
-                    at + 1
-                };
-            }
-            return rows;
-        }
-        let mut ancestors: Vec<usize> = Vec::new();
-        for (at, item) in self.items.iter().enumerate() {
-            ancestors.truncate(item.depth as usize);
-            ancestors.push(at);
-            if item.lower_name.contains(&needle) || item.kind.name().contains(&needle) {
-                // Those of them that an earlier match has not shown yet.
-                let shown = rows.last().map_or(0, |&last: &usize| last + 1);
-                rows.extend(ancestors.iter().copied().filter(|&place| place >= shown));
-            }
-        }
-        rows
-    }
-}
-
-/// Entities whose descendants the list does not show.
-#[derive(Default)]
-pub(super) struct Folded {
-    ids: HashSet<SceneId>,
-    /// Another number for other entities.
-    version: u64,
-}
-
-impl Folded {
-    /// Whether what is below it is not shown.
-    pub fn contains(&self, id: SceneId) -> bool {
-        self.ids.contains(&id)
-    }
-
-    /// Folds it where it is not, and the other way round.
-    pub fn toggle(&mut self, id: SceneId) {
-        if !self.ids.remove(&id) {
-            self.ids.insert(id);
-        }
-        self.version += 1;
-    }
-
-    /// Everything is shown again.
-    pub fn clear(&mut self) {
-        self.ids.clear();
-        self.version += 1;
-    }
-}
-
-/// [`Outline::rows`], found again only where the list, what is folded or the search is another.
-#[derive(Default)]
-pub(super) struct Rows {
-    /// Of the list and of what is folded.
-    versions: Option<(u64, u64)>,
-    search: String,
-    rows: Arc<Vec<usize>>,
-}
-
-impl Rows {
-    /// The rows as they are now.
-    pub fn of(&mut self, outline: &Outline, folded: &Folded, search: &str) -> Arc<Vec<usize>> {
-        let versions = (outline.versions, folded.version);
-        if self.versions != Some(versions) || self.search != search {
-            self.rows = Arc::new(outline.rows(&folded.ids, search));
-            self.versions = Some(versions);
-            search.clone_into(&mut self.search);
-        }
-        self.rows.clone()
     }
 }
 
@@ -328,7 +246,7 @@ fn in_tree_order(found: Vec<(Item, Option<Entity>)>) -> Vec<Item> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use bevy::app::{App, Update};
     use bevy::ecs::world::World;
@@ -340,7 +258,7 @@ mod tests {
         app
     }
 
-    fn spawn(world: &mut World, id: u64, name: &'static str, parent: Option<Entity>) -> Entity {
+    pub fn spawn(world: &mut World, id: u64, name: &'static str, parent: Option<Entity>) -> Entity {
         let entity = world.spawn((SceneId(id), Name::new(name))).id();
         if let Some(parent) = parent {
             world.entity_mut(entity).insert(ChildOf(parent));
@@ -348,14 +266,8 @@ mod tests {
         entity
     }
 
-    fn names<'a>(outline: &'a Outline, rows: &[usize]) -> Vec<&'a str> {
-        rows.iter()
-            .map(|&at| outline.items[at].name.as_str())
-            .collect()
-    }
-
     /// House { Roof { Tile }, Door }, Garden { Tree }.
-    fn village() -> App {
+    pub fn village() -> App {
         let mut app = app();
         let world = app.world_mut();
         let garden = spawn(world, 20, "Garden", None);
@@ -372,57 +284,16 @@ mod tests {
     fn children_come_after_their_parents_and_siblings_by_number() {
         let app = village();
         let outline = app.world().resource::<Outline>();
-        let rows = outline.rows(&HashSet::new(), "");
-        assert_eq!(
-            names(outline, &rows),
-            ["House", "Roof", "Tile", "Door", "Garden", "Tree"]
-        );
+        let names: Vec<&str> = outline
+            .items
+            .iter()
+            .map(|item| item.name.as_str())
+            .collect();
+        assert_eq!(names, ["House", "Roof", "Tile", "Door", "Garden", "Tree"]);
         let depths: Vec<u32> = outline.items.iter().map(|item| item.depth).collect();
         assert_eq!(depths, [0, 1, 2, 1, 0, 1]);
         let ends: Vec<usize> = outline.items.iter().map(|item| item.end).collect();
         assert_eq!(ends, [4, 3, 3, 4, 6, 6]);
-    }
-
-    #[test]
-    fn a_folded_entity_hides_what_is_below_it_only() {
-        let app = village();
-        let outline = app.world().resource::<Outline>();
-        let rows = outline.rows(&HashSet::from_iter([SceneId(11), SceneId(20)]), "");
-        assert_eq!(names(outline, &rows), ["House", "Roof", "Door", "Garden"]);
-    }
-
-    #[test]
-    fn a_search_shows_what_contains_it_with_its_ancestors_folded_or_not() {
-        let app = village();
-        let outline = app.world().resource::<Outline>();
-        let folded = HashSet::from_iter([SceneId(10)]);
-        let found = |search| names(outline, &outline.rows(&folded, search));
-        assert_eq!(found(" tIL "), ["House", "Roof", "Tile"]);
-        assert_eq!(
-            found("o"),
-            ["House", "Roof", "Tile", "Door", "Garden", "Tree"]
-        );
-        assert_eq!(found("door"), ["House", "Door"]);
-        assert_eq!(found("chimney"), [""; 0]);
-    }
-
-    #[test]
-    fn rows_are_found_again_for_another_list_search_or_fold_and_only_then() {
-        let mut app = village();
-        let (mut rows, mut folded) = (Rows::default(), Folded::default());
-        let outline = app.world().resource::<Outline>();
-        let first = rows.of(outline, &folded, "");
-        assert_eq!(first.len(), 6);
-        assert!(Arc::ptr_eq(&first, &rows.of(outline, &folded, "")));
-        assert_eq!(rows.of(outline, &folded, "door").len(), 2);
-        folded.toggle(SceneId(10));
-        assert_eq!(rows.of(outline, &folded, "").len(), 3);
-        folded.clear();
-        assert_eq!(rows.of(outline, &folded, "").len(), 6);
-        spawn(app.world_mut(), 30, "Well", None);
-        app.update();
-        let outline = app.world().resource::<Outline>();
-        assert_eq!(rows.of(outline, &folded, "").len(), 7);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use super::compare::Kept;
 use super::dialogs::{Gallery, RenderForm};
 use super::inspector::{Builders, ErrorCurve, PerformanceForm, Thumbnails, Trees, Turns};
 use super::line_legend::LineTexts;
-use super::outline::{Folded, Rows};
+use super::outline_rows::{Folded, Rows};
 use super::pattern::PatternOf;
 use super::rays::RaysPanel;
 use super::status::{Memory, Numbers};

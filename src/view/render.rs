@@ -1,0 +1,214 @@
+//! The render behind a traced view: begun, directed, replaced, and what it has on the screen.
+
+use super::darkroom::{Darkroom, Order};
+use super::screen::ScreenMaterial;
+use super::traced::TracedView;
+use crate::film::views::Scale;
+use crate::film::{Progressive, State, Status};
+use crate::scene::RenderSettings;
+use crate::trace;
+use bevy::asset::Handle;
+use bevy::ecs::entity::Entity;
+use bevy::image::Image;
+use bevy::log::error;
+use bevy::math::{UVec2, Vec2};
+use bevy::prelude::Component;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// A render that is to be replaced may take so long to its first picture.
+const LONGEST_WAIT: Duration = Duration::from_millis(100);
+
+/// The render that a [`TracedView`] shows.
+#[derive(Component, Default)]
+pub struct TracedRender {
+    pub(super) running: Option<Running>,
+    pub(super) darkroom: Option<Darkroom>,
+    /// What the print on the screen says of itself.
+    pub(super) shown: Option<PrintInfo>,
+    pub(super) screen: Option<ScreenOf>,
+    pub(super) failed: bool,
+}
+
+/// What stands on the screen.
+#[derive(Clone, Debug)]
+pub struct PrintInfo {
+    /// Pixels of the film.
+    pub size: UVec2,
+    /// What a heatmap's colours mean.
+    pub scale: Option<Scale>,
+    /// As it stands on the screen, encoded. It stays as it is while the handle is held.
+    pub picture: Handle<Image>,
+    /// From the edit to this render's first picture on the screen.
+    pub first_picture: Duration,
+    /// The render's place in memory.
+    pub(super) of: usize,
+}
+
+/// A render that goes on, and what it is of.
+pub(super) struct Running {
+    pub(super) render: Arc<Progressive>,
+    world: Arc<trace::World>,
+    camera: trace::Camera,
+    settings: RenderSettings,
+    order: Order,
+    pub(super) started: Instant,
+    paused: bool,
+    focus: Vec2,
+}
+
+/// The rectangle that shows it.
+pub(super) struct ScreenOf {
+    pub entity: Entity,
+    pub material: Handle<ScreenMaterial>,
+}
+
+impl TracedRender {
+    /// The render's numbers now; `None` while there is none.
+    pub fn status(&self) -> Option<Status> {
+        Some(self.running.as_ref()?.render.status())
+    }
+
+    /// The render itself.
+    pub fn render(&self) -> Option<&Progressive> {
+        Some(&self.running.as_ref()?.render)
+    }
+
+    /// What it renders: world, camera and settings, the film's size among them.
+    pub fn subject(&self) -> Option<(&Arc<trace::World>, &trace::Camera, &RenderSettings)> {
+        let running = self.running.as_ref()?;
+        Some((&running.world, &running.camera, &running.settings))
+    }
+
+    /// What stands on the screen.
+    pub fn shown(&self) -> Option<&PrintInfo> {
+        self.shown.as_ref()
+    }
+
+    /// Starts over with the next frame.
+    pub fn restart(&mut self) {
+        self.retire();
+    }
+
+    /// Whether a render that has just begun shall show its first picture before another takes its
+    /// place: while something is dragged every frame begins one, and none would ever be seen.
+    pub(super) fn is_awaited(&self, size: UVec2) -> bool {
+        let Some(running) = &self.running else {
+            return false;
+        };
+        let of = Arc::as_ptr(&running.render) as usize;
+        !running.paused
+            && running.settings.size == size
+            && running.started.elapsed() < LONGEST_WAIT
+            && self.shown.as_ref().is_none_or(|shown| shown.of != of)
+            && !matches!(running.render.status().state, State::Ended(_))
+    }
+
+    pub(super) fn retire(&mut self) {
+        if let Some(running) = self.running.take() {
+            running.render.cancel();
+            if let Some(darkroom) = &self.darkroom {
+                darkroom.retire(running.render);
+            }
+        }
+    }
+}
+
+impl Drop for TracedRender {
+    fn drop(&mut self) {
+        self.retire();
+    }
+}
+
+/// What a view shall show.
+pub(super) struct Wanted {
+    pub world: Arc<trace::World>,
+    pub camera: trace::Camera,
+    pub settings: RenderSettings,
+    pub order: Order,
+}
+
+impl TracedRender {
+    /// Whether it is what is being rendered.
+    pub(super) fn renders(&self, wanted: &Wanted) -> bool {
+        self.running.as_ref().is_some_and(|running| {
+            Arc::ptr_eq(&running.world, &wanted.world)
+                && running.camera == wanted.camera
+                && running.settings == wanted.settings
+        })
+    }
+
+    /// Prints are made in this way from now on.
+    pub(super) fn develop(&mut self, order: Order) {
+        if let Self {
+            running: Some(running),
+            darkroom: Some(darkroom),
+            ..
+        } = self
+            && running.order != order
+        {
+            running.order = order.clone();
+            darkroom.develop(&running.render, &running.subject(), order);
+        }
+    }
+
+    /// Renders this instead of what was rendered before.
+    pub(super) fn begin(&mut self, wanted: Wanted) {
+        let started = Instant::now();
+        self.retire();
+        let Wanted {
+            world,
+            camera,
+            settings,
+            order,
+        } = wanted;
+        let render = match Progressive::start((*world).clone(), camera.clone(), settings.clone()) {
+            Ok(render) => Arc::new(render),
+            Err(problem) => {
+                self.failed = true;
+                error!("the traced view cannot render: {problem}");
+                return;
+            }
+        };
+        let running = Running {
+            render,
+            world,
+            camera,
+            settings,
+            order: order.clone(),
+            started,
+            paused: false,
+            focus: Vec2::splat(0.5),
+        };
+        if let Some(darkroom) = &self.darkroom {
+            darkroom.develop(&running.render, &running.subject(), order);
+        }
+        self.running = Some(running);
+    }
+}
+
+impl Running {
+    fn subject(&self) -> (Arc<trace::World>, trace::Camera, RenderSettings) {
+        (
+            self.world.clone(),
+            self.camera.clone(),
+            self.settings.clone(),
+        )
+    }
+
+    pub(super) fn direct(&mut self, view: &TracedView) {
+        if self.paused != view.paused {
+            self.paused = view.paused;
+            if view.paused {
+                self.render.pause();
+            } else {
+                self.render.resume();
+            }
+        }
+        if self.focus != view.focus && view.focus.is_finite() {
+            self.focus = view.focus;
+            self.render
+                .set_focus(view.focus * self.settings.size.as_vec2());
+        }
+    }
+}
