@@ -8,6 +8,7 @@ use super::pointer::PointerUse;
 use super::script::is_playing;
 use super::viewport::EditorCamera;
 use crate::film::State;
+use crate::sync::Traced;
 use crate::view::TracedRender;
 use bevy::app::{App, Last, Plugin};
 use bevy::ecs::query::With;
@@ -17,6 +18,8 @@ use std::time::{Duration, Instant};
 
 /// While the tracer has something new to show several times a second.
 const RENDERING: Duration = Duration::from_millis(50);
+/// While a tree is built: what was edited shows as soon as it is there.
+const BUILDING: Duration = Duration::from_millis(15);
 /// While nothing changes: what works in the background is looked at this often.
 const RESTING: Duration = Duration::from_millis(250);
 /// How long a render counts as a new one: its first pictures come quickly.
@@ -44,7 +47,8 @@ fn set_pace(world: &mut World, started: Instant) {
     let mut renders = world.query_filtered::<&TracedRender, With<EditorCamera>>();
     let render = renders.iter(world).find_map(TracedRender::status);
     let state = render.map(|status| (status.state, status.seconds));
-    let mode = mode(busy, state);
+    let building = world.resource::<Traced>().pending > 0;
+    let mode = mode(busy, building, state);
     let mut settings = world.resource_mut::<WinitSettings>();
     if settings.focused_mode != mode {
         settings.focused_mode = mode;
@@ -53,10 +57,11 @@ fn set_pace(world: &mut World, started: Instant) {
     }
 }
 
-fn mode(busy: bool, render: Option<(State, f64)>) -> UpdateMode {
+fn mode(busy: bool, building: bool, render: Option<(State, f64)>) -> UpdateMode {
     match render {
         _ if busy => UpdateMode::Continuous,
         Some((State::Running, seconds)) if seconds < FRESH => UpdateMode::Continuous,
+        _ if building => UpdateMode::reactive_low_power(BUILDING),
         Some((State::Running, _)) => UpdateMode::reactive_low_power(RENDERING),
         _ => UpdateMode::reactive_low_power(RESTING),
     }
@@ -69,14 +74,16 @@ mod tests {
 
     #[test]
     fn a_hand_or_a_new_render_is_shown_at_once_and_rest_costs_little() {
-        assert_eq!(mode(true, None), UpdateMode::Continuous);
+        assert_eq!(mode(true, false, None), UpdateMode::Continuous);
         assert_eq!(
-            mode(false, Some((State::Running, 0.1))),
+            mode(false, false, Some((State::Running, 0.1))),
             UpdateMode::Continuous
         );
-        let calm = mode(false, Some((State::Running, 3.0)));
+        let calm = mode(false, false, Some((State::Running, 3.0)));
         assert_eq!(calm, UpdateMode::reactive_low_power(RENDERING));
-        let ended = mode(false, Some((State::Ended(Ending::Samples), 3.0)));
+        let ended = mode(false, false, Some((State::Ended(Ending::Samples), 3.0)));
         assert_eq!(ended, UpdateMode::reactive_low_power(RESTING));
+        let building = mode(false, true, Some((State::Ended(Ending::Samples), 3.0)));
+        assert_eq!(building, UpdateMode::reactive_low_power(BUILDING));
     }
 }

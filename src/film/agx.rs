@@ -8,7 +8,7 @@
 use glam::{Mat3, Vec3};
 
 /// Linear sRGB to the inset's primaries; the columns are red, green and blue.
-const INSET: Mat3 = Mat3::from_cols_array(&[
+pub(super) const INSET: Mat3 = Mat3::from_cols_array(&[
     0.842_479_06,
     0.042_328_242,
     0.042_375_655,
@@ -21,7 +21,7 @@ const INSET: Mat3 = Mat3::from_cols_array(&[
 ]);
 
 /// The way back.
-const OUTSET: Mat3 = Mat3::from_cols_array(&[
+pub(super) const OUTSET: Mat3 = Mat3::from_cols_array(&[
     1.196_879,
     -0.052_896_852,
     -0.052_971_636,
@@ -37,15 +37,12 @@ const OUTSET: Mat3 = Mat3::from_cols_array(&[
 /// below the highest.
 pub(super) const STOPS: [f32; 2] = [-12.473_93, 4.026_069];
 
+/// No channel counts as brighter: the inset's sums stay finite.
+pub(super) const LARGEST: f32 = f32::MAX / 4.0;
+
 /// A linear colour as a screen shows it, encoded, in [0, 1]. Negative components and NaN count as 0.
 pub fn agx(linear: Vec3) -> Vec3 {
-    agx_by(linear, curve)
-}
-
-/// The same, with [`curve`] as it is given.
-#[inline(always)]
-pub(super) fn agx_by(linear: Vec3, curve: impl Fn(f32) -> f32) -> Vec3 {
-    let inset = INSET * linear.map(|x| if x > 0.0 { x.min(f32::MAX / 4.0) } else { 0.0 });
+    let inset = INSET * linear.map(|x| if x > 0.0 { x.min(LARGEST) } else { 0.0 });
     // The fit's black is -0.0023: below what a screen shows.
     (OUTSET * inset.map(curve)).clamp(Vec3::ZERO, Vec3::ONE)
 }

@@ -4,7 +4,7 @@
 //! the next, so they are finest where numbers are small, as the curves ask for.
 
 use super::Picture;
-use super::agx::{STOPS, agx_by, curve};
+use super::agx::{INSET, LARGEST, OUTSET, STOPS, curve};
 use super::bloom::with_bloom;
 use crate::scene::{Output, ViewTransform};
 use crate::trace::srgb;
@@ -27,38 +27,31 @@ pub fn develop_rgba8(picture: &Picture, output: &Output) -> Vec<u8> {
     };
     let gain = output.exposure.exp2();
     match output.view_transform {
-        ViewTransform::Raw => {
-            let steps = Steps::raw();
-            rgba(picture, |p| (p * gain).to_array().map(|x| steps.of(x)))
-        }
-        ViewTransform::Srgb => {
-            let steps = Steps::srgb();
-            rgba(picture, |p| (p * gain).to_array().map(|x| steps.of(x)))
-        }
-        ViewTransform::AgX => {
-            let curve = Curve::agx();
-            rgba(picture, |p| {
-                let shown = agx_by(p * gain, |x| curve.at(x));
-                shown.to_array().map(rounded)
-            })
-        }
+        ViewTransform::Raw => rgba(picture, |row, shown| Steps::raw().row(row, gain, shown)),
+        ViewTransform::Srgb => rgba(picture, |row, shown| Steps::srgb().row(row, gain, shown)),
+        ViewTransform::AgX => rgba(picture, |row, shown| Curve::agx().row(row, gain, shown)),
     }
 }
 
-fn rgba(picture: &Picture, shown: impl Fn(Vec3) -> [u8; 3] + Sync) -> Vec<u8> {
-    let mut bytes = vec![255; 4 * picture.pixels.len()];
+/// Rows that one thread develops in one go.
+const ROWS: usize = 8;
+
+/// Develops a picture row by row.
+fn rgba(picture: &Picture, develop: impl Fn(&[Vec3], &mut [[u8; 4]]) + Sync) -> Vec<u8> {
+    let mut bytes = vec![0; 4 * picture.pixels.len()];
     let width = picture.width.max(1) as usize;
-    (bytes.par_chunks_mut(4 * width))
-        .zip(picture.pixels.par_chunks(width))
-        .for_each(|(bytes, pixels)| {
-            // A coarse picture has the same pixel many times over.
-            let (mut last, mut shown_last) = (Vec3::ZERO, shown(Vec3::ZERO));
-            for (bytes, &pixel) in bytes.as_chunks_mut::<4>().0.iter_mut().zip(pixels) {
-                if pixel != last {
-                    (last, shown_last) = (pixel, shown(pixel));
+    let shown = bytes.as_chunks_mut::<4>().0;
+    (shown.par_chunks_mut(ROWS * width))
+        .zip(picture.pixels.par_chunks(ROWS * width))
+        .for_each(|(shown, pixels)| {
+            let mut above: Option<(&[Vec3], &mut [[u8; 4]])> = None;
+            for (row, shown) in pixels.chunks(width).zip(shown.chunks_mut(width)) {
+                match above {
+                    // A coarse picture has the same row many times over.
+                    Some((same, shown_same)) if same == row => shown.copy_from_slice(shown_same),
+                    _ => develop(row, shown),
                 }
-                let [r, g, b] = shown_last;
-                *bytes = [r, g, b, 255];
+                above = Some((row, shown));
             }
         });
     bytes
@@ -100,6 +93,19 @@ impl Steps {
         };
         Self {
             table: (0..=ONE >> 16).map(entry).collect(),
+        }
+    }
+
+    fn row(&self, row: &[Vec3], gain: f32, shown: &mut [[u8; 4]]) {
+        let of = |linear: Vec3| (linear * gain).to_array().map(|x| self.of(x));
+        // A coarse picture has the same pixel many times over.
+        let (mut last, mut shown_last) = (Vec3::ZERO, of(Vec3::ZERO));
+        for (shown, &linear) in shown.iter_mut().zip(row) {
+            if linear != last {
+                (last, shown_last) = (linear, of(linear));
+            }
+            let [r, g, b] = shown_last;
+            *shown = [r, g, b, 255];
         }
     }
 
@@ -153,15 +159,73 @@ impl Curve {
         })
     }
 
-    fn at(&self, x: f32) -> f32 {
-        let low = f32::from_bits(self.first << 16);
-        let high = f32::from_bits((self.first + self.values.len() as u32 - 2) << 16);
-        let bits = x.max(low).min(high).to_bits();
-        let place = ((bits >> 16) - self.first) as usize;
-        let between = (bits & 0xffff) as f32 * (1.0 / 65536.0);
-        let [before, after] = [self.values[place], self.values[place + 1]];
-        before + (after - before) * between
+    /// As [`agx`](super::agx::agx()) has it, but several pixels at once and channel by channel, so that
+    /// the compiler computes in SIMD all that is not a look into the table: four times as fast.
+    fn row(&self, row: &[Vec3], gain: f32, shown: &mut [[u8; 4]]) {
+        let [inset, outset] = [INSET, OUTSET].map(|matrix| matrix.to_cols_array_2d());
+        for (pixels, shown) in row.chunks(LANES).zip(shown.chunks_mut(LANES)) {
+            let mut channels = [[0.0; LANES]; 3];
+            for (i, pixel) in pixels.iter().enumerate() {
+                for (channel, value) in channels.iter_mut().zip(pixel.to_array()) {
+                    channel[i] = value;
+                }
+            }
+            for value in channels.as_flattened_mut() {
+                // In this form not a number becomes 0.
+                *value = (*value * gain).max(0.0).min(LARGEST);
+            }
+            channels = mixed(&inset, &channels).map(|light| self.values_at(light));
+            let mut rgba = [u32::from_le_bytes([0, 0, 0, 255]); LANES];
+            for (channel, shift) in mixed(&outset, &channels).iter().zip([0, 8, 16]) {
+                for (rgba, value) in rgba.iter_mut().zip(channel) {
+                    // The nearest of 256: beyond 2^23 the numbers' last bits are whole numbers.
+                    let step = value.max(0.0).min(1.0) * 255.0 + (1 << 23) as f32;
+                    *rgba |= (step.to_bits() & 0xff) << shift;
+                }
+            }
+            for (shown, rgba) in shown.iter_mut().zip(rgba) {
+                *shown = rgba.to_le_bytes();
+            }
+        }
     }
+
+    /// What the curve has at each of these.
+    #[inline(always)]
+    fn values_at(&self, mut light: [f32; LANES]) -> [f32; LANES] {
+        let low = self.first << 16;
+        let high = (self.first + self.values.len() as u32 - 2) << 16;
+        let [least, most] = [low, high].map(f32::from_bits);
+        let mut places = [0; LANES];
+        for (place, light) in places.iter_mut().zip(light) {
+            *place = light.max(least).min(most).to_bits() - low;
+        }
+        let mut after = [0.0; LANES];
+        for (i, place) in places.iter().enumerate() {
+            let place = (place >> 16) as usize;
+            [light[i], after[i]] = [self.values[place], self.values[place + 1]];
+        }
+        for (i, place) in places.iter().enumerate() {
+            let between = (place & 0xffff) as i32 as f32 * (1.0 / 65536.0);
+            light[i] += (after[i] - light[i]) * between;
+        }
+        light
+    }
+}
+
+/// Pixels that are computed at once.
+const LANES: usize = 16;
+
+/// A matrix, given by its columns, times each of these vectors.
+#[inline(always)]
+fn mixed(columns: &[[f32; 3]; 3], channels: &[[f32; LANES]; 3]) -> [[f32; LANES]; 3] {
+    let mut mixed = [[0.0; LANES]; 3];
+    for (row, mixed) in mixed.iter_mut().enumerate() {
+        for (i, mixed) in mixed.iter_mut().enumerate() {
+            let terms = [0, 1, 2].map(|column: usize| columns[column][row] * channels[column][i]);
+            *mixed = terms[0] + terms[1] + terms[2];
+        }
+    }
+    mixed
 }
 
 #[cfg(test)]

@@ -17,12 +17,20 @@ use bevy::math::{Affine3A, Vec3};
 use bevy::mesh::Mesh3d;
 use bevy::transform::components::GlobalTransform;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Which mesh stands where, sorted by `SceneId`: row `i` is instance `i` of the top level.
 #[derive(Resource, Default)]
 pub(super) struct TracedInstances {
     pub rows: Vec<Row>,
     options: BuildOptions,
+    /// Counts how often the objects were others, wherever they stood.
+    objects: u64,
+    /// What that count was for the tree in the draft: where it is another one, row and instance
+    /// numbers do not belong together.
+    traced_objects: u64,
+    /// Whether some tree has yet to be begun for the rows as they are.
+    stale: bool,
 }
 
 impl TracedInstances {
@@ -30,7 +38,59 @@ impl TracedInstances {
         let place = self.rows.binary_search_by_key(&id, |row| row.id).ok()?;
         Some(&self.rows[place]).filter(|row| row.entity == entity)
     }
+
+    /// Takes these rows, and true where some object is another one.
+    fn take(&mut self, rows: Vec<Row>, options: BuildOptions) -> bool {
+        let mut pairs = rows.iter().zip(&self.rows);
+        let same_objects =
+            rows.len() == self.rows.len() && pairs.all(|(new, old)| new.same_object(old));
+        self.objects += u64::from(!same_objects);
+        self.rows = rows;
+        self.options = options;
+        self.stale = true;
+        !same_objects
+    }
+
+    /// Builds the tree over the rows, or goes on with it, and takes into the draft what is there.
+    fn build(&mut self, thread: &mut TopLevelThread, at_once: bool, draft: &mut Draft) {
+        if at_once && self.stale {
+            thread.forget();
+        }
+        let wait = if at_once {
+            Duration::MAX
+        } else {
+            Duration::ZERO
+        };
+        self.show(thread.finished(wait), draft);
+        if self.stale && !thread.is_busy() {
+            self.stale = false;
+            let instances = self.rows.iter().map(|row| row.instance.clone()).collect();
+            let (objects, options) = (self.objects, self.options);
+            let work = move || (objects, Aggregate::build(instances, &options));
+            if at_once {
+                self.show(Some(work()), draft);
+            } else {
+                thread.start(work);
+                self.show(thread.finished(PATIENCE), draft);
+            }
+        }
+        draft.top_level_pending = thread.is_busy();
+        draft.objects_ahead = self.objects != self.traced_objects;
+    }
+
+    /// A tree over objects that are no longer those goes, and the next one is waited for.
+    fn show(&mut self, built: Option<(u64, Aggregate)>, draft: &mut Draft) {
+        if let Some((_, aggregate)) = built.filter(|(objects, _)| *objects == self.objects) {
+            self.traced_objects = self.objects;
+            draft.world.aggregate = Arc::new(aggregate);
+            draft.changes.top_level = true;
+        }
+    }
 }
+
+/// So long a frame waits for the tree over the objects: that of some thousand is there by then, and
+/// nothing lags behind the hand.
+const PATIENCE: Duration = Duration::from_micros(2000);
 
 /// One object as the top level sees it.
 pub(super) struct Row {
@@ -39,8 +99,8 @@ pub(super) struct Row {
     pub mesh: Arc<trace::Mesh>,
     /// Samples that its motion asks for; 0 where it stands still.
     pub motion_samples: u32,
-    transform: Affine3A,
-    velocity: Vec3,
+    /// Where its mesh stands, and how it moves.
+    instance: Instance,
 }
 
 impl Row {
@@ -52,14 +112,16 @@ impl Row {
             && Arc::ptr_eq(&self.mesh, &other.mesh)
     }
 
-    /// True where it stands in the same place and moves alike.
-    fn same_place(&self, other: &Self) -> bool {
+    /// True where this mesh stands in this place and moves so.
+    fn stands(&self, mesh: &Arc<trace::Mesh>, transform: &Affine3A, velocity: Vec3) -> bool {
         // Bits, because -0 and 0 may round differently on the way.
-        let bits = |row: &Self| {
-            let velocity = row.velocity.to_array().map(f32::to_bits);
-            (row.transform.to_cols_array().map(f32::to_bits), velocity)
+        let bits = |transform: &Affine3A, velocity: Vec3| {
+            let velocity = velocity.to_array().map(f32::to_bits);
+            (transform.to_cols_array().map(f32::to_bits), velocity)
         };
-        bits(self) == bits(other)
+        let instance = &self.instance;
+        Arc::ptr_eq(&self.mesh, mesh)
+            && bits(transform, velocity) == bits(instance.world_from_object(), instance.velocity())
     }
 }
 
@@ -102,7 +164,7 @@ pub(super) fn sync_instances(
     building: Res<TreeBuilding>,
     mut thread: ResMut<TopLevelThread>,
     mut known: ResMut<TracedInstances>,
-    draft: ResMut<Draft>,
+    mut draft: ResMut<Draft>,
 ) {
     // Not `||`: every reader has to be emptied.
     let gone = no_mesh.read().count()
@@ -111,21 +173,35 @@ pub(super) fn sync_instances(
         + no_id.read().count();
     let switched = switched.any() | motions.changed();
     let options_changed = known.options != *meshes.options();
-    if gone == 0 && !switched && !options_changed && moved.is_empty() && !draft.changes.meshes {
-        return;
+    let edited = gone > 0 || !moved.is_empty() || draft.changes.meshes;
+    if switched || options_changed || edited {
+        draft.problems.instances.clear();
+        draft.reread = true;
+        let (rows, moved) = read(&objects, &motions, &meshes, &known, &mut draft);
+        if moved || rows.len() != known.rows.len() || options_changed {
+            draft.other_objects |= known.take(rows, *meshes.options());
+        }
     }
-    let draft = draft.into_inner();
-    draft.problems.instances.clear();
-    draft.reread = true;
+    let at_once = *building == TreeBuilding::AtOnce;
+    known.build(&mut thread, at_once, &mut draft);
+}
 
+/// The objects as they are, and whether one of them is not as it is known.
+fn read(
+    objects: &ObjectQuery,
+    motions: &Motions,
+    meshes: &TracedMeshes,
+    known: &TracedInstances,
+    draft: &mut Draft,
+) -> (Vec<Row>, bool) {
     let mut visible: Vec<_> = objects
         .iter()
         .filter(|(.., visibility, _)| visibility.is_none_or(|v| v.get()))
         .collect();
     visible.sort_unstable_by_key(|(_, id, ..)| **id);
 
-    let mut rows = Vec::with_capacity(visible.len());
-    let mut instances = Vec::with_capacity(visible.len());
+    let mut rows: Vec<Row> = Vec::with_capacity(visible.len());
+    let mut moved = false;
     for (entity, &id, mesh, transform, _, name) in visible {
         let mut reader = Reader {
             kind: "object",
@@ -152,47 +228,29 @@ pub(super) fn sync_instances(
         let transform = transform.affine();
         let motion = motions.of(entity);
         let velocity = motion.map_or(Vec3::ZERO, |(velocity, _)| velocity);
-        let row = Row {
-            id,
-            entity,
-            mesh: mesh.clone(),
-            motion_samples: motion.map_or(0, |(_, samples)| reader.samples(samples)),
-            transform,
-            velocity,
-        };
+        let motion_samples = motion.map_or(0, |(_, samples)| reader.samples(samples));
         // Most stand where they stood.
-        let place = rows.len();
-        let before = known.rows.get(place);
-        let instance = if before.is_some_and(|b| row.same_object(b) && row.same_place(b)) {
-            Ok(draft.world.aggregate.instances()[place].clone())
-        } else {
-            Instance::new(mesh.tree.clone(), &transform)
-                .and_then(|instance| instance.moving(velocity))
+        let before = known.rows.get(rows.len());
+        let before = before.filter(|before| before.stands(mesh, &transform, velocity));
+        let instance = match before {
+            Some(before) => Ok(before.instance.clone()),
+            None => Instance::new(mesh.tree.clone(), &transform)
+                .and_then(|instance| instance.moving(velocity)),
         };
         match instance {
-            Ok(instance) => instances.push(instance),
-            Err(fault) => {
-                reader.note(Fault::Transform(fault));
-                continue;
+            Ok(instance) => {
+                let row = Row {
+                    id,
+                    entity,
+                    mesh: mesh.clone(),
+                    motion_samples,
+                    instance,
+                };
+                moved |= !before.is_some_and(|before| before.same_object(&row));
+                rows.push(row);
             }
+            Err(fault) => reader.note(Fault::Transform(fault)),
         }
-        rows.push(row);
     }
-    let same = |same: fn(&Row, &Row) -> bool| {
-        let mut pairs = rows.iter().zip(&known.rows);
-        rows.len() == known.rows.len() && pairs.all(|(new, old)| same(new, old))
-    };
-    let same_objects = same(Row::same_object);
-    if same_objects && same(Row::same_place) && !options_changed {
-        return;
-    }
-    draft.other_objects |= !same_objects;
-    known.rows = rows;
-    known.options = *meshes.options();
-    let build = || Aggregate::build(instances, meshes.options());
-    draft.world.aggregate = Arc::new(match *building {
-        TreeBuilding::AtOnce => build(),
-        TreeBuilding::InBackground => thread.run(build),
-    });
-    draft.changes.top_level = true;
+    (rows, moved)
 }

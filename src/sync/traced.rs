@@ -15,8 +15,8 @@ pub struct Traced {
     pub changes: Changes,
     /// What cannot be traced as it is, sorted by kind and `SceneId`.
     pub problems: Vec<SyncProblem>,
-    /// How many meshes wait for their tree: what uses them is traced with the mesh that it had before,
-    /// or not yet. See [`TreeBuilding`](super::TreeBuilding).
+    /// How many trees are being built: what uses a mesh that waits for its tree is traced with the mesh that it
+    /// had before, or not yet, and objects stand where they did. See [`TreeBuilding`](super::TreeBuilding).
     pub pending: usize,
 }
 
@@ -64,6 +64,10 @@ pub(super) struct Draft {
     pub problems: Problems,
     /// Meshes whose tree is being built.
     pub pending: usize,
+    /// Whether the tree over the objects is being built.
+    pub top_level_pending: bool,
+    /// Its objects are not those of the tree over them, which is being built: no snapshot yet.
+    pub objects_ahead: bool,
     /// Some object appeared, went, or has another mesh: who merely moved keeps the material.
     pub other_objects: bool,
     /// Some part was read again, so that its problems may be others although nothing was redone.
@@ -109,9 +113,14 @@ pub(super) fn publish_snapshot(
         draft.problems.settings = SyncProblem::of_settings(&settings);
         draft.reread = true;
     }
-    let changes = std::mem::take(&mut draft.changes);
     draft.other_objects = false;
-    traced.bypass_change_detection().pending = draft.pending;
+    let pending = draft.pending + usize::from(draft.top_level_pending);
+    traced.bypass_change_detection().pending = pending;
+    if draft.objects_ahead {
+        traced.bypass_change_detection().changes = Changes::default();
+        return;
+    }
+    let changes = std::mem::take(&mut draft.changes);
     if !changes.any() && !draft.reread {
         traced.bypass_change_detection().changes = changes;
         return;

@@ -2,22 +2,24 @@
 
 use super::mesh_data::{MeshCopy, MeshFault};
 use super::meshes::MeshResult;
-use crate::bvh::BuildOptions;
+use crate::bvh::{Aggregate, BuildOptions};
 use bevy::app::App;
 use bevy::asset::AssetId;
 use bevy::ecs::resource::Resource;
 use bevy::mesh::Mesh;
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::available_parallelism;
+use std::time::Duration;
 
 /// When trees of meshes are built.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TreeBuilding {
-    /// On threads of their own; no frame waits but for the tree over the objects. Objects keep the mesh that they had until the new one's tree is there,
-    /// and those that had none appear with it: see [`Traced::pending`](super::Traced).
+    /// On threads of their own; no frame waits but 2 ms for the tree over the objects. Objects keep the mesh that they
+    /// had until the new one's tree is there, and those that had none appear with it. What is edited while
+    /// the tree over the objects is built shows in a later frame: see [`Traced::pending`](super::Traced).
     #[default]
     InBackground,
     /// Within the frame that notices the edit, on the current rayon pool.
@@ -33,22 +35,59 @@ pub fn finish(app: &mut App) {
     app.insert_resource(before.unwrap_or_default());
 }
 
-/// The thread that builds the tree over the objects while the frame waits: what is done in parallel
-/// there would wait for the tracer's threads elsewhere, and they are busy until a pass ends.
+/// The thread that builds the tree over the objects: what is done in parallel elsewhere would wait for
+/// the tracer's threads, and they are busy until a pass ends. Over some thousand objects the tree takes
+/// milliseconds, over all triangles ([`Levels::One`](crate::bvh::Levels::One)) it may take seconds.
 #[derive(Resource, Default)]
-pub(super) struct TopLevelThread(Option<ThreadPool>);
+pub(super) struct TopLevelThread {
+    pool: Option<ThreadPool>,
+    /// What is under way. One system uses it; the lock lets the resource be shared.
+    under_way: Option<Mutex<Receiver<std::thread::Result<TopLevel>>>>,
+}
+
+/// The tree over the objects, and the number of the objects' list that it is over.
+type TopLevel = (u64, Aggregate);
 
 impl TopLevelThread {
-    /// Does the work there, or here where the system has no thread to give.
-    pub fn run<R: Send>(&mut self, work: impl FnOnce() -> R + Send) -> R {
-        if self.0.is_none() {
+    /// Whether a tree is being built that [`finished`](Self::finished) has not given yet.
+    pub fn is_busy(&self) -> bool {
+        self.under_way.is_some()
+    }
+
+    /// Begins a tree there, or builds it here where the system has no thread to give.
+    pub fn start(&mut self, work: impl FnOnce() -> TopLevel + Send + 'static) {
+        let (sender, receiver) = channel();
+        self.under_way = Some(Mutex::new(receiver));
+        let work = move || {
+            // Nobody receives it where another one is wanted meanwhile.
+            let _ = sender.send(catch_unwind(AssertUnwindSafe(work)));
+        };
+        if self.pool.is_none() {
             let pool = ThreadPoolBuilder::new().num_threads(1);
-            self.0 = pool.thread_name(|_| "top level".into()).build().ok();
+            self.pool = pool.thread_name(|_| "top level".into()).build().ok();
         }
-        match &self.0 {
-            Some(pool) => pool.install(work),
+        match &self.pool {
+            Some(pool) => pool.spawn(work),
             None => work(),
         }
+    }
+
+    /// The tree that is being built, if it is there before so long.
+    pub fn finished(&mut self, wait: Duration) -> Option<TopLevel> {
+        let receiver = self.under_way.as_mut()?;
+        let receiver = receiver.get_mut().unwrap_or_else(PoisonError::into_inner);
+        let built = match receiver.recv_timeout(wait) {
+            Err(RecvTimeoutError::Timeout) => return None,
+            built => built.ok(),
+        };
+        self.under_way = None;
+        // A panic would be a bug, and is the frame's own.
+        built.map(|built| built.unwrap_or_else(|panic| resume_unwind(panic)))
+    }
+
+    /// Lets go of the tree that is being built.
+    pub fn forget(&mut self) {
+        self.under_way = None;
     }
 }
 

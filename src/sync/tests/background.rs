@@ -1,11 +1,16 @@
 //! Trees that are built in the background: the frame does not wait, and what was there before stays.
 //!
-//! A tree is taken at the earliest in the frame after the one that began it, so that what the tests
+//! A mesh's tree is taken at the earliest in the frame after the one that began it, so that what the tests
 //! say of that frame does not depend on the threads' speed.
 
 use super::*;
+use crate::bvh::Aggregate;
 use crate::scene::{Builder, RenderSettings};
 use crate::sync::finish;
+use crate::sync::tree_building::TopLevelThread;
+use std::sync::mpsc::{Sender, channel};
+use std::thread;
+use std::time::Duration;
 
 fn small() -> Small {
     let mut small = Small::new();
@@ -28,6 +33,35 @@ fn edit_mesh(small: &mut Small, mesh: usize, sides: u32) {
     *meshes.get_mut(&small.meshes[mesh]).unwrap() = fan(sides);
 }
 
+/// Frames until this is so.
+fn until(app: &mut App, is_so: impl Fn(&App) -> bool) {
+    let mut frames = 0;
+    while !is_so(app) {
+        app.update();
+        frames += 1;
+        assert!(frames < 60_000, "it never is");
+        thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// Of the first object.
+fn height(app: &App) -> f32 {
+    let place = *world(app).aggregate.instances()[0].world_from_object();
+    place.translation.y
+}
+
+/// The thread that builds the tree over the objects is busy with one that nobody wants any more, until
+/// something is sent.
+fn busy(small: &mut Small) -> Sender<()> {
+    let (release, gate) = channel();
+    let mut thread = small.app.world_mut().resource_mut::<TopLevelThread>();
+    thread.start(move || {
+        let _ = gate.recv();
+        (u64::MAX, Aggregate::default())
+    });
+    release
+}
+
 #[test]
 fn an_edited_mesh_is_traced_as_it_was_until_its_tree_is_there() {
     let mut small = small();
@@ -48,14 +82,8 @@ fn an_edited_mesh_is_traced_as_it_was_until_its_tree_is_there() {
 fn it_appears_by_itself_in_some_later_frame() {
     let mut small = small();
     edit_mesh(&mut small, 0, 7);
-    let mut frames = 0;
-    while triangles(&small.app) != [7, 7, 5] {
-        small.app.update();
-        frames += 1;
-        assert!(frames < 60_000, "it never appears");
-        std::thread::sleep(std::time::Duration::from_millis(1));
-    }
-    assert_eq!(pending(&small.app), 0);
+    until(&mut small.app, |app| triangles(app) == [7, 7, 5]);
+    until(&mut small.app, |app| pending(app) == 0);
 }
 
 #[test]
@@ -69,12 +97,7 @@ fn an_object_with_another_mesh_keeps_its_old_one_and_a_new_object_appears_with_i
     assert!(problems(&small.app).is_empty());
     // Moving it meanwhile moves what is there.
     small.edit::<Transform>(small.objects[0], |t| t.translation.y = 4.0);
-    small.app.update();
-    let height = |world: Arc<trace::World>| {
-        let place = world.aggregate.instances()[0].world_from_object();
-        place.translation.y
-    };
-    assert_eq!(height(world(&small.app)), 4.0);
+    until(&mut small.app, |app| height(app) == 4.0);
     finish(&mut small.app);
     assert_eq!(triangles(&small.app), [9, 3, 5, 9]);
     assert!(small.app.world().get_entity(new).is_ok());
@@ -86,7 +109,8 @@ fn of_edits_that_follow_one_another_the_last_one_counts() {
     for sides in 6..30 {
         edit_mesh(&mut small, 0, sides);
         small.app.update();
-        assert!(pending(&small.app) <= 1, "{} builds", pending(&small.app));
+        // The mesh's, and the one over the objects.
+        assert!(pending(&small.app) <= 2, "{} builds", pending(&small.app));
     }
     finish(&mut small.app);
     assert_eq!(triangles(&small.app), [29, 29, 5]);
@@ -132,4 +156,53 @@ fn what_cannot_be_traced_is_named_without_waiting_and_a_mesh_that_went_is_not_sh
     finish(&mut small.app);
     assert_eq!(problems(&small.app).len(), 3, "{:?}", problems(&small.app));
     assert!(world(&small.app).objects.is_empty());
+}
+
+#[test]
+fn while_the_tree_over_the_objects_is_built_no_frame_waits_and_what_is_shown_fits_together() {
+    let mut small = small();
+    let before = world(&small.app);
+    let release = busy(&mut small);
+    small.edit::<Transform>(small.objects[0], |t| t.translation.y = 4.0);
+    assert_eq!(frame(&mut small.app), Changes::default());
+    assert!(Arc::ptr_eq(&before, &world(&small.app)));
+    assert_eq!(pending(&small.app), 1);
+    // The objects are the same ones: what else is edited shows, with the tree as it was.
+    small.edit::<Phong>(small.objects[1], |phong| phong.shininess = 99.0);
+    assert!(frame(&mut small.app).materials && height(&small.app) == 0.0);
+    // One goes: what is left of it, its material, is not shown on another until the tree is there.
+    let shown = world(&small.app);
+    small.app.world_mut().despawn(small.objects[1]);
+    small.edit::<Phong>(small.objects[2], |phong| phong.shininess = 77.0);
+    assert_eq!(frame(&mut small.app), Changes::default());
+    assert!(Arc::ptr_eq(&shown, &world(&small.app)));
+    release.send(()).unwrap();
+    until(&mut small.app, |app| pending(app) == 0);
+    assert_eq!(
+        (triangles(&small.app), height(&small.app)),
+        (vec![3, 5], 4.0)
+    );
+    let world = world(&small.app);
+    assert_eq!(
+        world.materials[world.objects[1].material as usize].shininess,
+        77.0
+    );
+    assert_eq!(world.aggregate.instances().len(), 2);
+}
+
+#[test]
+fn who_waits_for_all_trees_waits_for_none_that_nobody_wants() {
+    let mut small = small();
+    let release = busy(&mut small);
+    small.app.world_mut().despawn(small.objects[0]);
+    finish(&mut small.app);
+    assert_eq!(
+        (triangles(&small.app), pending(&small.app)),
+        (vec![3, 5], 0)
+    );
+    // Nor does it come back.
+    release.send(()).unwrap();
+    small.edit::<Transform>(small.objects[1], |t| t.translation.y = 4.0);
+    until(&mut small.app, |app| height(app) == 4.0);
+    assert_eq!(triangles(&small.app), [3, 5]);
 }
