@@ -64,12 +64,15 @@ fn rounded(value: f32) -> u8 {
 
 /// A rising curve over [0, 1], rounded to 256 steps, exactly.
 struct Steps {
-    /// By the upper half of a number's bits: in the lowest 8 bits the step of the smallest number with
-    /// this half; above them from which lower half on it is the next one. It is never a second one.
+    /// By the upper half of a number's bits, from [`LOWEST`] on: in the lowest 8 bits the step of the smallest
+    /// number with this half; above them from which lower half on it is the next one. It is never a
+    /// second one.
     table: Vec<u32>,
 }
 
 const ONE: u32 = 1.0_f32.to_bits();
+/// The bits of 2^-13, below which all numbers are of the first step: the table fits the first-level cache.
+const LOWEST: u32 = (1.0_f32 / 8192.0).to_bits();
 
 impl Steps {
     fn raw() -> &'static Self {
@@ -92,28 +95,21 @@ impl Steps {
             step as u32 | next.min(1 << 16) << 8
         };
         Self {
-            table: (0..=ONE >> 16).map(entry).collect(),
+            table: (LOWEST >> 16..=ONE >> 16).map(entry).collect(),
         }
     }
 
     fn row(&self, row: &[Vec3], gain: f32, shown: &mut [[u8; 4]]) {
-        let of = |linear: Vec3| (linear * gain).to_array().map(|x| self.of(x));
-        // A coarse picture has the same pixel many times over.
-        let (mut last, mut shown_last) = (Vec3::ZERO, of(Vec3::ZERO));
-        for (shown, &linear) in shown.iter_mut().zip(row) {
-            if linear != last {
-                (last, shown_last) = (linear, of(linear));
-            }
-            let [r, g, b] = shown_last;
-            *shown = [r, g, b, 255];
+        for (shown, linear) in shown.iter_mut().zip(row) {
+            let of = |x: f32| self.of(x * gain);
+            *shown = [of(linear.x), of(linear.y), of(linear.z), 255];
         }
     }
 
     #[inline(always)]
     fn of(&self, x: f32) -> u8 {
         // In this form not a number becomes 0.
-        let x = if x > 0.0 { x } else { 0.0 };
-        let bits = (if x < 1.0 { x } else { 1.0 }).to_bits();
+        let bits = x.max(f32::from_bits(LOWEST)).min(1.0).to_bits() - LOWEST;
         let entry = self.table[(bits >> 16) as usize];
         entry as u8 + u8::from(bits & 0xffff >= entry >> 8)
     }
@@ -171,15 +167,15 @@ impl Curve {
                 }
             }
             for value in channels.as_flattened_mut() {
-                // In this form not a number becomes 0.
-                *value = (*value * gain).max(0.0).min(LARGEST);
+                let light = *value * gain;
+                *value = if light > 0.0 { light.min(LARGEST) } else { 0.0 };
             }
             channels = mixed(&inset, &channels).map(|light| self.values_at(light));
             let mut rgba = [u32::from_le_bytes([0, 0, 0, 255]); LANES];
             for (channel, shift) in mixed(&outset, &channels).iter().zip([0, 8, 16]) {
                 for (rgba, value) in rgba.iter_mut().zip(channel) {
                     // The nearest of 256: beyond 2^23 the numbers' last bits are whole numbers.
-                    let step = value.max(0.0).min(1.0) * 255.0 + (1 << 23) as f32;
+                    let step = value.clamp(0.0, 1.0) * 255.0 + (1 << 23) as f32;
                     *rgba |= (step.to_bits() & 0xff) << shift;
                 }
             }
