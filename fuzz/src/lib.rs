@@ -1,9 +1,17 @@
 //! What the fuzz targets and the mutation tests call: one file, read as the program reads it.
 
+use bevy::app::App;
 use glassbox::app::headless_app;
 use glassbox::io::{Limits, OpenOptions, SceneSource, open};
+use std::cell::RefCell;
 use std::fs;
 use std::path::Path;
+
+thread_local! {
+    /// One for all files, as in the editor: what is opened takes the place of what was open. Making an app
+    /// takes longer than reading any file.
+    static APP: RefCell<App> = RefCell::new(headless_app());
+}
 
 /// The kinds of files that are read, by the names of their targets: the file that is opened, and the one that gets the
 /// bytes.
@@ -27,7 +35,6 @@ pub fn read(kind: &str, bytes: &[u8], folder: &Path) -> bool {
         fs::write(folder.join(opened), WITH_MATERIAL).expect("a folder that can be written to");
     }
     fs::write(folder.join(written), bytes).expect("a folder that can be written to");
-    let mut app = headless_app();
     // So that what is found are faults, and not how large a file may be.
     let options = OpenOptions {
         allow_outside: false,
@@ -39,22 +46,16 @@ pub fn read(kind: &str, bytes: &[u8], folder: &Path) -> bool {
             ..Limits::default()
         },
     };
-    match open(
-        app.world_mut(),
-        &SceneSource::File(folder.join(opened)),
-        options,
-    ) {
+    let source = SceneSource::File(folder.join(opened));
+    APP.with_borrow_mut(|app| match open(app.world_mut(), &source, options) {
         Ok(_) => {
             app.update();
             true
         }
         Err(error) => {
-            assert_eq!(
-                error.to_string().lines().count(),
-                1,
-                "an error of several lines: {error}"
-            );
+            let lines = error.to_string().lines().count();
+            assert_eq!(lines, 1, "an error of several lines: {error}");
             false
         }
-    }
+    })
 }
