@@ -331,6 +331,16 @@ fn a_glb_that_ends_too_early() {
 }
 
 #[test]
+fn a_glb_that_says_it_is_shorter_than_its_header() {
+    let folder = tempfile::tempdir().unwrap();
+    for length in [0_u32, 11] {
+        let header = [*b"glTF", 2_u32.to_le_bytes(), length.to_le_bytes()].concat();
+        let glb = write(folder.path(), "a.glb", [header, vec![0; 28]].concat());
+        says(&refused(&glb), &["a.glb", &format!("{length} bytes long")]);
+    }
+}
+
+#[test]
 fn a_glb_with_any_byte_of_its_head_changed_does_not_panic() {
     let folder = tempfile::tempdir().unwrap();
     let (_keep, file) = changed(|_| {});

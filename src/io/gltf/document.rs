@@ -18,6 +18,7 @@ impl Document {
     /// Reads a `.gltf` or `.glb` file and the buffers that it refers to.
     pub fn read(file: &Path, folder: &Folder, limits: &Limits) -> Result<Self, FileError> {
         let bytes = super::super::read_bytes(file, limits.file_bytes)?;
+        check_header(&bytes).map_err(|problem| FileError::new(file, problem))?;
         let gltf::Gltf { document, blob } = gltf::Gltf::from_slice_without_validation(&bytes)
             .map_err(|error| parse_error(file, error))?;
         drop(bytes);
@@ -184,6 +185,23 @@ fn validate(document: &gltf::Document) -> Result<(), gltf::Error> {
         Ok(())
     } else {
         Err(gltf::Error::Validation(errors))
+    }
+}
+
+/// A binary file's header holds the length of the whole file. `gltf` takes for granted that the header at
+/// least is part of it.
+fn check_header(bytes: &[u8]) -> Result<(), Problem> {
+    const HEADER: u32 = 12;
+    let Some((b"glTF", rest)) = bytes.split_at_checked(4) else {
+        return Ok(());
+    };
+    match rest.get(4..8).and_then(|length| length.try_into().ok()) {
+        Some(length) if u32::from_le_bytes(length) < HEADER => {
+            let length = u32::from_le_bytes(length);
+            let text = format!("its header says that the file is {length} bytes long");
+            Err(Problem::Malformed(text))
+        }
+        _ => Ok(()),
     }
 }
 
