@@ -214,3 +214,38 @@ fn visuals(theme: Theme, palette: &Palette) -> Visuals {
     widgets.noninteractive.corner_radius = radius;
     visuals
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Contrast of two colours, 1 to 21 (WCAG 2.2, "contrast ratio").
+    fn contrast(a: Color32, b: Color32) -> f32 {
+        let luminance = |color: Color32| {
+            let [r, g, b, _] = egui::Rgba::from(color).to_array();
+            0.2126 * r + 0.7152 * g + 0.0722 * b + 0.05
+        };
+        let ratio = luminance(a) / luminance(b);
+        ratio.max(ratio.recip())
+    }
+
+    #[test]
+    fn every_text_can_be_read_in_both_themes() {
+        for theme in [Theme::Dark, Theme::Light] {
+            let visuals = style(theme).visuals;
+            let inks = [
+                visuals.text_color(),
+                visuals.weak_text_color(),
+                visuals.warn_fg_color,
+                visuals.error_fg_color,
+                visuals.hyperlink_color,
+            ];
+            for (i, ink) in inks.into_iter().enumerate() {
+                for paper in [visuals.panel_fill, visuals.window_fill] {
+                    let ratio = contrast(ink, paper);
+                    assert!(ratio >= 4.5, "{theme:?}: ink {i} at {ratio:.2} to 1");
+                }
+            }
+        }
+    }
+}
