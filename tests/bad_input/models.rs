@@ -127,6 +127,33 @@ fn a_normal_index_and_a_texture_index_out_of_range() {
 }
 
 #[test]
+fn an_index_that_counts_back_too_far_or_has_too_many_digits() {
+    // What a parser that computes with it takes for another one, or for none.
+    let lines = "vt 0 0\nvn 0 0 1\n";
+    for (corner, what) in [
+        ("3/-2", "texture coordinate -2"),
+        ("3//-2", "normal -2"),
+        (
+            "3/9223372036854775808",
+            "texture coordinate 9223372036854775808",
+        ),
+        ("3//+6148914691236517206", "normal +6148914691236517206"),
+        (
+            "3/-9223372036854775808",
+            "texture coordinate -9223372036854775808",
+        ),
+    ] {
+        let (_folder, file) = obj(&format!("{lines}f 1 2 {corner}\n"));
+        says(&refused(&file), &["model.obj:6", what, "there are 1"]);
+    }
+    let (_folder, file) = obj("l 1 2//-1\nf 1 2 3\n");
+    says(&refused(&file), &["model.obj:4", "normal -1"]);
+    let (_folder, file) = obj(&format!("{lines}f 1/-1/-1 2/1/1 -1/-1/1\n"));
+    let (_app, opened) = opened(&file);
+    assert!(opened.notes.is_empty(), "{:?}", opened.notes);
+}
+
+#[test]
 fn a_face_corner_that_is_no_index() {
     let (_folder, file) = obj("f 1 2 three\n");
     says(&refused(&file), &["model.obj:4", "`three`"]);

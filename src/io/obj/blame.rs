@@ -3,6 +3,7 @@
 use super::super::error::{FileError, Place, Problem};
 use std::fs::File;
 use std::io::{BufRead, BufReader};
+use std::num::IntErrorKind;
 use std::path::Path;
 
 /// The first line of an OBJ that names a number that is not one, or a corner that does not exist.
@@ -65,36 +66,55 @@ fn fault_of(line: &str, counts: &mut [usize; 3]) -> Option<Problem> {
 }
 
 fn fault_of_corner(corner: &str, counts: &[usize; 3]) -> Option<Problem> {
-    const WHAT: [&str; 3] = ["vertex", "texture coordinate", "normal"];
     for (kind, index) in corner.split('/').enumerate() {
-        let Some(&count) = counts.get(kind) else {
+        if kind >= counts.len() {
             return Some(Problem::Malformed(format!(
                 "the corner `{corner}` has more than three indices"
             )));
-        };
+        }
         if index.is_empty() && kind > 0 {
             continue;
         }
         match index.parse::<i64>() {
-            Ok(i) if i != 0 && i.unsigned_abs() <= count as u64 => {}
+            Ok(i) if i != 0 && i.unsigned_abs() <= counts[kind] as u64 => {}
             Err(error)
                 if !matches!(
                     error.kind(),
-                    std::num::IntErrorKind::PosOverflow | std::num::IntErrorKind::NegOverflow
+                    IntErrorKind::PosOverflow | IntErrorKind::NegOverflow
                 ) =>
             {
                 return Some(Problem::Malformed(format!(
                     "the corner `{corner}` of a face is not an index"
                 )));
             }
-            _ => {
-                return Some(Problem::IndexOutOfRange {
-                    what: WHAT[kind],
-                    index: index.into(),
-                    count,
-                });
-            }
+            _ => return Some(out_of_range(kind, index, counts)),
         }
     }
     None
+}
+
+/// What is wrong with a corner that tobj would compute with beyond a number's range: an index that counts back
+/// to before the first, or one with more digits than any count has.
+pub(super) fn unbounded(corner: &str, counts: &[usize; 3]) -> Option<Problem> {
+    const DIGITS: usize = 10;
+    let mut indices = corner.split('/').zip(counts).enumerate();
+    indices.find_map(|(kind, (index, &count))| {
+        let digits = index.trim_start_matches(['+', '-']);
+        let is_there = match index.starts_with('-') {
+            true => digits.parse().is_ok_and(|back: usize| back <= count),
+            false => digits.len() <= DIGITS,
+        };
+        // What is no number at all tobj sees itself.
+        let is_number = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
+        (is_number && !is_there).then(|| out_of_range(kind, index, counts))
+    })
+}
+
+fn out_of_range(kind: usize, index: &str, counts: &[usize; 3]) -> Problem {
+    const WHAT: [&str; 3] = ["vertex", "texture coordinate", "normal"];
+    Problem::IndexOutOfRange {
+        what: WHAT[kind],
+        index: index.into(),
+        count: counts[kind],
+    }
 }

@@ -1,4 +1,5 @@
 use super::super::error::{FileError, Place, Problem};
+use super::blame::unbounded;
 use crate::io::Limits;
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -25,7 +26,6 @@ pub(super) struct Seen {
     /// Faces so far, and the triangles that they make.
     pub faces: u64,
     pub triangles: u64,
-    pub vertices: u64,
 }
 
 /// Hands the lines of an OBJ to tobj one at a time, counted, joined where they end in `\`, and
@@ -40,6 +40,8 @@ pub(super) struct Lines<'a, R> {
     /// The last `o` or `g` line: said again to cut a large object into parts.
     object: Vec<u8>,
     faces_of_part: u64,
+    /// Vertices, texture coordinates and normals so far.
+    counts: [usize; 3],
 }
 
 impl<'a, R: BufRead> Lines<'a, R> {
@@ -53,6 +55,7 @@ impl<'a, R: BufRead> Lines<'a, R> {
             position: 0,
             object: b"o unnamed_object\n".to_vec(),
             faces_of_part: 0,
+            counts: [0; 3],
         }
     }
 
@@ -110,9 +113,17 @@ impl<'a, R: BufRead> Lines<'a, R> {
 
     fn check(&mut self) -> Result<(), Problem> {
         let line = std::str::from_utf8(&self.current).unwrap_or_default();
-        let mut words = line.split_ascii_whitespace();
+        // As tobj splits it.
+        let mut words = line.split_whitespace();
         let mut seen = self.seen.borrow_mut();
-        match words.next() {
+        let kind = words.next();
+        if let Some("f" | "l") = kind {
+            let mut corners = words.clone();
+            if let Some(problem) = corners.find_map(|corner| unbounded(corner, &self.counts)) {
+                return Err(problem);
+            }
+        }
+        match kind {
             Some("f") => {
                 let corners = words.count() as u64;
                 if corners < 3 {
@@ -132,15 +143,18 @@ impl<'a, R: BufRead> Lines<'a, R> {
                 }
             }
             Some("v") => {
-                seen.vertices += 1;
-                if seen.vertices > self.limits.vertices {
+                self.counts[0] += 1;
+                let vertices = self.counts[0] as u64;
+                if vertices > self.limits.vertices {
                     return Err(Problem::TooMany {
                         what: "vertices",
-                        count: seen.vertices,
+                        count: vertices,
                         limit: self.limits.vertices,
                     });
                 }
             }
+            Some("vt") => self.counts[1] += 1,
+            Some("vn") => self.counts[2] += 1,
             Some("o" | "g") => {
                 self.object.clear();
                 self.object.extend_from_slice(line.trim().as_bytes());
