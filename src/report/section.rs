@@ -106,7 +106,10 @@ impl Report {
         // The parts after the third share its sentence.
         for more in (3..sections().count()).filter_map(|section| found(section, 0)) {
             if let Some(last) = sentences.last_mut() {
-                *last = format!("{}; {more}", last.trim_end_matches('.'));
+                // What is found begins with a number or an ordinary word, which is no sentence's first here.
+                let (first, rest) = more.split_at(more.chars().next().map_or(0, char::len_utf8));
+                let (said, first) = (last.trim_end_matches('.'), first.to_lowercase());
+                *last = format!("{said}; {first}{rest}");
             }
         }
         sentences
@@ -174,7 +177,7 @@ mod tests {
         assert_eq!(report(&["a"]).findings(), ["a 1.", "a 2.", "a 3."]);
         assert_eq!(report(&["a", "b"]).findings(), ["a 1.", "a 2.", "b 1."]);
         assert_eq!(
-            report(&["a", "b", "c", "d", "e"]).findings(),
+            report(&["a", "b", "c", "D", "e"]).findings(),
             ["a 1.", "b 1.", "c 1; d 1; e 1."]
         );
     }
