@@ -75,7 +75,7 @@ const LIGHT: Palette = Palette {
     hint: Color32::from_rgb(102, 108, 117),
     selected: Color32::from_rgb(176, 220, 225),
     accent: ACCENT[1],
-    warn: Color32::from_rgb(166, 98, 0),
+    warn: Color32::from_rgb(154, 90, 0),
     fault: Color32::from_rgb(184, 32, 32),
 };
 
