@@ -101,9 +101,15 @@ pub(super) fn question_ui(context: &egui::Context, world: &mut World, panels: &m
             );
         }
         Question::Recover(found) => {
-            let minutes = found.age.as_secs() / 60;
+            let ago = match found.age.as_secs() / 60 {
+                0 => "less than a minute ago".to_owned(),
+                1 => "about a minute ago".to_owned(),
+                minutes @ 2..120 => format!("about {minutes} minutes ago"),
+                minutes @ 120..2880 => format!("about {} hours ago", minutes / 60),
+                minutes => format!("about {} days ago", minutes / 1440),
+            };
             ui.label(format!(
-                "{} had changes when Glassbox ended unexpectedly, about {minutes} minutes ago.",
+                "{} had changes when Glassbox ended unexpectedly, {ago}.",
                 found.name
             ));
             answered = buttons_ui(
