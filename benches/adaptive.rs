@@ -231,7 +231,7 @@ fn time_at(wanted: f64, before: Option<(f64, f64)>, (seconds, error): (f64, f64)
     }
 }
 
-/// One line: each way's least time over the seeds, since what disturbs can only add.
+/// One line: the medians of both ways, which take turns.
 fn same_samples(scene: &Scene) {
     let mut seconds = [const { Vec::new() }; 2];
     for round in 0..ROUNDS {

@@ -22,7 +22,8 @@
 //! that is made from the same entities at once.
 //!
 //! Trees of meshes are built on threads of their own, and what was there before is traced until they
-//! are done ([`TreeBuilding`]): no frame waits for them. [`finish`] does.
+//! are done ([`TreeBuilding`]): no frame waits for them, and for the tree over the objects 2 ms at most.
+//! [`finish`] waits for all.
 //!
 //! What cannot be traced is left out, and named in [`Traced::problems`]; the rest stays intact.
 //!
