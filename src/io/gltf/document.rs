@@ -195,9 +195,9 @@ fn check_header(bytes: &[u8]) -> Result<(), Problem> {
     let Some((b"glTF", rest)) = bytes.split_at_checked(4) else {
         return Ok(());
     };
-    match rest.get(4..8).and_then(|length| length.try_into().ok()) {
-        Some(length) if u32::from_le_bytes(length) < HEADER => {
-            let length = u32::from_le_bytes(length);
+    let length = rest.get(4..8).and_then(|bytes| bytes.try_into().ok());
+    match length.map(u32::from_le_bytes) {
+        Some(length) if length < HEADER => {
             let text = format!("its header says that the file is {length} bytes long");
             Err(Problem::Malformed(text))
         }

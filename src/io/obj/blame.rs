@@ -1,4 +1,5 @@
-//! Finding the line of an error that tobj reports without one. Runs only after a failure.
+//! What is wrong with a line of an OBJ: [`first_fault`] finds the line of an error that tobj reports without
+//! one, after the failure; [`unbounded`] sees beforehand what tobj would take for something else.
 
 use super::super::error::{FileError, Place, Problem};
 use std::fs::File;
