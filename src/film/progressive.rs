@@ -75,7 +75,7 @@ impl Progressive {
         self.engine.set_focus(place);
     }
 
-    /// Stops tracing within a batch on each thread, about 2 ms. What has not reached the film is lost.
+    /// Stops tracing within a batch on each thread, about 1 ms. What has not reached the film is lost.
     pub fn cancel(&self) {
         self.engine.control.tell(Signal::Cancel);
     }

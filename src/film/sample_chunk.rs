@@ -19,9 +19,10 @@ pub(super) struct Subject {
 }
 
 /// How many samples go into a batch. Many, so that the trees get long lists of rays; so few that
-/// they stay in a core's second-level cache and that a batch takes about 2 ms, since a render stops
-/// between batches only. What a sample costs is not known beforehand, so threads adjust it together;
-/// and it differs from place to place, so there is a limit by the rays that it may take.
+/// they stay in a core's second-level cache and that a batch takes about 1 ms, since a render stops,
+/// and lets others have the core, between batches only. What a sample costs is not known beforehand, so
+/// threads adjust it together; and it differs from place to place, so there is a limit by the rays that
+/// it may take.
 pub(super) struct BatchSize {
     now: AtomicUsize,
     most: usize,
@@ -30,8 +31,8 @@ pub(super) struct BatchSize {
 const LARGEST_BATCH: usize = 1024;
 /// Some milliseconds of rays through a large scene.
 const RAYS: u64 = 8192;
-const SHORT: Duration = Duration::from_millis(1);
-const LONG: Duration = Duration::from_millis(4);
+const SHORT: Duration = Duration::from_micros(400);
+const LONG: Duration = Duration::from_micros(1500);
 
 impl BatchSize {
     pub fn new(subject: &Subject) -> Self {
@@ -188,6 +189,9 @@ impl Scratch {
             &mut self.workspace,
         );
         batch.learn(self.samples.len(), start.elapsed());
+        // Whoever waits for this core, a frame or the thread that develops pictures, has it now and not
+        // when the system thinks that it was enough: 4 ms later on Linux, and an edit waits several times.
+        std::thread::yield_now();
         rays
     }
 
