@@ -93,70 +93,24 @@ impl Camera {
         self.optics.aperture_radius > 0.0
     }
 
-    /// The ray of sample `index` of `pixel`, (0, 0) at the top left, in a picture of `size` pixels,
-    /// at shutter time `time`. Its direction has unit length.
-    pub fn sample_ray(
-        &self,
-        pixel: UVec2,
-        size: UVec2,
-        index: u64,
-        sampler: Sampler,
-        sampling: PixelSampling,
-        time: f32,
-    ) -> Ray {
-        let needs_numbers = sampling == PixelSampling::Area || self.has_lens();
-        let [x, y, u, v] = if needs_numbers {
-            sampler.block(index, Purpose::Camera, 0)
-        } else {
-            [0.0; 4]
+    /// Where the rays of a picture of `size` pixels pass.
+    pub fn image_plane(&self, size: UVec2) -> ImagePlane<'_> {
+        let size = size.as_vec2();
+        let half_height = match self.projection {
+            Projection::Perspective { fov_y } => (0.5 * fov_y).tan(),
+            Projection::Orthographic { height } => 0.5 * height,
         };
-        let place = match sampling {
-            PixelSampling::Area => Vec2::new(x, y),
-            PixelSampling::Center => Vec2::splat(0.5),
-            PixelSampling::Corner => Vec2::new(0.0, 1.0),
-        };
-        self.ray(pixel.as_vec2() + place, size, [u, v], time)
+        ImagePlane {
+            camera: self,
+            size,
+            aspect: size.x / size.y,
+            half_height,
+        }
     }
 
-    /// The ray through `place` in pixels, (0, 0) at the picture's top left corner, from the lens
-    /// point that the numbers `lens` in [0, 1)² choose.
+    /// [`ImagePlane::ray`] of a picture of `size` pixels.
     pub fn ray(&self, place: Vec2, size: UVec2, lens: [f32; 2], time: f32) -> Ray {
-        let size = size.as_vec2();
-        let ndc = Vec2::new(2.0 * place.x / size.x - 1.0, 1.0 - 2.0 * place.y / size.y);
-        let ndc = Vec2::new(ndc.x * (size.x / size.y), ndc.y);
-        let (mut origin, mut direction) = match self.projection {
-            Projection::Perspective { fov_y } => {
-                let at = ndc * (0.5 * fov_y).tan();
-                let direction = self.forward + at.x * self.right + at.y * self.up;
-                (self.position, direction.normalize())
-            }
-            Projection::Orthographic { height } => {
-                let at = ndc * (0.5 * height);
-                (
-                    self.position + at.x * self.right + at.y * self.up,
-                    self.forward,
-                )
-            }
-        };
-        let optics = &self.optics;
-        if self.has_lens() {
-            let p = optics.aperture_radius * concentric(lens);
-            let offset = p.x * self.right + p.y * self.up;
-            origin += offset;
-            if optics.focus_distance.is_finite() {
-                let to_focus = optics.focus_distance / direction.dot(self.forward);
-                direction = (to_focus * direction - offset).normalize();
-            }
-        }
-        if optics.velocity != Vec3::ZERO {
-            origin += optics.velocity * time;
-        }
-        Ray {
-            origin,
-            direction,
-            t_max: f32::INFINITY,
-            time,
-        }
+        self.image_plane(size).ray(place, lens, time)
     }
 
     /// Where a point of the world lies in a picture of `size` pixels, seen through the pinhole (or the
@@ -181,6 +135,82 @@ impl Camera {
     pub fn time(&self, u: f32) -> f32 {
         let [open, close] = self.optics.shutter;
         open + (close - open) * u
+    }
+}
+
+/// The plane at distance 1 (the film itself of an orthographic camera) that a camera's rays pass through, and what
+/// all of them share: computed once and not for each ray.
+#[derive(Clone, Copy, Debug)]
+pub struct ImagePlane<'a> {
+    camera: &'a Camera,
+    /// Of the picture, in pixels.
+    size: Vec2,
+    /// Width over height.
+    aspect: f32,
+    /// From the plane's middle to its top edge, in metres.
+    half_height: f32,
+}
+
+impl<'a> ImagePlane<'a> {
+    /// Whose rays these are.
+    pub fn camera(&self) -> &'a Camera {
+        self.camera
+    }
+
+    /// The ray of sample `index` of `pixel`, (0, 0) at the top left, at shutter time `time`. Its
+    /// direction has unit length.
+    pub fn sample_ray(
+        &self,
+        pixel: UVec2,
+        index: u64,
+        sampler: Sampler,
+        sampling: PixelSampling,
+        time: f32,
+    ) -> Ray {
+        let needs_numbers = sampling == PixelSampling::Area || self.camera.has_lens();
+        let [x, y, u, v] = if needs_numbers {
+            sampler.block(index, Purpose::Camera, 0)
+        } else {
+            [0.0; 4]
+        };
+        let place = match sampling {
+            PixelSampling::Area => Vec2::new(x, y),
+            PixelSampling::Center => Vec2::splat(0.5),
+            PixelSampling::Corner => Vec2::new(0.0, 1.0),
+        };
+        self.ray(pixel.as_vec2() + place, [u, v], time)
+    }
+
+    /// The ray through `place` in pixels, (0, 0) at the picture's top left corner, from the lens
+    /// point that the numbers `lens` in [0, 1)² choose.
+    pub fn ray(&self, place: Vec2, lens: [f32; 2], time: f32) -> Ray {
+        let Self { camera, size, .. } = self;
+        let ndc = Vec2::new(2.0 * place.x / size.x - 1.0, 1.0 - 2.0 * place.y / size.y);
+        let at = Vec2::new(ndc.x * self.aspect, ndc.y) * self.half_height;
+        let moved = |from: Vec3| from + at.x * camera.right + at.y * camera.up;
+        let (mut origin, mut direction) = match camera.projection {
+            Projection::Perspective { .. } => (camera.position, moved(camera.forward).normalize()),
+            Projection::Orthographic { .. } => (moved(camera.position), camera.forward),
+        };
+        let optics = &camera.optics;
+        if camera.has_lens() {
+            let p = optics.aperture_radius * concentric(lens);
+            let offset = p.x * camera.right + p.y * camera.up;
+            origin += offset;
+            if optics.focus_distance.is_finite() {
+                let to_focus = optics.focus_distance / direction.dot(camera.forward);
+                direction = (to_focus * direction - offset).normalize();
+            }
+        }
+        if optics.velocity != Vec3::ZERO {
+            origin += optics.velocity * time;
+        }
+        Ray {
+            origin,
+            direction,
+            t_max: f32::INFINITY,
+            time,
+        }
     }
 }
 
@@ -246,7 +276,8 @@ mod tests {
         let camera = camera(Optics::default());
         let sampler = Sampler::new(0, 0, 0, crate::scene::Sequence::Sobol);
         let pixel = UVec2::new(10, 20);
-        let corner = camera.sample_ray(pixel, SIZE, 0, sampler, PixelSampling::Corner, 0.0);
+        let plane = camera.image_plane(SIZE);
+        let corner = plane.sample_ray(pixel, 0, sampler, PixelSampling::Corner, 0.0);
         let expected = camera.ray(Vec2::new(10.0, 21.0), SIZE, [0.0; 2], 0.0);
         assert_eq!(corner.direction, expected.direction);
     }

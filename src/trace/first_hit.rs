@@ -51,8 +51,9 @@ pub fn first_hits(
 ) {
     assert_eq!(samples.len(), hits.len(), "one hit for each sample");
     let cone = Cone::of_pixel(camera, settings.size);
+    let plane = camera.image_plane(settings.size);
     for (hit, &sample) in hits.iter_mut().zip(samples) {
-        let ray = sample_ray(world, camera, settings, sample);
+        let ray = sample_ray(world, &plane, settings, sample);
         *hit = first_hit(world, settings, cone, &ray);
     }
 }

@@ -36,7 +36,7 @@ mod surface;
 mod texture;
 mod world;
 
-pub use camera::{Camera, Optics};
+pub use camera::{Camera, ImagePlane, Optics};
 pub use digest::{Digest, digest};
 pub use environment::Environment;
 pub use first_hit::{FirstHit, central_hits, central_ray, first_hits};

@@ -2,7 +2,7 @@
 
 use super::recorder::Recorder;
 use super::sampler::{Purpose, Sampler};
-use super::{Camera, Cone, Surface, World};
+use super::{Camera, Cone, ImagePlane, Surface, World};
 use crate::bvh::{Hit, Ray};
 use crate::scene::{Lighting, RenderSettings};
 use glam::{UVec2, Vec3};
@@ -28,10 +28,11 @@ impl SampleId {
 /// shutter time where anything moves.
 pub(super) fn sample_ray(
     world: &World,
-    camera: &Camera,
+    plane: &ImagePlane,
     settings: &RenderSettings,
     sample: SampleId,
 ) -> Ray {
+    let camera = plane.camera();
     let SampleId { pixel, index } = sample;
     let sampler = sample.sampler(settings);
     let moves = settings.features.motion
@@ -41,7 +42,7 @@ pub(super) fn sample_ray(
     } else {
         0.0
     };
-    camera.sample_ray(pixel, settings.size, index, sampler, settings.pixel, time)
+    plane.sample_ray(pixel, index, sampler, settings.pixel, time)
 }
 
 /// Rays traced, by what they were for.
@@ -187,8 +188,9 @@ impl<R: Recorder> Batch<'_, R> {
     fn start(&mut self, camera: &Camera, workspace: &mut Workspace) {
         workspace.paths.clear();
         let cone = Cone::of_pixel(camera, self.settings.size);
+        let plane = camera.image_plane(self.settings.size);
         for (i, &sample) in self.samples.iter().enumerate() {
-            let ray = sample_ray(self.world, camera, self.settings, sample);
+            let ray = sample_ray(self.world, &plane, self.settings, sample);
             let path = Path {
                 origin: ray.origin,
                 direction: ray.direction,
