@@ -96,15 +96,20 @@ impl Camera {
     /// Where the rays of a picture of `size` pixels pass.
     pub fn image_plane(&self, size: UVec2) -> ImagePlane<'_> {
         let size = size.as_vec2();
-        let half_height = match self.projection {
-            Projection::Perspective { fov_y } => (0.5 * fov_y).tan(),
-            Projection::Orthographic { height } => 0.5 * height,
-        };
         ImagePlane {
             camera: self,
             size,
             aspect: size.x / size.y,
-            half_height,
+            half_height: self.half_height(),
+        }
+    }
+
+    /// From the image plane's middle to its top edge, in metres: at distance 1, or anywhere where the
+    /// projection is orthographic.
+    pub(super) fn half_height(&self) -> f32 {
+        match self.projection {
+            Projection::Perspective { fov_y } => (0.5 * fov_y).tan(),
+            Projection::Orthographic { height } => 0.5 * height,
         }
     }
 
@@ -121,9 +126,9 @@ impl Camera {
         let ahead = offset.dot(self.forward);
         let at = Vec2::new(offset.dot(self.right), offset.dot(self.up));
         let at = match self.projection {
-            Projection::Perspective { fov_y } if ahead > 0.0 => at / (ahead * (0.5 * fov_y).tan()),
+            Projection::Perspective { .. } if ahead > 0.0 => at / (ahead * self.half_height()),
             Projection::Perspective { .. } => return None,
-            Projection::Orthographic { height } => at / (0.5 * height),
+            Projection::Orthographic { .. } => at / self.half_height(),
         };
         let size = size.as_vec2();
         let ndc = Vec2::new(at.x * (size.y / size.x), at.y);
@@ -142,21 +147,16 @@ impl Camera {
 /// all of them share: computed once and not for each ray.
 #[derive(Clone, Copy, Debug)]
 pub struct ImagePlane<'a> {
-    camera: &'a Camera,
+    pub(super) camera: &'a Camera,
     /// Of the picture, in pixels.
     size: Vec2,
     /// Width over height.
     aspect: f32,
-    /// From the plane's middle to its top edge, in metres.
+    /// [`Camera::half_height`].
     half_height: f32,
 }
 
-impl<'a> ImagePlane<'a> {
-    /// Whose rays these are.
-    pub fn camera(&self) -> &'a Camera {
-        self.camera
-    }
-
+impl ImagePlane<'_> {
     /// The ray of sample `index` of `pixel`, (0, 0) at the top left, at shutter time `time`. Its
     /// direction has unit length.
     pub fn sample_ray(

@@ -18,14 +18,14 @@ pub struct Cone {
 impl Cone {
     /// The cone of a pixel, for any of its rays.
     pub fn of_pixel(camera: &Camera, size: UVec2) -> Self {
-        let rows = size.y as f32;
+        let of_row = 2.0 * camera.half_height() / size.y as f32;
         match camera.projection {
-            Projection::Perspective { fov_y } => Self {
+            Projection::Perspective { .. } => Self {
                 width: 0.0,
-                spread: 2.0 * (0.5 * fov_y).tan() / rows,
+                spread: of_row,
             },
-            Projection::Orthographic { height } => Self {
-                width: height / rows,
+            Projection::Orthographic { .. } => Self {
+                width: of_row,
                 spread: 0.0,
             },
         }

@@ -32,7 +32,7 @@ pub(super) fn sample_ray(
     settings: &RenderSettings,
     sample: SampleId,
 ) -> Ray {
-    let camera = plane.camera();
+    let camera = plane.camera;
     let SampleId { pixel, index } = sample;
     let sampler = sample.sampler(settings);
     let moves = settings.features.motion
