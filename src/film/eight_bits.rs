@@ -64,15 +64,17 @@ fn rounded(value: f32) -> u8 {
 
 /// A rising curve over [0, 1], rounded to 256 steps, exactly.
 struct Steps {
-    /// By the upper half of a number's bits, from [`LOWEST`] on: in the lowest 8 bits the step of the smallest
-    /// number with this half; above them from which lower half on it is the next one. It is never a
-    /// second one.
-    table: Vec<u32>,
+    /// By the upper half of a number's bits, from [`LOWEST`] on: in the upper half of an entry the step of
+    /// the smallest number with this half; in the lower one what it takes, added to a number's lower half,
+    /// for the sum to carry over into the next step where the number is of that one. It is never a second one.
+    table: Box<[u32; PLACES]>,
 }
 
 const ONE: u32 = 1.0_f32.to_bits();
 /// The bits of 2^-13, below which all numbers are of the first step: the table fits the first-level cache.
 const LOWEST: u32 = (1.0_f32 / 8192.0).to_bits();
+/// A power of two, so that no place has to be compared with the table's length.
+const PLACES: usize = (((ONE - LOWEST) >> 16) as usize + 1).next_power_of_two();
 
 impl Steps {
     fn raw() -> &'static Self {
@@ -87,32 +89,48 @@ impl Steps {
 
     fn new(curve: impl Fn(f32) -> f32) -> Self {
         let first = first_of_steps(curve);
-        let entry = |half: u32| {
+        let mut table = Box::new([0; PLACES]);
+        for (half, entry) in (LOWEST >> 16..=ONE >> 16).zip(table.iter_mut()) {
             let step = first.partition_point(|&first| first <= half << 16) - 1;
             let next = first
                 .get(step + 1)
-                .map_or(1 << 16, |&next| next - (half << 16));
-            step as u32 | next.min(1 << 16) << 8
-        };
-        Self {
-            table: (LOWEST >> 16..=ONE >> 16).map(entry).collect(),
+                .map_or(1 << 16, |&next| (next - (half << 16)).min(1 << 16));
+            *entry = ((step as u32) << 16) + (1 << 16) - next;
         }
+        Self { table }
     }
 
+    /// Several pixels at once, and one thing after the other, so that the compiler computes in SIMD all that
+    /// is not a look into the table: two thirds of the time.
     fn row(&self, row: &[Vec3], gain: f32, shown: &mut [[u8; 4]]) {
-        for (shown, linear) in shown.iter_mut().zip(row) {
-            let of = |x: f32| self.of(x * gain);
-            *shown = [of(linear.x), of(linear.y), of(linear.z), 255];
+        let (groups, rest) = row.as_chunks::<LANES>();
+        let (shown_groups, shown_rest) = shown.as_chunks_mut::<LANES>();
+        for (pixels, shown) in groups.iter().zip(shown_groups) {
+            let places = pixels.map(|linear| (linear * gain).to_array().map(place));
+            let steps = places.map(|places| places.map(|place| self.at(place)));
+            *shown = steps.map(opaque);
+        }
+        for (linear, shown) in rest.iter().zip(shown_rest) {
+            *shown = opaque((linear * gain).to_array().map(|x| self.at(place(x))));
         }
     }
 
     #[inline(always)]
-    fn of(&self, x: f32) -> u8 {
-        // In this form not a number becomes 0.
-        let bits = x.max(f32::from_bits(LOWEST)).min(1.0).to_bits() - LOWEST;
-        let entry = self.table[(bits >> 16) as usize];
-        entry as u8 + u8::from(bits & 0xffff >= entry >> 8)
+    fn at(&self, place: u32) -> u32 {
+        (self.table[(place >> 16) as usize % PLACES] + (place & 0xffff)) >> 16
     }
+}
+
+/// Where a number stands in the table of [`Steps`], in its upper half; not a number stands where 0 does.
+#[inline(always)]
+fn place(x: f32) -> u32 {
+    x.max(f32::from_bits(LOWEST)).min(1.0).to_bits() - LOWEST
+}
+
+/// A pixel of these three steps.
+#[inline(always)]
+fn opaque([red, green, blue]: [u32; 3]) -> [u8; 4] {
+    (red | green << 8 | blue << 16 | 255 << 24).to_le_bytes()
 }
 
 /// The bits of the smallest number in [0, 1] of each step of a rising curve.
@@ -330,8 +348,9 @@ mod tests {
         fn any_number_gets_the_step_that_it_is_nearest_to(bits: u32) {
             let x = f32::from_bits(bits);
             let clamped = if x > 0.0 { x.min(1.0) } else { 0.0 };
-            prop_assert_eq!(Steps::raw().of(x), rounded(clamped));
-            prop_assert_eq!(Steps::srgb().of(x), rounded(srgb::encode(clamped)));
+            let step = |steps: &Steps| steps.at(place(x)) as u8;
+            prop_assert_eq!(step(Steps::raw()), rounded(clamped));
+            prop_assert_eq!(step(Steps::srgb()), rounded(srgb::encode(clamped)));
         }
     }
 }
