@@ -9,31 +9,31 @@ use super::{Ending, TILE, lock};
 use crate::trace::SampleId;
 use glam::{UVec2, Vec3};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 impl Engine {
     /// The coarse pictures, as far as they come before the one of full resolution.
     pub fn start_coarse(&self) -> Option<Ending> {
         let area = self.area;
         let focus = lock(&self.queue).focus();
-        let mut preview = Preview::new(area);
+        let preview = Arc::new(Preview::new(area));
         let ((seconds, rays), threads) = self.on_threads(|| {
-            let timed = time_samples(&self.subject, &mut preview, focus, &self.batch);
+            let timed = time_samples(&self.subject, &preview, focus, &self.batch);
             (timed, rayon::current_num_threads())
         });
         let coarsest = first_divider(area.extent, seconds / threads as f64);
         self.note_rays(rays);
-        *lock(&self.preview) = Some(preview);
+        *lock(&self.preview) = Some(preview.clone());
         let mut divider = coarsest;
         while divider > 1 {
-            if let Some(preview) = lock(&self.preview).as_mut() {
-                preview.begin(divider);
-            }
+            preview.begin(divider);
             let mut squares = lattice_squares(area.extent, divider);
             while !squares.is_empty() {
                 // Those that were not done when a pause came are tried again; what they had is kept.
                 squares = self.on_threads(|| {
                     let squares = squares.into_par_iter().with_max_len(1);
-                    let left = squares.filter(|square| !self.preview_square(*square, divider));
+                    let left =
+                        squares.filter(|square| !self.preview_square(&preview, *square, divider));
                     left.collect()
                 });
                 if let Some(ending) = self.interrupted() {
@@ -47,13 +47,10 @@ impl Engine {
     }
 
     /// Evaluates what is not known yet of a square of the lattice. False where it had to stop.
-    fn preview_square(&self, square: UVec2, divider: u32) -> bool {
-        let pixels: Vec<_> = {
-            let preview = lock(&self.preview);
-            lattice(self.area, square, TILE, divider)
-                .filter(|pixel| preview.as_ref().is_some_and(|p| p.get(*pixel).is_none()))
-                .collect()
-        };
+    fn preview_square(&self, preview: &Preview, square: UVec2, divider: u32) -> bool {
+        let pixels: Vec<_> = lattice(self.area, square, TILE, divider)
+            .filter(|pixel| preview.get(*pixel).is_none())
+            .collect();
         let mut rest = &pixels[..];
         while !rest.is_empty() {
             if self.must_stop() {
@@ -64,9 +61,7 @@ impl Engine {
             let rays = with_scratch(|scratch| {
                 let ids = some.iter().map(|&pixel| SampleId { pixel, index: 0 });
                 let rays = scratch.evaluate(&self.subject, ids, &self.batch);
-                if let Some(preview) = lock(&self.preview).as_mut() {
-                    preview.take(some, scratch.values());
-                }
+                preview.take(some, scratch.values());
                 rays
             });
             self.note_rays(rays);
@@ -74,10 +69,14 @@ impl Engine {
         true
     }
 
+    /// There is one from the first samples on until every pixel has one.
+    pub fn preview(&self) -> Option<Arc<Preview>> {
+        lock(&self.preview).clone()
+    }
+
     /// First samples of the tile's pixels that the preview has.
     pub fn known(&self, tile: Tile) -> Vec<Option<Vec3>> {
-        let preview = lock(&self.preview);
-        let Some(preview) = preview.as_ref() else {
+        let Some(preview) = self.preview() else {
             return Vec::new();
         };
         let mut known = vec![None; TILE_PIXELS];

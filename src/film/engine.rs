@@ -41,7 +41,7 @@ pub(super) struct Engine {
     /// Those that are rendered, and the rectangle that they make.
     pub rendered: Vec<u32>,
     pub area: Tile,
-    pub preview: Mutex<Option<Preview>>,
+    pub preview: Mutex<Option<Arc<Preview>>>,
     pub(super) queue: Mutex<Queue>,
     pub(super) batch: BatchSize,
     pub control: Control,
@@ -92,6 +92,12 @@ impl Engine {
 
     pub fn size(&self) -> UVec2 {
         self.grid.size
+    }
+
+    /// Whether a tile is one of those that are rendered.
+    pub fn renders(&self, tile: Tile) -> bool {
+        let end = self.area.origin + self.area.extent;
+        tile.origin.cmpge(self.area.origin).all() && tile.origin.cmplt(end).all()
     }
 
     /// How many pixels are rendered.

@@ -7,6 +7,8 @@ use super::sample_chunk::{BatchSize, Subject, with_scratch};
 use super::tiles::Tile;
 use crate::trace::{RayCounts, SampleId};
 use glam::{UVec2, Vec2, Vec3};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
 /// Tracing the first picture should take this long, in seconds: two frames of a screen, 33 ms, have
@@ -20,66 +22,91 @@ const TIMED: usize = 64;
 const BATCH: usize = 8;
 const LONG_ENOUGH: Duration = Duration::from_millis(4);
 
-/// Sample 0 of the pixels where it is known.
+/// Sample 0 of the pixels where it is known. Threads write and read it without waiting for one another: who
+/// draws the first picture would wait for a tracing thread's time slice each time that it met one.
 pub(super) struct Preview {
     area: Tile,
-    // Two arrays that begin as zeros, which the system hands out without writing them first.
-    values: Vec<[f32; 3]>,
-    known: Vec<u8>,
+    /// Those that have begun; every 2^i-th pixel of every 2^i-th row is in number i.
+    lattices: [OnceLock<Lattice>; COARSEST.ilog2() as usize + 1],
     /// The finest lattice that has begun.
-    divider: u32,
+    divider: AtomicU32,
     /// Counts how often it has changed.
-    pub version: u32,
+    version: AtomicU32,
 }
 
+/// Its pixels row by row, but for those that were known before it began: they are in a coarser one.
+type Lattice = Box<[OnceLock<Vec3>]>;
+
 impl Preview {
-    /// Of the pixels of this rectangle.
+    /// Of the pixels of this rectangle. The coarsest lattice begins.
     pub fn new(area: Tile) -> Self {
-        let pixels = area.extent.x as usize * area.extent.y as usize;
-        Self {
+        let preview = Self {
             area,
-            values: vec![[0.0; 3]; pixels],
-            known: vec![0; pixels],
-            divider: COARSEST,
-            version: 0,
-        }
-    }
-
-    fn place(&self, pixel: UVec2) -> usize {
-        let UVec2 { x, y } = pixel - self.area.origin;
-        y as usize * self.area.extent.x as usize + x as usize
-    }
-
-    pub fn get(&self, pixel: UVec2) -> Option<Vec3> {
-        let place = self.place(pixel);
-        (self.known[place] != 0).then(|| self.values[place].into())
+            lattices: Default::default(),
+            divider: AtomicU32::new(1),
+            version: AtomicU32::new(0),
+        };
+        preview.begin(coarsest_divider(area.extent));
+        preview
     }
 
     /// What comes from now on is of this lattice.
-    pub fn begin(&mut self, divider: u32) {
-        self.divider = divider;
+    pub fn begin(&self, divider: u32) {
+        let pixels = self.size(divider).element_product() as usize;
+        let unknown = || (0..pixels).map(|_| OnceLock::new()).collect();
+        self.lattices[divider.ilog2() as usize].get_or_init(unknown);
+        self.divider.store(divider, Ordering::Release);
     }
 
-    /// Takes the values of pixels.
-    pub fn take(&mut self, pixels: &[UVec2], values: &[Vec3]) {
+    /// Columns and rows of a lattice.
+    fn size(&self, divider: u32) -> UVec2 {
+        self.area.extent.map(|n| n.div_ceil(divider))
+    }
+
+    /// Where a lattice that has begun keeps this one of its pixels.
+    fn cell(&self, divider: u32, place: UVec2) -> Option<&OnceLock<Vec3>> {
+        let UVec2 { x, y } = place / divider;
+        let lattice = self.lattices[divider.ilog2() as usize].get()?;
+        lattice.get((y * self.size(divider).x + x) as usize)
+    }
+
+    pub fn get(&self, pixel: UVec2) -> Option<Vec3> {
+        let place = pixel - self.area.origin;
+        let first = self.divider.load(Ordering::Acquire);
+        // A pixel is on every lattice that is coarser, up to its last.
+        let has = |d: &u32| *d <= COARSEST && (place.x | place.y).is_multiple_of(*d);
+        std::iter::successors(Some(first), |divider| Some(2 * divider))
+            .take_while(has)
+            .find_map(|divider| self.cell(divider, place)?.get().copied())
+    }
+
+    /// Takes the values of pixels of the finest lattice.
+    pub fn take(&self, pixels: &[UVec2], values: &[Vec3]) {
+        let divider = self.divider.load(Ordering::Acquire);
         for (pixel, value) in pixels.iter().zip(values) {
-            let place = self.place(*pixel);
-            self.values[place] = value.to_array();
-            self.known[place] = 1;
+            if let Some(cell) = self.cell(divider, pixel - self.area.origin) {
+                // Who computes one again has the same.
+                let _ = cell.set(*value);
+            }
         }
-        self.version = self.version.wrapping_add(1);
+        self.version.fetch_add(1, Ordering::Release);
+    }
+
+    /// Is another one after every change, and 0 before the first.
+    pub fn version(&self) -> u32 {
+        self.version.load(Ordering::Acquire)
     }
 
     /// Squares of so many pixels, from a tile's corner on, show one and the same: half a lattice's
     /// distance, because a lattice's pixel stands in the middle of those that show it.
     pub fn side(&self) -> u32 {
-        (self.divider / 2).clamp(1, TILE)
+        (self.divider.load(Ordering::Acquire) / 2).clamp(1, TILE)
     }
 
     /// What the pixel shows: the nearest on the finest lattice that has one there.
     pub fn shown(&self, pixel: UVec2) -> Option<Vec3> {
         let place = pixel - self.area.origin;
-        let mut divider = self.divider;
+        let mut divider = self.divider.load(Ordering::Acquire);
         while divider <= COARSEST {
             // The divider is a power of two.
             let on_lattice = |n: UVec2| n & UVec2::splat(!(divider - 1));
@@ -147,19 +174,23 @@ pub(super) fn lattice_squares(size: UVec2, divider: u32) -> Vec<UVec2> {
 /// which are kept, and the rays that they took.
 pub(super) fn time_samples(
     subject: &Subject,
-    preview: &mut Preview,
+    preview: &Preview,
     focus: Vec2,
     batch: &BatchSize,
 ) -> (f64, RayCounts) {
     let area = preview.area;
     let divider = coarsest_divider(area.extent);
     let mut pixels: Vec<_> = lattice(area, UVec2::ZERO, u32::MAX, divider).collect();
-    pixels.sort_by_key(|pixel| pixel.as_vec2().distance_squared(focus).to_bits());
+    if pixels.len() > TIMED {
+        let from_focus = |pixel: &UVec2| pixel.as_vec2().distance_squared(focus).to_bits();
+        pixels.select_nth_unstable_by_key(TIMED, from_focus);
+        pixels.truncate(TIMED);
+    }
     let start = Instant::now();
     let mut rays = RayCounts::default();
     let mut timed = 0;
     with_scratch(|scratch| {
-        for some in pixels[..pixels.len().min(TIMED)].chunks(BATCH) {
+        for some in pixels.chunks(BATCH) {
             let ids = some.iter().map(|&pixel| SampleId { pixel, index: 0 });
             rays += scratch.evaluate(subject, ids, batch);
             preview.take(some, scratch.values());
@@ -215,7 +246,7 @@ mod tests {
     fn a_pixel_shows_the_nearest_that_is_known() {
         for origin in [UVec2::ZERO, UVec2::new(32, 16)] {
             let area = area(origin.x, origin.y, 70, 40);
-            let mut preview = Preview::new(area);
+            let preview = Preview::new(area);
             assert_eq!(preview.shown(origin + 3), None);
             let value = |pixel: UVec2| pixel.as_vec2().extend(0.0);
             for divider in [16, 8] {
@@ -236,6 +267,40 @@ mod tests {
             assert_eq!(preview.shown(origin + 1), Some(value(origin)));
             assert_eq!(preview.shown(origin + 9), Some(value(origin + 8)));
         }
+    }
+
+    #[test]
+    fn whoever_looks_while_others_write_sees_values_of_the_pixels_that_have_one() {
+        let area = area(16, 32, 130, 70);
+        let preview = Preview::new(area);
+        preview.begin(4);
+        let value = |pixel: UVec2| pixel.as_vec2().extend(1.0);
+        let squares = lattice_squares(area.extent, 4);
+        let written = AtomicU32::new(0);
+        std::thread::scope(|threads| {
+            for half in 0..2 {
+                let (preview, squares, written) = (&preview, &squares, &written);
+                threads.spawn(move || {
+                    for square in squares.iter().skip(half).step_by(2) {
+                        for pixel in lattice(area, *square, TILE, 4) {
+                            preview.take(&[pixel], &[value(pixel)]);
+                        }
+                    }
+                    written.fetch_add(1, Ordering::Release);
+                });
+            }
+            while written.load(Ordering::Acquire) < 2 {
+                for pixel in lattice(area, UVec2::ZERO, u32::MAX, 3) {
+                    let shown = preview.shown(pixel);
+                    let near =
+                        |v: Vec3| v.z == 1.0 && v.truncate().distance(pixel.as_vec2()) < 46.0;
+                    assert!(shown.is_none_or(near), "{pixel} shows {shown:?}");
+                }
+            }
+        });
+        let all: Vec<_> = lattice(area, UVec2::ZERO, u32::MAX, 4).collect();
+        assert!(all.iter().all(|&at| preview.get(at) == Some(value(at))));
+        assert_eq!(preview.version() as usize, all.len());
     }
 
     #[test]

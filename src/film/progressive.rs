@@ -106,6 +106,8 @@ impl Progressive {
     ///
     /// What this render has no picture of yet, or does not render, stays as the snapshot has it, so
     /// that a scene being edited does not turn black in between. One of another size starts black.
+    ///
+    /// Drawn on the current rayon pool.
     pub fn refresh(&self, snapshot: &mut Snapshot) -> bool {
         self.engine.redraw(snapshot)
     }

@@ -5,7 +5,8 @@ use super::preview::Preview;
 use super::tile_state::{TILE_PIXELS, TileState};
 use super::tiles::{FilmPixel, Tile};
 use super::{Film, Picture, TILE, lock};
-use glam::UVec2;
+use glam::{UVec2, Vec3};
+use rayon::prelude::*;
 
 /// A picture that is kept up to date: only what changed is drawn again.
 #[derive(Clone, Debug)]
@@ -34,15 +35,18 @@ impl Engine {
     /// The means so far; black where a pixel has none.
     pub fn picture(&self) -> Picture {
         let mut picture = Picture::black(self.size());
+        let width = picture.width as usize;
         for tile in &self.rendered {
-            draw_means(&lock(&self.tiles[*tile as usize]), &mut picture);
+            let state = lock(&self.tiles[*tile as usize]);
+            let above = state.tile.origin.y as usize * width;
+            draw_means(&state, &mut picture.pixels[above..], width);
         }
         picture
     }
 
     /// Draws again the tiles that have changed since the snapshot was drawn: the means so far; where
     /// there are none the nearest that the preview has; where it has none, what the snapshot shows
-    /// already. True where any had changed.
+    /// already. True where any had changed. On the current rayon pool.
     pub fn redraw(&self, snapshot: &mut Snapshot) -> bool {
         if snapshot.picture.size() != self.size() {
             *snapshot = Snapshot::black(self.size());
@@ -52,25 +56,34 @@ impl Engine {
             snapshot.versions = vec![0; self.tiles.len()];
             snapshot.preview_version = 0;
         }
-        let preview_version = (lock(&self.preview).as_ref()).map_or(0, |preview| preview.version);
+        let preview = self.preview();
+        let preview_version = preview.as_ref().map_or(0, |preview| preview.version());
         let preview_changed = preview_version != snapshot.preview_version;
         snapshot.preview_version = preview_version;
-        let mut changed = false;
-        for &tile in &self.rendered {
-            let state = lock(&self.tiles[tile as usize]);
-            let version = &mut snapshot.versions[tile as usize];
-            if *version != state.version {
-                *version = state.version;
-                draw_means(&state, &mut snapshot.picture);
-                changed = true;
-            } else if state.version == 0 && preview_changed {
-                if let Some(preview) = lock(&self.preview).as_ref() {
-                    draw_preview(&state, preview, &mut snapshot.picture);
+        let width = snapshot.picture.width as usize;
+        let columns = self.grid.columns() as usize;
+        let row_of_tiles = (TILE as usize * width).max(1);
+        let rows = snapshot.picture.pixels.par_chunks_mut(row_of_tiles);
+        rows.zip(snapshot.versions.par_chunks_mut(columns))
+            .zip(self.tiles.par_chunks(columns))
+            .map(|((pixels, versions), tiles)| {
+                let mut changed = false;
+                for (version, tile) in versions.iter_mut().zip(tiles) {
+                    let state = lock(tile);
+                    if *version != state.version {
+                        *version = state.version;
+                        draw_means(&state, pixels, width);
+                        changed = true;
+                    } else if state.version == 0 && preview_changed && self.renders(state.tile) {
+                        if let Some(preview) = &preview {
+                            draw_preview(&state, preview, pixels, width);
+                        }
+                        changed = true;
+                    }
                 }
-                changed = true;
-            }
-        }
-        changed
+                changed
+            })
+            .reduce(|| false, |a, b| a | b)
     }
 
     pub fn film(&self) -> Film {
@@ -100,30 +113,30 @@ impl Engine {
     }
 }
 
-fn draw_means(state: &TileState, picture: &mut Picture) {
+/// Draws a tile into the rows of a picture, `width` pixels each, of which the first is the tile's first.
+fn draw_means(state: &TileState, rows: &mut [Vec3], width: usize) {
     if state.pixels.is_empty() {
         return;
     }
-    let width = picture.width as usize;
     for (pixel, at) in state.tile.pixels() {
         let FilmPixel { sum, count, .. } = &state.pixels[at];
-        picture.pixels[pixel.y as usize * width + pixel.x as usize] = sum.mean(*count);
+        let row = (pixel.y - state.tile.origin.y) as usize;
+        rows[row * width + pixel.x as usize] = sum.mean(*count);
     }
 }
 
-fn draw_preview(state: &TileState, preview: &Preview, picture: &mut Picture) {
-    let width = picture.width as usize;
+/// The same for a tile that has no means yet.
+fn draw_preview(state: &TileState, preview: &Preview, rows: &mut [Vec3], width: usize) {
     let Tile { origin, extent } = state.tile;
-    let end = origin + extent;
     let side = preview.side();
-    for y in (origin.y..end.y).step_by(side as usize) {
-        for x in (origin.x..end.x).step_by(side as usize) {
-            let Some(value) = preview.shown(UVec2::new(x, y)) else {
+    for y in (0..extent.y).step_by(side as usize) {
+        for x in (0..extent.x).step_by(side as usize) {
+            let Some(value) = preview.shown(origin + UVec2::new(x, y)) else {
                 continue;
             };
-            let columns = x as usize..(x + side).min(end.x) as usize;
-            for y in y..(y + side).min(end.y) {
-                let row = &mut picture.pixels[y as usize * width..];
+            let columns = (origin.x + x) as usize..(origin.x + (x + side).min(extent.x)) as usize;
+            for y in y..(y + side).min(extent.y) {
+                let row = &mut rows[y as usize * width..];
                 row[columns.clone()].fill(value);
             }
         }
@@ -136,7 +149,7 @@ mod tests {
     use super::super::sample_chunk::Subject;
     use super::super::test_scene;
     use super::*;
-    use glam::Vec3;
+    use std::sync::Arc;
 
     const SIZE: UVec2 = UVec2::new(70, 45);
     const OLD: Vec3 = Vec3::splat(7.0);
@@ -164,9 +177,10 @@ mod tests {
         assert!(snapshot.picture.pixels.iter().all(|p| *p == OLD));
 
         // One pixel of the coarsest lattice is known: it stands for those around it.
-        let mut preview = Preview::new(engine.area);
+        let preview = Preview::new(engine.area);
+        preview.begin(32);
         preview.take(&[UVec2::new(32, 0)], &[Vec3::ONE]);
-        *lock(&engine.preview) = Some(preview);
+        *lock(&engine.preview) = Some(Arc::new(preview));
         assert!(engine.redraw(&mut snapshot) && !engine.redraw(&mut snapshot));
         for y in 0..SIZE.y {
             for x in 0..SIZE.x {

@@ -136,7 +136,8 @@ impl TileGrid {
         Self { size }
     }
 
-    fn columns(&self) -> u32 {
+    /// How many tiles are beside one another.
+    pub fn columns(&self) -> u32 {
         self.size.x.div_ceil(TILE).max(1)
     }
 
