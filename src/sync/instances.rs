@@ -70,8 +70,11 @@ impl TracedInstances {
             if at_once {
                 self.show(Some(work()), draft);
             } else {
+                // A tree that takes longer is not there in time, and the frame would wait for nothing.
+                let in_time = draft.world.aggregate.build_time() <= PATIENCE;
                 thread.start(work);
-                self.show(thread.finished(PATIENCE), draft);
+                let wait = if in_time { PATIENCE } else { Duration::ZERO };
+                self.show(thread.finished(wait), draft);
             }
         }
         draft.top_level_pending = thread.is_busy();
@@ -88,8 +91,8 @@ impl TracedInstances {
     }
 }
 
-/// So long a frame waits for the tree over the objects: that of some thousand is there by then, and
-/// nothing lags behind the hand.
+/// So long a frame waits for the tree over the objects where the one before took no longer: that of a thousand is
+/// there by then, and nothing lags behind the hand.
 const PATIENCE: Duration = Duration::from_micros(2000);
 
 /// One object as the top level sees it.
