@@ -48,7 +48,8 @@ pub fn cosines(surface: &Surface, l: Vec3) -> [f32; 2] {
 /// `max(r·v, 0)^s`.
 fn lobe(surface: &Surface, l: Vec3) -> f32 {
     let [_, r_dot_v] = cosines(surface, l);
-    r_dot_v.max(0.0).powf(surface.shininess)
+    // Rounding leaves it above 1, by so little that only an exponent of millions shows it.
+    r_dot_v.clamp(0.0, 1.0).powf(surface.shininess)
 }
 
 #[cfg(test)]
@@ -69,6 +70,19 @@ mod tests {
             direction,
             distance: 1.0,
             arriving: Vec3::ONE,
+        }
+    }
+
+    #[test]
+    fn the_lobe_is_at_most_one_whatever_its_exponent() {
+        for i in 0..1000 {
+            let angle = i as f32 * 1e-3;
+            let (sine, cosine) = angle.sin_cos();
+            let [l, v] = [1.0, -1.0].map(|side| Vec3::new(side * sine, cosine, 0.0).normalize());
+            for shininess in [1.0, 1e4, 1e8, f32::MAX] {
+                let lobe = lobe(&surface(1.0, shininess, v), l);
+                assert!((0.0..=1.0).contains(&lobe), "{angle}, {shininess}: {lobe}");
+            }
         }
     }
 

@@ -85,7 +85,9 @@ impl Surface {
                 diffuse = world.textures[map as usize].sample(uv, footprint, filter, raw);
             }
             if let Some(map) = material.opacity_map {
-                opacity *= world.textures[map as usize].opacity(uv, footprint, filter);
+                let map = world.textures[map as usize].opacity(uv, footprint, filter);
+                // A picture of floats may leave the range, and light would be negative.
+                opacity = (opacity * map).clamp(0.0, 1.0);
             }
         }
         if !settings.features.transparency {

@@ -203,18 +203,20 @@ impl Texture {
     /// Equirectangular look-up: u around, v from pole to pole, bilinear. Columns wrap; a row beyond
     /// a pole is the pole's own row, half a turn away, so that nothing jumps there.
     pub(super) fn sample_sphere(&self, uv: Vec2) -> Vec3 {
-        let (x, fx) = split(uv.x * self.width as f32 - 0.5);
+        let column = uv.x * self.width as f32 - 0.5;
         let (y, fy) = split(uv.y * self.height as f32 - 0.5);
         let row = |y: i64| {
             let beyond_pole = y < 0 || y >= i64::from(self.height);
+            // Half a turn is no whole number of columns where their number is odd.
             let turn = if beyond_pole {
-                i64::from(self.width / 2)
+                self.width as f32 / 2.0
             } else {
-                0
+                0.0
             };
+            let (x, fx) = split(column + turn);
             let y = y.clamp(0, i64::from(self.height) - 1) as u32;
-            let left = self.texel(wrap(x + turn, self.width), y, false);
-            let right = self.texel(wrap(x + turn + 1, self.width), y, false);
+            let left = self.texel(wrap(x, self.width), y, false);
+            let right = self.texel(wrap(x + 1, self.width), y, false);
             left.lerp(right, fx)
         };
         row(y).lerp(row(y + 1), fy)
@@ -238,6 +240,24 @@ mod tests {
     fn two_by_two() -> Texture {
         let texels = vec![[0.0; 3], [1.0; 3], [2.0; 3], [3.0; 3]];
         Texture::new(2, 2, Texels::Linear32(texels)).unwrap()
+    }
+
+    #[test]
+    fn around_a_pole_a_map_is_the_same_half_a_turn_away_whatever_its_width() {
+        for width in [2, 3, 7] {
+            let texels = (0..2 * width).map(|i| [(i * i % 5) as f32; 3]).collect();
+            let map = Texture::new(width, 2, Texels::Linear32(texels)).unwrap();
+            for i in 0..20 {
+                for pole in [0.0, 1.0] {
+                    let u = i as f32 / 40.0;
+                    let [here, there] = [u, u + 0.5].map(|u| map.sample_sphere(Vec2::new(u, pole)));
+                    assert!(
+                        (here - there).length() < 1e-4,
+                        "{width}, {u}: {here} {there}"
+                    );
+                }
+            }
+        }
     }
 
     #[test]
