@@ -1,3 +1,4 @@
+use super::reading::Switched;
 use crate::scene::{
     DirectionalLamp, NotTraced, ParallelogramLamp, Phong, PointLamp, SceneCamera, SceneId,
     SegmentLamp,
@@ -34,10 +35,12 @@ pub(super) fn assign_scene_ids(
     changed: Query<(), Changed<SceneId>>,
     missing: Query<Entity, (OfScene, Without<SceneId>, Without<NotTraced>)>,
     ids: Query<(Entity, &SceneId)>,
+    mut switched: Switched,
     mut known: ResMut<IdOwners>,
     mut commands: Commands,
 ) {
-    if changed.is_empty() && missing.is_empty() {
+    // Who was made disabled has none when it is enabled. Not `||`: the reader has to be emptied.
+    if !switched.any() & changed.is_empty() & missing.is_empty() {
         return;
     }
     let mut all: Vec<(Entity, SceneId)> = ids.iter().map(|(entity, id)| (entity, *id)).collect();

@@ -1,4 +1,5 @@
 use super::mesh_data::{MeshCopy, MeshFault, trace_mesh};
+use super::reading::Switched;
 use super::traced::Draft;
 use super::tree_building::{Built, TreeBuilding, TreeThreads};
 use crate::bvh::{self, BuildOptions, Builder, Levels};
@@ -95,6 +96,7 @@ impl TracedMeshes {
 pub(super) fn sync_meshes(
     mut events: MessageReader<AssetEvent<Mesh>>,
     mut removed: RemovedComponents<Mesh3d>,
+    mut switched: Switched,
     changed: Query<(), (Changed<Mesh3d>, Without<NotTraced>)>,
     users: Query<&Mesh3d, Without<NotTraced>>,
     assets: Res<Assets<Mesh>>,
@@ -107,29 +109,27 @@ pub(super) fn sync_meshes(
     let at_once = *building == TreeBuilding::AtOnce;
     let wanted = build_options(&settings.tree);
     let rebuild = wanted != known.wanted;
+    let mut stale: HashSet<AssetId<Mesh>> = HashSet::new();
     if rebuild {
         known.wanted = wanted;
-        known.ready.clear();
+        // They may hold edits that what is shown lacks.
+        stale.extend(known.ready.drain().map(|(id, _)| id));
     }
-    let mut stale: HashSet<AssetId<Mesh>> = events
-        .read()
-        .filter_map(|event| match event {
-            AssetEvent::Added { id } | AssetEvent::Modified { id } | AssetEvent::Removed { id } => {
-                Some(*id)
-            }
-            _ => None,
-        })
-        .collect();
+    let edited = events.read().filter_map(|event| match event {
+        AssetEvent::Added { id } | AssetEvent::Modified { id } | AssetEvent::Removed { id } => {
+            Some(*id)
+        }
+        _ => None,
+    });
+    stale.extend(edited);
     let built = if at_once {
         known.threads.finish(known.building.len())
     } else {
         known.threads.finished()
     };
-    let nothing = removed.read().count() == 0
-        && changed.is_empty()
-        && stale.is_empty()
-        && built.is_empty()
-        && !rebuild;
+    // Not `&&`: every reader has to be emptied.
+    let users_changed = (removed.read().count() > 0) | switched.any() | !changed.is_empty();
+    let nothing = !users_changed && stale.is_empty() && built.is_empty() && !rebuild;
     if nothing {
         return;
     }

@@ -1,3 +1,4 @@
+use super::reading::Switched;
 use super::texture_data::{TextureFault, trace_texture};
 use super::traced::Draft;
 use crate::scene::{EnvironmentMap, PhongMaps};
@@ -34,6 +35,7 @@ impl TracedTextures {
 pub(super) fn sync_textures(
     mut events: MessageReader<AssetEvent<Image>>,
     mut removed: RemovedComponents<PhongMaps>,
+    mut switched: Switched,
     changed: Query<(), Changed<PhongMaps>>,
     users: Query<&PhongMaps>,
     environment: Res<EnvironmentMap>,
@@ -42,7 +44,11 @@ pub(super) fn sync_textures(
     mut draft: ResMut<Draft>,
 ) {
     let known = known.into_inner();
-    let mut stale = removed.read().count() > 0 || !changed.is_empty() || environment.is_changed();
+    // Not `||`: every reader has to be emptied.
+    let mut stale = (removed.read().count() > 0)
+        | switched.any()
+        | !changed.is_empty()
+        | environment.is_changed();
     for event in events.read() {
         let (AssetEvent::Added { id } | AssetEvent::Modified { id } | AssetEvent::Removed { id }) =
             event

@@ -1,4 +1,4 @@
-//! Where trees of meshes are built.
+//! Where trees are built: those of meshes, and the one over the objects.
 
 use super::mesh_data::{MeshCopy, MeshFault};
 use super::meshes::MeshResult;
@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::available_parallelism;
 use std::time::Duration;
 
-/// When trees of meshes are built.
+/// When trees are built.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TreeBuilding {
     /// On threads of their own; no frame waits but 2 ms for the tree over the objects. Objects keep the mesh that they

@@ -139,6 +139,25 @@ fn trees_of_other_settings_are_shown_all_at_once() {
 }
 
 #[test]
+fn an_edit_made_under_other_settings_is_kept_when_they_go_back() {
+    let mut small = small();
+    // One that takes long, so that the other is ready first.
+    edit_mesh(&mut small, 1, 200_000);
+    small.app.update();
+    let set = |small: &mut Small, builder| {
+        let mut settings = small.app.world_mut().resource_mut::<RenderSettings>();
+        settings.tree.builder = builder;
+        small.app.update();
+    };
+    edit_mesh(&mut small, 0, 7);
+    set(&mut small, Builder::Sah);
+    until(&mut small.app, |app| pending(app) < 2);
+    set(&mut small, Builder::Ploc);
+    finish(&mut small.app);
+    assert_eq!(triangles(&small.app), [7, 7, 200_000]);
+}
+
+#[test]
 fn what_cannot_be_traced_is_named_without_waiting_and_a_mesh_that_went_is_not_shown() {
     let mut small = small();
     let mut meshes = small.app.world_mut().resource_mut::<Assets<Mesh>>();

@@ -204,6 +204,40 @@ fn ids(app: &App) -> Vec<u64> {
 }
 
 #[test]
+fn an_object_that_was_made_disabled_brings_its_mesh_and_its_picture_when_it_is_enabled() {
+    let mut small = Small::new();
+    let mesh = add_mesh(&mut small.app, 9);
+    let maps = PhongMaps {
+        diffuse: Some(add_image(&mut small.app, 7)),
+        opacity: None,
+    };
+    let object = (
+        Mesh3d(mesh),
+        Transform::default(),
+        grey(0.4),
+        maps,
+        Disabled,
+    );
+    let object = small.app.world_mut().spawn(object).id();
+    small.app.update();
+    assert_eq!(ids(&small.app).len(), 3);
+    small
+        .app
+        .world_mut()
+        .entity_mut(object)
+        .remove::<Disabled>();
+    small.app.update();
+    let last = world(&small.app).objects.last().cloned().unwrap();
+    assert_eq!(last.mesh.tree.triangles().len(), 9);
+    assert_eq!(world(&small.app).textures.len(), 1);
+    assert!(
+        problems(&small.app).is_empty(),
+        "{:?}",
+        problems(&small.app)
+    );
+}
+
+#[test]
 fn hidden_disabled_and_deleted_objects_vanish_and_come_back() {
     let mut small = Small::new();
     let [first, second, third] = small.objects;
