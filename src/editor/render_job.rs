@@ -223,7 +223,7 @@ fn step(world: &mut World, job: Job) -> Option<Job> {
             }
             let scene = (*traced.world).clone();
             let settings = job.request.settings.clone();
-            match Progressive::start(scene, job.camera.clone(), settings) {
+            match Progressive::start_for_file(scene, job.camera.clone(), settings) {
                 Ok(render) => Stage::Rendering(render),
                 Err(error) => return fault(world, error.to_string()),
             }

@@ -76,6 +76,11 @@ impl Engine {
 
     /// First samples of the tile's pixels that the preview has.
     pub fn known(&self, tile: Tile) -> Vec<Option<Vec3>> {
+        let sampling = &self.subject.settings.sampling;
+        if sampling.adaptive && sampling.error > 0.0 {
+            // Where samples go depends on what they cost, and must not depend on how far a preview came.
+            return Vec::new();
+        }
         let Some(preview) = self.preview() else {
             return Vec::new();
         };

@@ -2,7 +2,7 @@
 
 use super::control::Signal;
 use super::engine::{Engine, Mode};
-use super::pool::watched_pool;
+use super::pool::{Purpose, shared_pool};
 use super::sample_chunk::Subject;
 use super::{Ending, Film, Snapshot, Status, Sum};
 use crate::scene::RenderSettings;
@@ -44,6 +44,26 @@ impl Progressive {
         settings: RenderSettings,
         region: Option<URect>,
     ) -> io::Result<Self> {
+        Self::start_for(Purpose::View, world, camera, settings, region)
+    }
+
+    /// [`start`](Self::start) for a file that is written in the end: on threads of its own, which give way to
+    /// those of renders that somebody looks at.
+    pub fn start_for_file(
+        world: World,
+        camera: Camera,
+        settings: RenderSettings,
+    ) -> io::Result<Self> {
+        Self::start_for(Purpose::File, world, camera, settings, None)
+    }
+
+    fn start_for(
+        purpose: Purpose,
+        world: World,
+        camera: Camera,
+        settings: RenderSettings,
+        region: Option<URect>,
+    ) -> io::Result<Self> {
         let samples = 0..u64::from(samples_per_pixel(&world, &camera, &settings));
         let subject = Subject {
             world,
@@ -55,7 +75,7 @@ impl Progressive {
             samples,
             region,
         };
-        let engine = Arc::new(Engine::new(subject, mode, Some(watched_pool()?)));
+        let engine = Arc::new(Engine::new(subject, mode, Some(shared_pool(purpose)?)));
         engine.set_focus(engine.area.center());
         let (lets_worker_go, told) = channel::<()>();
         let worker = Worker(engine.clone());
@@ -68,6 +88,11 @@ impl Progressive {
             engine,
             _lets_worker_go: lets_worker_go,
         })
+    }
+
+    /// Tells this render from all others of the process.
+    pub fn number(&self) -> u64 {
+        self.engine.number
     }
 
     /// What is around this place of the picture, in pixels, comes first from now on.
@@ -205,6 +230,35 @@ mod tests {
             assert_eq!(busy.status().rays, quiet.status().rays, "{spp} spp");
             assert_eq!(busy.status().samples, f64::from(spp));
         }
+    }
+
+    #[test]
+    fn with_an_error_to_stop_at_it_is_the_picture_of_a_render_that_nobody_watches() {
+        let mut settings = settings(SIZE, 1 << 10);
+        settings.sampling.adaptive = true;
+        settings.sampling.error = 0.03;
+        let expected = render(&world(), &camera(), &settings, &|_, _| {});
+        assert!(
+            expected.status.samples < 1024.0,
+            "the test wants samples that go where the error is"
+        );
+        for _ in 0..4 {
+            let render = Progressive::start(world(), camera(), settings.clone()).unwrap();
+            assert_eq!(render.wait(), Ending::Error);
+            assert_eq!(render.snapshot().picture, expected.picture);
+        }
+    }
+
+    #[test]
+    fn a_file_has_threads_of_its_own_and_a_view_shares_those_of_views() {
+        let pool = |purpose| shared_pool(purpose).unwrap();
+        let (view, file) = (pool(Purpose::View), pool(Purpose::File));
+        assert!(!Arc::ptr_eq(&view, &file));
+        assert!(Arc::ptr_eq(&view, &pool(Purpose::View)));
+        let render = Progressive::start_for_file(world(), camera(), settings(SIZE, 4)).unwrap();
+        assert_eq!(render.wait(), Ending::Samples);
+        assert_eq!(render.snapshot().picture, rendered(4));
+        assert!(Arc::ptr_eq(render.engine.pool.as_ref().unwrap(), &file));
     }
 
     #[test]

@@ -9,11 +9,11 @@ use crate::film::views::{Scale, Source, Sources, View, show};
 use crate::film::{FirstHits, Progressive, Snapshot, State, depths, develop_rgba8};
 use crate::scene::{Output, RenderSettings};
 use crate::trace;
-use bevy::math::UVec2;
+use bevy::math::{URect, UVec2};
 use rayon::ThreadPool;
 use std::io;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -45,12 +45,19 @@ pub(super) struct Print {
     /// are still true, or come with the next.
     pub depths: Option<(UVec2, Vec<f32>)>,
     pub scale: Option<Scale>,
-    /// Which render it is of: the address of its [`Progressive`].
-    pub of: usize,
+    /// Which render it is of: [`Progressive::number`].
+    pub of: u64,
 }
 
-/// World, camera and settings of a render.
-pub(super) type Subject = (Arc<trace::World>, trace::Camera, RenderSettings);
+/// What a render is of.
+#[derive(Clone)]
+pub(super) struct Subject {
+    pub world: Arc<trace::World>,
+    pub camera: trace::Camera,
+    pub settings: RenderSettings,
+    /// The part of the picture that is rendered, in pixels; `None` for all.
+    pub region: Option<URect>,
+}
 
 enum Task {
     Develop(Arc<Progressive>, Box<Subject>, Box<Order>),
@@ -136,6 +143,22 @@ struct Developer {
     snapshot: Snapshot,
     /// Of what the newest depths are.
     depths_of: Option<DepthsOf>,
+    /// Of what the snapshot is.
+    seen: Option<Seen>,
+}
+
+/// What stays true of a picture where a region of it is rendered anew.
+struct Seen {
+    /// Its address is not used again while this is kept.
+    world: Weak<trace::World>,
+    camera: trace::Camera,
+}
+
+impl Seen {
+    fn is_of(&self, subject: &Subject) -> bool {
+        std::ptr::eq(self.world.as_ptr(), Arc::as_ptr(&subject.world))
+            && self.camera == subject.camera
+    }
 }
 
 /// All that depths depend on.
@@ -162,6 +185,7 @@ impl Developer {
             job: None,
             snapshot: Snapshot::black(UVec2::ZERO),
             depths_of: None,
+            seen: None,
         }
     }
 
@@ -228,6 +252,15 @@ impl Developer {
                     job.printed = false;
                     job.next = now;
                 } else {
+                    let seen = self.seen.take().filter(|seen| seen.is_of(&subject));
+                    if subject.region.is_some() && seen.is_none() {
+                        // Around the region there would be another scene, or another view of it.
+                        self.snapshot = Snapshot::black(subject.settings.size);
+                    }
+                    self.seen = Some(Seen {
+                        world: Arc::downgrade(&subject.world),
+                        camera: subject.camera.clone(),
+                    });
                     self.job = Some(Job {
                         render,
                         subject,
@@ -260,7 +293,12 @@ impl Job {
             return None;
         }
         let changed = self.render.refresh(snapshot);
-        let (world, camera, settings) = &*self.subject;
+        let Subject {
+            world,
+            camera,
+            settings,
+            ..
+        } = &*self.subject;
         let wanted = DepthsOf {
             trees: KeptTrees(world.aggregate.clone()),
             camera: camera.clone(),
@@ -286,11 +324,11 @@ impl Job {
         let (shown, scale) = self.shown(snapshot)?;
         self.printed = true;
         Some(Print {
-            size: self.subject.2.size,
+            size: self.subject.settings.size,
             bytes: shown,
             depths,
             scale,
-            of: Arc::as_ptr(&self.render) as usize,
+            of: self.render.number(),
         })
     }
 
@@ -299,7 +337,12 @@ impl Job {
             let bytes = develop_rgba8(&snapshot.picture, &self.order.output);
             return Some((bytes, None));
         }
-        let (world, camera, settings) = &*self.subject;
+        let Subject {
+            world,
+            camera,
+            settings,
+            ..
+        } = &*self.subject;
         let source = self.order.view.source();
         let film = matches!(source, Source::Samples | Source::Errors).then(|| self.render.film());
         if source == Source::FirstHits && self.first_hits.is_none() {
@@ -336,7 +379,12 @@ impl Job {
 
     /// For a picture that is small enough to be traced besides.
     fn depths(&self) -> (UVec2, Vec<f32>) {
-        let (world, camera, settings) = &*self.subject;
+        let Subject {
+            world,
+            camera,
+            settings,
+            ..
+        } = &*self.subject;
         let pixels = settings.size.as_vec2().element_product();
         let scale = (MOST_DEPTHS / pixels).sqrt().min(1.0);
         let size = (settings.size.as_vec2() * scale).as_uvec2().max(UVec2::ONE);
@@ -350,7 +398,7 @@ impl Job {
 mod tests {
     use super::*;
 
-    fn print(of: usize, depths: Option<f32>) -> Print {
+    fn print(of: u64, depths: Option<f32>) -> Print {
         Print {
             size: UVec2::ONE,
             bytes: vec![0; 4],

@@ -1,6 +1,6 @@
 //! The render behind a traced view: begun, directed, replaced, and what it has on the screen.
 
-use super::darkroom::{Darkroom, Order};
+use super::darkroom::{Darkroom, Order, Subject};
 use super::screen::ScreenMaterial;
 use super::traced::TracedView;
 use crate::film::views::Scale;
@@ -11,7 +11,7 @@ use bevy::asset::Handle;
 use bevy::ecs::entity::Entity;
 use bevy::image::Image;
 use bevy::log::error;
-use bevy::math::{UVec2, Vec2};
+use bevy::math::{URect, UVec2, Vec2};
 use bevy::prelude::Component;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -41,8 +41,8 @@ pub struct PrintInfo {
     pub picture: Handle<Image>,
     /// From the edit to this render's first picture on the screen.
     pub first_picture: Duration,
-    /// The render's place in memory.
-    pub(super) of: usize,
+    /// The render's number.
+    pub(super) of: u64,
 }
 
 /// A render that goes on, and what it is of.
@@ -51,6 +51,7 @@ pub(super) struct Running {
     world: Arc<trace::World>,
     camera: trace::Camera,
     settings: RenderSettings,
+    region: Option<URect>,
     order: Order,
     pub(super) started: Instant,
     paused: bool,
@@ -96,7 +97,7 @@ impl TracedRender {
         let Some(running) = &self.running else {
             return false;
         };
-        let of = Arc::as_ptr(&running.render) as usize;
+        let of = running.render.number();
         !running.paused
             && running.settings.size == size
             && running.started.elapsed() < LONGEST_WAIT
@@ -125,6 +126,8 @@ pub(super) struct Wanted {
     pub world: Arc<trace::World>,
     pub camera: trace::Camera,
     pub settings: RenderSettings,
+    /// In pixels; all where that is `None`.
+    pub region: Option<URect>,
     pub order: Order,
 }
 
@@ -135,6 +138,7 @@ impl TracedRender {
             Arc::ptr_eq(&running.world, &wanted.world)
                 && running.camera == wanted.camera
                 && running.settings == wanted.settings
+                && running.region == wanted.region
         })
     }
 
@@ -160,9 +164,11 @@ impl TracedRender {
             world,
             camera,
             settings,
+            region,
             order,
         } = wanted;
-        let render = match Progressive::start((*world).clone(), camera.clone(), settings.clone()) {
+        let (scene, seen_from, how) = ((*world).clone(), camera.clone(), settings.clone());
+        let render = match Progressive::start_region(scene, seen_from, how, region) {
             Ok(render) => Arc::new(render),
             Err(problem) => {
                 self.failed = true;
@@ -175,6 +181,7 @@ impl TracedRender {
             world,
             camera,
             settings,
+            region,
             order: order.clone(),
             started,
             paused: false,
@@ -188,12 +195,13 @@ impl TracedRender {
 }
 
 impl Running {
-    fn subject(&self) -> (Arc<trace::World>, trace::Camera, RenderSettings) {
-        (
-            self.world.clone(),
-            self.camera.clone(),
-            self.settings.clone(),
-        )
+    fn subject(&self) -> Subject {
+        Subject {
+            world: self.world.clone(),
+            camera: self.camera.clone(),
+            settings: self.settings.clone(),
+            region: self.region,
+        }
     }
 
     pub(super) fn direct(&mut self, view: &TracedView) {
@@ -209,6 +217,52 @@ impl Running {
             self.focus = view.focus;
             self.render
                 .set_focus(view.focus * self.settings.size.as_vec2());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::Ending;
+    use bevy::math::{Quat, Vec3};
+    use bevy::prelude::default;
+
+    fn wanted(region: Option<URect>) -> Wanted {
+        let camera = trace::Camera::new(Vec3::ZERO, Quat::IDENTITY, default(), default());
+        let settings = RenderSettings {
+            size: UVec2::new(64, 48),
+            spp: 2,
+            ..RenderSettings::default()
+        };
+        Wanted {
+            world: Arc::default(),
+            camera,
+            order: Order {
+                output: settings.output,
+                view: crate::film::views::View::Shaded,
+                range: None,
+            },
+            settings,
+            region,
+        }
+    }
+
+    #[test]
+    fn of_a_region_only_the_pixels_in_it_are_rendered_and_another_one_is_another_render() {
+        let region = Some(URect::new(16, 16, 32, 32));
+        let mut view = TracedRender::default();
+        let wanted = wanted(region);
+        let world = wanted.world.clone();
+        view.begin(wanted);
+        let render = view.render().unwrap();
+        assert_eq!(render.wait(), Ending::Samples);
+        let film = render.film();
+        assert_eq!((film.count(20, 20), film.count(40, 20)), (2, 0));
+        for (other, same) in [(region, true), (None, false)] {
+            let mut wanted = super::tests::wanted(other);
+            wanted.world = world.clone();
+            assert_eq!(view.renders(&wanted), same);
         }
     }
 }

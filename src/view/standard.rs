@@ -23,12 +23,13 @@ use crate::scene::{
 use bevy::asset::{AssetEvent, Assets};
 use bevy::camera::Exposure;
 use bevy::color::{Alpha, ColorToComponents, LinearRgba};
+use bevy::ecs::query::QueryFilter;
 use bevy::light::{DirectionalLight, PointLight, RectLight, SpotLight};
 use bevy::math::Vec3;
 use bevy::pbr::{MeshMaterial3d, StandardMaterial};
 use bevy::platform::collections::HashSet;
 use bevy::prelude::{
-    AlphaMode, App, Changed, Commands, Component, Entity, IntoScheduleConfigs, MessageReader,
+    AlphaMode, App, Changed, Commands, Component, Entity, IntoScheduleConfigs, MessageReader, Or,
     Plugin, PostUpdate, Query, RemovedComponents, Res, With, Without,
 };
 use std::f32::consts::PI;
@@ -106,7 +107,10 @@ fn map_materials(
     mut gone: RemovedComponents<MeshMaterial3d<StandardMaterial>>,
 ) {
     for entity in gone.read() {
-        if let Ok(mut entity) = commands.get_entity(entity) {
+        // What was taken away and given back is there.
+        if !objects.contains(entity)
+            && let Ok(mut entity) = commands.get_entity(entity)
+        {
             entity.try_remove::<(Phong, PhongMaps, Mapped<(Phong, PhongMaps)>)>();
         }
     }
@@ -142,6 +146,9 @@ fn map_materials(
 
 /// A light of Bevy's that one of ours can stand for.
 trait Maps<Ours>: Component {
+    /// Who has one of those that ours stands for.
+    type Kept: QueryFilter + 'static;
+
     fn map(&self) -> Ours;
 }
 
@@ -155,7 +162,11 @@ fn intensity(lumens: f32) -> f32 {
     lumens / (4.0 * PI) * exposure()
 }
 
+type PointOrSpot = Or<(With<PointLight>, With<SpotLight>)>;
+
 impl Maps<PointLamp> for PointLight {
+    type Kept = PointOrSpot;
+
     fn map(&self) -> PointLamp {
         PointLamp {
             color: self.color.into(),
@@ -166,6 +177,8 @@ impl Maps<PointLamp> for PointLight {
 }
 
 impl Maps<PointLamp> for SpotLight {
+    type Kept = PointOrSpot;
+
     fn map(&self) -> PointLamp {
         PointLamp {
             color: self.color.into(),
@@ -179,6 +192,8 @@ impl Maps<PointLamp> for SpotLight {
 }
 
 impl Maps<DirectionalLamp> for DirectionalLight {
+    type Kept = With<Self>;
+
     fn map(&self) -> DirectionalLamp {
         DirectionalLamp {
             color: self.color.into(),
@@ -189,6 +204,8 @@ impl Maps<DirectionalLamp> for DirectionalLight {
 }
 
 impl Maps<ParallelogramLamp> for RectLight {
+    type Kept = With<Self>;
+
     fn map(&self) -> ParallelogramLamp {
         let area = (self.width * self.height).max(f32::MIN_POSITIVE);
         // It faces -Z, and ours faces where the product of its edges points.
@@ -210,10 +227,10 @@ fn map_lights<Theirs: Maps<Ours>, Ours: Component + Clone + PartialEq>(
         (Changed<Theirs>, Without<RasterTwin>, Without<NotTraced>),
     >,
     mut gone: RemovedComponents<Theirs>,
-    twins: Query<(), With<RasterTwin>>,
+    kept: Query<(), Or<(With<RasterTwin>, Theirs::Kept)>>,
 ) {
     for entity in gone.read() {
-        if !twins.contains(entity)
+        if !kept.contains(entity)
             && let Ok(mut entity) = commands.get_entity(entity)
         {
             entity.try_remove::<(Ours, Mapped<Ours>)>();

@@ -24,7 +24,7 @@ use bevy::ecs::hierarchy::ChildOf;
 use bevy::ecs::reflect::ReflectComponent;
 use bevy::image::Image;
 use bevy::log::error;
-use bevy::math::{Rect, UVec2, Vec2};
+use bevy::math::{Rect, URect, UVec2, Vec2};
 use bevy::mesh::Mesh;
 use bevy::prelude::{
     Added, App, Commands, Component, IntoScheduleConfigs, Plugin, PostUpdate, Query, Res, ResMut,
@@ -32,7 +32,6 @@ use bevy::prelude::{
 };
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 use bevy::transform::components::GlobalTransform;
-use std::sync::Arc;
 
 /// Starts, restarts and shows renders. Needs [`SyncPlugin`](crate::sync::SyncPlugin) and a window.
 pub struct TracedViewPlugin;
@@ -145,6 +144,15 @@ fn give_screens(
     }
 }
 
+/// The pixels that a part of the view touches.
+fn pixels_of(region: Rect, size: UVec2) -> URect {
+    let pixels = size.as_vec2();
+    URect {
+        min: (region.min * pixels).floor().as_uvec2(),
+        max: (region.max * pixels).ceil().as_uvec2().min(size),
+    }
+}
+
 /// Starts, restarts, pauses and directs the renders.
 fn follow(
     traced: Res<Traced>,
@@ -182,6 +190,7 @@ fn follow(
                 output: Output::default(),
                 ..settings.clone()
             },
+            region: view.region.map(|region| pixels_of(region, size)),
             order: Order {
                 output: settings.output,
                 view: view.view,
@@ -257,7 +266,7 @@ fn show_prints(
             material.depth = images.add(depth_image(size.x, size.y, &depths));
         }
         let running = render.running.as_ref();
-        let same = running.filter(|running| Arc::as_ptr(&running.render) as usize == of);
+        let same = running.filter(|running| running.render.number() == of);
         if let Some(running) = same {
             let first_picture = running.started.elapsed();
             let before = render.shown.as_ref().filter(|shown| shown.of == of);
