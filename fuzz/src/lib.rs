@@ -45,6 +45,7 @@ pub fn read(kind: &str, bytes: &[u8], folder: &Path) -> bool {
             entities: 1 << 10,
             ..Limits::default()
         },
+        ..OpenOptions::default()
     };
     let source = SceneSource::File(folder.join(opened));
     APP.with_borrow_mut(|app| match open(app.world_mut(), &source, options) {

@@ -35,7 +35,7 @@ pub enum Action {
     Duplicate,
     Delete,
     Rename(SceneId, String),
-    /// Makes a parent of the second out of the first's; `None`: of nobody's. Places in the world stay.
+    /// Makes the second the parent of the first ones; `None`: they get no parent. Places in the world stay.
     Reparent(Vec<SceneId>, Option<SceneId>),
     ToggleVisible,
     Add(Addition),
@@ -271,7 +271,8 @@ impl Keys {
     }
 }
 
-/// The shapes that can be added, by name; about a metre in size, but for the ground, the teapot and the head.
+/// The shapes that can be added, by name; about a metre in size, but for the ground, the teapot, the head
+/// and the knot.
 pub fn shapes() -> Vec<(&'static str, Shape)> {
     vec![
         ("Cuboid", Shape::Cuboid { size: Vec3::ONE }),

@@ -10,6 +10,7 @@ use bevy::ecs::world::{EntityRef, World};
 use bevy::math::Vec3;
 use bevy::mesh::Mesh3d;
 use bevy::transform::components::{GlobalTransform, Transform};
+use std::collections::HashSet;
 
 /// An axis-parallel box in the world's space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,8 +89,9 @@ pub(super) fn own_extent(entity: EntityRef) -> Option<Extent> {
 
 /// The room that these entities take with all that hangs on them. `None` where that is nothing.
 pub(super) fn extent_of(world: &mut World, ids: &[SceneId]) -> Option<Extent> {
+    let ids: HashSet<SceneId> = ids.iter().copied().collect();
     let mut query = world.query::<(Entity, &SceneId)>();
-    let named: Vec<Entity> = query
+    let named: HashSet<Entity> = query
         .iter(world)
         .filter(|(_, id)| ids.contains(id))
         .map(|(entity, _)| entity)

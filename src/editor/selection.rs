@@ -2,6 +2,7 @@
 
 use crate::scene::SceneId;
 use bevy::ecs::resource::Resource;
+use std::collections::HashSet;
 
 /// The selected entities, by their numbers: these outlive undo, which makes entities anew.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]
@@ -33,9 +34,12 @@ impl Selection {
     /// Selects these and nothing else.
     pub fn set(&mut self, ids: impl IntoIterator<Item = SceneId>) {
         self.ids.clear();
-        for id in ids {
-            self.add(id);
-        }
+        self.ids.extend(ids);
+        // Of those named twice the last counts.
+        let mut seen = HashSet::new();
+        self.ids.reverse();
+        self.ids.retain(|&id| seen.insert(id));
+        self.ids.reverse();
     }
 
     /// Selects it too, as the active one.

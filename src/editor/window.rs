@@ -1,16 +1,16 @@
 //! The editor as a program: its window, and the scene that it opens with.
 
-use super::document::{DocumentPlugin, adopt};
-use super::notice::Notices;
+use super::document::{DocumentPlugin, open_file};
 use super::pace::PacePlugin;
 use super::plugins::parts;
 use super::preferences::config_folder;
 use super::script::Script;
-use crate::io::{OpenOptions, SceneSource, open};
+use crate::io::SceneSource;
 use bevy::DefaultPlugins;
 use bevy::app::{App, AppExit, PluginGroup};
 use bevy::log::{Level, LogPlugin};
 use bevy::window::{Window, WindowPlugin};
+use std::path::Path;
 use std::process::ExitCode;
 
 /// Opens the window with this scene, until it is closed, and plays the script in it.
@@ -43,18 +43,9 @@ pub fn run(scene: SceneSource, script: Option<Script>) -> ExitCode {
         .add_plugins(parts(document))
         .add_plugins(PacePlugin);
     let world = app.world_mut();
-    let path = match &scene {
-        SceneSource::File(path) => Some(path.clone()),
-        SceneSource::Builtin(_) => None,
-    };
-    match open(world, &scene, OpenOptions::default()) {
-        Ok(opened) => {
-            adopt(world, opened.name, path.as_deref());
-            for note in opened.notes {
-                world.resource_mut::<Notices>().tell(note);
-            }
-        }
-        Err(problem) => world.resource_mut::<Notices>().fault(problem.to_string()),
+    match &scene {
+        SceneSource::File(path) => open_file(world, path, false),
+        SceneSource::Builtin(scene) => open_file(world, Path::new(scene.name), false),
     }
     if let Some(script) = script {
         script.play_in(&mut app);

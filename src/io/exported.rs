@@ -12,7 +12,7 @@ use bevy::image::Image;
 use bevy::mesh::{Mesh, Mesh3d};
 use bevy::prelude::{Component, Entity, World};
 use image::{DynamicImage, ImageBuffer};
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{HashMap, HashSet};
 
 /// Objects and materials of the scene, in the order of their `SceneId`.
 #[derive(Default)]
@@ -140,7 +140,11 @@ fn is_only_a_material(world: &World, entity: Entity) -> bool {
 
 /// Hands out names that differ.
 #[derive(Default)]
-struct Names(BTreeSet<String>);
+struct Names {
+    taken: HashSet<String>,
+    /// The number to go on with, by the name: thousands may have the same.
+    next: HashMap<String, u32>,
+}
 
 impl Names {
     fn unique(&mut self, world: &World, entity: Entity, kind: &str) -> String {
@@ -149,13 +153,17 @@ impl Names {
             Some(name) => one_line(name.as_str()),
             None => format!("{kind} {id}"),
         };
-        let numbered = (2_u32..).map(|n| format!("{name}#{n}"));
-        let free = std::iter::once(name.clone())
-            .chain(numbered)
-            .find(|name| !self.0.contains(name))
-            .unwrap_or(name);
-        self.0.insert(free.clone());
-        free
+        if self.taken.insert(name.clone()) {
+            return name;
+        }
+        let number = self.next.entry(name.clone()).or_insert(2);
+        loop {
+            let free = format!("{name}#{number}");
+            *number += 1;
+            if self.taken.insert(free.clone()) {
+                return free;
+            }
+        }
     }
 }
 

@@ -8,13 +8,17 @@ use crate::scene::{MeshSource, TextureSource};
 use bevy::image::Image;
 use bevy::mesh::Mesh;
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::path::PathBuf;
 
 /// Loads what sources name, and parses each model file once however many of its meshes are asked
-/// for. Lives as long as one pass over the changed sources.
+/// for, and once more for its pictures. Lives as long as one pass over the changed sources.
 pub(crate) struct Loader<'a> {
     folder: &'a Folder,
     limits: &'a Limits,
     models: HashMap<String, Model>,
+    /// Those that hold pictures.
+    documents: HashMap<PathBuf, gltf::Document>,
 }
 
 impl<'a> Loader<'a> {
@@ -23,6 +27,7 @@ impl<'a> Loader<'a> {
             folder,
             limits,
             models: HashMap::new(),
+            documents: HashMap::new(),
         }
     }
 
@@ -36,8 +41,8 @@ impl<'a> Loader<'a> {
             MeshSource::File { path, name } => (path, name),
         };
         let model = match self.models.entry(path.clone()) {
-            std::collections::hash_map::Entry::Occupied(known) => known.into_mut(),
-            std::collections::hash_map::Entry::Vacant(free) => {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(free) => {
                 let file = self.folder.resolve(path)?;
                 let folder = Folder::of(&file, self.folder.allow_outside);
                 free.insert(read_model(&file, &folder, self.limits)?)
@@ -64,7 +69,11 @@ impl<'a> Loader<'a> {
     }
 
     /// The picture that a source names.
-    pub fn picture(&self, source: &TextureSource, usage: PictureUse) -> Result<Image, FileError> {
+    pub fn picture(
+        &mut self,
+        source: &TextureSource,
+        usage: PictureUse,
+    ) -> Result<Image, FileError> {
         let path = &source.path;
         if path.starts_with(BUILTIN) {
             return shapes::texture(path)
@@ -77,11 +86,17 @@ impl<'a> Loader<'a> {
             None => (fragment, usage),
         };
         if part.is_empty() {
-            read_picture(&file, usage, self.limits)
-        } else {
-            let folder = Folder::of(&file, self.folder.allow_outside);
-            gltf::read_texture(&file, part, &folder, usage, self.limits)
+            return read_picture(&file, usage, self.limits);
         }
+        let document = match self.documents.entry(file) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(free) => {
+                let folder = Folder::of(free.key(), self.folder.allow_outside);
+                let document = gltf::Document::read(free.key(), &folder, self.limits)?;
+                free.insert(document)
+            }
+        };
+        gltf::read_texture(document, part, usage)
     }
 }
 

@@ -108,7 +108,7 @@ impl Plugin for IoPlugin {
 }
 
 /// A file's extension in lower case; `scn.ron` is one.
-fn extension(path: &Path) -> String {
+pub(crate) fn extension(path: &Path) -> String {
     let name = path
         .file_name()
         .map(|name| name.to_string_lossy().to_lowercase());

@@ -47,6 +47,9 @@ impl SceneSource {
 pub struct OpenOptions {
     /// Whether files may refer to others outside their own folder.
     pub allow_outside: bool,
+    /// Whether a scene is opened although something that it names cannot be loaded, a picture that was deleted or a
+    /// shape that has no size: that is left out then, and [`LoadProblems`] says why. Not so what is outside.
+    pub tolerant: bool,
     /// How much files may ask for.
     pub limits: Limits,
 }
@@ -87,7 +90,7 @@ pub fn open(
     }
     let folder = Folder::of(file, options.allow_outside);
     match extension.as_str() {
-        "scn.ron" | "ron" => open_scene(world, file, folder, options.limits)?,
+        "scn.ron" | "ron" => open_scene(world, file, folder, options)?,
         "obj" | "gltf" | "glb" => {
             let model = read_model(file, &folder, &options.limits)?;
             opened.notes = open_model(world, model, file, folder, options.limits)?;
@@ -126,11 +129,13 @@ fn open_scene(
     world: &mut World,
     file: &Path,
     folder: Folder,
-    limits: Limits,
+    OpenOptions {
+        limits, tolerant, ..
+    }: OpenOptions,
 ) -> Result<(), FileError> {
     let scene = read_scene(file, &limits)?;
-    let loaded =
-        Loaded::for_scene(&scene, &folder, &limits).map_err(|error| name_referrer(file, error))?;
+    let loaded = Loaded::for_scene(&scene, &folder, &limits, tolerant)
+        .map_err(|error| name_referrer(file, error))?;
     clear(world, SceneFiles::new(folder, limits));
     let held = loaded.hand_over(world);
     let entities = scene
@@ -153,7 +158,7 @@ fn open_model(
         .file_name()
         .map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let mut model = model;
-    let loaded = Loaded::of_model(&mut model, &path, &Loader::new(&folder, &limits))?;
+    let loaded = Loaded::of_model(&mut model, &path, &mut Loader::new(&folder, &limits))?;
     clear(world, SceneFiles::new(folder, limits));
     let held = loaded.hand_over(world);
     let notes = std::mem::take(&mut model.notes);
@@ -251,29 +256,44 @@ pub(super) struct Loaded {
 pub(super) type Held = (Vec<Handle<Mesh>>, Vec<Handle<Image>>);
 
 impl Loaded {
-    fn for_scene(scene: &SceneFile, folder: &Folder, limits: &Limits) -> Result<Self, FileError> {
+    /// Where that is `tolerant`, without what cannot be loaded.
+    fn for_scene(
+        scene: &SceneFile,
+        folder: &Folder,
+        limits: &Limits,
+        tolerant: bool,
+    ) -> Result<Self, FileError> {
+        let fatal = |error: &FileError| !tolerant || matches!(error.problem, Problem::Outside);
         let mut loaded = Self::default();
         let mut loader = Loader::new(folder, limits);
         let mut seen = std::collections::HashSet::new();
         for source in scene.mesh_sources() {
             if seen.insert(super::sources::mesh_key(source)) {
-                loaded.meshes.push((source.clone(), loader.mesh(source)?));
+                match loader.mesh(source) {
+                    Ok(mesh) => loaded.meshes.push((source.clone(), mesh)),
+                    Err(error) if fatal(&error) => return Err(error),
+                    Err(_) => {}
+                }
             }
         }
-        for phong in scene.materials() {
-            loaded.load_pictures(phong, &loader)?;
-        }
-        if let Some(map) = scene.environment().and_then(|e| e.map.as_ref()) {
-            loaded.load_picture(map, PictureUse::Color, &loader)?;
+        let materials = scene.materials().flat_map(pictures_of);
+        let map = scene.environment().and_then(|e| e.map.as_ref());
+        let map = map.map(|map| (map, PictureUse::Color));
+        for (source, usage) in materials.chain(map) {
+            match loaded.load_picture(source, usage, &mut loader) {
+                Err(error) if fatal(&error) => return Err(error),
+                _ => {}
+            }
         }
         Ok(loaded)
     }
 
     /// A model's meshes, which are taken out of it, and the pictures of its materials.
-    pub fn of_model(model: &mut Model, path: &str, loader: &Loader) -> Result<Self, FileError> {
+    pub fn of_model(model: &mut Model, path: &str, loader: &mut Loader) -> Result<Self, FileError> {
         let mut loaded = Self::default();
-        for (_, phong) in &model.materials {
-            loaded.load_pictures(phong, loader)?;
+        let materials = model.materials.iter();
+        for (source, usage) in materials.flat_map(|(_, phong)| pictures_of(phong)) {
+            loaded.load_picture(source, usage, loader)?;
         }
         for (name, mesh) in std::mem::take(&mut model.meshes) {
             let path = path.to_owned();
@@ -282,21 +302,11 @@ impl Loaded {
         Ok(loaded)
     }
 
-    fn load_pictures(&mut self, phong: &Phong, loader: &Loader) -> Result<(), FileError> {
-        if let Some(source) = &phong.diffuse_map {
-            self.load_picture(source, PictureUse::Color, loader)?;
-        }
-        if let Some(source) = &phong.opacity_map {
-            self.load_picture(source, PictureUse::Data, loader)?;
-        }
-        Ok(())
-    }
-
     fn load_picture(
         &mut self,
         source: &TextureSource,
         usage: PictureUse,
-        loader: &Loader,
+        loader: &mut Loader,
     ) -> Result<(), FileError> {
         let mut known = self.pictures.iter();
         if !known.any(|(other, how, _)| other == source && *how == usage) {
@@ -342,6 +352,12 @@ impl Loaded {
         });
         (meshes, pictures)
     }
+}
+
+/// The pictures that a material names.
+fn pictures_of(phong: &Phong) -> impl Iterator<Item = (&TextureSource, PictureUse)> {
+    let diffuse = phong.diffuse_map.iter().map(|map| (map, PictureUse::Color));
+    diffuse.chain(phong.opacity_map.iter().map(|map| (map, PictureUse::Data)))
 }
 
 /// Removes the open scene; everything else in the world stays.

@@ -5,13 +5,13 @@ use super::error::FileError;
 use super::folder::Folder;
 use super::loader::Loader;
 use super::picture::PictureUse;
-use super::sources::{BUILTIN, SceneFiles, split_fragment};
+use super::sources::{BUILTIN, SceneFiles, mesh_key, split_fragment};
 use crate::scene::{Environment, MeshSource, Phong, TextureSource};
 use bevy::asset::Assets;
 use bevy::image::Image;
 use bevy::mesh::Mesh;
 use bevy::prelude::World;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::PathBuf;
 
 /// A file that the open scene reads, and what it reads from it.
@@ -27,15 +27,32 @@ pub(crate) struct SourceFile {
 struct Found {
     folder: Folder,
     files: BTreeMap<PathBuf, SourceFile>,
+    /// Where the files lie whose paths have been met; `None` where a path may not be followed: it is no file of ours
+    /// then.
+    places: HashMap<String, Option<PathBuf>>,
+    /// What has been met: a model may be thousands of meshes.
+    seen: HashSet<String>,
 }
 
 impl Found {
-    /// `None` where the path may not be followed: it is no file of ours then.
     fn file(&mut self, path: &str) -> Option<&mut SourceFile> {
-        let file = self.folder.resolve(path).ok()?;
+        if !self.places.contains_key(path) {
+            let file = self.folder.resolve(path).ok();
+            self.places.insert(path.to_owned(), file);
+        }
+        let file = self.places.get(path)?.as_ref()?;
         let entry = self.files.entry(file.clone()).or_default();
-        entry.file = file;
+        entry.file.clone_from(file);
         Some(entry)
+    }
+
+    fn mesh(&mut self, source: &MeshSource) {
+        if let MeshSource::File { path, .. } = source
+            && self.seen.insert(mesh_key(source))
+            && let Some(file) = self.file(path)
+        {
+            file.meshes.push(source.clone());
+        }
     }
 
     fn picture(&mut self, source: Option<&TextureSource>, usage: PictureUse) {
@@ -59,15 +76,12 @@ pub(crate) fn source_files(world: &mut World) -> Vec<SourceFile> {
     let mut found = Found {
         folder: files.folder.clone(),
         files: BTreeMap::new(),
+        places: HashMap::new(),
+        seen: HashSet::new(),
     };
     let mut meshes = world.query::<&MeshSource>();
     for source in meshes.iter(world) {
-        if let MeshSource::File { path, .. } = source
-            && let Some(file) = found.file(path)
-            && !file.meshes.contains(source)
-        {
-            file.meshes.push(source.clone());
-        }
+        found.mesh(source);
     }
     let mut materials = world.query::<&Phong>();
     for phong in materials.iter(world) {

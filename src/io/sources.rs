@@ -101,14 +101,14 @@ impl SceneFiles {
         source: &TextureSource,
         usage: PictureUse,
         assets: &mut Assets<Image>,
+        loader: &mut Loader,
     ) -> Result<Handle<Image>, FileError> {
         let key = (source.path.clone(), usage);
         let known = self.pictures.get(&key).copied();
         if let Some(handle) = known.and_then(|id| assets.get_strong_handle(id)) {
             return Ok(handle);
         }
-        let picture = Loader::new(&self.folder, &self.limits).picture(source, usage)?;
-        let handle = assets.add(picture);
+        let handle = assets.add(loader.picture(source, usage)?);
         self.pictures.insert(key, handle.id());
         Ok(handle)
     }
@@ -153,6 +153,12 @@ pub(crate) fn resolve_pictures(
     mut problems: ResMut<LoadProblems>,
     changed: Query<(Entity, &Phong, Option<&PhongMaps>), Changed<Phong>>,
 ) {
+    if changed.is_empty() {
+        return;
+    }
+    let (folder, limits) = (files.folder.clone(), files.limits.clone());
+    // One for all, so that a file with many pictures is parsed once.
+    let mut loader = Loader::new(&folder, &limits);
     for (entity, phong, current) in &changed {
         let before = current.cloned().unwrap_or_default();
         problems.forget(entity, LoadProblem::PICTURE);
@@ -162,7 +168,7 @@ pub(crate) fn resolve_pictures(
                 return before
                     .filter(|picture| !files.pictures.values().any(|id| *id == picture.id()));
             };
-            match files.picture(source, usage, &mut images) {
+            match files.picture(source, usage, &mut images, &mut loader) {
                 Ok(handle) => Some(handle),
                 Err(error) => {
                     problems.add(Some(entity), LoadProblem::PICTURE, error);
@@ -199,13 +205,17 @@ pub(crate) fn resolve_environment(
     problems.forget_environment();
     let handle = match &environment.map {
         None => None,
-        Some(source) => match files.picture(source, PictureUse::Color, &mut images) {
-            Ok(handle) => Some(handle),
-            Err(error) => {
-                problems.add(None, LoadProblem::ENVIRONMENT, error);
-                return;
+        Some(source) => {
+            let (folder, limits) = (files.folder.clone(), files.limits.clone());
+            let mut loader = Loader::new(&folder, &limits);
+            match files.picture(source, PictureUse::Color, &mut images, &mut loader) {
+                Ok(handle) => Some(handle),
+                Err(error) => {
+                    problems.add(None, LoadProblem::ENVIRONMENT, error);
+                    return;
+                }
             }
-        },
+        }
     };
     if map.0 != handle {
         map.0 = handle;

@@ -121,6 +121,29 @@ fn a_field_that_does_not_exist() {
 }
 
 #[test]
+fn a_choice_that_lacks_a_field() {
+    for (source, lacks) in [
+        ("File(path: \"a.obj\")", "`File.name`"),
+        ("Shape(Sphere(radius: 1.0))", "`Sphere.segments`"),
+    ] {
+        let (_folder, file) = scene(&format!("\"glassbox::scene::MeshSource\": {source}"));
+        says(
+            &refused(&file),
+            &["a.scn.ron: entity 1", "MeshSource", "lacks", lacks],
+        );
+    }
+}
+
+#[test]
+fn a_number_that_could_not_be_written_again() {
+    let (_folder, file) = scene("\"glassbox::scene::SceneId\": (4294967296)");
+    says(
+        &refused(&file),
+        &["entity 1", "SceneId", "4294967296", "2^32"],
+    );
+}
+
+#[test]
 fn numbers_outside_their_ranges() {
     for (component, what) in [
         (

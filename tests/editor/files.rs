@@ -3,7 +3,10 @@
 use super::scene_copy::{SceneCopy, traced};
 use super::{act, editor, named};
 use bevy::app::{App, AppExit};
+use bevy::asset::Assets;
 use bevy::ecs::message::Messages;
+use bevy::image::Image;
+use bevy::math::Vec3;
 use bevy::prelude::Transform;
 use bevy::window::FileDragAndDrop;
 use glassbox::editor::action::Addition;
@@ -12,7 +15,7 @@ use glassbox::editor::edits::scene_entity;
 use glassbox::editor::notice::Notices;
 use glassbox::editor::{Action, Selection};
 use glassbox::io::write_picture;
-use glassbox::scene::{MeshSource, Phong, TextureSource};
+use glassbox::scene::{EnvironmentMap, MeshSource, Phong, Shape, TextureSource};
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -159,6 +162,73 @@ fn broken_files_say_what_is_wrong_and_leave_the_scene_as_it_was() {
     }
     drop_file(&mut app, &folder.path().join("missing.glb"));
     SceneCopy::of(&mut app).assert_same(&scene, "a file that is not there");
+}
+
+#[test]
+fn what_was_saved_opens_again_although_something_in_it_cannot_be_loaded() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.scn.ron");
+    let mut app = editor(BOX);
+    edit(&mut app);
+    act(&mut app, Action::SaveAs(file.clone()));
+    act(&mut app, Action::Open(file.clone()));
+    let (floor, sphere) = (named(&mut app, "Floor"), named(&mut app, "Sphere"));
+    let floor = scene_entity(app.world(), floor).unwrap();
+    let sphere = scene_entity(app.world(), sphere).unwrap();
+    let world = app.world_mut();
+    world.get_mut::<Phong>(floor).unwrap().diffuse_map = Some(TextureSource {
+        path: "gone.png".into(),
+    });
+    *world.get_mut::<MeshSource>(sphere).unwrap() = MeshSource::Shape(Shape::Quadrilateral {
+        corners: [Vec3::ZERO; 4],
+    });
+    app.update();
+    act(&mut app, Action::Save);
+    let mut other = editor("triangle");
+    act(&mut other, Action::Open(file.clone()));
+    other.update();
+    let told = notices(&mut other);
+    assert_eq!(document(&other).path.as_deref(), Some(&*file), "{told:?}");
+    for what in ["gone.png", "shape"] {
+        assert!(told.iter().any(|notice| notice.contains(what)), "{told:?}");
+    }
+    let floor = named(&mut other, "Floor");
+    let floor = scene_entity(other.world(), floor).unwrap();
+    let map = &other.world().get::<Phong>(floor).unwrap().diffuse_map;
+    assert!(map.as_ref().is_some_and(|map| map.path == "gone.png"));
+    assert!(!document(&other).unsaved());
+}
+
+#[test]
+fn a_model_that_the_scene_reads_is_not_exported_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.obj");
+    fs::write(&file, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let text = fs::read(&file).unwrap();
+    let mut app = editor("triangle");
+    act(&mut app, Action::Open(file.clone()));
+    act(&mut app, Action::SaveAs(file.clone()));
+    let told = notices(&mut app);
+    let says = |notice: &String| notice.contains("a.obj") && notice.contains("another name");
+    assert!(told.iter().any(says), "{told:?}");
+    assert_eq!(fs::read(&file).unwrap(), text);
+    act(&mut app, Action::SaveAs(folder.path().join("b.obj")));
+    assert!(folder.path().join("b.obj").exists());
+}
+
+#[test]
+fn a_picture_beside_the_saved_scene_can_be_chosen_although_the_scene_was_opened_elsewhere() {
+    let folder = tempfile::tempdir().unwrap();
+    let picture = folder.path().join("t.png");
+    write_picture(&picture, 1, 1, &[[1.0, 0.0, 0.0]]).unwrap();
+    let mut app = editor(BOX);
+    act(&mut app, Action::SaveAs(folder.path().join("a.scn.ron")));
+    drop_file(&mut app, &picture);
+    let map = app.world().resource::<EnvironmentMap>();
+    let image = map.0.as_ref().map(|handle| handle.id());
+    let images = app.world().resource::<Assets<Image>>();
+    let size = image.and_then(|image| images.get(image)).map(Image::width);
+    assert_eq!(size, Some(1), "{:?}", notices(&mut app));
 }
 
 #[test]

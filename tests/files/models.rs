@@ -287,6 +287,47 @@ fn a_generated_picture_goes_into_an_obj_as_a_file() {
 }
 
 #[test]
+fn a_picture_that_an_obj_brings_along_replaces_none_that_is_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    // One that the scene itself reads, and one that has nothing to do with it.
+    for name in ["c-texture0.png", "c-texture1.png"] {
+        glassbox::io::write_picture(&at(name), 2, 1, &[[0.5; 3], [1.0; 3]]).unwrap();
+    }
+    let kept = std::fs::read(at("c-texture0.png")).unwrap();
+    write(
+        folder.path(),
+        "box.mtl",
+        "newmtl one\nmap_Kd c-texture0.png\nnewmtl two\nKd 0 0 1\n",
+    );
+    let obj = "mtllib box.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl one\nf 1 2 3\n\
+               usemtl two\nf 3 2 1\n";
+    let (mut app, _) = opened(&write(folder.path(), "box.obj", obj));
+    let world = app.world_mut();
+    let mut materials = world.query::<&mut Phong>();
+    for mut phong in materials.iter_mut(world) {
+        if phong.diffuse_map.is_none() {
+            phong.diffuse_map = Some(TextureSource {
+                path: "builtin:uv".into(),
+            });
+        }
+    }
+    app.update();
+    let notes = save(app.world_mut(), &at("c.obj")).unwrap_or_else(|error| panic!("{error}"));
+    for name in ["c-texture0.png", "c-texture1.png"] {
+        assert_eq!(std::fs::read(at(name)).unwrap(), kept, "{name}");
+    }
+    let mtl = std::fs::read_to_string(at("c.mtl")).unwrap();
+    for name in ["c-texture0.png", "c-texture2.png"] {
+        assert!(mtl.contains(name), "{mtl}{notes:?}");
+    }
+    // Exporting again replaces what was exported before.
+    save(app.world_mut(), &at("c.obj")).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(std::fs::read(at("c-texture1.png")).unwrap(), kept);
+    assert!(!at("c-texture3.png").exists());
+}
+
+#[test]
 fn a_large_object_is_read_in_parts_and_is_one_mesh() {
     use std::fmt::Write;
     let folder = tempfile::tempdir().unwrap();

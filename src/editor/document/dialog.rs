@@ -1,7 +1,7 @@
 //! Asking for a file, without making the frame wait.
 
-use super::question::{Purpose, Question, chosen};
-use super::{Document, dialog_native, files};
+use super::question::{Purpose, Question, take};
+use super::{Document, dialog_native};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use std::path::PathBuf;
@@ -115,8 +115,7 @@ pub(super) fn take_choices(world: &mut World) {
         document.question = None;
     }
     match choice {
-        // The desktop's dialog has asked whether to replace a file.
-        Ok(Some(path)) => files::request(world, &chosen(purpose, &path)),
+        Ok(Some(path)) => take(world, purpose, &path, Some(&path)),
         _ if was_short => type_instead(world, purpose),
         _ => world.resource_mut::<Document>().then = None,
     }

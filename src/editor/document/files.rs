@@ -9,7 +9,7 @@ use crate::editor::notice::Notices;
 use crate::editor::preferences::Preferences;
 use crate::editor::render_job::RenderJob;
 use crate::editor::selection::Selection;
-use crate::io::{OpenOptions, Problem, SceneSource, open, open_empty, save};
+use crate::io::{OpenOptions, Problem, SceneSource, open, open_empty, save, source_files};
 use bevy::app::AppExit;
 use bevy::ecs::world::World;
 use std::path::Path;
@@ -86,11 +86,13 @@ pub(super) fn is_scene(path: &Path) -> bool {
 }
 
 /// Opens a file or a built-in scene; what is open stays open where that fails.
-pub(super) fn open_file(world: &mut World, path: &Path, allow_outside: bool) {
+pub(in crate::editor) fn open_file(world: &mut World, path: &Path, allow_outside: bool) {
     let source = SceneSource::named(path);
     let is_file = matches!(source, SceneSource::File(_));
     let options = OpenOptions {
         allow_outside,
+        // What it cannot show is said, and can be mended here.
+        tolerant: true,
         ..OpenOptions::default()
     };
     match open(world, &source, options) {
@@ -137,6 +139,15 @@ fn remember(world: &mut World, path: &Path) {
     }
 }
 
+/// Whether the scene's meshes or pictures come from this file.
+fn is_read_by_scene(world: &mut World, path: &Path) -> bool {
+    let Ok(path) = path.canonicalize() else {
+        return false;
+    };
+    let same = |file: &Path| file.canonicalize().is_ok_and(|file| file == path);
+    source_files(world).iter().any(|source| same(&source.file))
+}
+
 /// Writes the scene, and then does what was waiting for that. A model file is an export: the
 /// document stays the scene it was. Where writing fails the old file stays, and so does the
 /// document.
@@ -144,6 +155,14 @@ pub(super) fn save_to(world: &mut World, path: &Path) {
     world.resource_mut::<Gesture>().end();
     note_state_now(world);
     let then = world.resource_mut::<Document>().then.take();
+    if !is_scene(path) && is_read_by_scene(world, path) {
+        let text = format!(
+            "{}: the open scene reads this file; export it under another name",
+            path.display()
+        );
+        world.resource_mut::<Notices>().fault(text);
+        return;
+    }
     let notes = match save(world, path) {
         Ok(notes) => notes,
         Err(error) => {

@@ -18,8 +18,10 @@ mod recovery;
 mod watch;
 mod window;
 
+pub(super) use files::open_file;
 pub use question::{Answer, Purpose, Question, answer};
 pub use recovery::{Recovered, RecoveryFolder};
+pub(super) use window::picture_at;
 
 use super::action::Action;
 use super::history::{History, commit};
@@ -93,7 +95,8 @@ impl Document {
     /// Another scene was opened, from this file or from none.
     fn opened(&mut self, name: String, path: Option<PathBuf>, state: u64) {
         self.name = name;
-        self.path = path;
+        // Work that is recovered may be saved by an editor that was started in another folder.
+        self.path = path.map(|path| std::path::absolute(&path).unwrap_or(path));
         self.saved = Some(state);
         self.unsaved = false;
         self.then = None;

@@ -89,9 +89,10 @@ pub fn answer(world: &mut World, answer: Answer) {
             }
         }
         (Question::Unsaved { then }, Answer::No) => perform_now(world, &then),
-        (Question::Path { purpose, .. }, Answer::Path(path)) => {
-            typed(world, purpose, &path);
+        (Question::Path { .. }, Answer::Path(path)) if path.as_os_str().is_empty() => {
+            world.resource_mut::<Document>().then = None;
         }
+        (Question::Path { purpose, .. }, Answer::Path(path)) => take(world, purpose, &path, None),
         (Question::Waiting { purpose }, Answer::No) => dialog::type_instead(world, purpose),
         (Question::Waiting { .. }, Answer::Cancel) => {
             dialog::give_up(world);
@@ -108,27 +109,31 @@ pub fn answer(world: &mut World, answer: Answer) {
     }
 }
 
-/// A path that was typed: nothing has checked yet whether it is there.
-fn typed(world: &mut World, purpose: Purpose, path: &Path) {
-    if path.as_os_str().is_empty() {
-        world.resource_mut::<Document>().then = None;
-        return;
-    }
+/// Goes on with a path that was chosen or typed. The desktop's own dialog has asked whether `asked` may be replaced.
+pub(super) fn take(world: &mut World, purpose: Purpose, path: &Path, asked: Option<&Path>) {
     let action = chosen(purpose, path);
-    let file = match &action {
-        Action::SaveAs(file) => file.clone(),
-        _ => return files::request(world, &action),
+    let Action::SaveAs(file) = &action else {
+        return files::request(world, &action);
     };
-    let own = world.resource::<Document>().path.as_deref() == Some(&file);
-    if file.exists() && !own {
-        world.resource_mut::<Document>().question = Some(Question::Replace { file, then: action });
+    let own = world.resource::<Document>().path.as_deref() == Some(file);
+    let replaced = if file.exists() {
+        (!own && asked != Some(file)).then(|| file.clone())
     } else {
-        perform_now(world, &action);
+        // An OBJ brings its materials along.
+        let materials = file.with_extension("mtl");
+        (crate::io::extension(file) == "obj" && materials.exists()).then_some(materials)
+    };
+    match replaced {
+        Some(file) => {
+            let then = action;
+            world.resource_mut::<Document>().question = Some(Question::Replace { file, then });
+        }
+        None => perform_now(world, &action),
     }
 }
 
 /// What a chosen path asks for. A scene without an extension gets ours.
-pub(super) fn chosen(purpose: Purpose, path: &Path) -> Action {
+fn chosen(purpose: Purpose, path: &Path) -> Action {
     match purpose {
         Purpose::Open => Action::Open(path.to_path_buf()),
         Purpose::Import => Action::Import(path.to_path_buf()),
@@ -198,6 +203,36 @@ mod tests {
         perform_now(world, &Action::New);
         assert!(world.resource::<RenderJob>().progress().is_none());
         assert!(!world.resource::<Notices>().is_empty(), "it is said");
+    }
+
+    #[test]
+    fn nothing_is_replaced_that_nobody_was_asked_about() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        for name in ["a.scn.ron", "b.mtl", "c.obj", "c.mtl"] {
+            std::fs::write(at(name), "").unwrap();
+        }
+        let mut app = headless_editor();
+        let world = app.world_mut();
+        for (chosen, asked, about) in [
+            // The desktop asks about `a`, and what is written is `a.scn.ron`.
+            ("a", Some("a"), Some("a.scn.ron")),
+            ("a.scn.ron", None, Some("a.scn.ron")),
+            ("b.obj", Some("b.obj"), Some("b.mtl")),
+            ("c.obj", Some("c.obj"), None),
+            ("c.obj", None, Some("c.obj")),
+            ("d", Some("d"), None),
+        ] {
+            world.resource_mut::<Document>().question = None;
+            let asked = asked.map(at);
+            take(world, Purpose::SaveAs, &at(chosen), asked.as_deref());
+            let question = world.resource::<Document>().question.clone();
+            let file = match question {
+                Some(Question::Replace { file, .. }) => Some(file),
+                _ => None,
+            };
+            assert_eq!(file, about.map(at), "{chosen}");
+        }
     }
 
     #[test]

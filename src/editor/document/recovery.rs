@@ -107,6 +107,10 @@ fn session_name() -> String {
 
 /// Looks for work that nobody is doing any more.
 fn offer(world: &mut World) {
+    if world.resource::<Document>().question.is_some() {
+        // Next time.
+        return;
+    }
     let folder = world.resource::<RecoveryFolder>().folder.clone();
     let mut found: Vec<Recovered> = abandoned(&folder);
     found.sort_by_key(|found| found.age);
@@ -153,6 +157,7 @@ pub(super) fn recover(world: &mut World, found: &Recovered) {
     // Its paths lead from our folder to wherever the files lie.
     let options = OpenOptions {
         allow_outside: true,
+        tolerant: true,
         ..OpenOptions::default()
     };
     if let Err(error) = open(world, &source, options) {
@@ -170,14 +175,12 @@ pub(super) fn recover(world: &mut World, found: &Recovered) {
         folder.copied = None;
     }
     copy_unsaved(world);
-    if let Some(writing) = world
+    let writing = world
         .get_resource_mut::<RecoveryFolder>()
-        .and_then(|mut folder| folder.writing.take())
-        && !matches!(writing.join(), Ok(Ok(())))
-    {
-        return;
+        .and_then(|mut folder| folder.writing.take());
+    if writing.is_some_and(|writing| matches!(writing.join(), Ok(Ok(())))) {
+        found.delete();
     }
-    found.delete();
 }
 
 /// Writes a copy where there is something that no file and no copy holds.

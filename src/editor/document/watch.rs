@@ -36,6 +36,8 @@ struct Order {
 /// What became of a file that changed.
 struct News {
     file: PathBuf,
+    /// Of the scene that named it: the same path means another file in another folder.
+    folder: Folder,
     result: Result<Reloaded, String>,
 }
 
@@ -97,7 +99,16 @@ fn watch(world: &mut World, mut told: Local<HashMap<PathBuf, String>>) {
         news.extend(inbox.try_iter());
     }
     let due = watcher.stale && watcher.next <= Instant::now();
-    for News { file, result } in news {
+    for News {
+        file,
+        folder,
+        result,
+    } in news
+    {
+        let open = world.get_resource::<SceneFiles>();
+        if open.is_none_or(|open| open.folder.path != folder.path) {
+            continue;
+        }
         let name = file
             .file_name()
             .unwrap_or(file.as_os_str())
@@ -203,6 +214,7 @@ fn work(inbox: &Receiver<Order>, outbox: &Sender<News>) {
                 .map_err(|error| error.to_string());
             let news = News {
                 file: file.file.clone(),
+                folder: order.folder.clone(),
                 result,
             };
             if outbox.send(news).is_err() {

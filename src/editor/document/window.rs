@@ -86,16 +86,19 @@ fn drop_file(world: &mut World, file: &Path) {
     }
 }
 
+/// A picture that a person chose, as the scene names it, wherever it lies.
+pub(in crate::editor) fn picture_at(world: &mut World, file: &Path) -> Option<TextureSource> {
+    let mut files = world.get_resource_mut::<SceneFiles>()?;
+    let path = files.folder.name_of(file);
+    if files.folder.resolve(&path).is_err() {
+        files.folder.allow_outside = true;
+    }
+    Some(TextureSource { path })
+}
+
 fn drop_picture(world: &mut World, file: &Path, on_objects: bool) {
-    let source = {
-        let Some(mut files) = world.get_resource_mut::<SceneFiles>() else {
-            return;
-        };
-        let path = files.folder.name_of(file);
-        if path.starts_with("..") {
-            files.folder.allow_outside = true;
-        }
-        TextureSource { path }
+    let Some(source) = picture_at(world, file) else {
+        return;
     };
     let name = file
         .file_name()

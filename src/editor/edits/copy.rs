@@ -17,7 +17,7 @@ use bevy::math::Affine3A;
 use bevy::mesh::Mesh3d;
 use bevy::reflect::Reflect;
 use bevy::transform::components::Transform;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// What was copied, as the text of a scene file.
@@ -116,13 +116,14 @@ pub fn copy(world: &mut World, ids: &[SceneId]) -> Result<Clipboard, FileError> 
         entities.extend(with_descendants(world, root));
     }
     let mut shared = Vec::new();
+    let mut copied: HashSet<Entity> = entities.iter().copied().collect();
     for entity in entities.clone() {
         let Some(&UsesMaterial(material)) = world.get::<UsesMaterial>(entity) else {
             continue;
         };
         if let (Some(&id), Some(look)) =
             (world.get::<SceneId>(material), world.get::<Phong>(material))
-            && !entities.contains(&material)
+            && copied.insert(material)
         {
             shared.push((id, look.clone()));
             entities.push(material);
@@ -169,14 +170,13 @@ pub fn paste(world: &mut World, clipboard: &Clipboard) -> Result<Vec<SceneId>, F
         }
     });
     let mut kept: HashMap<Entity, Entity> = HashMap::new();
+    let mut shared: HashSet<Entity> = HashSet::new();
     for (old, look) in &clipboard.shared {
         let Some(new) = renumbered.get(old) else {
             continue;
         };
-        let copy = spawned
-            .iter()
-            .copied()
-            .find(|&entity| world.get::<SceneId>(entity) == Some(new));
+        let copy = scene_entity(world, *new);
+        shared.extend(copy);
         let original =
             scene_entity(world, *old).filter(|&entity| world.get::<Phong>(entity) == Some(look));
         if let (Some(copy), Some(original)) = (copy, original) {
@@ -198,11 +198,7 @@ pub fn paste(world: &mut World, clipboard: &Clipboard) -> Result<Vec<SceneId>, F
             let name = Name::new(names.unique(&name));
             world.entity_mut(entity).insert(name);
         }
-        let is_shared = clipboard
-            .shared
-            .iter()
-            .any(|(old, _)| renumbered.get(old) == world.get::<SceneId>(entity));
-        if !is_shared && world.get::<ChildOf>(entity).is_none() {
+        if !shared.contains(&entity) && world.get::<ChildOf>(entity).is_none() {
             roots.extend(world.get::<SceneId>(entity).copied());
         }
     }

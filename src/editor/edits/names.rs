@@ -4,7 +4,7 @@ use super::scene_entity;
 use crate::scene::SceneId;
 use bevy::ecs::name::Name;
 use bevy::ecs::world::World;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// What an entity is called; its number where it has no name.
 pub fn name_of(world: &World, id: SceneId) -> String {
@@ -35,17 +35,24 @@ pub fn rename(world: &mut World, id: SceneId, name: &str) {
 }
 
 /// The names of a scene, with those that were just given.
-pub(super) struct Names(HashSet<String>);
+pub(super) struct Names {
+    taken: HashSet<String>,
+    /// The number to go on with, by the name and the number to begin with: thousands may want the same.
+    next: HashMap<(String, u64), u64>,
+}
 
 impl Names {
     pub fn new(world: &mut World) -> Self {
         let mut names = world.query::<&Name>();
-        Self(names.iter(world).map(ToString::to_string).collect())
+        Self {
+            taken: names.iter(world).map(ToString::to_string).collect(),
+            next: HashMap::new(),
+        }
     }
 
     /// Takes the name, or the next one like it.
     pub fn unique(&mut self, wanted: &str) -> String {
-        if self.0.insert(wanted.to_owned()) {
+        if self.taken.insert(wanted.to_owned()) {
             return wanted.to_owned();
         }
         let stem = wanted.trim_end_matches(|c: char| c.is_ascii_digit());
@@ -53,13 +60,13 @@ impl Names {
             Ok(number) if stem.ends_with(' ') => (stem.trim_end(), number.saturating_add(1)),
             _ => (wanted, 2),
         };
-        let mut number = first;
+        let number = self.next.entry((stem.to_owned(), first)).or_insert(first);
         loop {
             let name = format!("{stem} {number}");
-            if self.0.insert(name.clone()) {
+            *number = number.wrapping_add(1);
+            if self.taken.insert(name.clone()) {
                 return name;
             }
-            number = number.wrapping_add(1);
         }
     }
 }

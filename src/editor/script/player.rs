@@ -35,6 +35,9 @@ const DRAG_MOVES: u32 = 8;
 /// How long samples and pictures are waited for.
 const PATIENCE: Duration = Duration::from_secs(300);
 
+/// Longer than anybody waits, and within what every clock can say.
+const FOREVER: Duration = Duration::from_secs(u32::MAX as u64);
+
 pub(super) fn add(app: &mut App, player: Player) {
     app.insert_resource(player)
         .init_resource::<Texts>()
@@ -276,7 +279,9 @@ fn wait(player: &mut Player, until: Until) {
         Until::Frames(frames) => player.moves.push_back(Move::Frames(frames)),
         Until::Seconds(seconds) => {
             let seconds = Duration::try_from_secs_f32(seconds).unwrap_or_default();
-            player.moves.push_back(Move::Until(now + seconds));
+            // What is longer than the clock can say is as long as it can be waited for.
+            let until = now.checked_add(seconds).unwrap_or(now + FOREVER);
+            player.moves.push_back(Move::Until(until));
         }
         Until::Samples(samples) => {
             // What was changed before has to have started a render.

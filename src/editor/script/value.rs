@@ -26,6 +26,11 @@ pub(super) fn write(
     to: &Value,
 ) -> Result<(), String> {
     let (entity, reflect, field) = find(world, of, path)?;
+    // Bevy panics where a component can only be replaced.
+    let kind = path.split('.').next().unwrap_or(path);
+    if !is_mutable(world, kind) {
+        return Err(format!("{kind:?} cannot be written"));
+    }
     let mut component = reflect
         .reflect_mut(world.entity_mut(entity))
         .ok_or_else(|| lacks(of, path))?;
@@ -33,6 +38,15 @@ pub(super) fn write(
         .reflect_path_mut(field.as_str())
         .map_err(|_| format!("there is no field {path:?}"))?;
     assign(place, to).map_err(|wanted| format!("{path:?} wants {wanted}"))
+}
+
+fn is_mutable(world: &World, kind: &str) -> bool {
+    let registry = world.resource::<AppTypeRegistry>().read();
+    let id = registry.get_with_short_type_path(kind).map(|r| r.type_id());
+    let info = id
+        .and_then(|id| world.components().get_id(id))
+        .and_then(|id| world.components().get_info(id));
+    info.is_none_or(|info| info.mutable())
 }
 
 fn lacks(of: Option<&str>, path: &str) -> String {
@@ -255,6 +269,8 @@ mod tests {
             let error = read(world, of, path).unwrap_err();
             assert!(error.contains(named), "{error}");
         }
+        let error = write(world, Some("Lamp"), "ChildOf.0", &Value::Number(1.0)).unwrap_err();
+        assert!(error.contains("cannot be written"), "{error}");
         let wrong = Value::Text("Lunar".into());
         assert!(write(world, None, "RenderSettings.lighting", &wrong).is_err());
         assert!(write(world, Some("Lamp"), "Transform.scale", &Value::Switch(true)).is_err());

@@ -6,11 +6,11 @@ use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 /// A parsed glTF file with the bytes of its buffers.
-pub(super) struct Document {
-    pub file: PathBuf,
-    pub folder: Folder,
-    pub limits: Limits,
-    pub gltf: gltf::Document,
+pub(crate) struct Document {
+    pub(super) file: PathBuf,
+    pub(super) folder: Folder,
+    pub(super) limits: Limits,
+    pub(super) gltf: gltf::Document,
     buffers: Vec<Vec<u8>>,
 }
 
@@ -36,12 +36,12 @@ impl Document {
     }
 
     /// An error at a part of this file.
-    pub fn error(&self, part: impl Into<String>, problem: Problem) -> FileError {
+    pub(super) fn error(&self, part: impl Into<String>, problem: Problem) -> FileError {
         FileError::at(&self.file, Place::Part(part.into()), problem)
     }
 
     /// The bytes of a buffer view.
-    pub fn view(&self, view: &gltf::buffer::View) -> Result<&[u8], Problem> {
+    pub(super) fn view(&self, view: &gltf::buffer::View) -> Result<&[u8], Problem> {
         let buffer = self.buffers.get(view.buffer().index());
         let end = view.offset().checked_add(view.length());
         buffer
@@ -53,7 +53,7 @@ impl Document {
     }
 
     /// Where a texture's picture is: a file beside this one, or bytes inside it.
-    pub fn texture(&self, texture: &gltf::Texture) -> Result<Picture<'_>, FileError> {
+    pub(super) fn texture(&self, texture: &gltf::Texture) -> Result<Picture<'_>, FileError> {
         let index = texture.source().index();
         let part = || format!("image {index}");
         // Not through `Image::source`, which takes for granted that one of the two is there.

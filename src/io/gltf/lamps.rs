@@ -70,7 +70,9 @@ pub(super) fn camera_of(camera: &gltf::Camera) -> Option<SceneCamera> {
         gltf::camera::Projection::Perspective(p) if p.yfov() > 0.0 && p.yfov() < PI => {
             Projection::Perspective { fov_y: p.yfov() }
         }
-        gltf::camera::Projection::Orthographic(o) if o.ymag().is_normal() => {
+        gltf::camera::Projection::Orthographic(o)
+            if o.ymag().is_normal() && (2.0 * o.ymag()).is_finite() =>
+        {
             Projection::Orthographic {
                 height: 2.0 * o.ymag().abs(),
             }

@@ -15,5 +15,6 @@ mod read;
 mod uri;
 mod write;
 
+pub(crate) use document::Document;
 pub(crate) use read::{read_gltf, read_texture};
 pub(crate) use write::write_glb;

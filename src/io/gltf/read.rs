@@ -54,13 +54,11 @@ pub(crate) fn read_gltf(file: &Path, folder: &Folder, limits: &Limits) -> Result
 
 /// Reads a picture of a file: `part` is `texture` and the index of a texture.
 pub(crate) fn read_texture(
-    file: &Path,
+    document: &Document,
     part: &str,
-    folder: &Folder,
     usage: PictureUse,
-    limits: &Limits,
 ) -> Result<Image, FileError> {
-    let document = Document::read(file, folder, limits)?;
+    let (file, limits) = (&document.file, &document.limits);
     let index = part.strip_prefix("texture").and_then(|n| n.parse().ok());
     let Some(texture) = index.and_then(|index| document.gltf.textures().nth(index)) else {
         let name = part.to_owned();
@@ -168,10 +166,12 @@ fn read_nodes(document: &Document, model: &mut Model) -> Result<(), FileError> {
         .map(|node| (node, None, 0))
         .collect();
     while let Some((node, parent, depth)) = to_visit.pop() {
-        if depth > document.limits.depth {
+        // What it holds may become entities below its own.
+        let levels = depth + 1;
+        if levels > document.limits.depth {
             let problem = Problem::TooMany {
                 what: "ancestors",
-                count: depth,
+                count: levels,
                 limit: document.limits.depth,
             };
             return Err(document.error(format!("node {}", node.index()), problem));
@@ -187,7 +187,7 @@ fn read_nodes(document: &Document, model: &mut Model) -> Result<(), FileError> {
             children
                 .into_iter()
                 .rev()
-                .map(|child| (child, Some(place), depth + 1)),
+                .map(|child| (child, Some(place), levels)),
         );
     }
     Ok(())

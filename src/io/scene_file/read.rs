@@ -9,7 +9,7 @@ use bevy::ecs::entity::EntityHashMap;
 use bevy::ecs::hierarchy::ChildOf;
 use bevy::image::Image;
 use bevy::prelude::{Entity, World};
-use bevy::reflect::PartialReflect;
+use bevy::reflect::{PartialReflect, ReflectRef};
 use bevy::world_serialization::serde::WorldDeserializer;
 use bevy::world_serialization::{DynamicEntity, DynamicWorld};
 use serde::de::{DeserializeSeed, IgnoredAny, MapAccess, Visitor};
@@ -91,9 +91,18 @@ impl SceneFile {
                 check_value(component)?;
                 if let Some(id) = component.try_downcast_ref::<SceneId>()
                     && !id.is_unassigned()
-                    && !ids.insert(*id)
                 {
-                    return Err(Problem::DuplicateId(id.0));
+                    // It could not be written again: entities are named by it.
+                    if Entity::try_from_bits(id.0).is_none() {
+                        return Err(Problem::OutOfRange {
+                            what: "SceneId".into(),
+                            value: id.0.to_string(),
+                            range: "no multiple of 2^32",
+                        });
+                    }
+                    if !ids.insert(*id) {
+                        return Err(Problem::DuplicateId(id.0));
+                    }
                 }
                 match refers_to(component) {
                     Some(other) if !labels.contains(&other) => {
@@ -225,12 +234,43 @@ fn refers_to(component: &dyn PartialReflect) -> Option<Entity> {
     parent.or_else(|| component.try_downcast_ref::<UsesMaterial>().map(|m| m.0))
 }
 
+/// A value of a type that is kept, and all of it.
 fn check_kind(value: &dyn PartialReflect, kept: impl Fn(TypeId) -> bool) -> Result<(), Problem> {
-    match value.get_represented_type_info() {
-        Some(info) if kept(info.type_id()) => Ok(()),
-        _ => Err(Problem::UnknownComponent {
-            name: value.reflect_type_path().to_owned(),
-        }),
+    let kind = match value.get_represented_type_info() {
+        Some(info) if kept(info.type_id()) => info.type_path_table().short_path(),
+        _ => {
+            return Err(Problem::UnknownComponent {
+                name: value.reflect_type_path().to_owned(),
+            });
+        }
+    };
+    if value.try_as_reflect().is_some() {
+        return Ok(());
+    }
+    // What the text says is not enough to make one.
+    let missing = missing_field(value).map_or_else(String::new, |field| format!(": `{field}`"));
+    let text = format!("`{kind}` lacks a field{missing}");
+    Err(Problem::Malformed(text))
+}
+
+/// A field that a variant has and this value of it lacks. A structure's fields have defaults.
+fn missing_field(value: &dyn PartialReflect) -> Option<String> {
+    match value.reflect_ref() {
+        ReflectRef::Struct(fields) => {
+            (0..fields.field_len()).find_map(|i| missing_field(fields.field_at(i)?))
+        }
+        ReflectRef::Enum(choice) => {
+            let within = (0..choice.field_len()).find_map(|i| missing_field(choice.field_at(i)?));
+            let info = value.get_represented_type_info()?.as_enum().ok()?;
+            let variant = info.variant(choice.variant_name())?.as_struct_variant();
+            let mut names = variant.iter().flat_map(|variant| variant.field_names());
+            let lacks = |name: &&&str| choice.field(name).is_none();
+            let own = names
+                .find(lacks)
+                .map(|name| format!("{}.{name}", choice.variant_name()));
+            within.or(own)
+        }
+        _ => None,
     }
 }
 

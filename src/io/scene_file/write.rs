@@ -52,12 +52,12 @@ impl SceneContent {
         placed: &[(Entity, Transform)],
     ) -> Result<Self, FileError> {
         let mut content = Self::new(world, entities, Path::new("clipboard"), None)?;
-        for (entity, place) in placed {
-            let Some(id) = world.get::<SceneId>(*entity) else {
-                continue;
-            };
-            let mut all = content.content.entities.iter_mut();
-            let Some(entity) = all.find(|other| other.entity.to_bits() == id.0) else {
+        let places: std::collections::HashMap<u64, Transform> = placed
+            .iter()
+            .filter_map(|(entity, place)| Some((world.get::<SceneId>(*entity)?.0, *place)))
+            .collect();
+        for entity in &mut content.content.entities {
+            let Some(place) = places.get(&entity.entity.to_bits()) else {
                 continue;
             };
             for component in &mut entity.components {

@@ -3,8 +3,8 @@
 use super::super::fields::row;
 use super::super::says::Says;
 use super::super::state::Panels;
+use crate::editor::document::picture_at;
 use crate::editor::edits::scene_entity;
-use crate::io::SceneFiles;
 use crate::io::shapes::PICTURES;
 use crate::scene::{Environment, Phong, SceneId, TextureSource};
 use bevy::asset::{AssetId, Assets, Handle};
@@ -118,8 +118,8 @@ pub(super) fn settle_pictures(
     thumbnails: &mut Thumbnails,
 ) {
     if let Some((owner, file)) = thumbnails.answer() {
-        let path = world.resource::<SceneFiles>().folder.name_of(&file);
-        owner.give(world, Some(&TextureSource { path }));
+        let picture = picture_at(world, &file);
+        owner.give(world, picture.as_ref());
     }
     if let Some((owner, path)) = thumbnails.left_field(context) {
         let picture = (!path.is_empty()).then_some(TextureSource { path });

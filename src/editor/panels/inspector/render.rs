@@ -326,7 +326,7 @@ pub(super) fn about(variant: &str) -> &'static str {
         "Median" => "Half of the triangles on either side, along the longest axis",
         "Sah" => "Binned surface area heuristic: splits where the estimated cost is lowest",
         "Ploc" => {
-            "Merges neighbours bottom-up, then improves the tree: usually best for large meshes"
+            "Merges neighbours bottom-up, then improves the tree: the lowest estimated cost, slower to build"
         }
         "Fastest" => "The quickest to build, and the slowest to trace",
         "Fast" => "Quick to build: a little improvement",
