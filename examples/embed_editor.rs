@@ -1,5 +1,6 @@
 //! The editor over a Bevy app's own scene: Bevy's materials and lights, systems that move things,
-//! and components that Glassbox has never heard of. Add `EditorPlugins`, and nothing else.
+//! and components that Glassbox has never heard of. Add `EditorPlugins`; that the window
+//! asks before it closes is the one setting beside it.
 //!
 //! `cargo run --release --example embed_editor`; F10 switches between the editor and the app.
 

@@ -2,7 +2,8 @@
 //! Volume Hierarchy Construction", 2018) with reinsertion (the same, "Parallel Reinsertion for Bounding
 //! Volume Hierarchy Optimization", 2018).
 //!
-//! WHEN to use it: always, unless you want to see what another rule does. Its trees cost rays least.
+//! WHEN to use it: for the lowest SAH cost. Measured, rays go through its trees about as fast as through those of
+//! binned SAH, which take half the time to build; `glassbox report` compares them on a scene.
 
 use super::{
     boxes, layout,

@@ -19,7 +19,7 @@ pub(super) struct SettingArgs {
     /// Chooses the random numbers
     #[arg(long, value_name = "N")]
     pub seed: Option<u32>,
-    /// Any setting of the list below, by its path; may be given several times
+    /// Any setting by its path (`glassbox render --help` lists them); may be given several times
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<Assignment>,
     /// Threads to work on (default: all of the machine's)

@@ -37,7 +37,7 @@ fn finding(table: &Table) -> Option<String> {
         _ => String::new(),
     };
     Some(format!(
-        "Of {} kinds of edits each is seen after at most {} ms in the median ({} in {}), and holds the app's thread up for at \
+        "Of {} edits, each kind in each scene, each is seen after at most {} ms in the median ({} in {}), and holds the app's thread up for at \
          most {} ms in 95 of 100 cases.",
         table.rows.len(),
         digits(picture, 2),
@@ -72,7 +72,7 @@ mod tests {
         assert_eq!(
             section.findings,
             [
-                "Of 2 kinds of edits each is seen after at most 81 ms in the median (mesh swap in a, b), and holds the app's \
+                "Of 2 edits, each kind in each scene, each is seen after at most 81 ms in the median (mesh swap in a, b), and holds the app's \
                  thread up for at most 3.3 ms in 95 of 100 cases."
             ]
         );

@@ -9,6 +9,8 @@
 //! | [`features`] | what each system costs unused, on but absent, and used; what it changes |
 //! | [`stability`] | the hard cases: figures and verdicts |
 //!
+//! and one more, of what edits cost, where [`Options::editing`] brings the figures of that benchmark.
+//!
 //! Sections are data: sentences, [`Table`]s, [`Plot`]s and pictures. [`write_report`] makes files of them. Times are
 //! medians of rounds in which everything that is compared takes turns, so that what else the machine does meets all
 //! alike; everything that is not a time follows from the seed.

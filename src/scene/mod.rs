@@ -4,10 +4,10 @@
 //!
 //! | it is | it carries | where it stands |
 //! |---|---|---|
-//! | an object | `Mesh3d` (usually through [`MeshSource`]) and [`Phong`] or [`UsesMaterial`] | `Transform` |
+//! | an object | `Mesh3d` (usually through [`MeshSource`]) and [`Phong`] or [`UsesMaterial`], optionally [`Motion`] | `Transform` |
 //! | a shared material | [`Phong`] and no mesh | nowhere |
 //! | a light | [`PointLamp`], [`DirectionalLamp`], [`SegmentLamp`] or [`ParallelogramLamp`] | `Transform` |
-//! | a camera | [`SceneCamera`], optionally [`Lens`] | `Transform`, looking down its local -Z |
+//! | a camera | [`SceneCamera`], optionally [`Lens`] and [`Motion`] | `Transform`, looking down its local -Z |
 //!
 //! What belongs to the scene as a whole are the resources [`Environment`] and [`RenderSettings`].
 //!
@@ -38,7 +38,7 @@ pub use settings::{
 
 use bevy::app::{App, Plugin};
 
-/// Registers every type of this room and inserts the scene's two resources.
+/// Registers every type of this room and inserts its resources.
 pub struct ScenePlugin;
 
 impl Plugin for ScenePlugin {

@@ -1,5 +1,5 @@
 //! Every render setting in one table: what it may be, and what it does. The command line's help,
-//! its checks, and `sync` read it.
+//! the editor's fields, and all who check or name a setting read it.
 
 use super::RenderSettings;
 use bevy::math::UVec2;

@@ -231,11 +231,12 @@ impl Embree4Or3 {
 
     /// Version and file.
     pub fn describe(&self) -> String {
+        let file = self.path.file_name().unwrap_or(self.path.as_os_str());
         format!(
             "{}.{} ({})",
             self.version(),
             self.version % 100,
-            self.path.display()
+            file.to_string_lossy()
         )
     }
 }

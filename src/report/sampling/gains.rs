@@ -67,7 +67,7 @@ impl Gains {
                 mean(&self.adaptive),
             ),
             format!(
-                "The film's own estimate of the error was {} to {} times the true error.",
+                "With Sobol points the film's own estimate of the error was {} to {} times the true error.",
                 digits(least, 2),
                 digits(most, 2),
             ),

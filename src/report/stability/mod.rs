@@ -376,7 +376,7 @@ fn method() -> Vec<String> {
     vec![
         "Two oracles know no tree: every triangle in turn with the same test in f32, with which the tree must agree to the last \
          bit; and every triangle in f64, with which it must agree except in a band around edges, where an edge function is \
-         smaller than its own bound of error (band: so many rays crossed one). "
+         smaller than its own bound of error (`in the band`: how many rays passed through one)."
             .into(),
         "Bounds that no renderer passes exactly. 9 and 11: t is off by at most Σ (Eᵢ + 4u|Uᵢ|)|zᵢ - z| / (|det| - Σ Eᵢ) / |dz| \
          and relative roundings of z and dz, where Uᵢ are the edge functions in f64, Eᵢ = δ(|Px| + |Py| + |Qx| + |Qy|) + 2δ² + \
