@@ -204,21 +204,37 @@ fn ids(app: &App) -> Vec<u64> {
 }
 
 #[test]
-fn an_object_that_was_made_disabled_brings_its_mesh_and_its_picture_when_it_is_enabled() {
+fn an_object_that_is_enabled_brings_its_mesh_and_its_picture_along() {
     let mut small = Small::new();
     let mesh = add_mesh(&mut small.app, 9);
     let maps = PhongMaps {
         diffuse: Some(add_image(&mut small.app, 7)),
         opacity: None,
     };
-    let object = (
-        Mesh3d(mesh),
-        Transform::default(),
-        grey(0.4),
-        maps,
-        Disabled,
-    );
+    let place = Transform::default();
+    let object = (Mesh3d(mesh), place, grey(0.4), maps, Disabled);
     let object = small.app.world_mut().spawn(object).id();
+    small.app.update();
+    assert_eq!(ids(&small.app).len(), 3);
+    let is_there = |app: &App| {
+        let last = world(app).objects.last().cloned().unwrap();
+        assert_eq!(last.mesh.tree.triangles().len(), 9);
+        assert_eq!(world(app).textures.len(), 1);
+        assert!(problems(app).is_empty(), "{:?}", problems(app));
+    };
+    // What was made disabled Bevy shows when it is told to.
+    let mut entity = small.app.world_mut().entity_mut(object);
+    entity.remove::<Disabled>();
+    entity.insert(Visibility::Visible);
+    small.app.update();
+    is_there(&small.app);
+
+    // Nobody uses them meanwhile, and other meshes and pictures come.
+    small.app.world_mut().entity_mut(object).insert(Disabled);
+    small.app.update();
+    let mesh = add_mesh(&mut small.app, 4);
+    let mut second = small.app.world_mut().entity_mut(small.objects[1]);
+    second.insert((Mesh3d(mesh), PhongMaps::default()));
     small.app.update();
     assert_eq!(ids(&small.app).len(), 3);
     small
@@ -227,14 +243,7 @@ fn an_object_that_was_made_disabled_brings_its_mesh_and_its_picture_when_it_is_e
         .entity_mut(object)
         .remove::<Disabled>();
     small.app.update();
-    let last = world(&small.app).objects.last().cloned().unwrap();
-    assert_eq!(last.mesh.tree.triangles().len(), 9);
-    assert_eq!(world(&small.app).textures.len(), 1);
-    assert!(
-        problems(&small.app).is_empty(),
-        "{:?}",
-        problems(&small.app)
-    );
+    is_there(&small.app);
 }
 
 #[test]
