@@ -21,7 +21,7 @@ mod window;
 pub(super) use files::open_file;
 pub use question::{Answer, Purpose, Question, answer};
 pub use recovery::{Recovered, RecoveryFolder};
-pub(super) use window::picture_at;
+pub(super) use window::{picture_at, typed_picture};
 
 use super::action::Action;
 use super::history::{History, commit};

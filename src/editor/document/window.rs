@@ -88,12 +88,18 @@ fn drop_file(world: &mut World, file: &Path) {
 
 /// A picture that a person chose, as the scene names it, wherever it lies.
 pub(in crate::editor) fn picture_at(world: &mut World, file: &Path) -> Option<TextureSource> {
-    let mut files = world.get_resource_mut::<SceneFiles>()?;
-    let path = files.folder.name_of(file);
-    if files.folder.resolve(&path).is_err() {
+    let path = world.get_resource::<SceneFiles>()?.folder.name_of(file);
+    Some(typed_picture(world, path))
+}
+
+/// A picture that a person named: who does so means that file, and allows it.
+pub(in crate::editor) fn typed_picture(world: &mut World, path: String) -> TextureSource {
+    if let Some(mut files) = world.get_resource_mut::<SceneFiles>()
+        && files.folder.resolve(&path).is_err()
+    {
         files.folder.allow_outside = true;
     }
-    Some(TextureSource { path })
+    TextureSource { path }
 }
 
 fn drop_picture(world: &mut World, file: &Path, on_objects: bool) {

@@ -3,7 +3,7 @@
 use super::super::fields::row;
 use super::super::says::Says;
 use super::super::state::Panels;
-use crate::editor::document::picture_at;
+use crate::editor::document::{picture_at, typed_picture};
 use crate::editor::edits::scene_entity;
 use crate::io::shapes::PICTURES;
 use crate::scene::{Environment, Phong, SceneId, TextureSource};
@@ -122,7 +122,7 @@ pub(super) fn settle_pictures(
         owner.give(world, picture.as_ref());
     }
     if let Some((owner, path)) = thumbnails.left_field(context) {
-        let picture = (!path.is_empty()).then_some(TextureSource { path });
+        let picture = (!path.is_empty()).then(|| typed_picture(world, path));
         owner.give(world, picture.as_ref());
     }
 }
