@@ -90,6 +90,8 @@ fn modal_ui(context: &egui::Context, title: &str, width: f32, body: impl FnOnce(
     let area = Modal::default_area(Id::new(title)).default_size(screen);
     let response = Modal::new(Id::new(title)).area(area).show(context, |ui| {
         ui.set_width(width.min(screen.x - 40.0));
+        // An area remembers how high it was, and what is in it may have grown since.
+        ui.set_max_height(screen.y);
         ui.horizontal(|ui| {
             ui.label(RichText::new(title).heading());
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {

@@ -7,6 +7,7 @@ use crate::editor::action::Action;
 use crate::editor::document::adopt;
 use crate::editor::inspection::DebugRay;
 use crate::editor::inspection::debug_ray::Shot;
+use crate::editor::render_job::{RenderFrom, RenderJob, RenderRequest, start_render};
 use crate::editor::selection::Selection;
 use crate::editor::viewport::{Show, Viewport};
 use crate::inspect::InspectSettings;
@@ -18,7 +19,8 @@ use bevy::ecs::message::Messages;
 use bevy::ecs::name::Name;
 use bevy::ecs::query::With;
 use bevy::math::{Rect, UVec2, Vec2};
-use bevy_egui::egui::{Event, Key, Modifiers, Pos2, vec2};
+use bevy_egui::egui::{Event, Id, Key, Modifiers, Pos2, vec2};
+use std::time::Instant;
 
 #[test]
 fn a_click_on_a_row_selects_ctrl_adds_and_shift_takes_what_lies_between() {
@@ -166,6 +168,40 @@ fn a_dialog_takes_everything_until_escape() {
     desk.settle();
     assert_eq!(desk.world().resource::<Panels>().dialog, None);
     assert!(desk.world().resource::<Viewport>().takes_keys);
+}
+
+#[test]
+fn a_dialog_that_had_less_to_show_grows_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut desk = Desk::open("triangle");
+    desk.world().write_message(Action::RenderDialog);
+    desk.settle();
+    let height = |desk: &Desk| {
+        let area = Id::new("Render to a file");
+        let area = desk.context.memory(|memory| memory.area_rect(area));
+        area.map_or(0.0, |area| area.height())
+    };
+    let form = height(&desk);
+    let request = RenderRequest {
+        file: folder.path().join("a.png"),
+        camera: RenderFrom::FirstCamera,
+        settings: RenderSettings {
+            spp: 1 << 20,
+            ..RenderSettings::default()
+        },
+    };
+    start_render(desk.world(), request).unwrap();
+    desk.settle();
+    let progress = height(&desk);
+    assert!(progress < form, "{progress} {form}");
+    desk.world().resource_mut::<RenderJob>().cancel();
+    let start = Instant::now();
+    while desk.world().resource::<RenderJob>().progress().is_some() {
+        assert!(start.elapsed().as_secs() < 60, "it goes on");
+        desk.settle();
+    }
+    desk.settle();
+    assert_eq!(height(&desk), form);
 }
 
 #[test]
