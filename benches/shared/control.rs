@@ -144,7 +144,7 @@ fn walk(
     let Some(root) = nodes.first() else {
         return limit;
     };
-    let (entry, exit) = slab.span_ahead(root.aabb());
+    let (entry, exit) = slab.span_from(0.0, root.aabb());
     if entry > exit || entry > limit {
         return limit;
     }
@@ -160,8 +160,8 @@ fn walk(
         } else {
             let (left, right) = (node.first_index, node.first_index + 1);
             let children = &nodes[left as usize..][..2];
-            let (left_entry, left_exit) = slab.span_ahead(children[0].aabb());
-            let (right_entry, right_exit) = slab.span_ahead(children[1].aabb());
+            let (left_entry, left_exit) = slab.span_from(0.0, children[0].aabb());
+            let (right_entry, right_exit) = slab.span_from(0.0, children[1].aabb());
             let left_hit = (left_entry <= left_exit) & (left_entry <= limit);
             let right_hit = (right_entry <= right_exit) & (right_entry <= limit);
             match (left_hit, right_hit) {

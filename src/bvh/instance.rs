@@ -82,6 +82,7 @@ pub struct Instance {
     condition: f64,
     norm: f64,
     inverse_norm: f64,
+    edge_reach: f32,
 }
 
 impl Instance {
@@ -94,11 +95,7 @@ impl Instance {
         if !world_from_object.is_finite() || translation.abs().max_element() > REACH {
             return Err(SingularTransform::NotFinite);
         }
-        let linear = DMat3::from_cols(
-            world_from_object.matrix3.x_axis.as_dvec3(),
-            world_from_object.matrix3.y_axis.as_dvec3(),
-            world_from_object.matrix3.z_axis.as_dvec3(),
-        );
+        let linear = columns(&world_from_object.matrix3);
         let determinant = linear.determinant();
         if determinant == 0.0 {
             return Err(SingularTransform::Flat);
@@ -132,6 +129,7 @@ impl Instance {
             condition,
             norm,
             inverse_norm,
+            edge_reach: edge_reach(linear, norm, inverse_norm) as f32,
         })
     }
 
@@ -168,6 +166,33 @@ impl Instance {
     /// κ of the module docs.
     pub(crate) fn condition(&self) -> f32 {
         self.condition as f32
+    }
+
+    /// What a distance in the world is at most in the mesh, beside an edge. Where the transform also changes angles, by
+    /// how much it may narrow them is in it.
+    pub(super) fn edge_reach(&self) -> f32 {
+        self.edge_reach
+    }
+
+    /// Where the instance stands at a time: the translation that rays of that time see.
+    pub(super) fn stands_at(&self, time: f32) -> Vec3A {
+        self.translation + self.velocity * time
+    }
+
+    /// The linear part of the transform.
+    pub(super) fn exact_linear(&self) -> DMat3 {
+        columns(&self.world_from_object.matrix3)
+    }
+
+    /// Whether a point of the world lies on the side of a triangle's plane from which its corners run counterclockwise
+    /// (as the mesh gives them, and its normal points), at a time; `None` where it lies in it. In f64, so that it is
+    /// true of a ray's origin however grazing the ray.
+    pub fn is_above(&self, triangle: u32, point: Vec3, time: f32) -> Option<bool> {
+        let linear = self.exact_linear();
+        let stands = self.stands_at(time).as_dvec3();
+        let [a, b, c] = (self.mesh.triangles().corners(triangle)).map(|p| linear * p.as_dvec3());
+        let height = (b - a).cross(c - a).dot(point.as_dvec3() - stands - a);
+        (height != 0.0).then_some((height > 0.0) != self.mirrored)
     }
 
     /// A point of the mesh, in the world, at time 0.
@@ -214,13 +239,6 @@ impl Instance {
         }
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
         let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
-        let columns = |matrix: &Mat3A| {
-            DMat3::from_cols(
-                matrix.x_axis.as_dvec3(),
-                matrix.y_axis.as_dvec3(),
-                matrix.z_axis.as_dvec3(),
-            )
-        };
         let linear = columns(&self.world_from_object.matrix3);
         let (translation, velocity) = (self.translation.as_dvec3(), self.velocity.as_dvec3());
         let (moved, half) = (linear * centre, linear.abs() * half);
@@ -259,13 +277,33 @@ impl Instance {
         if self.identity {
             return Some(*world);
         }
-        let stands = self.translation + self.velocity * time;
-        let origin = self.object_from_world * (world.origin - stands);
+        let origin = self.object_from_world * (world.origin - self.stands_at(time));
         let direction = self.object_from_world * world.direction;
         let size = direction.abs().max_element();
         ((SMALLEST_DIRECTION..=1.0 / SMALLEST_DIRECTION).contains(&size)
             && origin.abs().max_element() < f32::MAX)
             .then(|| ObjectRay::new(origin, direction, size))
+    }
+}
+
+fn columns(matrix: &Mat3A) -> DMat3 {
+    DMat3::from_cols(
+        matrix.x_axis.as_dvec3(),
+        matrix.y_axis.as_dvec3(),
+        matrix.z_axis.as_dvec3(),
+    )
+}
+
+/// See [`Instance::edge_reach`]. A transform that keeps angles has the same factor everywhere; else the norms bound the
+/// lengths, by √3 each, and the tangent of an angle changes by no more than the product of both.
+fn edge_reach(linear: DMat3, norm: f64, inverse_norm: f64) -> f64 {
+    let squared = linear.transpose() * linear;
+    let scale = (squared.x_axis.x + squared.y_axis.y + squared.z_axis.z) / 3.0;
+    let off = squared - DMat3::from_diagonal(DVec3::splat(scale));
+    if self::norm(off.abs()) <= 1e-5 * scale {
+        1.0 / scale.sqrt()
+    } else {
+        3.0_f64.sqrt() * inverse_norm * 3.0 * norm * inverse_norm
     }
 }
 

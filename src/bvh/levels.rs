@@ -212,7 +212,8 @@ impl Arrangement for OneMesh<'_> {
         mut at: impl FnMut(Hit, f32) -> f32,
     ) {
         let at = |triangle, crossing, limit| offer(ray, (0, triangle), crossing, limit, &mut at);
-        (self.0).walk_wide::<E, NEAREST_FIRST>(&ray.world, stack, ray.end, at);
+        let span = (ray.start, ray.end);
+        (self.0).walk_wide::<E, NEAREST_FIRST>(&ray.world, stack, span, at);
     }
 }
 
@@ -240,7 +241,7 @@ impl Arrangement for TwoLevels<'_> {
             ray,
             at,
         };
-        let top = WideRay::new(&scene.top_slab(&ray.world));
+        let top = WideRay::new(&scene.top_slab(&ray.world), ray.start);
         walk::<E, NEAREST_FIRST>(&scene.wide, stack, &top, ray.end, &mut leaves);
     }
 }
@@ -269,7 +270,7 @@ impl Arrangement for OneLevel<'_> {
             last: None,
             at,
         };
-        let top = WideRay::new(&scene.top_slab(&ray.world));
+        let top = WideRay::new(&scene.top_slab(&ray.world), ray.start);
         walk::<E, NEAREST_FIRST>(&scene.wide, stack, &top, ray.end, &mut leaves);
     }
 }
@@ -327,7 +328,8 @@ impl<E: Eight, At: FnMut(Hit, f32) -> f32, const NEAREST_FIRST: bool> Leaves<E>
                 offer(ray, (number, triangle), crossing, limit, &mut self.at)
             };
             let mesh = &instance.mesh;
-            limit = mesh.walk_wide::<E, NEAREST_FIRST>(&object, stack, limit, at);
+            let span = (ray.start, limit);
+            limit = mesh.walk_wide::<E, NEAREST_FIRST>(&object, stack, span, at);
             if limit == STOP {
                 break;
             }

@@ -14,6 +14,7 @@ use super::{
     triangle::{Crossing, LeafTriangle, Shear, cross},
     triangles::Triangles,
     visitor::{TreeRef, Visitor},
+    wedges::Wedges,
     wide::{self, Eight, Leaves, TriangleBlock, WideBox, WideRay, WideStats, WideTree},
 };
 
@@ -26,6 +27,7 @@ pub struct MeshTree {
     pub(crate) leaves: Vec<LeafTriangle>,
     wide: WideTree,
     blocks: Vec<TriangleBlock>,
+    wedges: Wedges,
     build_time: Duration,
 }
 
@@ -57,6 +59,7 @@ impl MeshTree {
         });
         blocks.shrink_to_fit();
         Self {
+            wedges: Wedges::of(&triangles),
             triangles,
             tree,
             leaves,
@@ -92,6 +95,11 @@ impl MeshTree {
         self.tree.nodes.first().map(|root| *root.aabb())
     }
 
+    /// How narrow the wedges are that its triangles make with each other.
+    pub(super) fn wedges(&self) -> &Wedges {
+        &self.wedges
+    }
+
     /// Memory held, in bytes: mesh, tree and leaves.
     pub fn bytes(&self) -> usize {
         size_of_val(self.triangles.positions())
@@ -101,6 +109,7 @@ impl MeshTree {
             + size_of_val(self.tree.primitive_indices.as_slice())
             + self.wide.bytes()
             + size_of_val(self.blocks.as_slice())
+            + self.wedges.bytes()
     }
 
     /// Statistics of the tree.
@@ -141,14 +150,14 @@ impl MeshTree {
         self.wide.most_pending()
     }
 
-    /// Walks the tree along a ray in object space, unwatched: [`walk`](wide::walk). `at(triangle number, crossing,
-    /// limit)` returns the new limit, or [`STOP`].
+    /// Walks the tree along a ray in object space, from the first `t` of the span to the second, the limit, unwatched:
+    /// [`walk`](wide::walk). `at(triangle number, crossing, limit)` returns the new limit, or [`STOP`].
     #[inline(always)]
     pub(crate) fn walk_wide<E: Eight, const NEAREST_FIRST: bool>(
         &self,
         ray: &ObjectRay,
         stack: &mut [u64],
-        limit: f32,
+        (start, limit): (f32, f32),
         at: impl FnMut(u32, Crossing, f32) -> f32,
     ) -> f32 {
         let mut leaves = MeshLeaves {
@@ -157,17 +166,18 @@ impl MeshTree {
             shear: None,
             at,
         };
-        let wide_ray = WideRay::new(&ray.slab);
+        let wide_ray = WideRay::new(&ray.slab, start);
         wide::walk::<E, NEAREST_FIRST>(&self.wide, stack, &wide_ray, limit, &mut leaves)
     }
 
-    /// Walks the tree along a ray in object space. `at(triangle number, crossing, limit)` returns the new limit.
+    /// Walks the tree along a ray in object space, from the first `t` of the span to the second, the limit. `at(triangle
+    /// number, crossing, limit)` returns the new one.
     #[inline(always)]
     pub(crate) fn walk<V: Visitor>(
         &self,
         ray: &ObjectRay,
         stack: &mut Stack,
-        limit: f32,
+        span: (f32, f32),
         instance: u32,
         visitor: &mut V,
         mut at: impl FnMut(u32, Option<Crossing>, f32, &mut V) -> f32,
@@ -177,7 +187,7 @@ impl MeshTree {
             &self.tree.nodes,
             stack,
             &ray.slab,
-            limit,
+            span,
             TreeRef::Mesh(instance),
             visitor,
             |first, count, mut limit, visitor| {

@@ -17,11 +17,12 @@
 //! 5. A [`Ray`] asks it for the nearest hit ([`Aggregate::closest_hit`]), for any ([`Aggregate::occluded`]), for the next
 //!    one behind a hit, for all; one ray at a time or in batches. A [`Visitor`] may watch every node and triangle.
 //!    They walk a wide form of the trees, many boxes and triangles at once (`wide`); a visitor sees the binary form.
-//! 6. [`Instance::surface_point`] tells where a [`Hit`] lies, and how far off a new ray must start.
+//! 6. [`Instance::surface_point`] tells where a [`Hit`] lies, and [`Aggregate::leave`] where a ray starts that leaves it.
 //!
 //! # What is promised
 //! * **Nothing leaks.** A ray that passes a closed mesh's surface hits it, on edges and in corners too, at any distance
-//!   from the origin (`triangle`, `slab`).
+//!   from the origin (`triangle`, `slab`). Nor does one that starts at a hit, beside edges and in narrow wedges too
+//!   (`surface_point`, `leave`).
 //! * **The tree changes no bit.** Every builder, one level or two, or no tree at all find the same hits, to the last bit
 //!   of `t`. Three things make it so. A triangle is only hit where the ray passes its own box, and `t` is clamped to
 //!   the ray's stretch within it. The slab test is monotone under rounding, so no box above that one is entered later
@@ -44,6 +45,7 @@ mod epo;
 pub(crate) mod hard_cases;
 mod instance;
 mod layout;
+mod leave;
 mod levels;
 mod median;
 pub(crate) mod mesh_tree;
@@ -68,6 +70,7 @@ pub(crate) mod triangle;
 mod triangles;
 mod visitor;
 mod watched;
+mod wedges;
 mod wide;
 
 pub use aggregate::{Aggregate, Primitive};
@@ -81,7 +84,7 @@ pub use ray::{Hit, Ray};
 pub use sah::{COST_INTERSECT, COST_TRAVERSE};
 pub use split_plane::{SplitPlane, gap_plane, primitives_below, split_plane};
 pub use stats::{LARGEST_LEAF_BIN, TreeStats, bytes, node_cost, sah_cost};
-pub use surface_point::SurfacePoint;
+pub use surface_point::{NearEdge, SurfacePoint};
 pub use triangles::{REACH, Triangles, TrianglesError};
 pub use visitor::{Counters, NodeEvent, TreeRef, Visitor};
 pub use wide::{WideBox, WideStats};

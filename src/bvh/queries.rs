@@ -39,10 +39,9 @@ impl Aggregate {
     }
 
     /// The next hit behind `after`, a hit of the same ray: the ray goes straight on through what it met, and meets every
-    /// crossing exactly once, however close they lie.
+    /// crossing exactly once, however close they lie. What lies before `after` is not walked again.
     pub fn closest_hit_after(&self, ray: &Ray, after: &Hit) -> Option<Hit> {
-        let ray = SafeRay::new(ray)?;
-        let after = ray.unscaled(*after);
+        let (ray, after) = SafeRay::from_hit(ray, after)?;
         let mut best = Best::NONE;
         self.ask_every::<true>(&ray, |hit, limit| {
             if after.beats(&hit) {

@@ -13,6 +13,8 @@ use super::{
 /// its `t` is the ray's divided by `scale`.
 pub(crate) struct SafeRay {
     pub(crate) world: ObjectRay,
+    /// Hits before this `t`, its own, are not asked for: boxes that end before are passed by.
+    pub(crate) start: f32,
     /// Where it ends, in its own `t`.
     pub(crate) end: f32,
     /// When it is shot.
@@ -46,6 +48,7 @@ impl SafeRay {
         let sane = near & (ray.t_max > 0.0) & (ray.time >= 0.0) & (ray.time <= 1.0);
         sane.then(|| Self {
             world: ObjectRay::new(origin, direction, longest),
+            start: 0.0,
             end: ray.t_max / scale,
             time: ray.time,
             scale,
@@ -69,13 +72,19 @@ impl SafeRay {
         }
     }
 
-    /// A caller's hit as this ray measures it.
+    /// The rest of the ray from a hit of the caller's on, and that hit as this ray measures it.
+    ///
+    /// A hit's `t` lies within its triangle's box, and that in all boxes above it ([`super::slab`]): what ends before
+    /// `start` holds no hit behind it, to the last bit.
     #[inline(always)]
-    pub(crate) fn unscaled(&self, hit: Hit) -> Hit {
-        Hit {
-            t: hit.t / self.scale,
-            ..hit
-        }
+    pub(crate) fn from_hit(ray: &Ray, hit: &Hit) -> Option<(Self, Hit)> {
+        let mut safe = Self::new(ray)?;
+        safe.start = hit.t / safe.scale;
+        let hit = Hit {
+            t: safe.start,
+            ..*hit
+        };
+        Some((safe, hit))
     }
 }
 

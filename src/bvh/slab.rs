@@ -96,12 +96,12 @@ impl SlabRay {
         )
     }
 
-    /// The same for the part of the line ahead of the origin: `entry` is not negative.
+    /// The same for the part of the line from `start` on: `entry` is not before.
     #[inline(always)]
-    pub(crate) fn span_ahead(&self, bounds: &Aabb) -> (f32, f32) {
+    pub(crate) fn span_from(&self, start: f32, bounds: &Aabb) -> (f32, f32) {
         let (entry, exit) = self.span(bounds);
         // One instruction; `f32::max` takes five, for NaNs that cannot occur.
-        (if entry > 0.0 { entry } else { 0.0 }, exit)
+        (if entry > start { entry } else { start }, exit)
     }
 
     /// The slack that the object-space test of a ray from `origin` needs.

@@ -18,7 +18,7 @@ pub(crate) type Stack = [(f32, u32); MAX_DEPTH];
 /// An empty stack.
 pub(crate) const EMPTY: Stack = [(0.0, 0); MAX_DEPTH];
 
-/// Walks `nodes` along the ray, nearest child first, and hands the primitives of each leaf it reaches to
+/// Walks `nodes` along the ray, from the first `t` of the span to the second, the limit, nearest child first, and hands the primitives of each leaf it reaches to
 /// `leaf(first, count, limit, visitor)`, which returns the new limit: the `t` beyond which nothing matters any more,
 /// or [`STOP`]. Nodes entered exactly at the limit are still walked, since ties are decided by number.
 #[inline(always)]
@@ -26,7 +26,7 @@ pub(crate) fn walk<V: Visitor>(
     nodes: &[Bvh2Node],
     stack: &mut Stack,
     slab: &SlabRay,
-    mut limit: f32,
+    (start, mut limit): (f32, f32),
     tree: TreeRef,
     visitor: &mut V,
     mut leaf: impl FnMut(u32, u32, f32, &mut V) -> f32,
@@ -34,7 +34,7 @@ pub(crate) fn walk<V: Visitor>(
     let Some(root) = nodes.first() else {
         return limit;
     };
-    let (entry, exit) = slab.span_ahead(root.aabb());
+    let (entry, exit) = slab.span_from(start, root.aabb());
     if entry > exit {
         visitor.node(tree, 0, NodeEvent::Missed, entry);
         return limit;
@@ -57,8 +57,8 @@ pub(crate) fn walk<V: Visitor>(
         } else {
             let (left, right) = (node.first_index, node.first_index + 1);
             let children = &nodes[left as usize..][..2];
-            let (left_entry, left_exit) = slab.span_ahead(children[0].aabb());
-            let (right_entry, right_exit) = slab.span_ahead(children[1].aabb());
+            let (left_entry, left_exit) = slab.span_from(start, children[0].aabb());
+            let (right_entry, right_exit) = slab.span_from(start, children[1].aabb());
             let left_hit = (left_entry <= left_exit) & (left_entry <= limit);
             let right_hit = (right_entry <= right_exit) & (right_entry <= limit);
             let mut settle = |node, hit: bool, entry: f32, exit: f32| {

@@ -30,8 +30,7 @@ impl Aggregate {
         after: &Hit,
         visitor: &mut V,
     ) -> Option<Hit> {
-        let ray = SafeRay::new(ray)?;
-        let after = ray.unscaled(*after);
+        let (ray, after) = SafeRay::from_hit(ray, after)?;
         let mut best = Best::NONE;
         self.watch(&ray, visitor, |hit, limit| {
             if !after.beats(&hit) {
@@ -97,7 +96,8 @@ impl Aggregate {
                             at(number, triangle, crossing, limit, visitor)
                         };
                         let stack = &mut mesh_stack;
-                        (instance.mesh).walk(&object, stack, limit, number, visitor, at)
+                        let span = (ray.start, limit);
+                        (instance.mesh).walk(&object, stack, span, number, visitor, at)
                     }
                     Places::Triangles(places) => {
                         let (number, place) = places[place];
@@ -121,7 +121,7 @@ impl Aggregate {
             nodes,
             &mut stack,
             &slab,
-            ray.end,
+            (ray.start, ray.end),
             TreeRef::Top,
             visitor,
             leaf,

@@ -6,7 +6,7 @@ use super::recorder::{LightKind, Recorder};
 use super::sampler::Purpose;
 use super::shading::reflected;
 use super::{Lights, Surface};
-use crate::bvh::{Hit, Ray};
+use crate::bvh::{Aggregate, Hit, Ray};
 use crate::scene::{Lighting, RenderSettings};
 use glam::Vec3;
 
@@ -135,7 +135,7 @@ impl<R: Recorder> Batch<'_, R> {
             sample: path.sample,
             value,
         });
-        let ray = shadow_ray(surface, &point, path.time);
+        let ray = shadow_ray(&self.world.aggregate, surface, &point, path.time);
         self.recorder.shadow_ray(&ray);
         workspace.shadow_rays.push(ray);
     }
@@ -189,8 +189,8 @@ impl<R: Recorder> Batch<'_, R> {
 }
 
 /// From a surface to a light point, ending just before it.
-fn shadow_ray(surface: &Surface, point: &LightPoint, time: f32) -> Ray {
-    let origin = surface.point.leave(point.direction);
+fn shadow_ray(aggregate: &Aggregate, surface: &Surface, point: &LightPoint, time: f32) -> Ray {
+    let origin = aggregate.leave(&surface.point, point.direction);
     if point.distance == f32::INFINITY {
         return Ray {
             origin,

@@ -4,6 +4,10 @@ use crate::bvh::{Hit, Ray, SurfacePoint};
 use crate::scene::{Lighting, RenderSettings, TextureFilter};
 use glam::{Vec2, Vec3};
 
+/// Below this cosine rounding may turn a normal to the wrong side of the ray: which one it came from is then asked of
+/// where it started.
+const GRAZING: f32 = 1e-4;
+
 /// A place on a surface, with everything that shading reads.
 #[derive(Clone, Debug)]
 pub struct Surface {
@@ -48,11 +52,14 @@ impl Surface {
                 normal = smooth;
             }
         }
-        let geometric_normal = if point.normal.dot(to_viewer) < 0.0 {
-            -point.normal
+        let cosine = point.normal.dot(to_viewer);
+        let above = if cosine.abs() > GRAZING {
+            cosine > 0.0
         } else {
-            point.normal
+            let above = instance.is_above(hit.triangle, ray.origin, ray.time);
+            above.unwrap_or(cosine >= 0.0)
         };
+        let geometric_normal = if above { point.normal } else { -point.normal };
         if settings.lighting == Lighting::Physical && normal.dot(geometric_normal) < 0.0 {
             normal = -normal;
         }
@@ -113,6 +120,7 @@ impl Surface {
                 position,
                 error: Vec3::ZERO,
                 normal,
+                near_edge: None,
             },
             geometric_normal: normal,
             normal,

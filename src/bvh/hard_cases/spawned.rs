@@ -37,7 +37,8 @@ pub(crate) fn self_hits(
         let surface = aggregate.instances()[hit.instance as usize].surface_point(&hit, 0.0);
         for side in [surface.normal, -surface.normal] {
             let direction = leaving(side, random);
-            let next = aggregate.closest_hit(&Ray::new(surface.leave(direction), direction));
+            let start = aggregate.leave(&surface, direction);
+            let next = aggregate.closest_hit(&Ray::new(start, direction));
             spawned += 1;
             same += usize::from(
                 next.is_some_and(|n| (n.instance, n.triangle) == (hit.instance, hit.triangle)),

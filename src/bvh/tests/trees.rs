@@ -116,7 +116,7 @@ fn a_tree_as_deep_as_any_is_walked_to_its_last_leaf() {
             &nodes,
             &mut EMPTY.clone(),
             &slab,
-            f32::INFINITY,
+            (0.0, f32::INFINITY),
             TreeRef::Top,
             &mut (),
             |first, count, limit, _| {

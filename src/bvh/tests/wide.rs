@@ -193,7 +193,7 @@ fn a_tree_as_deep_as_any_is_walked_to_its_last_leaf_within_its_stack() {
             wide.most_pending()
         );
         let slab = SlabRay::new(Vec3A::ZERO, Vec3A::new(0.3, -0.4, 0.5), 0.5, 0.0);
-        let ray = WideRay::<Portable>::new(&slab);
+        let ray = WideRay::<Portable>::new(&slab, 0.0);
         let mut visits = Visits(vec![0; leaves as usize]);
         let end = f32::INFINITY;
         let mut stack = vec![0; wide.most_pending() + 8];

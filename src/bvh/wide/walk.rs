@@ -31,11 +31,13 @@ pub(crate) struct WideRay<E> {
     near_origin: [E; 3],
     far_origin: [E; 3],
     inverse: [E; 3],
+    start: E,
 }
 
 impl<E: Eight> WideRay<E> {
+    /// The part of the line from `start`, which is not negative, on.
     #[inline(always)]
-    pub(crate) fn new(slab: &SlabRay) -> Self {
+    pub(crate) fn new(slab: &SlabRay, start: f32) -> Self {
         let (above, below) = (slab.above, slab.below);
         let inverse = slab.inverse;
         let backwards = inverse.cmplt(Vec3A::ZERO);
@@ -51,17 +53,19 @@ impl<E: Eight> WideRay<E> {
                 E::splat(inverse.y),
                 E::splat(inverse.z),
             ],
+            // No entry shall be -0.0, so that their bits are in order.
+            start: E::splat(start + 0.0),
         }
     }
 
     /// Which children the ray enters, no later than at `limit`, and where. The numbers are those of
-    /// [`SlabRay::span_ahead`]: which of a box's two faces is nearer follows from the direction's sign, because the
+    /// [`SlabRay::span_from`]: which of a box's two faces is nearer follows from the direction's sign, because the
     /// differences and products are monotone.
     #[inline(always)]
     fn enter(&self, node: &WideNode, limit: f32) -> (u32, E) {
         let [x, y, z] = self.faces(node, self.near, &self.near_origin);
-        // Zero last, so that no entry is -0.0 and their bits are in order.
-        let entry = x.max(y).max(z).max(E::splat(0.0));
+        // The start last, so that no entry is -0.0.
+        let entry = x.max(y).max(z).max(self.start);
         let [x, y, z] = self.faces(node, self.near.map(|row| row ^ 1), &self.far_origin);
         let exit = x.min(y).min(z).min(E::splat(limit));
         (E::bits(entry.le(exit)), entry)

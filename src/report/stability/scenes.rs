@@ -19,8 +19,19 @@ pub(super) fn object(
     let indices = (0..corners.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
     let triangles = Triangles::new(corners.to_vec(), indices.collect());
     let triangles = triangles.expect("every index has its position");
+    placed(id, triangles, normals, &Affine3A::IDENTITY, material)
+}
+
+/// A mesh placed by a transform that has an inverse.
+pub(super) fn placed(
+    id: u64,
+    triangles: Triangles,
+    normals: Vec<Vec3>,
+    transform: &Affine3A,
+    material: u32,
+) -> (Instance, Object) {
     let tree = Arc::new(MeshTree::build(triangles, &BuildOptions::default()));
-    let instance = Instance::new(tree.clone(), &Affine3A::IDENTITY);
+    let instance = Instance::new(tree.clone(), transform);
     let mesh = Arc::new(Mesh {
         tree,
         normals,
@@ -32,7 +43,7 @@ pub(super) fn object(
         motion_samples: 0,
         mesh,
     };
-    (instance.expect("the identity has an inverse"), object)
+    (instance.expect("the transform has an inverse"), object)
 }
 
 /// A flat one.

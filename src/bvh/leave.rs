@@ -1,0 +1,178 @@
+//! Where a ray starts that leaves a hit close to an edge.
+//!
+//! Rounding alone would put such a start behind the neighbour beyond the edge ([`super::surface_point`]): out of a closed
+//! room. So the point is first moved into its triangle, as little as helps, and lifted off it, as little as the kernel
+//! needs; both in f64, where only the last step, to a start in f32, rounds. Then the kernel itself is asked whether that
+//! start is on the right side: the ray from there back to the point must meet the point's own triangle first. What is
+//! between them, a neighbour in a narrow wedge, sends the point farther in. Since all rays from one start see the corners
+//! at the same places, up to what the lift is more than, what holds for this ray holds for the next.
+
+use glam::{DVec3, Vec3};
+
+use super::{Aggregate, Hit, Instance, Ray, SurfacePoint, surface_point::NearEdge};
+
+/// Half an ulp of 1.
+const U: f64 = f32::EPSILON as f64 / 2.0;
+
+/// The lift off the surface is doubled so often before the point is moved farther in.
+const LIFTS: u32 = 4;
+
+impl Aggregate {
+    /// Where a ray starts that leaves a surface by the side to which `towards` points: it meets neither this triangle
+    /// again nor what lies behind those that share an edge or a corner with it.
+    ///
+    /// Where the surfaces beside an edge are closer together, all over the triangle, than coordinates of that size can tell
+    /// apart, there is no such place, and it is the nearest that f32 has.
+    pub fn leave(&self, point: &SurfacePoint, towards: Vec3) -> Vec3 {
+        match &point.near_edge {
+            None => point.leave(towards),
+            Some(near) => {
+                (self.leave_near_edge(point, near, towards)).unwrap_or_else(|| point.leave(towards))
+            }
+        }
+    }
+
+    #[cold]
+    fn leave_near_edge(
+        &self,
+        point: &SurfacePoint,
+        near: &NearEdge,
+        towards: Vec3,
+    ) -> Option<Vec3> {
+        let NearEdge { hit, time } = *near;
+        let instance = &self.instances()[hit.instance as usize];
+        let place = Place::of(instance, &hit, time, point.normal)?;
+        let normal = if towards.dot(point.normal) < 0.0 {
+            -place.normal
+        } else {
+            place.normal
+        };
+        let mut inset = 2.0 * place.blur;
+        loop {
+            let (at, last) = place.inset(inset);
+            let mut lift = place.lift;
+            for _ in 0..LIFTS {
+                let start = lifted(at, normal, place.lift, &mut lift)?;
+                if self.sees(start, at, normal, &place, &hit, time) {
+                    return Some(start);
+                }
+                lift *= 2.0;
+            }
+            if last {
+                return None;
+            }
+            inset *= 2.0;
+        }
+    }
+
+    /// Whether rays to the surface find the triangle of the hit first: from `start`, and from so far above it that a surface
+    /// in which `start` lies is met too.
+    fn sees(
+        &self,
+        start: Vec3,
+        at: DVec3,
+        normal: DVec3,
+        place: &Place,
+        hit: &Hit,
+        time: f32,
+    ) -> bool {
+        let own = |from: Vec3, to: DVec3| {
+            let ray = Ray {
+                time,
+                ..Ray::new(from, (to - from.as_dvec3()).as_vec3())
+            };
+            let found = self.closest_hit(&ray);
+            found.is_some_and(|f| (f.instance, f.triangle) == (hit.instance, hit.triangle))
+        };
+        let mut clearance = 2.0 * place.lift;
+        let start_exactly = start.as_dvec3();
+        let above = lifted(start_exactly, normal, place.lift, &mut clearance);
+        own(start, at) && above.is_some_and(|above| own(above, start_exactly))
+    }
+}
+
+/// `at`, at least `least` above the surface after rounding; `lift` grows where rounding takes it back.
+fn lifted(at: DVec3, normal: DVec3, least: f64, lift: &mut f64) -> Option<Vec3> {
+    for _ in 0..64 {
+        let start = (at + normal * *lift).as_vec3();
+        if normal.dot(start.as_dvec3() - at) >= least {
+            return Some(start);
+        }
+        *lift *= 2.0;
+    }
+    None
+}
+
+/// The triangle around a hit, in the world, when it was hit.
+struct Place {
+    corners: [DVec3; 3],
+    /// None below zero; their sum is 1.
+    weights: [f64; 3],
+    /// Over the edge opposite to each corner.
+    heights: [f64; 3],
+    normal: DVec3,
+    /// What a start has to be above the surface, so that the kernel sees it there.
+    lift: f64,
+    /// How far a start may be from where it is meant to be, along the surface.
+    blur: f64,
+}
+
+impl Place {
+    /// `None` where it is no triangle in the world.
+    fn of(instance: &Instance, hit: &Hit, time: f32, upwards: Vec3) -> Option<Self> {
+        let corners = instance.mesh.triangles().corners(hit.triangle);
+        let stands = instance.stands_at(time).as_dvec3();
+        let corners = corners.map(|corner| instance.exact_linear() * corner.as_dvec3() + stands);
+        let [a, b, c] = corners;
+        let product = (b - a).cross(c - a);
+        let area = product.length();
+        let normal = product.try_normalize()?;
+        let normal = if normal.dot(upwards.as_dvec3()) < 0.0 {
+            -normal
+        } else {
+            normal
+        };
+        let weights = [1.0 - hit.u - hit.v, hit.u, hit.v].map(|w| f64::from(w).max(0.0));
+        let sum: f64 = weights.iter().sum();
+        let weights = weights.map(|w| w / sum);
+        let point: DVec3 = (0..3).map(|i| weights[i] * corners[i]).sum();
+        let reach = corners.map(|corner| (corner - point).abs().max_element());
+        let reach = reach.into_iter().fold(0.0, f64::max);
+        // The way into object space is what rounds, where there is one (`bvh/instance.rs`).
+        let way = if instance.is_identity() {
+            0.0
+        } else {
+            6.0 * f64::from(instance.condition()) * (point - stands).abs().max_element()
+        };
+        let seen = U * (8.0 * reach + way);
+        // Twice, since a start lies a little elsewhere than the point; and in each of three coordinates.
+        let lift = 2.0 * 3.0_f64.sqrt() * seen;
+        let steps = point.as_vec3().to_array();
+        let steps = DVec3::from_array(steps.map(|p| f64::from(p.abs().next_up() - p.abs())));
+        Some(Self {
+            corners,
+            weights,
+            heights: [c - b, a - c, b - a].map(|edge| area / edge.length()),
+            normal,
+            lift,
+            blur: 0.5 * steps.length() + lift,
+        })
+    }
+
+    /// The point, moved towards the middle until it is this far from every edge; and whether it is there.
+    fn inset(&self, distance: f64) -> (DVec3, bool) {
+        let ways = (0..3).map(|i| {
+            let wanted = distance / self.heights[i] - self.weights[i];
+            if wanted <= 0.0 {
+                0.0
+            } else {
+                wanted / (1.0 / 3.0 - self.weights[i]).max(0.0)
+            }
+        });
+        let way = ways.fold(0.0, f64::max);
+        let last = !(way < 1.0);
+        let way = way.min(1.0);
+        let weights = self.weights.map(|w| w + way * (1.0 / 3.0 - w));
+        ((0..3).map(|i| weights[i] * self.corners[i]).sum(), last)
+    }
+}

@@ -1,0 +1,306 @@
+//! Cases of closed rooms: whoever is inside sees nothing of the outside, wherever the room stands.
+
+use super::scenes::{placed, quad, world};
+use super::{Effort, Outcome};
+use crate::bvh::hard_cases::meshes::{cube, mesh, moved};
+use crate::bvh::{Aggregate, BuildOptions, Instance, Levels, Triangles};
+use crate::film::render;
+use crate::report::table::digits;
+use crate::scene::RenderSettings;
+use crate::trace::{Camera, DirectionalLight, Environment, Lights, Material, Object, World};
+use glam::{Affine3A, DVec3, EulerRot, Quat, UVec2, Vec3};
+use std::f32::consts::{FRAC_PI_2, PI};
+use std::sync::Arc;
+
+/// How far from the origin rooms stand, in metres.
+const DISTANCES: [f32; 4] = [0.0, 100.0, 12_345.678, 148_376.0];
+
+/// A closed room around a place from which it is looked at.
+struct Room {
+    name: &'static str,
+    triangles: Triangles,
+    eye: Vec3,
+    towards: Vec3,
+    /// How far apart its walls are around the eye.
+    height: f32,
+}
+
+impl Room {
+    /// Whether coordinates at that distance are fine enough for the eye to be in the room, whose corners are rounded too.
+    fn holds_the_eye_at(&self, distance: f32) -> bool {
+        self.height > 4.0 * (distance.next_up() - distance)
+    }
+}
+
+/// A prism 2 m wide and 2 m deep: its floor and its ceiling meet at this angle.
+fn wedge(name: &'static str, degrees: f32) -> Room {
+    let height = 2.0 * degrees.to_radians().tan();
+    let profile = [[0.0, 0.0], [2.0, 0.0], [2.0, height]];
+    let positions = (0..6).map(|i| {
+        let [x, y] = profile[i % 3];
+        Vec3::new(x - 1.0, y, 2.0 * (i / 3) as f32 - 1.0)
+    });
+    let indices = [
+        [0, 1, 2],
+        [3, 5, 4],
+        [0, 3, 4],
+        [0, 4, 1],
+        [1, 4, 5],
+        [1, 5, 2],
+        [0, 2, 5],
+        [0, 5, 3],
+    ];
+    Room {
+        name,
+        triangles: mesh(positions.collect(), indices.to_vec()),
+        eye: Vec3::new(0.95, 0.4 * height, 0.1),
+        towards: Vec3::new(-1.0, 0.0, -0.3),
+        height,
+    }
+}
+
+/// A pyramid 2 m high over a triangle of 5 cm.
+fn spike() -> Room {
+    let foot = [[0.05, 0.0], [-0.02, 0.04], [-0.03, -0.04]];
+    let mut positions: Vec<Vec3> = foot.map(|[x, z]| Vec3::new(x, 0.0, z)).to_vec();
+    positions.push(Vec3::new(0.0, 2.0, 0.0));
+    Room {
+        name: "spike",
+        triangles: mesh(positions, vec![[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]]),
+        eye: Vec3::new(0.0, 0.1, 0.0),
+        towards: Vec3::new(0.02, 2.0, 0.01),
+        height: 0.04,
+    }
+}
+
+fn rooms() -> [Room; 5] {
+    [
+        Room {
+            name: "box",
+            triangles: cube(),
+            eye: Vec3::new(0.3, 0.2, 0.6),
+            towards: Vec3::new(-0.5, -0.4, -1.0),
+            height: 2.0,
+        },
+        wedge("wedge of 10°", 10.0),
+        wedge("wedge of 1°", 1.0),
+        wedge("wedge of 0.1°", 0.1),
+        spike(),
+    ]
+}
+
+/// Where a room stands, and whether its mesh is there or its transform puts it there.
+#[derive(Clone, Copy)]
+struct Standing {
+    turn: Quat,
+    at: Vec3,
+    in_the_mesh: bool,
+    levels: Levels,
+}
+
+impl Room {
+    fn placed(&self, standing: Standing, material: &Material) -> (World, Camera) {
+        let Standing {
+            turn,
+            at,
+            in_the_mesh,
+            levels,
+        } = standing;
+        let place = |p: Vec3| (turn.as_dquat() * p.as_dvec3() + at.as_dvec3()).as_vec3();
+        let (triangles, transform) = if in_the_mesh {
+            (moved(&self.triangles, place), Affine3A::IDENTITY)
+        } else {
+            let transform = Affine3A::from_rotation_translation(turn, at);
+            (self.triangles.clone(), transform)
+        };
+        let options = BuildOptions {
+            levels,
+            ..BuildOptions::default()
+        };
+        let object = placed(1, triangles, Vec::new(), &transform, 0);
+        let mut world = world(vec![object], vec![material.clone()]);
+        let instances = world.aggregate.instances().to_vec();
+        world.aggregate = Arc::new(Aggregate::build(instances, &options));
+        let eye = place(self.eye);
+        let mut camera = Camera::looking_at(Vec3::ZERO, turn * self.towards, turn * Vec3::Y, 1.6);
+        camera.position = eye;
+        (world, camera)
+    }
+}
+
+/// A mirror that swallows nothing, before a white sky.
+fn mirrors(mut world: World) -> World {
+    world.environment = Environment {
+        background: Vec3::ONE,
+        ..Environment::default()
+    };
+    world.with_needs()
+}
+
+/// Many strong suns, whose light has to come through a wall.
+fn suns(mut world: World) -> World {
+    let directions = (0..12).map(|i| {
+        // Nearly even over the sphere (a Fibonacci lattice).
+        let y = 1.0 - (2 * i + 1) as f64 / 12.0;
+        let (sin, cos) = (i as f64 * 2.399_963).sin_cos();
+        let across = (1.0 - y * y).sqrt();
+        DVec3::new(across * cos, y, across * sin).as_vec3()
+    });
+    let lights = directions
+        .enumerate()
+        .map(|(i, to_light)| DirectionalLight {
+            id: 100 + i as u64,
+            to_light,
+            color: Vec3::splat(1000.0),
+            tan_half_angle: 0.0,
+            samples: 1,
+        });
+    world.lights = Arc::new(Lights {
+        directionals: lights.collect(),
+        ..Lights::default()
+    });
+    world.with_needs()
+}
+
+/// A material, and what is outside.
+type Kind = (&'static str, Material, fn(World) -> World);
+
+fn kinds() -> [Kind; 2] {
+    let mirror = Material {
+        diffuse: Vec3::ZERO,
+        specular: Vec3::ONE,
+        shininess: 1e6,
+        ..Material::default()
+    };
+    [
+        ("mirrors", mirror, mirrors),
+        ("matt", Material::default(), suns),
+    ]
+}
+
+fn settings(effort: &Effort) -> RenderSettings {
+    let edge = if effort.rays > 1_000_000 { 200 } else { 24 };
+    RenderSettings {
+        size: UVec2::splat(edge),
+        spp: 16,
+        max_depth: 50,
+        ..RenderSettings::default()
+    }
+}
+
+/// How many pixels see something, of how many.
+fn seen(world: &World, camera: &Camera, settings: &RenderSettings) -> (usize, usize) {
+    let pixels = render(world, camera, settings, &|_, _| {}).picture.pixels;
+    let seen = pixels.iter().filter(|p| **p != Vec3::ZERO).count();
+    (seen, pixels.len())
+}
+
+fn turned() -> Quat {
+    Quat::from_euler(EulerRot::XYZ, 0.4, 1.1, -0.7)
+}
+
+/// Every room of every kind, at every distance, upright and turned, by its mesh and by its transform: how many pixels see
+/// something of the outside.
+pub(super) fn closed(effort: &Effort) -> Outcome {
+    let settings = settings(effort);
+    let (mut counted, mut rooms_seen, mut faults) = (0, 0, Vec::new());
+    for room in rooms() {
+        for (kind, material, outside) in kinds() {
+            for (index, distance) in DISTANCES.into_iter().enumerate() {
+                if !room.holds_the_eye_at(distance) {
+                    continue;
+                }
+                for (turn, in_the_mesh) in [
+                    (Quat::IDENTITY, true),
+                    (turned(), true),
+                    (Quat::IDENTITY, false),
+                    (turned(), false),
+                ] {
+                    let standing = Standing {
+                        turn,
+                        at: Vec3::new(distance, 0.25 * distance, -0.5 * distance),
+                        in_the_mesh,
+                        levels: [Levels::Two, Levels::One][index % 2],
+                    };
+                    let (world, camera) = room.placed(standing, &material);
+                    let (leaks, pixels) = seen(&outside(world), &camera, &settings);
+                    counted += pixels;
+                    rooms_seen += 1;
+                    if leaks > 0 {
+                        faults.push(format!(
+                            "{} ({kind}) at {distance} m, {} by its {}: {leaks} of {pixels} pixels see the outside",
+                            room.name,
+                            if turn == Quat::IDENTITY { "upright" } else { "turned" },
+                            if in_the_mesh { "mesh" } else { "transform" },
+                        ));
+                    }
+                }
+            }
+        }
+    }
+    let figures = format!("{} of {rooms_seen} rooms leak", faults.len());
+    Outcome {
+        counted: counted as u64,
+        figures,
+        faults,
+    }
+}
+
+/// The six walls of a box of 2 m, an object each, placed by its transform; how much wider than the box they are.
+fn six_walls(turn: Quat, at: Vec3, wider: f32) -> Vec<(Instance, Object)> {
+    let half = 1.0 + wider;
+    let corner = Vec3::new(-half, 0.0, -half);
+    let wall = quad(corner, Vec3::Z * 2.0 * half, Vec3::X * 2.0 * half);
+    let turns = [
+        Quat::IDENTITY,
+        Quat::from_rotation_x(PI),
+        Quat::from_rotation_x(FRAC_PI_2),
+        Quat::from_rotation_x(-FRAC_PI_2),
+        Quat::from_rotation_z(FRAC_PI_2),
+        Quat::from_rotation_z(-FRAC_PI_2),
+    ];
+    let walls = turns.iter().zip(1u64..).map(|(own, id)| {
+        let turn = turn * *own;
+        let transform = Affine3A::from_rotation_translation(turn, at - turn * Vec3::Y);
+        let indices = vec![[0, 1, 2], [3, 4, 5]];
+        placed(id, mesh(wall.to_vec(), indices), Vec::new(), &transform, 0)
+    });
+    walls.collect()
+}
+
+/// Rooms whose walls are objects of their own. Nothing is promised of them: where two objects touch, each is rounded by
+/// its own transform, so there are cracks, and a start beside the edge of one knows nothing of the other.
+pub(super) fn of_objects(effort: &Effort) -> Outcome {
+    let settings = settings(effort);
+    let (mut counted, mut figures) = (0, Vec::new());
+    for (name, wider) in [
+        ("edge to edge", 0.0),
+        ("walls that go on behind each other", 0.25),
+    ] {
+        for (turn, way) in [(Quat::IDENTITY, "upright"), (turned(), "turned")] {
+            let parts = [0.0, 100.0, 12_345.678].map(|distance| {
+                let at = Vec3::new(distance, 0.25 * distance, -0.5 * distance);
+                let [(_, mirror, outside), _] = kinds();
+                let world = outside(world(six_walls(turn, at, wider), vec![mirror]));
+                let mut camera = Camera::looking_at(
+                    Vec3::ZERO,
+                    turn * Vec3::new(-0.5, -0.4, -1.0),
+                    turn * Vec3::Y,
+                    1.6,
+                );
+                camera.position = at + turn * Vec3::new(0.3, 0.2, 0.6);
+                let (leaks, pixels) = seen(&world, &camera, &settings);
+                counted += pixels;
+                format!("{} %", digits(100.0 * leaks as f64 / pixels as f64, 2))
+            });
+            figures.push(format!("{name}, {way}: {}", parts.join(", ")));
+        }
+    }
+    Outcome::new(
+        counted,
+        format!(
+            "pixels that see the outside at 0, 100 and 12,346 m: {}",
+            figures.join("; ")
+        ),
+    )
+}
