@@ -7,7 +7,7 @@ use crate::scene::{PixelSampling, RenderSettings, SceneId};
 use glam::{UVec2, Vec2, Vec3};
 
 /// What one camera ray meets first. Surfaces only: lights have none, and a surface counts however
-/// transparent it is.
+/// transparent it is, unless its opacity is 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FirstHit {
     /// kd, texture included; black for a miss.
@@ -94,20 +94,24 @@ pub fn central_ray(camera: &Camera, settings: &RenderSettings, pixel: UVec2) -> 
 
 fn first_hit(world: &World, settings: &RenderSettings, cone: Cone, ray: &Ray) -> FirstHit {
     let mut cost = Counters::default();
-    let Some(hit) = world.aggregate.closest_hit_with(ray, &mut cost) else {
-        return FirstHit {
-            cost,
-            ..FirstHit::MISS
-        };
-    };
-    let depth = hit.t * ray.direction.length();
-    let width = cone.width_at(depth);
-    let surface = Surface::at(world, settings, ray, width, &hit);
+    let aggregate = &world.aggregate;
+    let mut next = aggregate.closest_hit_with(ray, &mut cost);
+    while let Some(hit) = next {
+        let depth = hit.t * ray.direction.length();
+        let surface = Surface::at(world, settings, ray, cone.width_at(depth), &hit);
+        if surface.opacity > 0.0 {
+            return FirstHit {
+                albedo: surface.diffuse,
+                normal: surface.normal,
+                depth,
+                object: Some(SceneId(world.objects[hit.instance as usize].id)),
+                cost,
+            };
+        }
+        next = aggregate.next_crossing_with(ray, &hit, &mut cost);
+    }
     FirstHit {
-        albedo: surface.diffuse,
-        normal: surface.normal,
-        depth,
-        object: Some(SceneId(world.objects[hit.instance as usize].id)),
         cost,
+        ..FirstHit::MISS
     }
 }

@@ -252,7 +252,11 @@ impl<R: Recorder> Batch<'_, R> {
                 let width = path.cone.width_at(hit.t);
                 let surface = Surface::at(self.world, self.settings, ray, width, hit);
                 self.recorder.met_surface(hit, &surface);
-                self.shade_surface(path, hit, &surface, workspace);
+                if surface.opacity == 0.0 {
+                    self.pass(path, hit, workspace);
+                } else {
+                    self.shade_surface(path, hit, &surface, workspace);
+                }
             } else {
                 let background = self.background(path.direction);
                 self.recorder.met_background(background);

@@ -50,6 +50,18 @@ impl<R: Recorder> Batch<'_, R> {
         self.transmit(path, hit, surface, 1.0, workspace);
     }
 
+    /// The same path goes on behind a surface that is not there: it is no first hit, scatters nothing and names no path,
+    /// so that the picture is the one without it, bit for bit.
+    pub(super) fn pass(&mut self, path: &Path, hit: &Hit, workspace: &mut Workspace) {
+        let next = Path {
+            after: Some(*hit),
+            ..*path
+        };
+        self.recorder.continued(&next, Way::Straight, 1, 1.0);
+        workspace.next.push(next);
+        self.counts.transmission += 1;
+    }
+
     fn reflect(
         &mut self,
         path: &Path,
@@ -59,6 +71,10 @@ impl<R: Recorder> Batch<'_, R> {
         workspace: &mut Workspace,
     ) {
         let throughput = path.throughput * surface.specular * (surface.opacity * weight);
+        let origin = self
+            .world
+            .aggregate
+            .leave(&surface.point, surface.geometric_normal);
         let mirrored = surface.mirrored();
         let glossy = self.settings.features.glossy;
         let count = if glossy && path.first {
@@ -76,7 +92,7 @@ impl<R: Recorder> Batch<'_, R> {
                 mirrored
             };
             let next = Path {
-                origin: surface.point.leave(direction),
+                origin,
                 direction,
                 throughput: throughput / count as f32,
                 cone: path
@@ -132,13 +148,14 @@ impl<R: Recorder> Batch<'_, R> {
             1
         };
         let straight = -surface.to_viewer;
+        let far_side = -surface.geometric_normal;
+        let origin = self.world.aggregate.leave(&surface.point, far_side);
         for i in 0..count {
             let u = self.numbers(path, Purpose::Translucency, count, i);
             let radius = 1.0 / surface.shininess;
-            let direction = offset_direction(straight, -surface.geometric_normal, radius, u)
-                .unwrap_or(straight);
+            let direction = offset_direction(straight, far_side, radius, u).unwrap_or(straight);
             let next = Path {
-                origin: surface.point.leave(direction),
+                origin,
                 direction,
                 throughput: throughput / count as f32,
                 cone: path.cone.reflected(hit.t, 1.0 / surface.shininess),

@@ -1,11 +1,15 @@
 //! Cases of layers and mirrors.
 
-use super::scenes::{central_radiance, flat, once, quad, world};
+use super::scenes::{central_radiance, flat, once, placed, quad, world};
 use super::{Effort, Outcome};
+use crate::bvh::hard_cases::meshes::soup;
+use crate::bvh::{Counters, Ray};
+use crate::film::render;
 use crate::report::table::digits;
 use crate::scene::RenderSettings;
-use crate::trace::{Camera, Environment, Material, World};
-use glam::Vec3;
+use crate::trace::{Camera, Environment, Lights, Material, ParallelogramLight, World};
+use glam::{Affine3A, UVec2, Vec3};
+use std::sync::Arc;
 
 fn pane(opacity: f32) -> Material {
     Material {
@@ -114,4 +118,105 @@ pub(super) fn mirrors(_: &Effort) -> Outcome {
         wrong == 0,
         format!("{wrong} depths with another number of bounces"),
     )
+}
+
+/// What a ray straight through `count` sheets visits, nodes and triangles, crossing by crossing; and how many it crosses.
+fn visits(count: u32, one_mesh: bool) -> (u64, u32) {
+    let sheet = |i: u32| square(i as f32 * 0.01);
+    let triangles = |corners: &[Vec3; 6]| {
+        let [a, b, c, d, e, f] = *corners;
+        [[a, b, c], [d, e, f]]
+    };
+    let objects = if one_mesh {
+        let all = (0..count).flat_map(|i| triangles(&sheet(i)));
+        vec![placed(1, soup(all), Vec::new(), &Affine3A::IDENTITY, 0)]
+    } else {
+        (0..count)
+            .map(|i| flat(u64::from(i) + 1, &sheet(i), 0))
+            .collect()
+    };
+    let scene = world(objects, vec![pane(0.5)]);
+    let ray = Ray::new(Vec3::new(0.1, 0.3, -1.0), Vec3::new(0.01, 0.02, 1.0));
+    let (mut cost, mut crossed) = (Counters::default(), 0);
+    let mut next = scene.aggregate.closest_hit_with(&ray, &mut cost);
+    while let Some(hit) = next {
+        crossed += 1;
+        next = scene.aggregate.next_crossing_with(&ray, &hit, &mut cost);
+    }
+    (cost.nodes + cost.triangles, crossed)
+}
+
+pub(super) fn sheets(_: &Effort) -> Outcome {
+    let (mut ratios, mut crossed_all) = (Vec::new(), true);
+    for one_mesh in [true, false] {
+        let [(few, few_crossed), (many, many_crossed)] = [400, 800].map(|n| visits(n, one_mesh));
+        crossed_all &= (few_crossed, many_crossed) == (400, 800);
+        ratios.push(many as f64 / few as f64);
+    }
+    let worst = ratios[0].max(ratios[1]);
+    Outcome::new(
+        2 * (400 + 800),
+        format!(
+            "visits through 800 sheets against 400: {} in one mesh, {} as objects",
+            digits(ratios[0], 3),
+            digits(ratios[1], 3)
+        ),
+    )
+    .require(worst <= 2.2, format!("{worst} times the visits"))
+    .require(crossed_all, "not every sheet is crossed once")
+}
+
+/// A floor under a lamp, and a sheet of opacity 0 before the camera, or none.
+fn behind_nothing(sheet: bool) -> World {
+    let floor = quad(Vec3::new(-4.0, 0.0, -4.0), Vec3::Z * 8.0, Vec3::X * 8.0);
+    let block = quad(Vec3::new(-0.5, 0.5, -0.5), Vec3::Z, Vec3::X);
+    let mut objects = vec![flat(1, &floor, 0), flat(2, &block, 1)];
+    if sheet {
+        let corner = Vec3::new(-9.0, 2.5, -9.0);
+        objects.push(flat(3, &quad(corner, Vec3::Z * 18.0, Vec3::X * 18.0), 2));
+    }
+    let mirror = Material {
+        specular: Vec3::splat(0.5),
+        ..Material::default()
+    };
+    // There is glass in both, so that both are traced in the same way.
+    let mut scene = world(objects, vec![mirror, pane(0.7), pane(0.0)]);
+    scene.lights = Arc::new(Lights {
+        parallelograms: vec![ParallelogramLight {
+            id: 9,
+            corner: Vec3::new(-0.5, 2.0, -0.5),
+            edges: [Vec3::X, Vec3::Z],
+            colors: [Vec3::splat(4.0); 4],
+            two_sided: false,
+            visible: true,
+            samples: 4,
+        }],
+        ..Lights::default()
+    });
+    scene.with_needs()
+}
+
+pub(super) fn invisible(effort: &Effort) -> Outcome {
+    let edge = if effort.rays > 1_000_000 { 256 } else { 48 };
+    let (mut wrong, mut pixels) = (0, 0);
+    for translucency in [false, true] {
+        let mut settings = RenderSettings {
+            size: UVec2::splat(edge),
+            spp: 4,
+            ..RenderSettings::default()
+        };
+        settings.features.translucency = translucency;
+        settings.features.glossy = translucency;
+        let camera = Camera::looking_at(Vec3::new(2.0, 4.0, 3.0), Vec3::ZERO, Vec3::Y, 0.7);
+        let [without, with] = [false, true]
+            .map(|sheet| render(&behind_nothing(sheet), &camera, &settings, &|_, _| {}).picture);
+        pixels += without.pixels.len();
+        let pairs = without.pixels.iter().zip(&with.pixels);
+        wrong += pairs.filter(|(a, b)| a != b).count();
+    }
+    Outcome::new(
+        pixels,
+        format!("{wrong} pixels differ from those without it"),
+    )
+    .require(wrong == 0, format!("{wrong} pixels differ"))
 }
