@@ -31,7 +31,9 @@ mod recorder;
 mod sampler;
 mod scatter;
 pub mod shading;
+mod spot_cone;
 pub mod srgb;
+mod sun_disc;
 mod surface;
 mod texture;
 mod world;
@@ -42,7 +44,7 @@ pub use environment::Environment;
 pub use first_hit::{FirstHit, central_hits, central_ray, first_hits};
 pub use footprint::Cone;
 pub use lights::{
-    DirectionalLight, LightPoint, Lights, ParallelogramLight, PointLight, SegmentLight, SpotCone,
+    DirectionalLight, LightPoint, Lights, ParallelogramLight, PointLight, SegmentLight,
 };
 pub use material::Material;
 pub use needs::{Needs, samples_per_pixel};
@@ -53,6 +55,8 @@ pub use ray_tree::{
 };
 pub use recorder::LightKind;
 pub use sampler::{Purpose, Sampler};
+pub use spot_cone::SpotCone;
+pub use sun_disc::SunDisc;
 pub use surface::Surface;
 pub use texture::{Texels, Texture, TextureError};
 pub use world::{Mesh, Object, World};
