@@ -12,6 +12,15 @@
 //! a pixel has its colour.
 //!
 //! Formulas: the module docs of [`lights`], [`shading`] and [`camera`].
+//!
+//! # Far from the origin
+//! Positions are f32: at 1e5 m from the origin they are 8 mm apart, at 1e6 m 6 cm. What two of them are to each other is
+//! therefore taken before anything is added: a lamp's corner from the shading point and then its edges, the corner from
+//! a ray's start and then the way along the ray, a triangle's edges and not its corners in the world. So a scene looks
+//! at 1e6 m as it does at 0, with two exceptions. What the scene itself puts between two such positions (an entity
+//! there, the corner of a turned lamp) stands at the nearer of them; and a place that is found or made while tracing (a
+//! hit, the start of a ray on a lens, in an orthographic picture or of a moving camera) is off by up to half of their
+//! distance in each coordinate: light and what is out of focus shift by that much, what is in focus stays sharp.
 
 pub mod camera;
 mod digest;

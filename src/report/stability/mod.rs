@@ -4,6 +4,7 @@
 
 mod angles;
 mod edits;
+mod far;
 mod hairball;
 mod light;
 mod motion_and_lens;
@@ -297,6 +298,12 @@ pub(super) static CASES: &[Case] = &[
         "suns of 0° … 180° on floors",
         "E kd/π within 1e-3 facing, 3e-3 on slopes",
         angles::suns,
+    ),
+    case(
+        42,
+        "a scene at 1e4 … 1e6 m against the same at 0",
+        "the same bits where positions are f32; else within half a step of f32 there",
+        far::far,
     ),
     case(
         43,
