@@ -89,10 +89,7 @@ impl Scene {
     fn is_noisy(&self) -> bool {
         let lights = &self.world.lights;
         let areas = lights.segments.len() + lights.parallelograms.len();
-        let sun = lights
-            .directionals
-            .iter()
-            .any(|light| light.tan_half_angle > 0.0);
+        let sun = lights.directionals.iter().any(|light| light.disc.is_some());
         let moves = self.world.needs.motion_samples > 0;
         areas > 0 || sun || moves || self.camera.has_lens() || self.settings.features.glossy
     }

@@ -74,8 +74,7 @@ fn rays_of_first_hit(subject: &Subject) -> u64 {
     let mut rays = 1 + lights.points.len() as u64;
     if features.soft_shadows {
         for light in &lights.directionals {
-            let size = std::f32::consts::PI * light.tan_half_angle * light.tan_half_angle;
-            rays += count(light.samples, size);
+            rays += count(light.samples, light.solid_angle());
         }
         for light in &lights.segments {
             rays += count(light.samples, (light.ends[1] - light.ends[0]).length());

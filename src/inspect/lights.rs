@@ -91,8 +91,8 @@ fn draw_point(set: &mut LineSet, light: &PointLight, size: f32) {
     let Some(cone) = &light.cone else { return };
     let length = 6.0 * size;
     let (x, y) = cone.axis.any_orthonormal_pair();
-    for cosine in [cone.cos_inner, cone.cos_outer] {
-        let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+    for versine in [cone.versine_inner, cone.versine_outer] {
+        let (cosine, sine) = (1.0 - versine, (versine * (2.0 - versine)).sqrt());
         let center = light.position + length * cosine * cone.axis;
         set.circle(center, [x, y], length * sine, color, stands);
         for side in [x, -x, y, -y] {

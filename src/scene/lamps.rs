@@ -61,7 +61,8 @@ pub struct DirectionalLamp {
     pub color: LinearRgba,
     /// Multiplies the colour.
     pub intensity: f32,
-    /// Angle under which the source is seen, in radians; 0 gives hard shadows, the sun has 0.0093.
+    /// Angle under which the source is seen, in radians, 0 to π: a disc of directions, all equally bright. 0 gives hard
+    /// shadows, the sun has 0.0093; π is half of the sky.
     pub angular_diameter: f32,
     /// Shadow rays at the first hit, 1–1000; used where `angular_diameter` > 0.
     pub samples: u32,

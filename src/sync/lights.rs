@@ -3,7 +3,7 @@ use super::reading::{Reader, Switched};
 use super::traced::Draft;
 use crate::scene::{DirectionalLamp, ParallelogramLamp, PointLamp, SceneId, SegmentLamp};
 use crate::trace::{
-    DirectionalLight, Lights, ParallelogramLight, PointLight, SegmentLight, SpotCone,
+    DirectionalLight, Lights, ParallelogramLight, PointLight, SegmentLight, SpotCone, SunDisc,
 };
 use bevy::camera::visibility::InheritedVisibility;
 use bevy::color::LinearRgba;
@@ -119,11 +119,13 @@ fn point(lamp: &PointLamp, transform: &GlobalTransform, reader: &mut Reader) -> 
         Some(cone) => {
             let outer = reader.number("cone's outer angle", cone.outer, 0.0..=FRAC_PI_2)?;
             let inner = reader.number("cone's inner angle", cone.inner, 0.0..=outer)?;
-            Some(SpotCone {
-                axis: -backward(transform, reader)?,
-                cos_inner: inner.cos(),
-                cos_outer: outer.cos(),
-            })
+            if outer == 0.0 {
+                reader.note(Fault::Degenerate {
+                    field: "cone's outer angle",
+                });
+                return None;
+            }
+            Some(SpotCone::new(-backward(transform, reader)?, inner, outer))
         }
     };
     Some(PointLight {
@@ -139,13 +141,12 @@ fn directional(
     transform: &GlobalTransform,
     reader: &mut Reader,
 ) -> Option<DirectionalLight> {
-    // Half of a half-turn has no tangent; a source that wide is no directional light.
-    let diameter = reader.number("angular diameter", lamp.angular_diameter, 0.0..=0.9 * PI)?;
+    let diameter = reader.number("angular diameter", lamp.angular_diameter, 0.0..=PI)?;
     Some(DirectionalLight {
         id: reader.id.0,
         to_light: backward(transform, reader)?,
         color: reader.strength("colour times intensity", lamp.color, lamp.intensity)?,
-        tan_half_angle: (0.5 * diameter).tan(),
+        disc: SunDisc::of_diameter(diameter),
         samples: reader.samples(lamp.samples),
     })
 }

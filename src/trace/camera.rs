@@ -122,7 +122,7 @@ impl Camera {
     /// middle of the lens) at `time`: the inverse of [`Self::ray`]. Columns and rows from the top left
     /// corner, and metres along the view axis; a perspective camera sees nothing that is not ahead.
     pub fn project(&self, point: Vec3, size: UVec2, time: f32) -> Option<(Vec2, f32)> {
-        let offset = point - (self.position + self.optics.velocity * time);
+        let offset = (point - self.position) - self.optics.velocity * time;
         let ahead = offset.dot(self.forward);
         let at = Vec2::new(offset.dot(self.right), offset.dot(self.up));
         let at = match self.projection {
@@ -188,22 +188,26 @@ impl ImagePlane<'_> {
         let ndc = Vec2::new(2.0 * place.x / size.x - 1.0, 1.0 - 2.0 * place.y / size.y);
         let at = Vec2::new(ndc.x * self.aspect, ndc.y) * self.half_height;
         let moved = |from: Vec3| from + at.x * camera.right + at.y * camera.up;
-        let (mut origin, mut direction) = match camera.projection {
-            Projection::Perspective { .. } => (camera.position, moved(camera.forward).normalize()),
-            Projection::Orthographic { .. } => (moved(camera.position), camera.forward),
+        // Where the pinhole's ray starts, from the camera: added to its position last, so that it is rounded once.
+        let (mut start, mut direction) = match camera.projection {
+            Projection::Perspective { .. } => (Vec3::ZERO, moved(camera.forward).normalize()),
+            Projection::Orthographic { .. } => (moved(Vec3::ZERO), camera.forward),
         };
         let optics = &camera.optics;
+        if optics.velocity != Vec3::ZERO {
+            start += optics.velocity * time;
+        }
+        let mut origin = camera.position + start;
         if camera.has_lens() {
             let p = optics.aperture_radius * concentric(lens);
-            let offset = p.x * camera.right + p.y * camera.up;
-            origin += offset;
+            origin = camera.position + (start + (p.x * camera.right + p.y * camera.up));
             if optics.focus_distance.is_finite() {
                 let to_focus = optics.focus_distance / direction.dot(camera.forward);
+                // From where the ray does start: far from the origin that is another place of the lens, and what is
+                // in focus has to stay sharp.
+                let offset = (origin - camera.position) - start;
                 direction = (to_focus * direction - offset).normalize();
             }
-        }
-        if optics.velocity != Vec3::ZERO {
-            origin += optics.velocity * time;
         }
         Ray {
             origin,

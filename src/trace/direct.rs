@@ -44,21 +44,14 @@ impl<R: Recorder> Batch<'_, R> {
         }
         for light in &lights.directionals {
             self.recorder.light(LightKind::Directional, light.id);
-            let count = if light.tan_half_angle > 0.0 {
-                light.samples
-            } else {
-                0
-            };
-            let size = std::f32::consts::PI * light.tan_half_angle * light.tan_half_angle;
-            self.gather_area(
-                path,
-                surface,
-                light.id,
-                (count, size),
-                weight,
-                workspace,
-                |u| Some(light.point(u)),
-            );
+            if light.disc.is_none() || !self.settings.features.soft_shadows {
+                self.gather_point(path, surface, Some(light.middle()), weight, workspace);
+                continue;
+            }
+            let count = (light.samples, light.solid_angle());
+            self.gather_area(path, surface, light.id, count, weight, workspace, |u| {
+                Some(light.point(u, lighting))
+            });
         }
         for light in &lights.segments {
             self.recorder.light(LightKind::Segment, light.id);
@@ -78,7 +71,7 @@ impl<R: Recorder> Batch<'_, R> {
     }
 
     /// Several points of one light: `samples` of them at the first hit, stratified together over
-    /// all samples of the pixel; one at later hits, and where the light has no extent.
+    /// all samples of the pixel; one at later hits, and its middle where there are no soft shadows.
     #[expect(
         clippy::too_many_arguments,
         reason = "a light's numbers, a path's and the arrays"
@@ -94,7 +87,7 @@ impl<R: Recorder> Batch<'_, R> {
         point: impl Fn([f32; 2]) -> Option<LightPoint>,
     ) {
         let features = &self.settings.features;
-        if samples == 0 || !features.soft_shadows {
+        if !features.soft_shadows {
             self.gather_point(path, surface, point(MIDDLE), weight, workspace);
             return;
         }
@@ -200,7 +193,7 @@ fn shadow_ray(aggregate: &Aggregate, surface: &Surface, point: &LightPoint, time
         };
     }
     // From the moved origin to the light itself, so that the ray still ends there.
-    let to_light = surface.point.position + point.distance * point.direction - origin;
+    let to_light = point.distance * point.direction - (origin - surface.point.position);
     Ray {
         origin,
         direction: to_light,
@@ -213,14 +206,8 @@ impl Lights {
     /// How many shadow rays the area light with this `SceneId` gets at a first hit; `None` where there
     /// is no such light.
     pub fn samples_of(&self, id: u64, settings: &RenderSettings) -> Option<u32> {
-        let directional = self.directionals.iter().map(|light| {
-            let radius = light.tan_half_angle;
-            (
-                light.id,
-                light.samples,
-                std::f32::consts::PI * radius * radius,
-            )
-        });
+        let directional =
+            (self.directionals.iter()).map(|light| (light.id, light.samples, light.solid_angle()));
         let segments = self.segments.iter().map(|light| {
             let length = (light.ends[1] - light.ends[0]).length();
             (light.id, light.samples, length)

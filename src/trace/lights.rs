@@ -4,14 +4,15 @@
 //! | kind | arrives (Physical), before the surface's cosine |
 //! |---|---|
 //! | point | `I · cone / d²`, W/m² |
-//! | directional | `E`, W/m² |
+//! | directional | `E`, W/m²; of a disc of directions as [`SunDisc`] has it |
 //! | segment | `I'(x) · length / d²` for a uniform point x of it |
 //! | parallelogram | `L(x) · cos θ · area / d²` for a uniform point x of it, θ at the emitter |
 //!
 //! With Classic lighting the colour itself arrives, whatever the distance and the angle; a
 //! parallelogram shines to both sides then, as in simple Phong ray tracers.
 
-use super::disc::concentric;
+use super::spot_cone::SpotCone;
+use super::sun_disc::SunDisc;
 use crate::scene::Lighting;
 use glam::Vec3;
 
@@ -38,17 +39,6 @@ pub struct PointLight {
     pub cone: Option<SpotCone>,
 }
 
-/// Full strength where the cosine to `axis` exceeds `cos_inner`, none below `cos_outer`.
-#[derive(Clone, Copy, Debug, serde::Serialize)]
-pub struct SpotCone {
-    /// Unit vector along which the spot shines.
-    pub axis: Vec3,
-    /// Cosine of the inner half-angle.
-    pub cos_inner: f32,
-    /// Cosine of the outer half-angle, ≤ `cos_inner`.
-    pub cos_outer: f32,
-}
-
 /// Light from infinitely far.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct DirectionalLight {
@@ -58,8 +48,8 @@ pub struct DirectionalLight {
     pub to_light: Vec3,
     /// Linear RGB, W/m² on a facing surface.
     pub color: Vec3,
-    /// Tangent of half of the angle under which the source is seen.
-    pub tan_half_angle: f32,
+    /// The directions in which the source is seen; `None` where it has no extent.
+    pub disc: Option<SunDisc>,
     /// Shadow rays at the first hit.
     pub samples: u32,
 }
@@ -69,7 +59,7 @@ pub struct DirectionalLight {
 pub struct SegmentLight {
     /// The entity's `SceneId`.
     pub id: u64,
-    /// Both ends in world space.
+    /// Both ends in world space, each rounded to f32 there.
     pub ends: [Vec3; 2],
     /// Linear RGB at the ends, W/(sr·m).
     pub colors: [Vec3; 2],
@@ -82,7 +72,7 @@ pub struct SegmentLight {
 pub struct ParallelogramLight {
     /// The entity's `SceneId`.
     pub id: u64,
-    /// One corner in world space.
+    /// One corner in world space, rounded to f32 there; the edges are not.
     pub corner: Vec3,
     /// The two edges that leave it.
     pub edges: [Vec3; 2],
@@ -110,9 +100,11 @@ pub struct LightPoint {
 /// Below this squared distance (in m²) a light is at the point: `1/d²` stays finite in f32.
 const LEAST_SQUARED_DISTANCE: f32 = 1e-30;
 
-/// Direction and distance from one point to another; `None` where they coincide.
-fn towards(from: Vec3, to: Vec3) -> Option<(Vec3, f32)> {
-    let offset = to - from;
+/// Direction and length of the way to a light; `None` where there is none to go.
+///
+/// A light's own corner or end comes first when the way is summed up, `(corner - from) + edge`: far from the origin a
+/// sum of positions loses the digits that their difference has.
+fn towards(offset: Vec3) -> Option<(Vec3, f32)> {
     // Scaled first: squares of tiny and huge offsets leave f32's range.
     let scale = offset.abs().max_element();
     if !(scale > 0.0 && scale < f32::INFINITY) {
@@ -129,7 +121,7 @@ fn inverse_square(distance: f32) -> f32 {
 impl PointLight {
     /// The light as `from` sees it; `None` where nothing can arrive.
     pub fn point(&self, from: Vec3, lighting: Lighting) -> Option<LightPoint> {
-        let (direction, distance) = towards(from, self.position)?;
+        let (direction, distance) = towards(self.position - from)?;
         let cone = self.cone.map_or(1.0, |cone| cone.fall_off(-direction));
         (cone > 0.0).then(|| LightPoint {
             direction,
@@ -142,33 +134,32 @@ impl PointLight {
     }
 }
 
-impl SpotCone {
-    /// In [0, 1]: a smoothstep of the cosine between the outer and the inner half-angle.
-    fn fall_off(&self, leaving: Vec3) -> f32 {
-        let cosine = self.axis.dot(leaving);
-        if cosine >= self.cos_inner {
-            return 1.0;
-        }
-        let x = ((cosine - self.cos_outer) / (self.cos_inner - self.cos_outer)).clamp(0.0, 1.0);
-        x * x * (3.0 - 2.0 * x)
-    }
-}
-
 impl DirectionalLight {
-    /// The direction that the numbers `u` in [0, 1)² choose within the source's disc.
-    pub fn point(&self, u: [f32; 2]) -> LightPoint {
-        let direction = if self.tan_half_angle > 0.0 {
-            let p = self.tan_half_angle * concentric(u);
-            let (x, y) = self.to_light.any_orthonormal_pair();
-            (self.to_light + p.x * x + p.y * y).normalize()
-        } else {
-            self.to_light
-        };
+    /// The middle of the source: all of its light, where it has no extent.
+    pub fn middle(&self) -> LightPoint {
         LightPoint {
-            direction,
+            direction: self.to_light,
             distance: f32::INFINITY,
             arriving: self.color,
         }
+    }
+
+    /// The direction that the numbers `u` in [0, 1)² choose within the source's disc.
+    pub fn point(&self, u: [f32; 2], lighting: Lighting) -> LightPoint {
+        let Some(disc) = &self.disc else {
+            return self.middle();
+        };
+        let (direction, counts) = disc.direction(self.to_light, u, lighting);
+        LightPoint {
+            direction,
+            distance: f32::INFINITY,
+            arriving: self.color * counts,
+        }
+    }
+
+    /// The solid angle under which the source is seen, in sr; 0 where it has no extent.
+    pub fn solid_angle(&self) -> f32 {
+        self.disc.as_ref().map_or(0.0, SunDisc::solid_angle)
     }
 }
 
@@ -176,7 +167,7 @@ impl SegmentLight {
     /// The point at fraction `u` of the segment, as `from` sees it.
     pub fn point(&self, from: Vec3, u: f32, lighting: Lighting) -> Option<LightPoint> {
         let along = self.ends[1] - self.ends[0];
-        let (direction, distance) = towards(from, self.ends[0] + u * along)?;
+        let (direction, distance) = towards((self.ends[0] - from) + u * along)?;
         let color = self.colors[0].lerp(self.colors[1], u);
         Some(LightPoint {
             direction,
@@ -204,8 +195,8 @@ impl ParallelogramLight {
 
     /// The point at `u` in [0, 1)², as `from` sees it; `None` from behind a one-sided light.
     pub fn point(&self, from: Vec3, u: [f32; 2], lighting: Lighting) -> Option<LightPoint> {
-        let at = self.corner + u[0] * self.edges[0] + u[1] * self.edges[1];
-        let (direction, distance) = towards(from, at)?;
+        let offset = (self.corner - from) + u[0] * self.edges[0] + u[1] * self.edges[1];
+        let (direction, distance) = towards(offset)?;
         let color = self.color(u[0], u[1]);
         if lighting == Lighting::Classic {
             return Some(LightPoint {
@@ -231,8 +222,9 @@ impl ParallelogramLight {
         if slope == 0.0 || (slope > 0.0 && !self.two_sided) {
             return None;
         }
-        let t = (self.corner - origin).dot(normal) / slope;
-        let at = origin + t * direction - self.corner;
+        let to_corner = self.corner - origin;
+        let t = to_corner.dot(normal) / slope;
+        let at = t * direction - to_corner;
         let area_squared = normal.length_squared();
         let u = at.cross(self.edges[1]).dot(normal) / area_squared;
         let v = self.edges[0].cross(at).dot(normal) / area_squared;
@@ -298,27 +290,6 @@ mod tests {
             };
             let point = light.point(Vec3::ZERO, Lighting::Physical);
             assert!(point.is_none_or(|p| p.arriving.is_finite() && p.direction.is_finite()));
-        }
-    }
-
-    #[test]
-    fn a_spot_is_full_inside_none_outside_and_falls_without_a_step() {
-        let cone = SpotCone {
-            axis: Vec3::NEG_Y,
-            cos_inner: 0.3_f32.cos(),
-            cos_outer: 0.5_f32.cos(),
-        };
-        let at = |angle: f32| cone.fall_off(Vec3::new(angle.sin(), -angle.cos(), 0.0));
-        assert_eq!((at(0.0), at(0.29), at(0.51), at(3.0)), (1.0, 1.0, 0.0, 0.0));
-        let mut last = 1.0;
-        for i in 0..=1000 {
-            let value = at(0.25 + 0.3 * i as f32 / 1000.0);
-            assert!(
-                value <= last && last - value < 0.01,
-                "step of {}",
-                last - value
-            );
-            last = value;
         }
     }
 

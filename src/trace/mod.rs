@@ -12,6 +12,15 @@
 //! a pixel has its colour.
 //!
 //! Formulas: the module docs of [`lights`], [`shading`] and [`camera`].
+//!
+//! # Far from the origin
+//! Positions are f32: at 1e5 m from the origin they are 8 mm apart, at 1e6 m 6 cm. What two of them are to each other is
+//! therefore taken before anything is added: a lamp's corner from the shading point and then its edges, the corner from
+//! a ray's start and then the way along the ray, a triangle's edges and not its corners in the world. So a scene looks
+//! at 1e6 m as it does at 0, with two exceptions. What the scene itself puts between two such positions (an entity
+//! there, the corner of a turned lamp) stands at the nearer of them; and a place that is found or made while tracing (a
+//! hit, the start of a ray on a lens, in an orthographic picture or of a moving camera) is off by up to half of their
+//! distance in each coordinate: light and what is out of focus shift by that much, what is in focus stays sharp.
 
 pub mod camera;
 mod digest;
@@ -31,7 +40,9 @@ mod recorder;
 mod sampler;
 mod scatter;
 pub mod shading;
+mod spot_cone;
 pub mod srgb;
+mod sun_disc;
 mod surface;
 mod texture;
 mod world;
@@ -42,7 +53,7 @@ pub use environment::Environment;
 pub use first_hit::{FirstHit, central_hits, central_ray, first_hits};
 pub use footprint::Cone;
 pub use lights::{
-    DirectionalLight, LightPoint, Lights, ParallelogramLight, PointLight, SegmentLight, SpotCone,
+    DirectionalLight, LightPoint, Lights, ParallelogramLight, PointLight, SegmentLight,
 };
 pub use material::Material;
 pub use needs::{Needs, samples_per_pixel};
@@ -53,6 +64,8 @@ pub use ray_tree::{
 };
 pub use recorder::LightKind;
 pub use sampler::{Purpose, Sampler};
+pub use spot_cone::SpotCone;
+pub use sun_disc::SunDisc;
 pub use surface::Surface;
 pub use texture::{Texels, Texture, TextureError};
 pub use world::{Mesh, Object, World};

@@ -75,11 +75,9 @@ impl Surface {
                 .sum();
             let filter = settings.texture_filter;
             let footprint = if filter == TextureFilter::Mipmap {
+                let [a, b, c] = mesh.tree.triangles().corners(hit.triangle);
                 texture_footprint(
-                    mesh.tree
-                        .triangles()
-                        .corners(hit.triangle)
-                        .map(|p| instance.to_world_point(p)),
+                    [b - a, c - a].map(|edge| instance.to_world_vector(edge)),
                     corners.map(|i| mesh.uvs[i as usize]),
                     width,
                     geometric_normal.dot(to_viewer),

@@ -194,7 +194,7 @@ fn a_point_light_and_a_directional_one_give_their_irradiance_exactly() {
                     id: 1,
                     to_light,
                     color: Vec3::ONE,
-                    tan_half_angle: 0.0,
+                    disc: None,
                     samples: 1,
                 }],
                 ..Lights::default()

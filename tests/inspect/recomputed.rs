@@ -171,7 +171,10 @@ impl Recomputed {
                 full = color.max_element();
                 color * cone(&light["cone"], -way.normalize())
             }
-            "directional" => vector(&light["color"]),
+            "directional" => {
+                let counts = disc(&light["disc"], &light["to_light"], &sample["direction"]);
+                vector(&light["color"]) * if physical { counts } else { 1.0 }
+            }
             "segment" => {
                 let [a, b] = [0, 1].map(|i| vector(&light["ends"][i]));
                 let way = a.lerp(b, u) - from;
@@ -228,14 +231,24 @@ fn bilinear(light: &Value, u: f64, v: f64) -> DVec3 {
     c[0].lerp(c[1], u).lerp(c[2].lerp(c[3], u), v)
 }
 
+/// Radiance over density of a direction of a sun, its irradiance on a facing surface being 1: trace/sun_disc.rs.
+fn disc(disc: &Value, to_light: &Value, direction: &Value) -> f64 {
+    if disc.is_null() {
+        return 1.0;
+    }
+    let cosine = number(&disc["cos_half_angle"]);
+    let k = (0.125 - cosine).max(0.0);
+    (1.0 + 2.0 * k / (1.0 + cosine)) / (vector(to_light).dot(vector(direction)) + k)
+}
+
 /// A spot's share: a smoothstep of the cosine between its two half-angles.
 fn cone(cone: &Value, leaving: DVec3) -> f64 {
     if cone.is_null() {
         return 1.0;
     }
-    let (inner, outer) = (number(&cone["cos_inner"]), number(&cone["cos_outer"]));
-    let cosine = vector(&cone["axis"]).dot(leaving);
-    let x = ((cosine - outer) / (inner - outer)).clamp(0.0, 1.0);
+    let [inner, outer] = ["versine_inner", "versine_outer"].map(|name| number(&cone[name]));
+    let versine = 1.0 - vector(&cone["axis"]).dot(leaving);
+    let x = ((outer - versine) / (outer - inner)).clamp(0.0, 1.0);
     x * x * (3.0 - 2.0 * x)
 }
 

@@ -249,7 +249,7 @@ pub(super) fn coarse_sphere() -> (World, Camera, Vec3) {
             id: 9,
             to_light,
             color: Vec3::splat(PI),
-            tan_half_angle: 0.0,
+            disc: None,
             samples: 1,
         }],
         ..Lights::default()

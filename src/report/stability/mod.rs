@@ -2,7 +2,9 @@
 //!
 //! Every row is a function of the number of rays; the tests call the same functions with fewer.
 
+mod angles;
 mod edits;
+mod far;
 mod hairball;
 mod light;
 mod motion_and_lens;
@@ -303,6 +305,24 @@ pub(super) static CASES: &[Case] = &[
         "800 sheets against 400, crossed one by one",
         "at most 2.2 times the visits",
         transparency::sheets,
+    ),
+    case(
+        41,
+        "suns of 0° … 180° on floors",
+        "E kd/π within 1e-3 facing, 3e-3 on slopes",
+        angles::suns,
+    ),
+    case(
+        42,
+        "a scene at 1e4 … 1e6 m against the same at 0",
+        "the same bits where positions are f32; else within half a step of f32 there",
+        far::far,
+    ),
+    case(
+        43,
+        "spots of 0.01° … 80°, tilted",
+        "the lit area, 1 % relative",
+        angles::spots,
     ),
     case(
         45,

@@ -152,7 +152,7 @@ fn suns(mut world: World) -> World {
             id: 100 + i as u64,
             to_light,
             color: Vec3::splat(1000.0),
-            tan_half_angle: 0.0,
+            disc: None,
             samples: 1,
         });
     world.lights = Arc::new(Lights {

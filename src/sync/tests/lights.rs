@@ -3,7 +3,7 @@
 use super::*;
 use crate::scene::{Cone, DirectionalLamp, ParallelogramLamp, SegmentLamp};
 use bevy::math::Vec3;
-use std::f32::consts::FRAC_PI_2;
+use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
 #[test]
 fn lights_of_every_kind_are_in_world_space_and_a_mirror_keeps_a_lamps_front() {
@@ -59,4 +59,62 @@ fn lights_of_every_kind_are_in_world_space_and_a_mirror_keeps_a_lamps_front() {
         [at(-1.0, 0.0), at(0.0, 1.0), at(-1.0, 1.0)],
         [0.2, 0.3, 0.4]
     );
+}
+
+#[test]
+fn a_sun_may_fill_any_angle_up_to_half_the_sky_and_what_is_beyond_is_told() {
+    let mut app = app();
+    let diameters = [0.0, 0.0093, 180_f32.to_radians(), PI, 4.0, -0.1, f32::NAN];
+    for diameter in diameters {
+        app.world_mut().spawn(DirectionalLamp {
+            angular_diameter: diameter,
+            ..DirectionalLamp::default()
+        });
+    }
+    app.update();
+    let lights = world(&app).lights.clone();
+    let angles: Vec<f32> = (lights.directionals.iter())
+        .map(|light| light.solid_angle())
+        .collect();
+    let sun = PI * 0.00465 * 0.00465;
+    let expected = [0.0, sun, TAU, TAU, TAU, 0.0];
+    assert_eq!(angles.len(), expected.len(), "{angles:?}");
+    for (found, expected) in angles.iter().zip(expected) {
+        assert!((found - expected).abs() <= 1e-4 * expected, "{angles:?}");
+    }
+    let told = problems(&app);
+    assert_eq!(told.len(), 3, "{told:#?}");
+    assert!(told[0].contains("angular diameter is 4, out of range; 3.14159"));
+    assert!(told[1].contains("angular diameter is -0.1, out of range; 0 is used"));
+    assert!(told[2].contains("angular diameter is not a finite number"));
+}
+
+#[test]
+fn a_spot_of_no_angle_is_left_out_and_one_of_too_much_is_a_half_space() {
+    let mut app = app();
+    let outers = [0.0, 1e-4, FRAC_PI_2, 2.0, f32::NAN];
+    for outer in outers {
+        app.world_mut().spawn(PointLamp {
+            cone: Some(Cone { inner: 0.0, outer }),
+            ..PointLamp::default()
+        });
+    }
+    app.update();
+    let lights = world(&app).lights.clone();
+    let cones: Vec<_> = (lights.points.iter())
+        .map(|light| light.cone.unwrap().versine_outer)
+        .collect();
+    // 1 - cos of 1e-4 is half of its square.
+    assert_eq!(cones.len(), 3, "{cones:?}");
+    assert!((cones[0] / 5e-9 - 1.0).abs() < 1e-5, "{cones:?}");
+    assert!(
+        cones[1..]
+            .iter()
+            .all(|versine| (versine - 1.0).abs() < 1e-6)
+    );
+    let told = problems(&app);
+    assert_eq!(told.len(), 3, "{told:#?}");
+    assert!(told[0].contains("cone's outer angle is nothing; left out"));
+    assert!(told[1].contains("cone's outer angle is 2, out of range"));
+    assert!(told[2].contains("cone's outer angle is not a finite number"));
 }

@@ -115,8 +115,8 @@ fn directional_ui(ui: &mut Ui, several: &mut Several<DirectionalLamp>) {
     several.number(ui, "Intensity", says, intensity("W/m²"), |lamp| {
         &mut lamp.intensity
     });
-    let says = "Angle under which the source is seen: 0 gives hard shadows, the sun has 0.53°";
-    several.angle(ui, "Angular diameter", says, [0.0, 90.0], |lamp| {
+    let says = "Angle under which the source is seen: 0 gives hard shadows, the sun has 0.53°, 180° is half of the sky";
+    several.angle(ui, "Angular diameter", says, [0.0, 180.0], |lamp| {
         &mut lamp.angular_diameter
     });
     several.integer(ui, "Samples", SAMPLES, 1..=1000, |lamp| &mut lamp.samples);
