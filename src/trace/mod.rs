@@ -42,7 +42,8 @@ pub use environment::Environment;
 pub use first_hit::{FirstHit, central_hits, central_ray, first_hits};
 pub use footprint::Cone;
 pub use lights::{
-    DirectionalLight, LightPoint, Lights, ParallelogramLight, PointLight, SegmentLight, SpotCone,
+    DirectionalLight, LightPoint, Lights, MovingLight, ParallelogramLight, PointLight,
+    SegmentLight, SpotCone,
 };
 pub use material::Material;
 pub use needs::{Needs, samples_per_pixel};
