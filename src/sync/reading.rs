@@ -106,7 +106,7 @@ impl Reader<'_> {
     /// their range; `None` where there is no such velocity.
     pub fn motion(&mut self, motion: WorldMotion) -> Option<WorldMotion> {
         let velocity = motion.velocity;
-        // NaN is smaller than nothing.
+        // Asked so that NaN is refused too.
         if !velocity.abs().to_array().iter().all(|v| *v <= REACH) {
             self.note(Fault::Velocity { velocity });
             return None;
