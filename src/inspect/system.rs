@@ -129,6 +129,7 @@ impl System {
                 subject.settings.features.lens,
             )),
             Self::Motion => {
+                key.add(&(Arc::as_ptr(&subject.world.lights) as usize));
                 key.add_objects(subject);
                 key.add_text(&(subject.photographer, subject.settings.features.motion));
             }

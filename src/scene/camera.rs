@@ -77,7 +77,11 @@ impl Default for Lens {
     }
 }
 
-/// Moves an object or a camera while the shutter is open: it stands at `transform + velocity · t`.
+/// Moves an entity while the shutter is open, and all that hangs below it: at time t it stands `velocity · t` farther.
+///
+/// An object, a camera and a point, segment or parallelogram lamp move by the sum of their own way and of those of
+/// all their ancestors, each carried from its parent's space into the world. A spot's cone keeps its direction, and a
+/// directional lamp shines from infinitely far, whatever moves it.
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq, Debug)]
 #[type_path = "glassbox::scene"]

@@ -6,7 +6,7 @@
 //! |---|---|---|
 //! | an object | `Mesh3d` (usually through [`MeshSource`]) and [`Phong`] or [`UsesMaterial`], optionally [`Motion`] | `Transform` |
 //! | a shared material | [`Phong`] and no mesh | nowhere |
-//! | a light | [`PointLamp`], [`DirectionalLamp`], [`SegmentLamp`] or [`ParallelogramLamp`] | `Transform` |
+//! | a light | [`PointLamp`], [`DirectionalLamp`], [`SegmentLamp`] or [`ParallelogramLamp`], optionally [`Motion`] | `Transform` |
 //! | a camera | [`SceneCamera`], optionally [`Lens`] and [`Motion`] | `Transform`, looking down its local -Z |
 //!
 //! What belongs to the scene as a whole are the resources [`Environment`] and [`RenderSettings`].

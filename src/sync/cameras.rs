@@ -1,5 +1,6 @@
+use super::motions::{WorldMotion, WorldMotions};
 use super::problem::Fault;
-use super::reading::{Motions, Reader, Switched};
+use super::reading::{Reader, Switched};
 use super::traced::Draft;
 use crate::scene::{Lens, Projection, RenderSettings, SceneCamera, SceneId};
 use crate::trace::{Camera, Optics};
@@ -61,13 +62,13 @@ pub(super) fn sync_cameras(
     mut switched: Switched,
     settings: Res<RenderSettings>,
     cameras: CameraQuery,
-    mut motions: Motions,
+    motions: Res<WorldMotions>,
     mut traced: ResMut<TracedCameras>,
     draft: ResMut<Draft>,
 ) {
     // Not `||`: every reader has to be emptied.
     let gone = no_camera.read().count() + no_lens.read().count();
-    let switched = switched.any() | motions.changed();
+    let switched = switched.any() || motions.changed();
     if gone == 0 && !switched && edited.is_empty() && !settings.is_changed() {
         return;
     }
@@ -86,15 +87,11 @@ pub(super) fn sync_cameras(
         };
         let lens = lens.filter(|_| settings.features.lens);
         let motion = motions.of(entity);
-        let velocity = motion.map_or(Vec3::ZERO, |(velocity, _)| velocity);
-        let Some(mut camera) = read_camera(camera, transform, lens, velocity, &mut reader) else {
+        let Some(mut camera) = read_camera(camera, transform, lens, motion, &mut reader) else {
             continue;
         };
         if let Some(lens) = lens {
             camera.optics.lens_samples = reader.samples(lens.samples);
-        }
-        if let Some((_, samples)) = motion {
-            camera.optics.motion_samples = reader.samples(samples);
         }
         list.push(TracedCamera {
             id,
@@ -112,16 +109,18 @@ fn read_camera(
     camera: &SceneCamera,
     transform: &GlobalTransform,
     lens: Option<&Lens>,
-    velocity: Vec3,
+    motion: Option<WorldMotion>,
     reader: &mut Reader,
 ) -> Option<Camera> {
     let affine = transform.affine();
-    if !affine.is_finite() || !velocity.is_finite() {
-        reader.note(Fault::NotFinite {
-            field: "transform or motion",
-        });
+    if !affine.is_finite() {
+        reader.note(Fault::NotFinite { field: "transform" });
         return None;
     }
+    let motion = match motion {
+        Some(motion) => reader.motion(motion)?,
+        None => WorldMotion::default(),
+    };
     let projection = match camera.projection {
         Projection::Perspective { fov_y } if fov_y > 0.0 && fov_y < PI => camera.projection,
         Projection::Perspective { .. } => {
@@ -157,7 +156,8 @@ fn read_camera(
     let close = reader.number("shutter's closing", camera.shutter_close, open..=1.0)?;
     let mut optics = Optics {
         shutter: [open, close],
-        velocity,
+        velocity: motion.velocity,
+        motion_samples: motion.samples,
         ..Optics::default()
     };
     if let Some(lens) = lens {
@@ -193,7 +193,7 @@ mod tests {
             name: None,
             problems: &mut problems,
         };
-        let camera = read_camera(camera, &transform, None, Vec3::ZERO, &mut reader);
+        let camera = read_camera(camera, &transform, None, None, &mut reader);
         (camera, problems.len())
     }
 

@@ -1,6 +1,7 @@
 use super::meshes::TracedMeshes;
+use super::motions::{WorldMotion, WorldMotions};
 use super::problem::Fault;
-use super::reading::{Motions, Reader, Switched};
+use super::reading::{Reader, Switched};
 use super::traced::Draft;
 use super::tree_building::{TopLevelThread, TreeBuilding};
 use crate::bvh::{Aggregate, BuildOptions, Instance};
@@ -161,7 +162,7 @@ pub(super) fn sync_instances(
     mut no_visibility: RemovedComponents<InheritedVisibility>,
     mut no_id: RemovedComponents<SceneId>,
     mut switched: Switched,
-    mut motions: Motions,
+    motions: Res<WorldMotions>,
     objects: ObjectQuery,
     meshes: Res<TracedMeshes>,
     building: Res<TreeBuilding>,
@@ -174,7 +175,7 @@ pub(super) fn sync_instances(
         + no_transform.read().count()
         + no_visibility.read().count()
         + no_id.read().count();
-    let switched = switched.any() | motions.changed();
+    let switched = switched.any() || motions.changed();
     let options_changed = known.options != *meshes.options();
     let edited = gone > 0 || !moved.is_empty() || draft.changes.meshes;
     if switched || options_changed || edited {
@@ -192,7 +193,7 @@ pub(super) fn sync_instances(
 /// The objects as they are, and whether one of them is not as it is known.
 fn read(
     objects: &ObjectQuery,
-    motions: &Motions,
+    motions: &WorldMotions,
     meshes: &TracedMeshes,
     known: &TracedInstances,
     draft: &mut Draft,
@@ -229,9 +230,14 @@ fn read(
             reader.note(Fault::TrianglesLeftOut { count: left_out });
         }
         let transform = transform.affine();
-        let motion = motions.of(entity);
-        let velocity = motion.map_or(Vec3::ZERO, |(velocity, _)| velocity);
-        let motion_samples = motion.map_or(0, |(_, samples)| reader.samples(samples));
+        let motion = match motions.of(entity) {
+            Some(motion) => match reader.motion(motion) {
+                Some(motion) => motion,
+                None => continue,
+            },
+            None => WorldMotion::default(),
+        };
+        let velocity = motion.velocity;
         // Most stand where they stood.
         let before = known.rows.get(rows.len());
         let before = before.filter(|before| before.stands(mesh, &transform, velocity));
@@ -246,7 +252,7 @@ fn read(
                     id,
                     entity,
                     mesh: mesh.clone(),
-                    motion_samples,
+                    motion_samples: motion.samples,
                     instance,
                 };
                 moved |= !before.is_some_and(|before| before.same_object(&row));

@@ -1,17 +1,20 @@
+use super::motions::WorldMotions;
 use super::problem::Fault;
 use super::reading::{Reader, Switched};
 use super::traced::Draft;
 use crate::scene::{DirectionalLamp, ParallelogramLamp, PointLamp, SceneId, SegmentLamp};
 use crate::trace::{
-    DirectionalLight, Lights, ParallelogramLight, PointLight, SegmentLight, SpotCone, SunDisc,
+    DirectionalLight, Lights, MovingLight, ParallelogramLight, PointLight, SegmentLight, SpotCone,
+    SunDisc,
 };
 use bevy::camera::visibility::InheritedVisibility;
 use bevy::color::LinearRgba;
 use bevy::ecs::component::Component;
+use bevy::ecs::entity::Entity;
 use bevy::ecs::lifecycle::RemovedComponents;
 use bevy::ecs::name::Name;
 use bevy::ecs::query::{Changed, Or, With};
-use bevy::ecs::system::{Query, ResMut, SystemParam};
+use bevy::ecs::system::{Query, Res, ResMut, SystemParam};
 use bevy::math::Vec3;
 use bevy::transform::components::GlobalTransform;
 use std::f32::consts::{FRAC_PI_2, PI};
@@ -21,6 +24,7 @@ type LampQuery<'w, 's, L> = Query<
     'w,
     's,
     (
+        Entity,
         &'static SceneId,
         &'static L,
         &'static GlobalTransform,
@@ -49,10 +53,13 @@ impl<L: Component> Lamps<'_, '_, L> {
         self.gone.read().count() > 0 || !self.edited.is_empty()
     }
 
-    /// The lights of the visible lamps, sorted by id, without those that `light` makes nothing of.
+    /// The lights of the visible lamps, sorted by id, without those that `light` makes nothing of. Of
+    /// these `moving` gets those that `motions` knows.
     fn read<T>(
         &self,
         problems: &mut Vec<super::SyncProblem>,
+        motions: &WorldMotions,
+        moving: &mut Vec<MovingLight>,
         light: impl Fn(&L, &GlobalTransform, &mut Reader) -> Option<T>,
     ) -> Vec<T> {
         let mut visible: Vec<_> = self
@@ -60,10 +67,10 @@ impl<L: Component> Lamps<'_, '_, L> {
             .iter()
             .filter(|(.., visibility, _)| visibility.is_none_or(|v| v.get()))
             .collect();
-        visible.sort_unstable_by_key(|(id, ..)| **id);
+        visible.sort_unstable_by_key(|(_, id, ..)| **id);
         visible
             .into_iter()
-            .filter_map(|(&id, lamp, transform, _, name)| {
+            .filter_map(|(entity, &id, lamp, transform, _, name)| {
                 let mut reader = Reader {
                     kind: "light",
                     id,
@@ -74,7 +81,17 @@ impl<L: Component> Lamps<'_, '_, L> {
                     reader.note(Fault::NotFinite { field: "transform" });
                     return None;
                 }
-                light(lamp, transform, &mut reader)
+                let motion = match motions.of(entity) {
+                    Some(motion) => Some(reader.motion(motion)?),
+                    None => None,
+                };
+                let light = light(lamp, transform, &mut reader)?;
+                moving.extend(motion.map(|motion| MovingLight {
+                    id: id.0,
+                    velocity: motion.velocity,
+                    samples: motion.samples,
+                }));
+                Some(light)
             })
             .collect()
     }
@@ -87,30 +104,48 @@ pub(super) fn sync_lights(
     mut segments: Lamps<SegmentLamp>,
     mut parallelograms: Lamps<ParallelogramLamp>,
     mut switched: Switched,
+    motions: Res<WorldMotions>,
     draft: ResMut<Draft>,
 ) {
     // An array, not `||`: every reader has to be emptied.
-    let stale = [
+    let edited = [
         points.changed(),
         directionals.changed(),
         segments.changed(),
         parallelograms.changed(),
         switched.any(),
-    ];
-    if !stale.contains(&true) {
+    ]
+    .contains(&true);
+    if !edited && !motions.changed() {
         return;
     }
     let draft = draft.into_inner();
     let problems = &mut draft.problems.lights;
     problems.clear();
     draft.reread = true;
-    draft.world.lights = Arc::new(Lights {
-        points: points.read(problems, point),
-        directionals: directionals.read(problems, directional),
-        segments: segments.read(problems, segment),
-        parallelograms: parallelograms.read(problems, parallelogram),
-    });
-    draft.changes.lights = true;
+    let mut moving = Vec::new();
+    let lights = Lights {
+        points: points.read(problems, &motions, &mut moving, point),
+        // From infinitely far it shines as before, however it moves.
+        directionals: directionals.read(
+            problems,
+            &WorldMotions::default(),
+            &mut moving,
+            directional,
+        ),
+        segments: segments.read(problems, &motions, &mut moving, segment),
+        parallelograms: parallelograms.read(problems, &motions, &mut moving, parallelogram),
+        moving: Vec::new(),
+    };
+    // An entity may be lamps of several kinds.
+    moving.sort_unstable_by_key(|light| light.id);
+    moving.dedup_by_key(|light| light.id);
+    let lights = Lights { moving, ..lights };
+    // Motions that changed are mostly those of other things.
+    if edited || lights != *draft.world.lights {
+        draft.world.lights = Arc::new(lights);
+        draft.changes.lights = true;
+    }
 }
 
 fn point(lamp: &PointLamp, transform: &GlobalTransform, reader: &mut Reader) -> Option<PointLight> {

@@ -7,12 +7,13 @@
 //! |---|---|---|
 //! | `assign_scene_ids` | entities without a `SceneId`, or with one that another has | their numbers |
 //! | `sync_meshes` | `Mesh` assets that an object uses | that mesh's triangles and tree |
+//! | `sync_motions` | `Motion`, of entities and of all above them | how fast each moves in the world |
 //! | `sync_instances` | which mesh stands where, how it moves, and whether it is visible | the tree over the objects |
 //! | `sync_textures` | `Image` assets that a material or the environment uses | that texture |
 //! | `sync_materials` | `Phong`, `PhongMaps`, `UsesMaterial` | materials, and which object has which |
 //! | `sync_lights` | the four lamps | lights |
 //! | `sync_environment` | `Environment`, `EnvironmentMap` | background and map |
-//! | `sync_cameras` | `SceneCamera`, `Lens`, `Motion` | [`TracedCameras`] |
+//! | `sync_cameras` | `SceneCamera`, `Lens` | [`TracedCameras`] |
 //! | `publish_snapshot` | what the systems above redid | [`Traced`] |
 //!
 //! A system does its part again, in full, whenever something that it reads changed, appeared or
@@ -43,6 +44,7 @@ mod lights;
 mod materials;
 mod mesh_data;
 mod meshes;
+mod motions;
 mod problem;
 mod reading;
 mod texture_data;
@@ -55,6 +57,7 @@ mod tests;
 
 pub use cameras::{TracedCamera, TracedCameras};
 pub use mesh_data::MeshFault;
+pub use motions::{WorldMotion, WorldMotions};
 pub use problem::{Fault, SyncProblem};
 pub use texture_data::TextureFault;
 pub use traced::{Changes, Traced};
@@ -84,6 +87,7 @@ impl Plugin for SyncPlugin {
             .init_resource::<ids::IdOwners>()
             .init_resource::<TreeBuilding>()
             .init_resource::<meshes::TracedMeshes>()
+            .init_resource::<WorldMotions>()
             .init_resource::<textures::TracedTextures>()
             .init_resource::<instances::TracedInstances>()
             .init_resource::<tree_building::TopLevelThread>()
@@ -99,6 +103,7 @@ impl Plugin for SyncPlugin {
                 (
                     ids::assign_scene_ids,
                     meshes::sync_meshes,
+                    motions::sync_motions,
                     instances::sync_instances,
                     textures::sync_textures,
                     materials::sync_materials,

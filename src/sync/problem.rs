@@ -2,6 +2,7 @@ use super::{MeshFault, TextureFault};
 use crate::bvh::SingularTransform;
 use crate::scene::{RenderSettings, SceneId, SettingProblem, setting_problems};
 use bevy::ecs::name::Name;
+use bevy::math::Vec3;
 
 /// Something of the scene that cannot be traced as it is.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -48,6 +49,14 @@ pub enum Fault {
     NotFinite {
         /// Which.
         field: &'static str,
+    },
+    /// It moves beyond what can be traced while the shutter is open.
+    #[error(
+        "its velocity, together with those of its parents, is {velocity}, not a finite number or more than 1e12; left out"
+    )]
+    Velocity {
+        /// In the world.
+        velocity: Vec3,
     },
     /// A number is outside its range; the nearest one inside was taken.
     #[error("its {field} is {value}, out of range; {used} is used")]

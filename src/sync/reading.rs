@@ -1,18 +1,17 @@
-//! What the reading systems share: noticing that entities were switched off or on, velocities in
-//! the world, and taking numbers that may be out of range.
+//! What the reading systems share: noticing that entities were switched off or on, and taking numbers
+//! that may be out of range.
 
+use super::motions::WorldMotion;
 use super::problem::{Fault, SyncProblem};
-use crate::scene::{Motion, RenderSettings, SceneId};
+use crate::bvh::REACH;
+use crate::scene::SceneId;
 use bevy::color::LinearRgba;
-use bevy::ecs::entity::Entity;
 use bevy::ecs::entity_disabling::Disabled;
-use bevy::ecs::hierarchy::ChildOf;
 use bevy::ecs::lifecycle::RemovedComponents;
 use bevy::ecs::name::Name;
-use bevy::ecs::query::{Added, Changed, Or, With};
-use bevy::ecs::system::{Local, Query, Res, SystemParam};
+use bevy::ecs::query::Added;
+use bevy::ecs::system::{Query, SystemParam};
 use bevy::math::Vec3;
-use bevy::transform::components::GlobalTransform;
 
 /// Notices entities that vanish from queries, or come back, without losing a component.
 #[derive(SystemParam)]
@@ -26,47 +25,6 @@ impl Switched<'_, '_> {
     pub fn any(&mut self) -> bool {
         let enabled = self.enabled.read().count() > 0;
         enabled || !self.disabled.is_empty()
-    }
-}
-
-type MotionEdited = Or<(Changed<Motion>, (With<Motion>, Changed<ChildOf>))>;
-
-/// Who moves while the shutter is open, and how fast in the world: a velocity is in the space of
-/// the entity's parent.
-#[derive(SystemParam)]
-pub(super) struct Motions<'w, 's> {
-    motions: Query<'w, 's, (&'static Motion, Option<&'static ChildOf>)>,
-    parents: Query<'w, 's, &'static GlobalTransform>,
-    edited: Query<'w, 's, (), MotionEdited>,
-    no_motion: RemovedComponents<'w, 's, Motion>,
-    no_parent: RemovedComponents<'w, 's, ChildOf>,
-    settings: Res<'w, RenderSettings>,
-    /// What the switch was when this was asked last.
-    was_on: Local<'s, bool>,
-}
-
-impl Motions<'_, '_> {
-    /// True where a motion may be another than when this was asked last.
-    pub fn changed(&mut self) -> bool {
-        let gone = self.no_motion.read().count() + self.no_parent.read().count();
-        let on = self.settings.features.motion;
-        let switched = std::mem::replace(&mut *self.was_on, on) != on;
-        gone > 0 || switched || !self.edited.is_empty()
-    }
-
-    /// Velocity in the world and the samples it asks for; `None` for what stands still, and for
-    /// all where the settings switch motion off.
-    pub fn of(&self, entity: Entity) -> Option<(Vec3, u32)> {
-        if !self.settings.features.motion {
-            return None;
-        }
-        let (motion, parent) = self.motions.get(entity).ok()?;
-        let parent = parent.and_then(|parent| self.parents.get(parent.parent()).ok());
-        let velocity = match parent {
-            Some(parent) => parent.affine().transform_vector3(motion.velocity),
-            None => motion.velocity,
-        };
-        (velocity != Vec3::ZERO).then_some((velocity, motion.samples))
     }
 }
 
@@ -142,6 +100,19 @@ impl Reader<'_> {
             });
         }
         used
+    }
+
+    /// A motion whose velocity reaches no farther than what can be traced, and whose samples are in
+    /// their range; `None` where there is no such velocity.
+    pub fn motion(&mut self, motion: WorldMotion) -> Option<WorldMotion> {
+        let velocity = motion.velocity;
+        // Asked so that NaN is refused too.
+        if !velocity.abs().to_array().iter().all(|v| *v <= REACH) {
+            self.note(Fault::Velocity { velocity });
+            return None;
+        }
+        let samples = self.samples(motion.samples);
+        Some(WorldMotion { velocity, samples })
     }
 
     /// A number of samples, 1 to 1000.

@@ -37,10 +37,11 @@ impl<R: Recorder> Batch<'_, R> {
         if weight == Vec3::ZERO {
             return;
         }
-        let at = surface.point.position;
+        let seen_from = |id| lights.in_rest_frame(id, surface.point.position, path.time);
         for light in &lights.points {
             self.recorder.light(LightKind::Point, light.id);
-            self.gather_point(path, surface, light.point(at, lighting), weight, workspace);
+            let point = light.point(seen_from(light.id), lighting);
+            self.gather_point(path, surface, point, weight, workspace);
         }
         for light in &lights.directionals {
             self.recorder.light(LightKind::Directional, light.id);
@@ -57,6 +58,7 @@ impl<R: Recorder> Batch<'_, R> {
             self.recorder.light(LightKind::Segment, light.id);
             let size = (light.ends[1] - light.ends[0]).length();
             let count = (light.samples, size);
+            let at = seen_from(light.id);
             self.gather_area(path, surface, light.id, count, weight, workspace, |u| {
                 light.point(at, u[0], lighting)
             });
@@ -64,6 +66,7 @@ impl<R: Recorder> Batch<'_, R> {
         for light in &lights.parallelograms {
             self.recorder.light(LightKind::Parallelogram, light.id);
             let count = (light.samples, light.area_normal().length());
+            let at = seen_from(light.id);
             self.gather_area(path, surface, light.id, count, weight, workspace, |u| {
                 light.point(at, u, lighting)
             });

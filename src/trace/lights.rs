@@ -10,6 +10,10 @@
 //!
 //! With Classic lighting the colour itself arrives, whatever the distance and the angle; a
 //! parallelogram shines to both sides then, as in simple Phong ray tracers.
+//!
+//! A light may move while the shutter is open. Few do, so their velocities stand apart, and the kinds
+//! know nothing of them: a light that moves by `velocity · t` is, seen from x, what the same light
+//! standing still is, seen from `x - velocity · t` ([`Lights::in_rest_frame`]).
 
 use super::spot_cone::SpotCone;
 use super::sun_disc::SunDisc;
@@ -17,17 +21,30 @@ use crate::scene::Lighting;
 use glam::Vec3;
 
 /// The lights of a world, one array per kind, each sorted by id.
-#[derive(Clone, Debug, Default, serde::Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 #[expect(missing_docs, reason = "the names say it all")]
 pub struct Lights {
     pub points: Vec<PointLight>,
     pub directionals: Vec<DirectionalLight>,
     pub segments: Vec<SegmentLight>,
     pub parallelograms: Vec<ParallelogramLight>,
+    /// Those of them that move, whatever their kind; directional lights do not.
+    pub moving: Vec<MovingLight>,
+}
+
+/// How a light moves while the shutter is open.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct MovingLight {
+    /// The entity's `SceneId`.
+    pub id: u64,
+    /// World-space way from time 0 to time 1: at time t the light stands `velocity · t` farther.
+    pub velocity: Vec3,
+    /// Samples of a pixel that it asks for.
+    pub samples: u32,
 }
 
 /// A point that shines in all directions, or within a cone.
-#[derive(Clone, Debug, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct PointLight {
     /// The entity's `SceneId`.
     pub id: u64,
@@ -40,7 +57,7 @@ pub struct PointLight {
 }
 
 /// Light from infinitely far.
-#[derive(Clone, Debug, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct DirectionalLight {
     /// The entity's `SceneId`.
     pub id: u64,
@@ -55,7 +72,7 @@ pub struct DirectionalLight {
 }
 
 /// A glowing line.
-#[derive(Clone, Debug, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct SegmentLight {
     /// The entity's `SceneId`.
     pub id: u64,
@@ -68,7 +85,7 @@ pub struct SegmentLight {
 }
 
 /// A glowing parallelogram.
-#[derive(Clone, Debug, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct ParallelogramLight {
     /// The entity's `SceneId`.
     pub id: u64,
@@ -116,6 +133,24 @@ fn towards(offset: Vec3) -> Option<(Vec3, f32)> {
 
 fn inverse_square(distance: f32) -> f32 {
     1.0 / (distance * distance).max(LEAST_SQUARED_DISTANCE)
+}
+
+impl Lights {
+    /// How the light with this `SceneId` moves; zero where it stands still.
+    pub fn velocity(&self, id: u64) -> Vec3 {
+        let found = self.moving.binary_search_by_key(&id, |light| light.id);
+        found.map_or(Vec3::ZERO, |index| self.moving[index].velocity)
+    }
+
+    /// Where a point of the world lies at `time` in the frame that moves with a light: there the light
+    /// stands where its array says.
+    #[inline(always)]
+    pub fn in_rest_frame(&self, id: u64, point: Vec3, time: f32) -> Vec3 {
+        if self.moving.is_empty() {
+            return point;
+        }
+        point - self.velocity(id) * time
+    }
 }
 
 impl PointLight {

@@ -8,7 +8,7 @@ pub struct Needs {
     pub transparency: bool,
     /// Some light is to be seen itself.
     pub visible_lights: bool,
-    /// Samples of a pixel that moving objects ask for; 0 where none moves.
+    /// Samples of a pixel that moving objects and lights ask for; 0 where none moves.
     pub motion_samples: u32,
 }
 
@@ -19,15 +19,12 @@ impl Needs {
             let material = &world.materials[material as usize];
             material.opacity < 1.0 || material.opacity_map.is_some()
         };
+        let objects = world.objects.iter().map(|object| object.motion_samples);
+        let lights = world.lights.moving.iter().map(|light| light.samples);
         Self {
             transparency: world.objects.iter().any(|o| transparent(o.material)),
             visible_lights: world.lights.parallelograms.iter().any(|l| l.visible),
-            motion_samples: world
-                .objects
-                .iter()
-                .map(|o| o.motion_samples)
-                .max()
-                .unwrap_or(0),
+            motion_samples: objects.chain(lights).max().unwrap_or(0),
         }
     }
 }

@@ -312,14 +312,10 @@ impl<R: Recorder> Batch<'_, R> {
         let behind = path.after.map_or(0.0, |hit| hit.t);
         let mut nearest = hit.map_or(f32::INFINITY, |hit| hit.t * LIGHT_BEFORE_SURFACE);
         let mut met = None;
-        for light in self
-            .world
-            .lights
-            .parallelograms
-            .iter()
-            .filter(|l| l.visible)
-        {
-            if let Some((t, value)) = light.meet(path.origin, path.direction)
+        let lights = &self.world.lights;
+        for light in lights.parallelograms.iter().filter(|l| l.visible) {
+            let origin = lights.in_rest_frame(light.id, path.origin, path.time);
+            if let Some((t, value)) = light.meet(origin, path.direction)
                 && t > behind
                 && t < nearest
             {

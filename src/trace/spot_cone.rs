@@ -7,7 +7,7 @@
 use glam::Vec3;
 
 /// Full strength within an angle of `axis`, none outside another one, a smoothstep of the cosine between.
-#[derive(Clone, Copy, Debug, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct SpotCone {
     /// Unit vector along which the spot shines.
     pub axis: Vec3,

@@ -19,7 +19,7 @@ use std::f32::consts::TAU;
 const LEAST_DENSITY: f32 = 0.125;
 
 /// A disc of directions about a light's middle.
-#[derive(Clone, Copy, Debug, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct SunDisc {
     /// Sine of the half-angle, in (0, 1].
     pub sin_half_angle: f32,

@@ -74,6 +74,10 @@ fn rich_scene(world: &mut World, picture: &str) {
             intensity: 1e9,
             ..Default::default()
         },
+        Motion {
+            velocity: Vec3::NEG_Y,
+            samples: 7,
+        },
     ));
     world.spawn((
         SceneId(41),
@@ -153,7 +157,7 @@ fn a_scene_that_is_saved_opened_and_saved_again_gives_the_same_bytes_and_compone
     same!(5, MeshSource, Motion, Transform);
     same!(1, PointLamp);
     same!(2, DirectionalLamp);
-    same!(40, SegmentLamp);
+    same!(40, SegmentLamp, Motion);
     same!(41, ParallelogramLamp);
     same!(1_u64 << 40 | 1, SceneCamera, Lens);
     assert_eq!(

@@ -7,7 +7,10 @@ use glassbox::inspect::{
     Dimension, InspectSettings, NormalSettings, PatternSettings, System, pattern,
 };
 use glassbox::scene::{PixelSampling, Projection};
-use glassbox::trace::{Camera, Material, Mesh, Object};
+use glassbox::trace::{
+    Camera, Lights, Material, Mesh, MovingLight, Object, ParallelogramLight, PointLight,
+    SegmentLight,
+};
 use std::sync::Arc;
 
 #[test]
@@ -101,6 +104,65 @@ fn s11_motion_is_a_segment_from_where_the_shutter_opens_to_where_it_closes() {
     // Ghosts: the edge at z = -0.5, when the shutter opens and when it closes.
     segment(&set, Vec3::new(0.0, 0.0, -0.5), Vec3::new(1.0, 0.0, -0.5));
     segment(&set, Vec3::new(1.0, 0.0, -0.5), Vec3::new(2.0, 0.0, -0.5));
+}
+
+#[test]
+fn s11_lights_that_move_are_drawn_where_the_shutter_opens_and_closes() {
+    let corners = quad(Vec3::new(-0.5, 0.0, -0.5), Vec3::Z, Vec3::X);
+    let mut camera = Camera::looking_at(Vec3::new(0.0, 5.0, 5.0), Vec3::ZERO, Vec3::Y, 0.8);
+    camera.optics.shutter = [0.25, 0.75];
+    let mut world = world(vec![object(7, &corners, 0)], vec![Material::default()]);
+    let moving = |id| MovingLight {
+        id,
+        velocity: Vec3::X * 2.0,
+        samples: 1,
+    };
+    let point = |id, position| PointLight {
+        id,
+        position,
+        color: Vec3::ONE,
+        cone: None,
+    };
+    world.lights = Arc::new(Lights {
+        points: vec![point(1, Vec3::Y), point(2, Vec3::Y * 9.0)],
+        segments: vec![SegmentLight {
+            id: 3,
+            ends: [Vec3::Y * 2.0, Vec3::Y * 3.0],
+            colors: [Vec3::ONE; 2],
+            samples: 1,
+        }],
+        parallelograms: vec![ParallelogramLight {
+            id: 4,
+            corner: Vec3::Y * 4.0,
+            edges: [Vec3::X, Vec3::Z],
+            colors: [Vec3::ONE; 4],
+            two_sided: false,
+            visible: false,
+            samples: 1,
+        }],
+        moving: [1, 3, 4].map(moving).into(),
+        ..Lights::default()
+    });
+    let set = Scene::of(world, camera).lines(System::Motion, &InspectSettings::default());
+    let orange = [1.0, 0.4, 0.02];
+    // 2 m/s for half of the time: from 0.5 m on its way to 1.5 m.
+    let way = [Vec3::X * 0.5, Vec3::X * 1.5];
+    for middle in [Vec3::Y, Vec3::Y * 2.5, Vec3::new(0.5, 4.0, 0.5)] {
+        expect(&set, middle + way[0], middle + way[1], orange);
+    }
+    for there in way {
+        assert!(
+            set.points
+                .iter()
+                .any(|dot| is_near(dot.at, Vec3::Y + there))
+        );
+        segment(&set, Vec3::Y * 2.0 + there, Vec3::Y * 3.0 + there);
+        let corner = Vec3::Y * 4.0 + there;
+        segment(&set, corner, corner + Vec3::X);
+        segment(&set, corner + Vec3::X, corner + Vec3::X + Vec3::Z);
+    }
+    // Three ways, two ghosts of a segment and two of a parallelogram; the other point stands still.
+    assert_eq!((set.segments.len(), set.points.len()), (3 + 2 + 8, 2));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use glassbox::film::{Sum, render_samples};
 use glassbox::inspect::Document;
 use glassbox::io::builtin::SCENES;
 use glassbox::scene::Lighting;
-use glassbox::trace::{Samples, probe};
+use glassbox::trace::{Lights, MovingLight, Samples, probe};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -114,7 +114,7 @@ impl Recomputed {
         );
         let (kd, ks) = (vector(&hit["diffuse"]), vector(&hit["specular"]));
         let s = number(&hit["shininess"]);
-        let arriving = self.arriving(sample, hit);
+        let arriving = self.arriving(ray, hit);
         let lobe = lobe.max(0.0).powf(s);
         if !self.physical() {
             let lights: usize = ["points", "directionals", "segments", "parallelograms"]
@@ -150,12 +150,23 @@ impl Recomputed {
         all.iter().find(|light| light["id"] == *id).unwrap()
     }
 
+    /// How far a light has come by the time of a ray.
+    fn way(&self, ray: &Value, id: &Value) -> DVec3 {
+        let all = self.json["lights"]["moving"].as_array().unwrap();
+        let light = all.iter().find(|light| light["id"] == *id);
+        light.map_or(DVec3::ZERO, |light| {
+            number(&ray["time"]) * vector(&light["velocity"])
+        })
+    }
+
     /// What arrives of a light point: MODEL's table of lights.
-    fn arriving(&self, sample: &Value, hit: &Value) -> DVec3 {
+    fn arriving(&self, ray: &Value, hit: &Value) -> DVec3 {
+        let sample = &ray["light"];
         let kind = sample["kind"].as_str().unwrap();
         let light = self.light(&format!("{kind}s"), &sample["id"]);
         let (u, v) = (number(&sample["place"][0]), number(&sample["place"][1]));
-        let from = vector(&hit["position"]);
+        // As seen by one who moves with the light.
+        let from = vector(&hit["position"]) - self.way(ray, &sample["id"]);
         let physical = self.physical();
         // What would arrive inside the cone, or from straight before the light.
         let mut full = 0.0_f64;
@@ -218,7 +229,7 @@ impl Recomputed {
         let light = self.light("parallelograms", &ray["met_light"]);
         let [a, b] = [0, 1].map(|i| vector(&light["edges"][i]));
         let at = vector(&ray["origin"]) + number(&ray["t"]) * vector(&ray["direction"]);
-        let at = at - vector(&light["corner"]);
+        let at = at - self.way(ray, &ray["met_light"]) - vector(&light["corner"]);
         let normal = a.cross(b);
         let u = at.cross(b).dot(normal) / normal.length_squared();
         let v = a.cross(at).dot(normal) / normal.length_squared();
@@ -337,6 +348,23 @@ fn so_they_are_with_every_effect_and_with_the_classic_lighting() {
     scene.camera.optics.velocity = glam::Vec3::X * 0.3;
     scene.camera.optics.motion_samples = 8;
     check(&scene, "lens and motion", 60);
+    scene = open();
+    let mut lights = Lights::clone(&scene.world.lights);
+    let ids = (lights.points.iter().map(|light| light.id))
+        .chain(lights.segments.iter().map(|light| light.id))
+        .chain(lights.parallelograms.iter().map(|light| light.id));
+    lights.moving = (ids.zip(1..))
+        .map(|(id, speed)| MovingLight {
+            id,
+            velocity: glam::Vec3::new(0.2, 0.1, -0.1) * speed as f32,
+            samples: 8,
+        })
+        .collect();
+    lights.moving.sort_by_key(|light| light.id);
+    assert!(!lights.moving.is_empty());
+    scene.world.lights = Arc::new(lights);
+    scene.world = scene.world.clone().with_needs();
+    check(&scene, "moving lights", 60);
 }
 
 #[test]

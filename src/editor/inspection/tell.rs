@@ -6,6 +6,7 @@ use super::names::Names;
 use crate::bvh::Levels;
 use crate::inspect::{InspectSettings, NodeFacts, Stands, System, TreeForm};
 use crate::trace::{RayTree, World};
+use bevy::math::Vec3;
 
 /// A heading, and figures with what they are called.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -25,6 +26,14 @@ impl Told {
     fn and(mut self, name: &'static str, value: impl Into<String>) -> Self {
         self.figures.push((name, value.into()));
         self
+    }
+
+    /// With its way from time 0 to 1, what it hangs below included, where it has one.
+    fn moving(self, velocity: Vec3) -> Self {
+        if velocity == Vec3::ZERO {
+            return self;
+        }
+        self.and("moves", format!("{} m", vector_text(velocity)))
     }
 }
 
@@ -61,8 +70,12 @@ pub(in crate::editor) fn tell(
                     .and("corners", [a, b, c].map(vector_text).join("\n")),
             )
         }
-        Stands::Object(id) => Some(Told::new(names.of(id))),
-        Stands::Light(id) => Some(Told::new(names.of(id))),
+        Stands::Object(id) => {
+            let place = world.objects.binary_search_by_key(&id, |object| object.id);
+            let instance = world.aggregate.instances().get(place.ok()?)?;
+            Some(Told::new(names.of(id)).moving(instance.velocity()))
+        }
+        Stands::Light(id) => Some(Told::new(names.of(id)).moving(world.lights.velocity(id))),
         Stands::Camera => Some(Told::new("Camera")),
     }
 }

@@ -6,6 +6,7 @@ mod angles;
 mod edits;
 mod far;
 mod hairball;
+mod inherited_motion;
 mod light;
 mod motion_and_lens;
 mod parallel;
@@ -299,6 +300,12 @@ pub(super) static CASES: &[Case] = &[
         "rays from hits in closed rooms, to 148376 m",
         "0 pixels see the outside",
         rooms::closed,
+    ),
+    case(
+        38,
+        "motion of a parent, a grandparent, a camera's parent, a lamp",
+        "bit for bit as if it were its own",
+        inherited_motion::inherited,
     ),
     case(
         39,

@@ -4,6 +4,7 @@ mod background;
 mod dice;
 mod edits;
 mod lights;
+mod motions;
 mod problems;
 mod sharing;
 

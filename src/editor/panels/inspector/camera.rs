@@ -1,14 +1,13 @@
-//! Cameras with their lens, and what moves while the shutter is open.
+//! Cameras with their lens.
 
-use super::super::fields::{Number, angle, choice, integer, point, row, section};
+use super::super::fields::{Number, angle, choice, integer, row, section};
 use super::super::says::Says;
 use super::super::several::Several;
 use crate::editor::action::Action;
-use crate::scene::{Lens, MeshSource, Motion, Projection, SceneCamera, SceneId};
+use crate::scene::{Lens, Projection, SceneCamera, SceneId};
 use bevy::ecs::component::{Component, Mutable};
 use bevy::ecs::entity::Entity;
 use bevy::ecs::world::World;
-use bevy::mesh::Mesh3d;
 use bevy_egui::egui::Ui;
 
 pub(super) fn camera_ui(ui: &mut Ui, world: &mut World, entities: &[Entity]) {
@@ -186,43 +185,8 @@ fn lens_ui(ui: &mut Ui, several: &mut Several<Lens>) {
     );
 }
 
-pub(super) fn motion_ui(ui: &mut Ui, world: &mut World, entities: &[Entity]) {
-    let movable: Vec<Entity> = entities
-        .iter()
-        .copied()
-        .filter(|&entity| {
-            let has_mesh =
-                world.get::<Mesh3d>(entity).is_some() || world.get::<MeshSource>(entity).is_some();
-            has_mesh || world.get::<SceneCamera>(entity).is_some()
-        })
-        .collect();
-    optional_ui::<Motion>(
-        ui,
-        world,
-        &movable,
-        "Motion",
-        "It moves while the shutter is open, and is smeared along its way",
-        |ui, several| {
-            several.field(
-                |motion| &mut motion.velocity,
-                |value, mixed| {
-                    let says = "Metres that it covers from time 0 to 1, in its parent's space";
-                    point(ui, "Velocity", says, value, Number::free(0.01, ""), mixed)
-                },
-            );
-            several.field(
-                |motion| &mut motion.samples,
-                |value, mixed| {
-                    let says = "Samples of each pixel that the motion asks for";
-                    integer(ui, "Samples", says, value, 1..=1000, mixed)
-                },
-            );
-        },
-    );
-}
-
 /// A component that some have and others do not: buttons add and remove it.
-fn optional_ui<C>(
+pub(super) fn optional_ui<C>(
     ui: &mut Ui,
     world: &mut World,
     entities: &[Entity],

@@ -13,6 +13,7 @@ mod lamps;
 mod maps;
 mod material;
 mod measuring;
+mod motion;
 mod object;
 mod pair;
 mod performance;

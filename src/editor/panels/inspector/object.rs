@@ -4,7 +4,7 @@ use super::super::fields::row;
 use super::super::outline::{Kind, Outline};
 use super::super::says::Says;
 use super::super::state::{Panels, Renaming};
-use super::{camera, lamps, material, shape, transform};
+use super::{camera, lamps, material, motion, shape, transform};
 use crate::editor::action::Action;
 use crate::editor::selection::Selection;
 use crate::scene::SceneId;
@@ -76,7 +76,7 @@ pub(super) fn object_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     camera::camera_ui(ui, world, &entities);
     shape::shape_ui(ui, world, &entities);
     material::material_ui(ui, world, &entities, panels);
-    camera::motion_ui(ui, world, &entities);
+    motion::motion_ui(ui, world, &entities);
 }
 
 /// The field for an entity's name.
