@@ -47,15 +47,15 @@ pub use limits::Limits;
 pub use open::{OpenOptions, Opened, SceneSource, open, open_empty};
 pub use part::{Merge, MergeError, Part, read_part, write_part};
 pub use picture::{
-    Note, PictureFormat, check_size, picture_notes, write_picture, write_picture_with_notes,
-    write_rendered,
+    Note, PictureFormat, check_picture, check_size, picture_notes, write_picture,
+    write_picture_with_notes, write_rendered,
 };
 pub use problems::{LoadProblem, LoadProblems};
 #[cfg(feature = "editor")]
 pub(crate) use reload::{Reloaded, SourceFile, source_files};
 pub use replace::check_writable;
 pub(crate) use replace::replace_file;
-pub use save::save;
+pub use save::{check_save, save};
 #[cfg(feature = "editor")]
 pub(crate) use scene_file::{
     AnyKeptChanged, KeptComponents, Rebase, SceneContent, kept_components, kept_types,

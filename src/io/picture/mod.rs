@@ -10,8 +10,8 @@ pub use rendered::{Note, picture_notes, write_rendered};
 pub(crate) use write::encode_png;
 pub use write::{write_picture, write_picture_with_notes};
 
-use super::Limits;
 use super::error::{FileError, Problem};
+use super::{Limits, check_writable};
 use std::path::Path;
 
 /// The picture files that are read and written.
@@ -51,6 +51,15 @@ impl PictureFormat {
         matches!(self, Self::Exr | Self::Hdr)
     }
 
+    /// The most pixels on either side that a file of this format says.
+    pub fn largest_side(self) -> u64 {
+        match self {
+            // Its head has 16 bits for each.
+            Self::Jpeg => u64::from(u16::MAX),
+            Self::Png | Self::Exr | Self::Hdr => Limits::PICTURE_SIDE,
+        }
+    }
+
     fn image_format(self) -> image::ImageFormat {
         match self {
             Self::Png => image::ImageFormat::Png,
@@ -59,6 +68,35 @@ impl PictureFormat {
             Self::Hdr => image::ImageFormat::Hdr,
         }
     }
+}
+
+/// Refuses a picture that could not be written, before the work whose result it shall hold is done: by its
+/// format, its size, and the place where it shall lie. How full a disk will be then nobody knows.
+pub fn check_picture(file: &Path, width: u64, height: u64) -> Result<PictureFormat, FileError> {
+    let format = PictureFormat::of(file)?;
+    check_format_size(file, format, width, height)?;
+    check_writable(file)?;
+    Ok(format)
+}
+
+/// Refuses what the format cannot hold, or the limits forbid.
+fn check_format_size(
+    file: &Path,
+    format: PictureFormat,
+    width: u64,
+    height: u64,
+) -> Result<(), FileError> {
+    check_size(file, width, height, &Limits::default())?;
+    let limit = format.largest_side();
+    if width.max(height) > limit {
+        let problem = Problem::PictureTooLong {
+            width,
+            height,
+            limit,
+        };
+        return Err(FileError::new(file, problem));
+    }
+    Ok(())
 }
 
 /// Refuses a picture that is empty or beyond the limits, before memory is asked for.
