@@ -2,6 +2,7 @@
 //! the world, and taking numbers that may be out of range.
 
 use super::problem::{Fault, SyncProblem};
+use super::texture_data::Replaced;
 use crate::scene::{Motion, RenderSettings, SceneId};
 use bevy::color::LinearRgba;
 use bevy::ecs::entity::Entity;
@@ -84,6 +85,18 @@ impl Reader<'_> {
     pub fn note(&mut self, fault: Fault) {
         self.problems
             .push(SyncProblem::new(self.kind, self.id, self.name, fault));
+    }
+
+    /// Notes texels of a map that could not be taken as they were, if there are any.
+    pub fn note_texels(&mut self, field: &'static str, replaced: Replaced) {
+        let Replaced { count, largest } = replaced;
+        if count > 0 {
+            self.note(Fault::Texels {
+                field,
+                count,
+                largest,
+            });
+        }
     }
 
     /// The number, moved into [least, most]; `None` where it is NaN.

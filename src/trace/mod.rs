@@ -14,6 +14,7 @@
 //! Formulas: the module docs of [`lights`], [`shading`] and [`camera`].
 
 pub mod camera;
+mod cut_out;
 mod digest;
 mod direct;
 mod disc;
@@ -33,6 +34,7 @@ mod scatter;
 pub mod shading;
 pub mod srgb;
 mod surface;
+mod texels;
 mod texture;
 mod world;
 
@@ -54,5 +56,6 @@ pub use ray_tree::{
 pub use recorder::LightKind;
 pub use sampler::{Purpose, Sampler};
 pub use surface::Surface;
-pub use texture::{Texels, Texture, TextureError};
+pub use texels::Texels;
+pub use texture::{Texture, TextureError};
 pub use world::{Mesh, Object, World};
