@@ -90,12 +90,13 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
     }
     let settings = settings.clone();
     check_scene(&stage.name, &settings)?;
+    let size = settings.size;
+    check_picture(&args.output, size.x.into(), size.y.into()).map_err(Failure::of_output)?;
     let world = stage.sync().world.clone();
     let cameras = chosen(&stage, args)?;
     let files = file_names(&args.output, &cameras);
     for file in &files {
-        let size = settings.size;
-        check_picture(file, size.x.into(), size.y.into()).map_err(Failure::of_output)?;
+        check_writable(file)?;
     }
 
     let mut stats = Stats {

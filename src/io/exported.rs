@@ -12,6 +12,7 @@ use bevy::ecs::name::Name;
 use bevy::image::Image;
 use bevy::mesh::{Mesh, Mesh3d};
 use bevy::prelude::{Component, Entity, World};
+use exr::prelude::f16;
 use image::{DynamicImage, ImageBuffer};
 use std::collections::{HashMap, HashSet};
 use wgpu_types::TextureFormat;
@@ -215,6 +216,12 @@ pub(crate) fn pixels_of(world: &World, image: AssetId<Image>) -> Option<DynamicI
         }
         TextureFormat::Rgba32Float => {
             let buffer = ImageBuffer::from_raw(width, height, floats().collect())?;
+            DynamicImage::ImageRgba32F(buffer)
+        }
+        TextureFormat::Rgba16Float => {
+            let words = data.as_chunks().0.iter();
+            let values = words.map(|&bytes| f16::from_ne_bytes(bytes).to_f32());
+            let buffer = ImageBuffer::from_raw(width, height, values.collect())?;
             DynamicImage::ImageRgba32F(buffer)
         }
         TextureFormat::R32Float => {

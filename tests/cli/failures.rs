@@ -90,6 +90,7 @@ fn what_is_not_there_or_cannot_be_written_ends_with_code_1_and_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     std::fs::create_dir(path.join("folder")).unwrap();
+    std::fs::create_dir(path.join("folder.png")).unwrap();
     std::fs::write(path.join("empty.obj"), "").unwrap();
     std::fs::write(path.join("scene.xyz"), "x").unwrap();
     for (arguments, parts) in [
@@ -105,7 +106,7 @@ fn what_is_not_there_or_cannot_be_written_ends_with_code_1_and_is_named() {
             &["render", "triangle", "-o", "missing/a.png"],
             &["missing/a.png", "folder"],
         ),
-        (&["render", "triangle", "-o", "folder"], &["folder"]),
+        (&["render", "triangle", "-o", "folder.png"], &["folder.png"]),
         (
             &[
                 "render",

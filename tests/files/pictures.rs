@@ -9,7 +9,7 @@ use glassbox::film::render;
 use glassbox::io::{OpenOptions, SceneSource, open};
 use glassbox::scene::{Environment, Features, RenderSettings, TextureFilter, TextureSource};
 use glassbox::sync::{Traced, TracedCameras};
-use image::{DynamicImage, ImageBuffer, Luma, LumaA, Rgb, Rgb32FImage, Rgba};
+use image::{DynamicImage, ImageBuffer, ImageFormat, Luma, LumaA, Rgb, Rgb32FImage, Rgba};
 use std::path::{Path, PathBuf};
 
 /// A square of 2 m whose material has these lines; the picture appears upright on it.
@@ -208,4 +208,111 @@ fn what_light_cannot_have_is_noted_once_for_each_picture_whatever_it_is_used_for
         environment.radiance(bevy::math::Vec3::X).to_array(),
         [0.0; 3]
     );
+}
+
+/// The colour of the picture's upper left texel, as the tracer reads it.
+fn first_texel(folder: &Path, name: &str) -> [f32; 3] {
+    let app = traced(&square(folder, &format!("map_Kd {name}")));
+    let world = &app.world().resource::<Traced>().world;
+    world.textures[0].texel(0, 0, true).into()
+}
+
+/// 4x4 texels in two blocks of DXT1's form: the first colour of both everywhere (Microsoft's "DDS_HEADER").
+fn dds(color: u16) -> Vec<u8> {
+    let mut words = [0_u32; 31];
+    (words[0], words[1], words[2], words[3]) = (124, 0x0008_1007, 4, 4);
+    (words[4], words[18], words[19]) = (8, 32, 4);
+    words[20] = u32::from_le_bytes(*b"DXT1");
+    words[26] = 0x1000;
+    let mut bytes = b"DDS ".to_vec();
+    bytes.extend(words.iter().flat_map(|word| word.to_le_bytes()));
+    bytes.extend(color.to_le_bytes());
+    bytes.extend([0; 6]);
+    bytes
+}
+
+#[test]
+fn a_picture_is_known_by_its_content_whatever_its_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let blue = DynamicImage::from(ImageBuffer::from_pixel(4, 4, Rgb([0_u8, 0, 255])));
+    let kinds = [
+        ImageFormat::Png,
+        ImageFormat::Jpeg,
+        ImageFormat::WebP,
+        ImageFormat::Tga,
+        ImageFormat::Bmp,
+        ImageFormat::Gif,
+    ];
+    for name in ["a.png", "a.jpg", "a.tga", "a.hdr", "a", "a.texture"] {
+        for format in kinds {
+            blue.save_with_format(path.join(name), format).unwrap();
+            let [red, green, found] = first_texel(path, name);
+            // A JPEG of one colour is off by one of 255.
+            assert!(
+                red < 0.01 && green < 0.01 && found > 0.99,
+                "{format:?} as {name}: {red} {green} {found}"
+            );
+        }
+        write(path, name, dds(0x001f));
+        assert_eq!(first_texel(path, name), [0.0, 0.0, 1.0], "DDS as {name}");
+        let head = "#?RGBE\n\n+Y 4 +X 4\n";
+        let pixels = [0_u8, 0, 128, 129].repeat(16);
+        write(path, name, [head.as_bytes(), &pixels].concat());
+        assert_eq!(first_texel(path, name), [0.0, 0.0, 1.0], "HDR as {name}");
+    }
+}
+
+mod open_exr {
+    use super::{first_texel, problems, square, traced};
+    use exr::prelude::{Image, SpecificChannels, WritableImage, f16};
+    use glassbox::sync::Traced;
+
+    #[test]
+    fn channels_of_any_names_in_any_layer_are_found() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path();
+        let file = path.join("a.exr");
+        let three = |names: [&str; 3]| {
+            let channels = SpecificChannels::build();
+            let [r, g, b] = names;
+            let channels = channels.with_channel(r).with_channel(g).with_channel(b);
+            let channels = channels.with_pixel_fn(|_| (0.5_f32, 0.25_f32, 0.125_f32));
+            let image = Image::from_channels((4, 4), channels);
+            image.write().to_file(&file).unwrap();
+            first_texel(path, "a.exr")
+        };
+        let expected = [0.5, 0.25, 0.125];
+        for names in [
+            ["R", "G", "B"],
+            ["r", "g", "b"],
+            ["red", "green", "blue"],
+            ["View.Combined.R", "View.Combined.G", "View.Combined.B"],
+            ["diffuse.r", "diffuse.g", "diffuse.b"],
+        ] {
+            assert_eq!(three(names), expected, "{names:?}");
+        }
+        for name in ["Y", "View.Y", "height"] {
+            let channels = SpecificChannels::build().with_channel(name);
+            let channels = channels.with_pixel_fn(|_| (0.5_f32,));
+            let image = Image::from_channels((4, 4), channels);
+            image.write().to_file(&file).unwrap();
+            assert_eq!(first_texel(path, "a.exr"), [0.5; 3], "{name}");
+        }
+    }
+
+    #[test]
+    fn infinite_in_16_bits_is_the_largest_of_16_bits() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path();
+        let channels = SpecificChannels::rgb(|_| (f16::INFINITY, f16::NAN, f16::from_f32(0.3)));
+        let image = Image::from_channels((4, 4), channels);
+        image.write().to_file(path.join("a.exr")).unwrap();
+        let app = traced(&square(path, "map_Kd a.exr"));
+        let world = &app.world().resource::<Traced>().world;
+        let found = world.textures[0].texel(0, 0, false).to_array();
+        assert_eq!(found, [65504.0, 0.0, f16::from_f32(0.3).to_f32()]);
+        let problems = problems(&app);
+        assert!(problems[0].contains("16 texels"), "{problems:?}");
+    }
 }

@@ -1,6 +1,10 @@
-//! Picture files: PNG and JPEG hold a screen's values in 8 bits, OpenEXR and Radiance HDR hold
-//! linear light in floating point. The extension decides.
+//! Picture files. What is written the extension decides: PNG and JPEG hold a screen's values in 8 bits,
+//! OpenEXR and Radiance HDR linear light in floating point. What is read its content tells, and there
+//! are more kinds of it: WebP, TGA, BMP, DDS, and the first frame of a GIF.
 
+mod content;
+mod open_exr;
+mod radiance;
 mod read;
 mod rendered;
 mod write;
@@ -14,7 +18,7 @@ use super::error::{FileError, Problem};
 use super::{Limits, check_writable};
 use std::path::Path;
 
-/// The picture files that are read and written.
+/// The picture files that are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PictureFormat {
     /// 8 bits a channel, lossless.
@@ -97,6 +101,18 @@ fn check_format_size(
         return Err(FileError::new(file, problem));
     }
     Ok(())
+}
+
+/// How the names of picture files that are read end, in lower case: for file dialogs. What counts is what is
+/// in them.
+pub const PICTURE_EXTENSIONS: [&str; 11] = [
+    "png", "jpg", "jpeg", "webp", "tga", "bmp", "gif", "dds", "hdr", "pic", "exr",
+];
+
+/// What a decoder may ask for at once: four channels of 16 bytes for the largest picture, and as much again
+/// for what it needs meanwhile.
+fn decoder_bytes(limits: &Limits) -> u64 {
+    limits.pixels.saturating_mul(32)
 }
 
 /// Refuses a picture that is empty or beyond the limits, before memory is asked for.
