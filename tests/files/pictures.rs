@@ -141,8 +141,7 @@ fn a_16_bit_alpha_keeps_its_levels() {
         .save(path.join("a.png"))
         .unwrap();
     for source in ["a.png", "a.png#alpha"] {
-        let app = traced(&square(path, "map_d a.png"));
-        let mut app = app;
+        let mut app = traced(&square(path, "map_d a.png"));
         let mut materials = app.world_mut().query::<&mut glassbox::scene::Phong>();
         for mut phong in materials.iter_mut(app.world_mut()) {
             if phong.opacity_map.is_some() {

@@ -75,7 +75,6 @@ pub(super) fn decode(
 }
 
 fn head(reader: &mut impl BufRead) -> Result<Head, Problem> {
-    let malformed = |text: String| Problem::Malformed(text);
     let mut limited = reader.take(LONGEST_HEAD);
     let mut exposure = [1.0_f32; 3];
     let mut xyz = false;
@@ -95,7 +94,7 @@ fn head(reader: &mut impl BufRead) -> Result<Head, Problem> {
                     "32-bit_rle_rgbe" => false,
                     "32-bit_rle_xyze" => true,
                     other => {
-                        return Err(malformed(format!(
+                        return Err(Problem::Malformed(format!(
                             "holds pixels of the format `{other}`; Radiance's are 32-bit_rle_rgbe and 32-bit_rle_xyze"
                         )));
                     }
@@ -111,7 +110,7 @@ fn head(reader: &mut impl BufRead) -> Result<Head, Problem> {
             .iter()
             .all(|factor| factor.is_finite() && *factor > 0.0)
         {
-            return Err(malformed(format!(
+            return Err(Problem::Malformed(format!(
                 "says {}, which must be a number above 0",
                 line.trim()
             )));
@@ -122,7 +121,7 @@ fn head(reader: &mut impl BufRead) -> Result<Head, Problem> {
     let sizes = line(&mut limited)?;
     let words: Vec<&str> = sizes.split_whitespace().collect();
     let wrong = || {
-        malformed(format!(
+        Problem::Malformed(format!(
             "says `{sizes}` for its size, and not for example -Y 480 +X 640"
         ))
     };
@@ -208,7 +207,7 @@ mod tests {
     #[test]
     fn each_order_of_pixels_is_turned_upright() {
         for (sizes, expected) in [
-            ("-Y 3 +X 2", [1, 2, 3, 4, 5, 6]),
+            ("-Y 3 +X 2", [1_u8, 2, 3, 4, 5, 6]),
             ("+Y 3 +X 2", [5, 6, 3, 4, 1, 2]),
             ("-Y 3 -X 2", [2, 1, 4, 3, 6, 5]),
             ("+Y 3 -X 2", [6, 5, 4, 3, 2, 1]),
