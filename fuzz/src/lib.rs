@@ -15,13 +15,17 @@ thread_local! {
 
 /// The kinds of files that are read, by the names of their targets: the file that is opened, and the one that gets the
 /// bytes.
-pub const KINDS: [(&str, &str, &str); 5] = [
+pub const KINDS: [(&str, &str, &str); 6] = [
     ("obj", "a.obj", "a.obj"),
     ("mtl", "a.obj", "a.mtl"),
     ("gltf", "a.gltf", "a.gltf"),
     ("glb", "a.glb", "a.glb"),
     ("scene", "a.scn.ron", "a.scn.ron"),
+    ("picture", "a.obj", "a.picture"),
 ];
+
+/// An MTL file that uses the picture under test as colours and as numbers.
+const WITH_PICTURE: &str = "newmtl a\nmap_Kd a.picture\nmap_d a.picture\n";
 
 /// An OBJ file that reads the MTL file under test.
 const WITH_MATERIAL: &str = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
@@ -31,6 +35,9 @@ const WITH_MATERIAL: &str = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\n
 pub fn read(kind: &str, bytes: &[u8], folder: &Path) -> bool {
     let known = KINDS.iter().find(|(name, ..)| *name == kind);
     let (_, opened, written) = known.expect("one of the kinds");
+    if kind == "picture" {
+        fs::write(folder.join("a.mtl"), WITH_PICTURE).expect("a folder that can be written to");
+    }
     if opened != written {
         fs::write(folder.join(opened), WITH_MATERIAL).expect("a folder that can be written to");
     }

@@ -3,7 +3,7 @@
 use super::Failure;
 use super::output::{say, tell};
 use super::stage::{SceneArgs, Stage};
-use crate::io::{check_writable, save};
+use crate::io::{check_save, save};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -19,7 +19,7 @@ pub(super) struct Convert {
 }
 
 pub(super) fn run(args: Convert) -> Result<(), Failure> {
-    check_writable(&args.output)?;
+    check_save(&args.output).map_err(Failure::of_output)?;
     let mut stage = Stage::open(&args.scene, args.quiet)?;
     let notes = save(stage.app.world_mut(), &args.output)?;
     if !args.quiet {

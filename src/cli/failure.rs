@@ -1,5 +1,5 @@
 use super::output::{one_line, tell};
-use crate::io::{FileError, MergeError};
+use crate::io::{FileError, MergeError, Problem};
 use std::io;
 use std::process::ExitCode;
 
@@ -30,6 +30,17 @@ pub enum Failure {
 }
 
 impl Failure {
+    /// Of a file that was to be written: one that its name or the picture's size rules out is a wrong
+    /// command line, where a folder that is missing or closed is none.
+    pub(super) fn of_output(error: FileError) -> Self {
+        match error.problem {
+            Problem::UnknownExtension { .. }
+            | Problem::PictureTooLarge { .. }
+            | Problem::PictureTooLong { .. } => Self::Usage(error.to_string()),
+            _ => Self::File(error),
+        }
+    }
+
     /// Prints the failure in one line and gives the program's exit code.
     pub(super) fn report(self) -> ExitCode {
         match self {

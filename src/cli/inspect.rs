@@ -12,7 +12,7 @@ use crate::inspect::{
     Document, InspectSettings, LineSet, Overlay, Pattern, RayLine, StepKind, Subject, Traversal,
     aligned, draw_over, draw_pattern, explanation, lines, pattern, sources,
 };
-use crate::io::{PictureFormat, check_writable, write_picture};
+use crate::io::{PictureFormat, check_picture, check_writable, write_picture};
 use crate::scene::{RenderSettings, SceneId};
 use crate::sync::TracedCamera;
 use crate::trace::{Camera, RayTree, Samples, World, probe};
@@ -107,7 +107,8 @@ pub(super) fn run(args: Inspect) -> Result<(), Failure> {
         ));
     }
     if let Some(file) = &args.picture {
-        if PictureFormat::of(file)?.is_linear() {
+        let format = PictureFormat::of(file).map_err(Failure::of_output)?;
+        if format.is_linear() {
             return Err(Failure::Usage(format!(
                 "{}: lines are drawn for screens: write a .png or .jpg",
                 file.display()
@@ -127,6 +128,10 @@ fn inspect(args: &Inspect, gizmos: &InspectSettings) -> Result<(), Failure> {
     }
     let settings = settings.clone();
     check_scene(&stage.name, &settings)?;
+    if let Some(file) = &args.picture {
+        let size = settings.size;
+        check_picture(file, size.x.into(), size.y.into()).map_err(Failure::of_output)?;
+    }
     let world = stage.sync().world.clone();
     let names = names(&mut stage);
     let camera = stage.camera(args.camera.as_deref())?;

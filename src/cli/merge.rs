@@ -4,7 +4,8 @@ use super::Failure;
 use super::output::{say, tell};
 use super::shown::read_output;
 use crate::io::{
-    self, Limits, PictureFormat, check_writable, read_part, write_part, write_rendered,
+    self, Limits, PictureFormat, check_picture, check_writable, read_part, write_part,
+    write_rendered,
 };
 use crate::scene::RenderSettings;
 use clap::Args;
@@ -24,11 +25,14 @@ pub(super) struct Merge {
 }
 
 pub(super) fn run(args: Merge) -> Result<(), Failure> {
-    let format = PictureFormat::of(&args.output)?;
+    let format = PictureFormat::of(&args.output).map_err(Failure::of_output)?;
     check_writable(&args.output)?;
     let mut merge = io::Merge::default();
     for file in &args.parts {
-        merge.add(file, read_part(file, &Limits::default())?)?;
+        let part = read_part(file, &Limits::default())?;
+        let size = part.film.size();
+        check_picture(&args.output, size.x.into(), size.y.into()).map_err(Failure::of_output)?;
+        merge.add(file, part)?;
     }
     let part = merge.finish()?;
     if format == PictureFormat::Exr {

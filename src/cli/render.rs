@@ -13,8 +13,8 @@ use crate::film::views::View;
 use crate::film::{FirstHits, render_samples};
 use crate::inspect::build_time;
 use crate::io::{
-    FileError, Part, PictureFormat, check_writable, picture_notes, replace_file, write_part,
-    write_rendered,
+    FileError, Part, PictureFormat, check_picture, check_writable, picture_notes, replace_file,
+    write_part, write_rendered,
 };
 use crate::sync::TracedCamera;
 use crate::trace::{RayCounts, digest, samples_per_pixel};
@@ -58,7 +58,7 @@ pub(super) struct Render {
 pub(super) fn run(args: Render) -> Result<(), Failure> {
     args.settings.check()?;
     args.stop.check()?;
-    let format = PictureFormat::of(&args.output)?;
+    let format = PictureFormat::of(&args.output).map_err(Failure::of_output)?;
     if args.stop.samples.is_some() && format != PictureFormat::Exr {
         return Err(Failure::Usage(format!(
             "{}: --samples writes parts of pictures, and they are .exr; `glassbox merge` makes others of them",
@@ -90,6 +90,8 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
     }
     let settings = settings.clone();
     check_scene(&stage.name, &settings)?;
+    let size = settings.size;
+    check_picture(&args.output, size.x.into(), size.y.into()).map_err(Failure::of_output)?;
     let world = stage.sync().world.clone();
     let cameras = chosen(&stage, args)?;
     let files = file_names(&args.output, &cameras);

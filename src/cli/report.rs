@@ -5,7 +5,7 @@ use super::output::say;
 use super::progress::Progress;
 use super::settings::check_scene;
 use super::stage::{SceneArgs, Stage, with_threads};
-use crate::io::{SceneSource, check_writable};
+use crate::io::{FileError, SceneSource, check_writable};
 use crate::report::{self, Options, Part, Subject, Table, write_report};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -90,7 +90,7 @@ fn measure(args: &Report, parts: Vec<Part>, scenes: &[PathBuf]) -> Result<(), Fa
         report::kernels::check_embree().map_err(Failure::System)?;
     }
     let (file, folder) = places(args);
-    check_writable_in(&file)?;
+    check_places(&file, &folder)?;
     let options = Options {
         editing,
         parts,
@@ -172,12 +172,21 @@ fn places(args: &Report) -> (PathBuf, PathBuf) {
     (file, args.files.clone().unwrap_or(beside))
 }
 
-/// Where nothing can be written nothing needs to be measured.
-fn check_writable_in(file: &Path) -> Result<(), Failure> {
-    match file.parent() {
-        Some(folder) if folder.exists() => Ok(check_writable(file)?),
-        _ => Ok(()),
+/// Where nothing can be written nothing needs to be measured. Folders that do not exist are made in the end,
+/// so until then the nearest one that does exist stands for them.
+fn check_places(file: &Path, folder: &Path) -> Result<(), Failure> {
+    let home = file.parent().unwrap_or(Path::new(""));
+    for folder in [home, folder] {
+        let exists = |part: &&Path| part.as_os_str().is_empty() || part.exists();
+        let there = folder.ancestors().find(exists).unwrap_or(Path::new(""));
+        if there == home {
+            check_writable(file)?;
+        } else {
+            check_writable(&there.join("report"))
+                .map_err(|error| FileError::new(folder, error.problem))?;
+        }
     }
+    Ok(())
 }
 
 /// A table that another program wrote.

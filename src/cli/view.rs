@@ -59,7 +59,8 @@ impl ViewArgs {
                 heatmaps.join(", ")
             )));
         }
-        if view != View::Shaded && PictureFormat::of(output)?.is_linear() {
+        let format = PictureFormat::of(output).map_err(Failure::of_output)?;
+        if view != View::Shaded && format.is_linear() {
             return Err(Failure::Usage(format!(
                 "{}: the view `{view}` is made for screens: write a .png or .jpg",
                 output.display()

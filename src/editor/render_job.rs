@@ -6,9 +6,7 @@
 use super::document::SceneOpened;
 use super::notice::Notices;
 use crate::film::{Ending, Progressive, State, Status};
-use crate::io::{
-    FileError, PictureFormat, check_size, check_writable, picture_notes, write_rendered,
-};
+use crate::io::{FileError, check_picture, picture_notes, write_rendered};
 use crate::scene::{RenderSettings, SceneId, SettingProblem, setting_problems};
 use crate::sync::{Traced, TracedCameras};
 use crate::trace;
@@ -153,15 +151,8 @@ pub fn start_render(world: &mut World, request: RenderRequest) -> Result<(), Ren
     if let Some(problem) = setting_problems(&request.settings).into_iter().next() {
         return Err(RenderRefused::Setting(problem));
     }
-    PictureFormat::of(&request.file)?;
     let size = request.settings.size;
-    check_size(
-        &request.file,
-        size.x.into(),
-        size.y.into(),
-        &Default::default(),
-    )?;
-    check_writable(&request.file)?;
+    check_picture(&request.file, size.x.into(), size.y.into())?;
     let cameras = &world.resource::<TracedCameras>().0;
     let (camera, name) = match &request.camera {
         RenderFrom::View(camera) => ((**camera).clone(), "the view".to_owned()),

@@ -174,6 +174,10 @@ pub enum Problem {
         "{width}x{height} pixels, and the limit is {limit} together and 65536 a side; scale the picture down"
     )]
     PictureTooLarge { width: u64, height: u64, limit: u64 },
+    #[error(
+        "{width}x{height} pixels, and files of this format have at most {limit} a side; write a .png or .exr"
+    )]
+    PictureTooLong { width: u64, height: u64, limit: u64 },
     #[error("a picture of {width}x{height} pixels has no pixels; both must be at least 1")]
     PictureEmpty { width: u32, height: u32 },
     #[error("{given} pixels were given for a picture of {width}x{height}")]

@@ -4,15 +4,18 @@ use super::place::is_hidden;
 use super::scene_file::scene_entities;
 use crate::scene::{
     DirectionalLamp, Environment, Lens, Motion, ParallelogramLamp, Phong, PhongMaps, PointLamp,
-    SceneCamera, SceneId, SegmentLamp, UsesMaterial,
+    SRGB_16_BITS, SceneCamera, SceneId, SegmentLamp, UsesMaterial,
 };
+use crate::trace::srgb;
 use bevy::asset::{AssetId, Assets};
 use bevy::ecs::name::Name;
 use bevy::image::Image;
 use bevy::mesh::{Mesh, Mesh3d};
 use bevy::prelude::{Component, Entity, World};
+use exr::prelude::f16;
 use image::{DynamicImage, ImageBuffer};
 use std::collections::{HashMap, HashSet};
+use wgpu_types::TextureFormat;
 
 /// Objects and materials of the scene, in the order of their `SceneId`.
 #[derive(Default)]
@@ -179,21 +182,53 @@ fn one_line(name: &str) -> String {
     }
 }
 
-/// A loaded picture as pixels: 8-bit RGBA, or RGBA in `f32`. `None` for other formats.
+/// A loaded picture as pixels: RGBA in 8 bits, in 16 or in `f32`, or grey in 16. `None` for other formats.
 pub(crate) fn pixels_of(world: &World, image: AssetId<Image>) -> Option<DynamicImage> {
     let image = world.get_resource::<Assets<Image>>()?.get(image)?;
     let (width, height) = (image.width(), image.height());
     let data = image.data.as_ref()?;
-    let pixels = width as usize * height as usize;
-    if pixels > 0 && data.len() == pixels * 4 {
-        let buffer = ImageBuffer::from_raw(width, height, data.clone())?;
-        Some(DynamicImage::ImageRgba8(buffer))
-    } else if pixels > 0 && data.len() == pixels * 16 {
-        let values = data.as_chunks().0.iter();
-        let values = values.map(|&bytes| f32::from_le_bytes(bytes)).collect();
-        let buffer = ImageBuffer::from_raw(width, height, values)?;
-        Some(DynamicImage::ImageRgba32F(buffer))
-    } else {
-        None
-    }
+    let words = || {
+        let words = data.as_chunks().0.iter();
+        words.map(|&bytes| u16::from_ne_bytes(bytes)).collect()
+    };
+    let floats = || {
+        let words = data.as_chunks().0.iter();
+        words.map(|&bytes| f32::from_ne_bytes(bytes))
+    };
+    let pixels = match image.texture_descriptor.format {
+        TextureFormat::Rgba8Unorm | TextureFormat::Rgba8UnormSrgb => {
+            DynamicImage::ImageRgba8(ImageBuffer::from_raw(width, height, data.clone())?)
+        }
+        TextureFormat::Rgba16Unorm => {
+            DynamicImage::ImageRgba16(ImageBuffer::from_raw(width, height, words())?)
+        }
+        TextureFormat::R16Unorm => {
+            DynamicImage::ImageLuma16(ImageBuffer::from_raw(width, height, words())?)
+        }
+        TextureFormat::Rgba32Float if image.texture_descriptor.label == Some(SRGB_16_BITS) => {
+            let whole = |value: f32| (value * f32::from(u16::MAX)).round() as u16;
+            let values: Vec<f32> = floats().collect();
+            let encoded = values.as_chunks().0.iter().flat_map(|&[r, g, b, a]| {
+                let [r, g, b] = [r, g, b].map(|c| whole(srgb::encode(c)));
+                [r, g, b, whole(a)]
+            });
+            DynamicImage::ImageRgba16(ImageBuffer::from_raw(width, height, encoded.collect())?)
+        }
+        TextureFormat::Rgba32Float => {
+            let buffer = ImageBuffer::from_raw(width, height, floats().collect())?;
+            DynamicImage::ImageRgba32F(buffer)
+        }
+        TextureFormat::Rgba16Float => {
+            let words = data.as_chunks().0.iter();
+            let values = words.map(|&bytes| f16::from_ne_bytes(bytes).to_f32());
+            let buffer = ImageBuffer::from_raw(width, height, values.collect())?;
+            DynamicImage::ImageRgba32F(buffer)
+        }
+        TextureFormat::R32Float => {
+            let grey = floats().flat_map(|g| [g, g, g, 1.0]).collect();
+            DynamicImage::ImageRgba32F(ImageBuffer::from_raw(width, height, grey)?)
+        }
+        _ => return None,
+    };
+    (pixels.width() > 0 && pixels.height() > 0).then_some(pixels)
 }

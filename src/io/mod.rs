@@ -10,7 +10,8 @@
 //! | `.obj` with `.mtl` | meshes, materials, pictures | the same, in the world's space |
 //! | `.glb`, `.gltf` | meshes, hierarchy, materials, pictures, lights, cameras | `.glb`, the same |
 //! | `.exr` of [`write_part`] | exact sums of some samples | the same |
-//! | `.png`, `.jpg`, `.exr`, `.hdr` | pictures | pictures |
+//! | `.png`, `.jpg`, `.exr`, `.hdr` | pictures, by their content | pictures |
+//! | WebP, TGA, BMP, DDS, GIF's first frame | pictures, by their content | – |
 //!
 //! Texture coordinates count from a picture's top left corner, v downwards, as Bevy and glTF do;
 //! OBJ, which counts from the bottom, is turned over on the way in and out.
@@ -47,15 +48,15 @@ pub use limits::Limits;
 pub use open::{OpenOptions, Opened, SceneSource, open, open_empty};
 pub use part::{Merge, MergeError, Part, read_part, write_part};
 pub use picture::{
-    Note, PictureFormat, check_size, picture_notes, write_picture, write_picture_with_notes,
-    write_rendered,
+    Note, PICTURE_EXTENSIONS, PictureFormat, check_picture, check_size, picture_notes,
+    write_picture, write_picture_with_notes, write_rendered,
 };
 pub use problems::{LoadProblem, LoadProblems};
 #[cfg(feature = "editor")]
 pub(crate) use reload::{Reloaded, SourceFile, source_files};
 pub use replace::check_writable;
 pub(crate) use replace::replace_file;
-pub use save::save;
+pub use save::{check_save, save};
 #[cfg(feature = "editor")]
 pub(crate) use scene_file::{
     AnyKeptChanged, KeptComponents, Rebase, SceneContent, kept_components, kept_types,

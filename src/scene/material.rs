@@ -25,7 +25,8 @@ pub struct Phong {
     pub emission: LinearRgba,
     /// A picture that takes the place of `diffuse`.
     pub diffuse_map: Option<TextureSource>,
-    /// A picture whose brightness multiplies `opacity`.
+    /// A picture whose brightness multiplies `opacity`. The diffuse map is cut out by it: where its
+    /// colours are mixed, each counts by its opacity.
     pub opacity_map: Option<TextureSource>,
 }
 
@@ -51,6 +52,11 @@ pub struct TextureSource {
     /// picture inside a glTF file; `builtin:checker` is one that Glassbox generates.
     pub path: String,
 }
+
+/// Label of an [`Image`] of linear floats that were sRGB-encoded in 16 bits: Bevy has no format for such
+/// colours. The tracer keeps them encoded, which is as exact, takes half the memory, and leaves Classic
+/// lighting its raw values.
+pub const SRGB_16_BITS: &str = "sRGB in 16 bits";
 
 /// The pictures of a [`Phong`], loaded. Not saved: made again from the sources.
 #[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]

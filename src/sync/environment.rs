@@ -35,7 +35,7 @@ pub(super) fn sync_environment(
     };
     let map = if settings.features.environment {
         match (&map.0, &environment.map) {
-            (Some(handle), _) => textures.get(handle.id()).cloned().map(Some),
+            (Some(handle), _) => textures.get(handle.id()).map(Some),
             (None, Some(source)) => Err(TextureFault::Unresolved(source.path.clone())),
             (None, None) => Ok(None),
         }
@@ -48,6 +48,14 @@ pub(super) fn sync_environment(
             fault,
         });
         None
+    });
+    let map = map.map(|map| {
+        // One note a picture: where a material has it too, that one's.
+        let is_noted = (draft.world.textures.iter()).any(|other| Arc::ptr_eq(other, &map.texture));
+        if !is_noted {
+            reader.note_texels("map", map.replaced);
+        }
+        map.texture.clone()
     });
     let new = trace::Environment {
         background: reader.color("background", environment.background, f32::MAX),

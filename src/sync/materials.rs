@@ -6,14 +6,14 @@ use super::textures::TracedTextures;
 use super::traced::Draft;
 use crate::scene::{Phong, PhongMaps, SceneId, TextureSource, UsesMaterial};
 use crate::trace::{Material, Object, Texture};
-use bevy::asset::Handle;
+use bevy::asset::{AssetId, Handle};
 use bevy::ecs::entity::Entity;
 use bevy::ecs::lifecycle::RemovedComponents;
 use bevy::ecs::name::Name;
 use bevy::ecs::query::{Changed, Or};
 use bevy::ecs::system::{Query, Res, ResMut};
 use bevy::image::Image;
-use bevy::platform::collections::HashMap;
+use bevy::platform::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 type Edited = Or<(
@@ -150,6 +150,8 @@ fn same_object(a: &Object, b: &Object) -> bool {
 struct BoundTextures {
     list: Vec<Arc<Texture>>,
     places: HashMap<*const Texture, u32>,
+    /// Pictures that a material uses, so that each is noted once.
+    met: HashSet<AssetId<Image>>,
 }
 
 impl BoundTextures {
@@ -172,7 +174,12 @@ fn material(
     let mut map = |field, source: &Option<TextureSource>, handle: Option<&Handle<Image>>| {
         let fault = match (handle, source) {
             (Some(handle), _) => match textures.get(handle.id()) {
-                Ok(texture) => return Some(bound.place(texture)),
+                Ok(map) => {
+                    if bound.met.insert(handle.id()) {
+                        reader.note_texels(field, map.replaced);
+                    }
+                    return Some((handle.id(), &map.texture));
+                }
                 Err(fault) => fault,
             },
             (None, Some(source)) => TextureFault::Unresolved(source.path.clone()),
@@ -191,6 +198,11 @@ fn material(
         &phong.opacity_map,
         maps.and_then(|maps| maps.opacity.as_ref()),
     );
+    let cut_out = diffuse_map
+        .zip(opacity_map)
+        .and_then(|((diffuse, _), (opacity, _))| textures.cut_out(diffuse, opacity));
+    let diffuse_map = diffuse_map.map(|(_, texture)| bound.place(cut_out.unwrap_or(texture)));
+    let opacity_map = opacity_map.map(|(_, texture)| bound.place(texture));
     Material {
         diffuse: reader.color("diffuse", phong.diffuse, 1.0),
         specular: reader.color("specular", phong.specular, 1.0),

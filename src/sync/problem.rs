@@ -41,6 +41,18 @@ pub enum Fault {
         /// Why.
         fault: TextureFault,
     },
+    /// A picture holds what light cannot have.
+    #[error(
+        "{count} texels of its {field} are not finite or less than 0; {largest:?} is used for what is infinite, else 0"
+    )]
+    Texels {
+        /// Which map.
+        field: &'static str,
+        /// How many.
+        count: u64,
+        /// The largest finite number.
+        largest: f32,
+    },
     /// The material that an object names is not there.
     #[error("the material that it names is gone; drawn with its own")]
     NoMaterial,

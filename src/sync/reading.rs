@@ -3,6 +3,7 @@
 
 use super::motions::WorldMotion;
 use super::problem::{Fault, SyncProblem};
+use super::texture_data::Replaced;
 use crate::bvh::REACH;
 use crate::scene::SceneId;
 use bevy::color::LinearRgba;
@@ -42,6 +43,18 @@ impl Reader<'_> {
     pub fn note(&mut self, fault: Fault) {
         self.problems
             .push(SyncProblem::new(self.kind, self.id, self.name, fault));
+    }
+
+    /// Notes texels of a map that could not be taken as they were, if there are any.
+    pub fn note_texels(&mut self, field: &'static str, replaced: Replaced) {
+        let Replaced { count, largest } = replaced;
+        if count > 0 {
+            self.note(Fault::Texels {
+                field,
+                count,
+                largest,
+            });
+        }
     }
 
     /// The number, moved into [least, most]; `None` where it is NaN.

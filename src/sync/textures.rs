@@ -1,5 +1,5 @@
 use super::reading::Switched;
-use super::texture_data::{TextureFault, trace_texture};
+use super::texture_data::{Replaced, TextureFault, trace_texture};
 use super::traced::Draft;
 use crate::scene::{EnvironmentMap, PhongMaps};
 use crate::trace::Texture;
@@ -17,16 +17,65 @@ use std::sync::Arc;
 /// The pictures that materials and the environment use.
 #[derive(Resource, Default)]
 pub(super) struct TracedTextures {
-    by_asset: HashMap<AssetId<Image>, Result<Arc<Texture>, TextureFault>>,
+    by_asset: HashMap<AssetId<Image>, Result<TracedTexture, TextureFault>>,
+    cut_outs: HashMap<[AssetId<Image>; 2], CutOut>,
+}
+
+/// A picture that could be converted.
+pub(super) struct TracedTexture {
+    pub texture: Arc<Texture>,
+    /// Texels that could not be taken as they were.
+    pub replaced: Replaced,
+}
+
+/// A diffuse map with an opacity map as its alpha.
+struct CutOut {
+    /// The two that it was made of.
+    of: [Arc<Texture>; 2],
+    /// The diffuse map itself where that is the alpha that it has.
+    texture: Arc<Texture>,
 }
 
 impl TracedTextures {
     /// The texture of an asset.
-    pub fn get(&self, id: AssetId<Image>) -> Result<&Arc<Texture>, TextureFault> {
+    pub fn get(&self, id: AssetId<Image>) -> Result<&TracedTexture, TextureFault> {
         match self.by_asset.get(&id) {
             Some(Ok(texture)) => Ok(texture),
             Some(Err(fault)) => Err(fault.clone()),
             None => Err(TextureFault::Missing),
+        }
+    }
+
+    /// A diffuse map as an opacity map cuts it out; `None` where one of them is missing.
+    pub fn cut_out(
+        &self,
+        diffuse: AssetId<Image>,
+        opacity: AssetId<Image>,
+    ) -> Option<&Arc<Texture>> {
+        let cut_out = self.cut_outs.get(&[diffuse, opacity])?;
+        Some(&cut_out.texture)
+    }
+
+    /// Makes what is new among pairs of a diffuse and an opacity map, and drops the others.
+    fn cut_out_pairs(&mut self, pairs: impl Iterator<Item = [AssetId<Image>; 2]>) {
+        let mut known = std::mem::take(&mut self.cut_outs);
+        for pair in pairs {
+            let [Ok(diffuse), Ok(opacity)] = pair.map(|id| self.get(id)) else {
+                continue;
+            };
+            let of = [diffuse.texture.clone(), opacity.texture.clone()];
+            let same = |cut_out: &CutOut| (0..2).all(|i| Arc::ptr_eq(&cut_out.of[i], &of[i]));
+            if self.cut_outs.get(&pair).is_some_and(same) {
+                continue;
+            }
+            let cut_out = known.remove(&pair).filter(same).unwrap_or_else(|| CutOut {
+                texture: match of[0].cut_out_by(&of[1]) {
+                    Some(texture) => Arc::new(texture),
+                    None => of[0].clone(),
+                },
+                of,
+            });
+            self.cut_outs.insert(pair, cut_out);
         }
     }
 }
@@ -72,9 +121,18 @@ pub(super) fn sync_textures(
     for id in used {
         if !known.by_asset.contains_key(&id) {
             let image = assets.get(id).ok_or(TextureFault::Missing);
-            let texture = image.and_then(|image| trace_texture(image).map(Arc::new));
+            let converted = image.and_then(trace_texture);
+            let texture = converted.map(|converted| TracedTexture {
+                texture: Arc::new(converted.texture),
+                replaced: converted.replaced,
+            });
             known.by_asset.insert(id, texture);
             draft.changes.textures = true;
         }
     }
+    let pairs = users.iter().filter_map(|maps| {
+        let (diffuse, opacity) = (maps.diffuse.as_ref()?, maps.opacity.as_ref()?);
+        Some([diffuse.id(), opacity.id()])
+    });
+    known.cut_out_pairs(pairs);
 }

@@ -143,8 +143,20 @@ impl Hash {
                 self.text(&"linear");
                 self.bytes(texels.as_flattened().iter().copied());
             }
+            Texels::Srgb16(texels) => {
+                self.text(&"sRGB 16");
+                self.words(texels.as_flattened().iter().map(|&c| u32::from(c)));
+            }
+            Texels::Linear16(texels) => {
+                self.text(&"linear 16");
+                self.words(texels.as_flattened().iter().map(|&c| u32::from(c)));
+            }
             Texels::Linear32(texels) => {
                 self.text(&"float");
+                self.words(texels.as_flattened().iter().map(|c| c.to_bits()));
+            }
+            Texels::LinearAlpha32(texels) => {
+                self.text(&"float with alpha");
                 self.words(texels.as_flattened().iter().map(|c| c.to_bits()));
             }
         }

@@ -13,7 +13,8 @@ pub struct Material {
     pub opacity: f32,
     /// ke, radiance.
     pub emission: Vec3,
-    /// Takes the place of `diffuse`.
+    /// Takes the place of `diffuse`. Where there is an opacity map, too, this one's alpha is that
+    /// opacity, and weights its colours.
     pub diffuse_map: Option<u32>,
     /// Multiplies `opacity`.
     pub opacity_map: Option<u32>,

@@ -1,26 +1,36 @@
 //! A texture's smaller versions (Williams 1983, "Pyramidal Parametrics").
 
 use super::srgb;
-use super::texture::{Texels, Texture};
-use glam::Vec4;
+use super::texels::{Texels, eight_bits, sixteen_bits};
+use super::texture::Texture;
+use glam::{Vec3, Vec4};
+
+/// How much a texel's colour counts in the mean of several.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Weight {
+    /// By the area that it shares with the larger texel.
+    Area,
+    /// By that and its alpha, where any of them has one.
+    AreaAndAlpha,
+}
 
 /// Halves a texture again and again, down to one texel: the first of them is level 1.
 ///
 /// Texels are averaged by the area that they share, in linear light, so odd sizes stay in place and
 /// the mean of the picture is kept; then kept in the format of the base level.
-pub(super) fn pyramid(base: &Texture) -> Vec<Texture> {
+pub(super) fn pyramid(base: &Texture, weight: Weight) -> Vec<Texture> {
     let mut levels: Vec<Texture> = Vec::new();
     loop {
         let above = levels.last().unwrap_or(base);
         if above.width() == 1 && above.height() == 1 {
             return levels;
         }
-        let level = half(above);
+        let level = half(above, weight);
         levels.push(level);
     }
 }
 
-fn half(above: &Texture) -> Texture {
+fn half(above: &Texture, weight: Weight) -> Texture {
     let (width, height) = ((above.width() / 2).max(1), (above.height() / 2).max(1));
     let columns: Vec<_> = (0..width)
         .map(|x| shares(x, above.width(), width))
@@ -30,26 +40,49 @@ fn half(above: &Texture) -> Texture {
         let columns = &columns;
         (0..width as usize).map(move |x| {
             let mut sum = Vec4::ZERO;
+            let mut premultiplied = Vec3::ZERO;
             for &(row, share) in rows.iter().filter(|(_, share)| *share > 0.0) {
                 for &(column, part) in columns[x].iter().filter(|(_, part)| *part > 0.0) {
-                    sum += share * part * above.linear_texel(column, row);
+                    let color = above.texel(column, row, false);
+                    let alpha = above.alpha(column, row);
+                    sum += share * part * color.extend(alpha);
+                    premultiplied += share * part * alpha * color;
                 }
             }
-            sum
+            // So small an alpha cannot be divided by, and none of it is seen.
+            if weight == Weight::AreaAndAlpha && sum.w >= f32::MIN_POSITIVE {
+                (premultiplied / sum.w).extend(sum.w)
+            } else {
+                sum
+            }
         })
     });
-    let eight = |c: f32| (c * 255.0).round() as u8;
+    let encoded = |t: Vec4| [t.x, t.y, t.z].map(srgb::encode);
     let texels = match above.texels() {
         Texels::Srgb8(_) => Texels::Srgb8(
             averages
                 .map(|t| {
-                    let [r, g, b] = [t.x, t.y, t.z].map(|c| eight(srgb::encode(c)));
-                    [r, g, b, eight(t.w)]
+                    let [r, g, b] = encoded(t).map(eight_bits);
+                    [r, g, b, eight_bits(t.w)]
                 })
                 .collect(),
         ),
-        Texels::Linear8(_) => Texels::Linear8(averages.map(|t| t.to_array().map(eight)).collect()),
+        Texels::Linear8(_) => {
+            Texels::Linear8(averages.map(|t| t.to_array().map(eight_bits)).collect())
+        }
+        Texels::Srgb16(_) => Texels::Srgb16(
+            averages
+                .map(|t| {
+                    let [r, g, b] = encoded(t).map(sixteen_bits);
+                    [r, g, b, sixteen_bits(t.w)]
+                })
+                .collect(),
+        ),
+        Texels::Linear16(_) => {
+            Texels::Linear16(averages.map(|t| t.to_array().map(sixteen_bits)).collect())
+        }
         Texels::Linear32(_) => Texels::Linear32(averages.map(|t| [t.x, t.y, t.z]).collect()),
+        Texels::LinearAlpha32(_) => Texels::LinearAlpha32(averages.map(|t| t.to_array()).collect()),
     };
     Texture::level(width, height, texels)
 }
@@ -80,12 +113,12 @@ mod tests {
                 .collect();
             let mean: f32 = texels.iter().map(|t| t[0]).sum::<f32>() / texels.len() as f32;
             let base = Texture::new(width, height, Texels::Linear32(texels)).unwrap();
-            let levels = pyramid(&base);
+            let levels = pyramid(&base, Weight::Area);
             let last = levels.last().unwrap();
             assert_eq!((last.width(), last.height()), (1, 1));
             for level in &levels {
                 let (w, h) = (level.width(), level.height());
-                let sum: f32 = (0..w * h).map(|i| level.linear_texel(i % w, i / w).x).sum();
+                let sum: f32 = (0..w * h).map(|i| level.texel(i % w, i / w, false).x).sum();
                 let found = sum / (w * h) as f32;
                 assert!(
                     (found / mean - 1.0).abs() < 1e-4,
@@ -107,7 +140,7 @@ mod tests {
             })
             .collect();
         let base = Texture::new(4, 4, Texels::Srgb8(texels)).unwrap();
-        let level = &pyramid(&base)[0];
+        let level = &pyramid(&base, Weight::Area)[0];
         assert_eq!(level.texel(0, 0, true).x, 188.0 / 255.0);
     }
 }

@@ -23,6 +23,7 @@
 //! distance in each coordinate: light and what is out of focus shift by that much, what is in focus stays sharp.
 
 pub mod camera;
+mod cut_out;
 mod digest;
 mod direct;
 mod disc;
@@ -44,6 +45,7 @@ mod spot_cone;
 pub mod srgb;
 mod sun_disc;
 mod surface;
+mod texels;
 mod texture;
 mod world;
 
@@ -68,5 +70,6 @@ pub use sampler::{Purpose, Sampler};
 pub use spot_cone::SpotCone;
 pub use sun_disc::SunDisc;
 pub use surface::Surface;
-pub use texture::{Texels, Texture, TextureError};
+pub use texels::Texels;
+pub use texture::{Texture, TextureError};
 pub use world::{Mesh, Object, World};

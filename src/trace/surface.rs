@@ -87,7 +87,12 @@ impl Surface {
             };
             let raw = settings.lighting == Lighting::Classic;
             if let Some(map) = material.diffuse_map {
-                diffuse = world.textures[map as usize].sample(uv, footprint, filter, raw);
+                let map = &world.textures[map as usize];
+                diffuse = if material.opacity_map.is_some() {
+                    map.sample_cut_out(uv, footprint, filter, raw)
+                } else {
+                    map.sample(uv, footprint, filter, raw)
+                };
             }
             if let Some(map) = material.opacity_map {
                 let map = world.textures[map as usize].opacity(uv, footprint, filter);

@@ -1,6 +1,7 @@
-use super::{mipmap, srgb};
+use super::mipmap::{self, Weight};
+use super::texels::Texels;
 use crate::scene::TextureFilter;
-use glam::{Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec3};
 use std::sync::OnceLock;
 
 /// A picture that rays read. Row 0 is the top one; (0, 0) is the top left corner, v grows downwards.
@@ -9,19 +10,11 @@ pub struct Texture {
     width: u32,
     height: u32,
     texels: Texels,
+    opaque: bool,
     /// Made when first asked for: a scene without mipmaps has none.
     levels: OnceLock<Vec<Texture>>,
-}
-
-/// How the texels are kept: as the file had them, so that a large map stays small.
-#[derive(Clone, Debug)]
-pub enum Texels {
-    /// 8 bits a channel, sRGB-encoded, RGBA.
-    Srgb8(Vec<[u8; 4]>),
-    /// 8 bits a channel, linear, RGBA.
-    Linear8(Vec<[u8; 4]>),
-    /// Linear floating point.
-    Linear32(Vec<[f32; 3]>),
+    /// Those whose colours are weighted by alpha, likewise.
+    cut_out_levels: OnceLock<Vec<Texture>>,
 }
 
 /// Why texels are no picture.
@@ -55,10 +48,7 @@ impl Texture {
         if width == 0 || height == 0 {
             return Err(TextureError::Empty { width, height });
         }
-        let found = match &texels {
-            Texels::Srgb8(t) | Texels::Linear8(t) => t.len(),
-            Texels::Linear32(t) => t.len(),
-        } as u64;
+        let found = texels.len() as u64;
         let expected = u64::from(width) * u64::from(height);
         if found != expected {
             return Err(TextureError::WrongLength {
@@ -76,19 +66,16 @@ impl Texture {
         Self {
             width,
             height,
+            opaque: texels.are_opaque(),
             texels,
             levels: OnceLock::new(),
+            cut_out_levels: OnceLock::new(),
         }
     }
 
     /// As they are kept.
     pub(super) fn texels(&self) -> &Texels {
         &self.texels
-    }
-
-    /// Linear RGB and alpha of one texel.
-    pub(super) fn linear_texel(&self, x: u32, y: u32) -> Vec4 {
-        self.texel(x, y, false).extend(self.alpha(x, y))
     }
 
     /// Pixels a row.
@@ -101,33 +88,29 @@ impl Texture {
         self.height
     }
 
-    /// Linear RGB of one texel; `raw` leaves sRGB texels as they are (Classic lighting).
-    pub fn texel(&self, x: u32, y: u32, raw: bool) -> Vec3 {
-        let i = y as usize * self.width as usize + x as usize;
-        match &self.texels {
-            Texels::Srgb8(t) if !raw => {
-                let table = srgb::decode_table();
-                Vec3::new(
-                    table[t[i][0] as usize],
-                    table[t[i][1] as usize],
-                    table[t[i][2] as usize],
-                )
-            }
-            Texels::Srgb8(t) | Texels::Linear8(t) => {
-                Vec3::new(t[i][0] as f32, t[i][1] as f32, t[i][2] as f32) / 255.0
-            }
-            Texels::Linear32(t) => Vec3::from(t[i]),
-        }
+    /// Whether every alpha is 1.
+    pub(super) fn is_opaque(&self) -> bool {
+        self.opaque
     }
 
-    /// Alpha of one texel in [0, 1]; floating-point pictures are opaque.
-    fn alpha(&self, x: u32, y: u32) -> f32 {
-        match &self.texels {
-            Texels::Srgb8(t) | Texels::Linear8(t) => {
-                t[y as usize * self.width as usize + x as usize][3] as f32 / 255.0
-            }
-            Texels::Linear32(_) => 1.0,
-        }
+    fn index(&self, x: u32, y: u32) -> usize {
+        y as usize * self.width as usize + x as usize
+    }
+
+    /// Linear RGB of one texel; `raw` leaves sRGB texels as they are (Classic lighting).
+    pub fn texel(&self, x: u32, y: u32, raw: bool) -> Vec3 {
+        self.texels.rgb(self.index(x, y), raw)
+    }
+
+    /// Alpha of one texel in [0, 1].
+    pub(super) fn alpha(&self, x: u32, y: u32) -> f32 {
+        self.texels.alpha(self.index(x, y))
+    }
+
+    /// Opacity of one texel: the alpha channel times the brightest colour channel, so that both a
+    /// grey map (MTL's map_d) and a colour map with alpha (glTF) say what they mean.
+    pub(super) fn texel_opacity(&self, x: u32, y: u32) -> f32 {
+        self.alpha(x, y) * self.texel(x, y, true).max_element()
     }
 
     /// Colour at `uv`, repeated in both directions. `footprint` is the edge of the square that the
@@ -138,66 +121,89 @@ impl Texture {
         })
     }
 
-    /// Opacity at `uv`: the alpha channel times the brightest colour channel, so that both a
-    /// grey map (MTL's map_d) and a colour map with alpha (glTF) say what they mean.
+    /// Opacity at `uv`, as [`Self::texel_opacity`] has it.
     pub fn opacity(&self, uv: Vec2, footprint: f32, filter: TextureFilter) -> f32 {
         let opacity = self.across_levels(footprint, filter, |level| {
-            level.filtered(uv, filter, |x, y| {
-                Vec3::splat(level.alpha(x, y) * level.texel(x, y, true).max_element())
-            })
+            level.filtered(uv, filter, |x, y| Vec3::splat(level.texel_opacity(x, y)))
         });
         opacity.x
     }
 
-    /// Between the two levels whose texels are about as large as the footprint.
     fn across_levels(
         &self,
         footprint: f32,
         filter: TextureFilter,
         look_up: impl Fn(&Texture) -> Vec3,
     ) -> Vec3 {
+        let (finer, coarser) = self.levels_between(footprint, filter, Self::plain_levels);
+        let near = look_up(finer);
+        match coarser {
+            Some((level, fraction)) => near.lerp(look_up(level), fraction),
+            None => near,
+        }
+    }
+
+    fn plain_levels(&self) -> &[Texture] {
+        self.levels
+            .get_or_init(|| mipmap::pyramid(self, Weight::Area))
+    }
+
+    pub(super) fn cut_out_levels(&self) -> &[Texture] {
+        self.cut_out_levels
+            .get_or_init(|| mipmap::pyramid(self, Weight::AreaAndAlpha))
+    }
+
+    /// The two levels whose texels are about as large as the footprint, and how much the second counts.
+    pub(super) fn levels_between(
+        &self,
+        footprint: f32,
+        filter: TextureFilter,
+        levels: fn(&Texture) -> &[Texture],
+    ) -> (&Texture, Option<(&Texture, f32)>) {
         if filter != TextureFilter::Mipmap {
-            return look_up(self);
+            return (self, None);
         }
         let texels = footprint * self.width.max(self.height) as f32;
         let level = texels.log2();
         if level.is_nan() || level <= 0.0 {
-            return look_up(self);
+            return (self, None);
         }
-        let levels = self.levels.get_or_init(|| mipmap::pyramid(self));
+        let levels = levels(self);
         let level = level.min(levels.len() as f32);
         let (below, fraction) = (level as usize, level.fract());
-        let finer = if below == 0 {
-            look_up(self)
-        } else {
-            look_up(&levels[below - 1])
-        };
-        match levels.get(below) {
-            Some(coarser) => finer.lerp(look_up(coarser), fraction),
-            None => finer,
-        }
+        let finer = if below == 0 { self } else { &levels[below - 1] };
+        (finer, levels.get(below).map(|coarser| (coarser, fraction)))
     }
 
     fn filtered(&self, uv: Vec2, filter: TextureFilter, texel: impl Fn(u32, u32) -> Vec3) -> Vec3 {
-        // A coordinate that is not finite (a broken mesh) reads the first texel.
-        let uv = if uv.is_finite() { uv } else { Vec2::ZERO };
-        let uv = uv - uv.floor();
-        let (width, height) = (self.width as f32, self.height as f32);
         match filter {
-            TextureFilter::Nearest => texel(
-                ((uv.x * width) as u32).min(self.width - 1),
-                ((uv.y * height) as u32).min(self.height - 1),
-            ),
+            TextureFilter::Nearest => {
+                let uv = repeated(uv);
+                texel(
+                    ((uv.x * self.width as f32) as u32).min(self.width - 1),
+                    ((uv.y * self.height as f32) as u32).min(self.height - 1),
+                )
+            }
             TextureFilter::Bilinear | TextureFilter::Mipmap => {
-                let (x, fx) = split(uv.x * width - 0.5);
-                let (y, fy) = split(uv.y * height - 0.5);
-                let (x0, x1) = (wrap(x, self.width), wrap(x + 1, self.width));
-                let (y0, y1) = (wrap(y, self.height), wrap(y + 1, self.height));
+                let ([x0, x1], [y0, y1], fx, fy) = self.around(uv);
                 let top = texel(x0, y0).lerp(texel(x1, y0), fx);
                 let bottom = texel(x0, y1).lerp(texel(x1, y1), fx);
                 top.lerp(bottom, fy)
             }
         }
+    }
+
+    /// The columns and rows of the four texels around a place, and how far it lies to the second ones.
+    pub(super) fn around(&self, uv: Vec2) -> ([u32; 2], [u32; 2], f32, f32) {
+        let uv = repeated(uv);
+        let (x, fx) = split(uv.x * self.width as f32 - 0.5);
+        let (y, fy) = split(uv.y * self.height as f32 - 0.5);
+        (
+            [wrap(x, self.width), wrap(x + 1, self.width)],
+            [wrap(y, self.height), wrap(y + 1, self.height)],
+            fx,
+            fy,
+        )
     }
 
     /// Equirectangular look-up: u around, v from pole to pole, bilinear. Columns wrap; a row beyond
@@ -221,6 +227,12 @@ impl Texture {
         };
         row(y).lerp(row(y + 1), fy)
     }
+}
+
+/// In [0, 1). A coordinate that is not finite (a broken mesh) reads the first texel.
+fn repeated(uv: Vec2) -> Vec2 {
+    let uv = if uv.is_finite() { uv } else { Vec2::ZERO };
+    uv - uv.floor()
 }
 
 /// Whole and fractional part.

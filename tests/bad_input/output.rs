@@ -89,6 +89,17 @@ fn a_picture_of_2_to_the_31_pixels() {
 }
 
 #[test]
+fn a_picture_of_more_pixels_than_its_format_says() {
+    let file = Path::new("a.jpg");
+    for (width, height) in [(65_536, 1), (1, 65_536)] {
+        let pixels = vec![[0.0; 3]; 65_536];
+        let error = write_picture(file, width, height, &pixels).unwrap_err();
+        says(&error, &["a.jpg", "65535 a side", ".png"]);
+    }
+    assert!(!file.exists());
+}
+
+#[test]
 fn a_failed_save_leaves_the_old_file_and_nothing_else() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("a.png");

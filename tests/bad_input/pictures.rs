@@ -56,6 +56,54 @@ fn a_radiance_picture_that_claims_2_to_the_31_pixels() {
 }
 
 #[test]
+fn a_picture_of_any_kind_that_claims_more_pixels_than_the_limit() {
+    let mut tga = [0_u8; 18];
+    (tga[2], tga[16]) = (2, 24);
+    tga[12..16].fill(0xff);
+    let mut bmp = b"BM".to_vec();
+    bmp.extend(
+        [0_u32, 0, 54, 40, 65_500, 65_500]
+            .map(u32::to_le_bytes)
+            .as_flattened(),
+    );
+    bmp.extend([1, 0, 24, 0]);
+    bmp.extend([0; 24]);
+    let gif = b"GIF89a\xff\xff\xff\xff\x80\0\0\0\0\0\xff\xff\xff,\0\0\0\0\xff\xff\xff\xff\0\x02";
+    for (kind, bytes) in [("TGA", &tga[..]), ("BMP", &bmp), ("GIF", gif)] {
+        let (_folder, file) = textured("a.png", bytes);
+        let error = refused(&file);
+        says(&error, &["a.png", "scale the picture down"]);
+        assert!(error.to_string().contains("x65"), "{kind}: {error}");
+    }
+}
+
+#[test]
+fn an_open_exr_that_claims_more_pixels_or_channels_than_the_limit() {
+    let folder = tempfile::tempdir().unwrap();
+    let whole = folder.path().join("a.exr");
+    glassbox::io::write_picture(&whole, 4, 4, &[[0.5; 3]; 16]).unwrap();
+    let bytes = std::fs::read(&whole).unwrap();
+    for window in ["dataWindow\0box2i\0", "displayWindow\0box2i\0"] {
+        let mut bytes = bytes.clone();
+        let at = (bytes.windows(window.len())).position(|part| part == window.as_bytes());
+        let corner = at.unwrap() + window.len() + 4 + 8;
+        for coordinate in bytes[corner..corner + 8].as_chunks_mut().0 {
+            *coordinate = 0x0fff_ffff_i32.to_le_bytes();
+        }
+        let (_folder, file) = textured("a.exr", &bytes);
+        says(&refused(&file), &["a.exr"]);
+    }
+}
+
+#[test]
+fn something_that_is_no_picture_or_of_a_kind_that_is_not_read() {
+    let (_folder, file) = textured("a.png", b"solid cube\n facet normal 0 0 1\n");
+    says(&refused(&file), &["a.png", "WebP", "OpenEXR"]);
+    let (_folder, file) = textured("a.png", b"II*\0 and so on");
+    says(&refused(&file), &["a.png", ".tiff"]);
+}
+
+#[test]
 fn a_picture_that_ends_too_early() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["a.png", "a.jpg", "a.exr", "a.hdr"] {

@@ -90,6 +90,7 @@ fn what_is_not_there_or_cannot_be_written_ends_with_code_1_and_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     std::fs::create_dir(path.join("folder")).unwrap();
+    std::fs::create_dir(path.join("folder.png")).unwrap();
     std::fs::write(path.join("empty.obj"), "").unwrap();
     std::fs::write(path.join("scene.xyz"), "x").unwrap();
     for (arguments, parts) in [
@@ -101,13 +102,11 @@ fn what_is_not_there_or_cannot_be_written_ends_with_code_1_and_is_named() {
         (&["render", "empty.obj", "-o", "a.png"], &["empty.obj"]),
         (&["render", "scene.xyz", "-o", "a.png"], &["scene.xyz"]),
         (&["render", "folder", "-o", "a.png"], &["folder"]),
-        (&["render", "triangle", "-o", "a.bmp"], &["a.bmp", ".png"]),
-        (&["render", "triangle", "-o", "a"], &["a", ".png"]),
         (
             &["render", "triangle", "-o", "missing/a.png"],
             &["missing/a.png", "folder"],
         ),
-        (&["render", "triangle", "-o", "folder"], &["folder"]),
+        (&["render", "triangle", "-o", "folder.png"], &["folder.png"]),
         (
             &[
                 "render",
@@ -123,7 +122,6 @@ fn what_is_not_there_or_cannot_be_written_ends_with_code_1_and_is_named() {
             &["render", "triangle", "-o", "a.png", "--camera", "nobody"],
             &["triangle", "nobody", "it has "],
         ),
-        (&["convert", "triangle", "a.fbx"], &["a.fbx", ".glb"]),
         (&["convert", "no-such.glb", "a.obj"], &["no-such.glb"]),
         (
             &["convert", "triangle", "missing/a.obj"],
@@ -134,6 +132,70 @@ fn what_is_not_there_or_cannot_be_written_ends_with_code_1_and_is_named() {
         (&["no-such.obj"], &["no-such.obj"]),
     ] {
         fails(path, arguments, 1, parts);
+    }
+}
+
+#[test]
+fn an_output_that_its_name_or_its_size_rules_out_is_a_wrong_command_line_and_told_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    // Far more samples than a test waits for.
+    let endless = ["--spp", "1048576"];
+    let wide = ["--size", "65536x2048"];
+    let inspect = ["inspect", "triangle", "--picture"];
+    for (arguments, parts) in [
+        (
+            &["render", "triangle", "-o", "a.bmp"][..],
+            &["a.bmp", ".png"][..],
+        ),
+        (&["render", "triangle", "-o", "a"], &["a", ".png"]),
+        (
+            &["render", "no-such.obj", "-o", "a.webp"],
+            &["a.webp", ".png"],
+        ),
+        (&["merge", "part.exr", "-o", "a.gif"], &["a.gif", ".png"]),
+        (&[&inspect[..], &["a.bmp"]].concat(), &["a.bmp", ".png"]),
+        (&["convert", "triangle", "a.fbx"], &["a.fbx", ".glb"]),
+        (&["convert", "no-such.obj", "a.gltf"], &["a.gltf", ".glb"]),
+        (
+            &[&["render", "triangle", "-o", "a.jpg"][..], &wide, &endless].concat(),
+            &["a.jpg", "65536x2048", "65535", ".png"],
+        ),
+        (
+            &[
+                &["render", "triangle", "--all-cameras", "-o", "a.jpeg"][..],
+                &wide,
+                &endless,
+            ]
+            .concat(),
+            &["a.jpeg", "65535"],
+        ),
+        (
+            &[
+                &["render", "triangle", "--view", "nodes", "-o", "a.jpg"][..],
+                &wide,
+            ]
+            .concat(),
+            &["a.jpg", "65535"],
+        ),
+        (
+            &[&inspect[..], &["a.jpg"], &wide].concat(),
+            &["a.jpg", "65535"],
+        ),
+    ] {
+        fails(folder.path(), arguments, 2, parts);
+    }
+}
+
+#[test]
+fn a_report_that_has_no_place_is_refused_before_it_is_measured() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("file"), "").unwrap();
+    for arguments in [
+        &["report", "features", "triangle", "-o", "file/report"][..],
+        &["report", "features", "triangle", "--files", "file"],
+        &["report", "features", "triangle", "--files", "file/a/b"],
+    ] {
+        fails(folder.path(), arguments, 1, &["file"]);
     }
 }
 

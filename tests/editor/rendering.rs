@@ -110,6 +110,11 @@ fn a_cancelled_render_writes_nothing_and_what_cannot_be_is_refused_at_once() {
     assert!(no_folder.contains("folder"), "{no_folder}");
     let no_format = refused(&|request| request.file = folder.path().join("a.doc"));
     assert!(no_format.contains("doc"), "{no_format}");
+    let too_wide = refused(&|request| {
+        request.file = folder.path().join("a.jpg");
+        request.settings.size = UVec2::new(65_536, 1);
+    });
+    assert!(too_wide.contains("65535"), "{too_wide}");
     let too_many = refused(&|request| request.settings.spp = 0);
     assert!(too_many.contains("spp"), "{too_many}");
     let no_camera = refused(&|request| {

@@ -3,4 +3,5 @@
 pub mod app;
 mod gltf;
 mod models;
+mod pictures;
 mod round_trip;

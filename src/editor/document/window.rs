@@ -7,7 +7,7 @@ use crate::editor::history::History;
 use crate::editor::notice::Notices;
 use crate::editor::schedule::EditorUpdate;
 use crate::editor::selection::Selection;
-use crate::io::SceneFiles;
+use crate::io::{PICTURE_EXTENSIONS, SceneFiles};
 use crate::scene::{Environment, Phong, TextureSource, UsesMaterial};
 use bevy::app::{App, PreUpdate};
 use bevy::ecs::message::{MessageCursor, Messages};
@@ -72,14 +72,15 @@ fn drop_file(world: &mut World, file: &Path) {
         "obj" | "gltf" | "glb" => {
             world.write_message(Action::Import(file.to_path_buf()));
         }
-        "png" | "jpg" | "jpeg" | "hdr" | "exr" => {
-            let on_objects = matches!(extension.as_str(), "png" | "jpg" | "jpeg");
+        picture if PICTURE_EXTENSIONS.contains(&picture) => {
+            let on_objects = !matches!(picture, "hdr" | "pic" | "exr");
             drop_picture(world, file, on_objects);
         }
         _ => {
             let text = format!(
-                "{}: neither a scene (.scn.ron), a model (.obj, .gltf, .glb) nor a picture (.png, .jpg, .hdr, .exr)",
-                file.display()
+                "{}: neither a scene (.scn.ron), a model (.obj, .gltf, .glb) nor a picture (.{})",
+                file.display(),
+                PICTURE_EXTENSIONS.join(", .")
             );
             world.resource_mut::<Notices>().fault(text);
         }

@@ -104,13 +104,14 @@ impl Glb<'_> {
         json
     }
 
-    /// Embeds a loaded picture as a PNG; `None` where it does not hold 8-bit colours.
+    /// Embeds a loaded picture as a PNG; `None` where it does not hold colours in 8 or 16 bits.
     fn texture(&mut self, image: AssetId<Image>) -> Option<usize> {
         if let Some(&texture) = self.textures.get(&image) {
             return Some(texture);
         }
         let pixels = pixels_of(self.world, image)?;
-        if !matches!(pixels, DynamicImage::ImageRgba8(_)) {
+        use DynamicImage as D;
+        if !matches!(pixels, D::ImageRgba8(_) | D::ImageRgba16(_)) {
             return None;
         }
         let view = self.bytes.push(&encode_png(&pixels).ok()?);

@@ -1,6 +1,10 @@
-//! Picture files: PNG and JPEG hold a screen's values in 8 bits, OpenEXR and Radiance HDR hold
-//! linear light in floating point. The extension decides.
+//! Picture files. What is written the extension decides: PNG and JPEG hold a screen's values in 8 bits,
+//! OpenEXR and Radiance HDR linear light in floating point. What is read its content tells, and there
+//! are more kinds of it: WebP, TGA, BMP, DDS, and the first frame of a GIF.
 
+mod content;
+mod open_exr;
+mod radiance;
 mod read;
 mod rendered;
 mod write;
@@ -10,11 +14,11 @@ pub use rendered::{Note, picture_notes, write_rendered};
 pub(crate) use write::encode_png;
 pub use write::{write_picture, write_picture_with_notes};
 
-use super::Limits;
 use super::error::{FileError, Problem};
+use super::{Limits, check_writable};
 use std::path::Path;
 
-/// The picture files that are read and written.
+/// The picture files that are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PictureFormat {
     /// 8 bits a channel, lossless.
@@ -51,6 +55,15 @@ impl PictureFormat {
         matches!(self, Self::Exr | Self::Hdr)
     }
 
+    /// The most pixels on either side that a file of this format says.
+    pub fn largest_side(self) -> u64 {
+        match self {
+            // Its head has 16 bits for each.
+            Self::Jpeg => u64::from(u16::MAX),
+            Self::Png | Self::Exr | Self::Hdr => Limits::PICTURE_SIDE,
+        }
+    }
+
     fn image_format(self) -> image::ImageFormat {
         match self {
             Self::Png => image::ImageFormat::Png,
@@ -59,6 +72,47 @@ impl PictureFormat {
             Self::Hdr => image::ImageFormat::Hdr,
         }
     }
+}
+
+/// Refuses a picture that could not be written, before the work whose result it shall hold is done: by its
+/// format, its size, and the place where it shall lie. How full a disk will be then nobody knows.
+pub fn check_picture(file: &Path, width: u64, height: u64) -> Result<PictureFormat, FileError> {
+    let format = PictureFormat::of(file)?;
+    check_format_size(file, format, width, height)?;
+    check_writable(file)?;
+    Ok(format)
+}
+
+/// Refuses what the format cannot hold, or the limits forbid.
+fn check_format_size(
+    file: &Path,
+    format: PictureFormat,
+    width: u64,
+    height: u64,
+) -> Result<(), FileError> {
+    check_size(file, width, height, &Limits::default())?;
+    let limit = format.largest_side();
+    if width.max(height) > limit {
+        let problem = Problem::PictureTooLong {
+            width,
+            height,
+            limit,
+        };
+        return Err(FileError::new(file, problem));
+    }
+    Ok(())
+}
+
+/// How the names of picture files that are read end, in lower case: for file dialogs. What counts is what is
+/// in them.
+pub const PICTURE_EXTENSIONS: [&str; 11] = [
+    "png", "jpg", "jpeg", "webp", "tga", "bmp", "gif", "dds", "hdr", "pic", "exr",
+];
+
+/// What a decoder may ask for at once: four channels of 16 bytes for the largest picture, and as much again
+/// for what it needs meanwhile.
+fn decoder_bytes(limits: &Limits) -> u64 {
+    limits.pixels.saturating_mul(32)
 }
 
 /// Refuses a picture that is empty or beyond the limits, before memory is asked for.

@@ -1,22 +1,36 @@
 use super::super::error::{FileError, Problem};
-use super::{PictureFormat, check_size};
+use super::super::open_to_read;
+use super::content::{HEAD, recognised};
+use super::{check_size, decoder_bytes, open_exr, radiance};
 use crate::io::Limits;
+use crate::scene::SRGB_16_BITS;
+use crate::trace::srgb::decode_table_16;
 use bevy::asset::RenderAssetUsages;
 use bevy::image::Image;
-use image::{DynamicImage, ImageBuffer, ImageReader, Luma};
-use std::fs::File;
-use std::io::{BufRead, BufReader, Cursor, Seek};
+use exr::prelude::f16;
+use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, Luma, Rgba};
+use std::io::{BufRead, Cursor, Read, Seek, SeekFrom};
 use std::path::Path;
+use wgpu_types::{Extent3d, TextureDimension, TextureFormat};
 
-/// What a picture's values stand for, and so how they are kept.
+/// What a picture's values stand for, and so how they are kept: 16-bit files stay in 16 bits, floating
+/// point stays as it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum PictureUse {
-    /// Colours: 8-bit files become sRGB-encoded `Rgba8UnormSrgb`, others linear `Rgba32Float`.
+    /// Colours: 8-bit files become sRGB-encoded `Rgba8UnormSrgb`, others linear floats, with the label
+    /// [`SRGB_16_BITS`] where they had 16 bits.
     Color,
-    /// Numbers: 8-bit files become `Rgba8Unorm` as they are.
+    /// Numbers: 8-bit files become `Rgba8Unorm` as they are, 16-bit ones `Rgba16Unorm`.
     Data,
     /// Only the alpha channel, spread over red, green and blue as numbers.
     Alpha,
+}
+
+/// A picture as its file has it.
+struct Decoded {
+    pixels: DynamicImage,
+    /// Its floats are those of 16 bits.
+    is_half: bool,
 }
 
 /// Reads a picture file. Its size is checked in the header, before anything is decoded.
@@ -25,76 +39,171 @@ pub(crate) fn read_picture(
     usage: PictureUse,
     limits: &Limits,
 ) -> Result<Image, FileError> {
-    let format = PictureFormat::of(path)?;
-    let open = || {
-        let file = File::open(path).map_err(|error| FileError::reading(path, &error))?;
-        let metadata = file.metadata();
-        if metadata.is_ok_and(|metadata| metadata.is_dir()) {
-            return Err(FileError::new(path, Problem::IsAFolder));
-        }
-        Ok(ImageReader::with_format(
-            BufReader::new(file),
-            format.image_format(),
-        ))
-    };
-    decode(path, open()?, open()?, usage, limits)
+    let reader = open_to_read(path, limits.file_bytes)?;
+    decode(path, reader, usage, limits)
 }
 
-/// Decodes a picture that lies inside another file. PNG or JPEG, by its first bytes.
+/// Decodes a picture that lies inside another file.
 pub(crate) fn decode_picture(
     name: &Path,
     bytes: &[u8],
     usage: PictureUse,
     limits: &Limits,
 ) -> Result<Image, FileError> {
-    let format = image::guess_format(bytes).map_err(|error| failure(name, error))?;
-    let open = || ImageReader::with_format(Cursor::new(bytes), format);
-    decode(name, open(), open(), usage, limits)
+    decode(name, Cursor::new(bytes), usage, limits)
 }
 
-fn decode<R: BufRead + Seek>(
+/// By what the first bytes say: names are often wrong.
+fn decode(
     name: &Path,
-    header: ImageReader<R>,
-    mut body: ImageReader<R>,
+    mut reader: impl BufRead + Seek,
     usage: PictureUse,
     limits: &Limits,
 ) -> Result<Image, FileError> {
-    let (width, height) = header
-        .into_dimensions()
-        .map_err(|error| failure(name, error))?;
-    check_size(name, width.into(), height.into(), limits)?;
-    let mut decoder_limits = image::Limits::default();
-    // Four channels of 16 bytes at most, and as much again for what a decoder needs meanwhile.
-    decoder_limits.max_alloc = Some(limits.pixels.saturating_mul(32));
-    body.limits(decoder_limits);
-    let picture = body.decode().map_err(|error| failure(name, error))?;
-    Ok(to_image(picture, usage))
-}
-
-fn to_image(picture: DynamicImage, usage: PictureUse) -> Image {
-    let floating = matches!(
-        picture,
-        DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_)
-    );
-    let picture = match usage {
-        PictureUse::Alpha => {
-            let rgba = picture.into_rgba8();
-            let alpha = ImageBuffer::from_fn(rgba.width(), rgba.height(), |x, y| {
-                Luma([rgba.get_pixel(x, y).0[3]])
-            });
-            DynamicImage::ImageLuma8(alpha)
-        }
-        _ if floating => picture,
-        _ => DynamicImage::ImageRgba8(picture.into_rgba8()),
+    let mut head = Vec::with_capacity(HEAD);
+    (reader.by_ref().take(HEAD as u64).read_to_end(&mut head))
+        .and_then(|_| reader.seek(SeekFrom::Start(0)))
+        .map_err(|error| FileError::reading(name, &error))?;
+    let whole = |pixels| Decoded {
+        pixels,
+        is_half: false,
     };
-    Image::from_dynamic(
-        picture,
-        usage == PictureUse::Color,
-        RenderAssetUsages::default(),
-    )
+    let decoded = match recognised(&head).map_err(|problem| FileError::new(name, problem))? {
+        ImageFormat::Hdr => whole(radiance::decode(name, reader, limits)?),
+        ImageFormat::OpenExr => {
+            let open_exr::Decoded { picture, is_half } = open_exr::decode(name, reader, limits)?;
+            Decoded {
+                pixels: picture,
+                is_half,
+            }
+        }
+        format => whole(decode_as(format, name, reader, limits)?),
+    };
+    Ok(to_image(decoded, usage))
 }
 
-fn failure(name: &Path, error: image::ImageError) -> FileError {
+/// The first frame of a picture.
+fn decode_as(
+    format: ImageFormat,
+    name: &Path,
+    reader: impl BufRead + Seek,
+    limits: &Limits,
+) -> Result<DynamicImage, FileError> {
+    let fails = |error| failure(name, error);
+    let mut reader = ImageReader::with_format(reader, format);
+    let mut decoder_limits = image::Limits::default();
+    decoder_limits.max_alloc = Some(decoder_bytes(limits));
+    reader.limits(decoder_limits);
+    let decoder = reader.into_decoder().map_err(fails)?;
+    let (width, height) = decoder.dimensions();
+    check_size(name, width.into(), height.into(), limits)?;
+    DynamicImage::from_decoder(decoder).map_err(fails)
+}
+
+/// The picture as Bevy keeps it, with as many bits as the file has.
+fn to_image(decoded: Decoded, usage: PictureUse) -> Image {
+    use DynamicImage as D;
+    let Decoded { pixels, is_half } = decoded;
+    let is_float = matches!(pixels, D::ImageRgb32F(_) | D::ImageRgba32F(_));
+    let is_16_bits = matches!(
+        pixels,
+        D::ImageLuma16(_) | D::ImageLumaA16(_) | D::ImageRgb16(_) | D::ImageRgba16(_)
+    );
+    // Of numbers the tracer alone makes use, and not every graphics card takes them in 16 bits.
+    let world = match usage {
+        PictureUse::Color => RenderAssetUsages::default(),
+        PictureUse::Data | PictureUse::Alpha => RenderAssetUsages::MAIN_WORLD,
+    };
+    let (width, height) = (pixels.width(), pixels.height());
+    match usage {
+        PictureUse::Color if is_16_bits => srgb_16(&pixels.into_rgba16()),
+        PictureUse::Data if is_16_bits => {
+            Image::from_dynamic(D::ImageRgba16(pixels.into_rgba16()), false, world)
+        }
+        PictureUse::Color | PictureUse::Data if is_half => {
+            let values = pixels.into_rgba32f().into_raw();
+            let halves = values.iter().flat_map(|&v| f16::from_f32(v).to_ne_bytes());
+            new(
+                width,
+                height,
+                halves.collect(),
+                TextureFormat::Rgba16Float,
+                world,
+            )
+        }
+        PictureUse::Color | PictureUse::Data if is_float => {
+            Image::from_dynamic(pixels, false, world)
+        }
+        PictureUse::Color | PictureUse::Data => {
+            let pixels = D::ImageRgba8(pixels.into_rgba8());
+            Image::from_dynamic(pixels, usage == PictureUse::Color, world)
+        }
+        PictureUse::Alpha if is_float => {
+            let alphas = pixels.into_rgba32f();
+            let alphas = alphas.pixels().flat_map(|pixel| pixel.0[3].to_ne_bytes());
+            new(
+                width,
+                height,
+                alphas.collect(),
+                TextureFormat::R32Float,
+                world,
+            )
+        }
+        PictureUse::Alpha if is_16_bits => {
+            let alphas = pixels.into_rgba16();
+            let alphas = alphas.pixels().flat_map(|pixel| pixel.0[3].to_ne_bytes());
+            new(
+                width,
+                height,
+                alphas.collect(),
+                TextureFormat::R16Unorm,
+                world,
+            )
+        }
+        PictureUse::Alpha => {
+            let rgba = pixels.into_rgba8();
+            let alpha =
+                ImageBuffer::from_fn(width, height, |x, y| Luma([rgba.get_pixel(x, y).0[3]]));
+            Image::from_dynamic(D::ImageLuma8(alpha), false, world)
+        }
+    }
+}
+
+/// Linear floats with the label that tells that they were encoded.
+fn srgb_16(pixels: &ImageBuffer<Rgba<u16>, Vec<u16>>) -> Image {
+    let table = decode_table_16();
+    let values = pixels.pixels().flat_map(|pixel| {
+        let [r, g, b, a] = pixel.0;
+        let [r, g, b] = [r, g, b].map(|c| table[usize::from(c)]);
+        [r, g, b, f32::from(a) / f32::from(u16::MAX)]
+    });
+    let mut image = new(
+        pixels.width(),
+        pixels.height(),
+        values.flat_map(f32::to_ne_bytes).collect(),
+        TextureFormat::Rgba32Float,
+        RenderAssetUsages::default(),
+    );
+    image.texture_descriptor.label = Some(SRGB_16_BITS);
+    image
+}
+
+fn new(
+    width: u32,
+    height: u32,
+    values: Vec<u8>,
+    format: TextureFormat,
+    world: RenderAssetUsages,
+) -> Image {
+    let size = Extent3d {
+        width,
+        height,
+        depth_or_array_layers: 1,
+    };
+    Image::new(size, TextureDimension::D2, values, format, world)
+}
+
+pub(super) fn failure(name: &Path, error: image::ImageError) -> FileError {
     use image::ImageError as E;
     let problem = match error {
         E::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
@@ -112,6 +221,6 @@ fn failure(name: &Path, error: image::ImageError) -> FileError {
     FileError::new(name, problem)
 }
 
-fn one_line(text: &str) -> String {
+pub(super) fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

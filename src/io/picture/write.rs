@@ -1,7 +1,6 @@
 use super::super::error::{FileError, Problem};
 use super::super::replace::replace_file;
-use super::{PictureFormat, check_size};
-use crate::io::Limits;
+use super::{PictureFormat, check_format_size};
 use image::codecs::jpeg::JpegEncoder;
 use image::{DynamicImage, ImageBuffer, ImageResult};
 use std::io;
@@ -36,7 +35,7 @@ pub fn write_picture_with_notes(
     notes: &[(&str, String)],
 ) -> Result<(), FileError> {
     let format = PictureFormat::of(path)?;
-    check_size(path, width.into(), height.into(), &Limits::default())?;
+    check_format_size(path, format, width.into(), height.into())?;
     let wrong_size = || {
         FileError::new(
             path,
@@ -143,7 +142,7 @@ fn write_exr(
     })
 }
 
-/// Encodes an 8-bit RGBA picture as a PNG in memory, to embed it in a model file.
+/// Encodes a picture as a PNG in memory, with as many bits as it has,, to embed it in a model file.
 pub(crate) fn encode_png(picture: &DynamicImage) -> io::Result<Vec<u8>> {
     let mut bytes = io::Cursor::new(Vec::new());
     io_result(picture.write_to(&mut bytes, image::ImageFormat::Png))?;
@@ -165,6 +164,7 @@ fn to_byte(value: f32) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::io::Limits;
     use crate::io::picture::{PictureUse, read_picture};
 
     const PIXELS: [[f32; 3]; 4] = [

@@ -8,6 +8,7 @@ mod far;
 mod hairball;
 mod inherited_motion;
 mod light;
+mod maps;
 mod motion_and_lens;
 mod parallel;
 mod pictures;
@@ -314,6 +315,12 @@ pub(super) static CASES: &[Case] = &[
         transparency::sheets,
     ),
     case(
+        40,
+        "a white cut-out over white, bilinear and mipmaps",
+        "white within 1e-6",
+        maps::cut_outs,
+    ),
+    case(
         41,
         "suns of 0° … 180° on floors",
         "E kd/π within 1e-3 facing, 3e-3 on slopes",
@@ -332,10 +339,22 @@ pub(super) static CASES: &[Case] = &[
         angles::spots,
     ),
     case(
+        44,
+        "infinite, negative texels and no numbers, in every map",
+        "the largest finite number and 0; a note for each picture",
+        maps::not_light,
+    ),
+    case(
         45,
         "a sheet of opacity 0 before a soft shadow",
         "the picture without it, bit for bit",
         transparency::invisible,
+    ),
+    case(
+        47,
+        "pictures that cannot be written",
+        "refused before a ray is traced",
+        maps::unwritable,
     ),
     case(
         48,

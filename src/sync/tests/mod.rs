@@ -1,6 +1,7 @@
 //! Tests of the room as a whole: an app with nothing but what `SyncPlugin` needs.
 
 mod background;
+mod cut_outs;
 mod dice;
 mod edits;
 mod lights;

@@ -5,6 +5,7 @@ use super::super::says::Says;
 use super::super::state::Panels;
 use crate::editor::document::{picture_at, typed_picture};
 use crate::editor::edits::scene_entity;
+use crate::io::PICTURE_EXTENSIONS;
 use crate::io::shapes::PICTURES;
 use crate::scene::{Environment, Phong, SceneId, TextureSource};
 use bevy::asset::{AssetId, Assets, Handle};
@@ -249,7 +250,8 @@ impl Thumbnails {
         let dialog = thread::Builder::new().name("file dialog".into());
         let spawned = dialog.spawn(move || {
             let file = rfd::FileDialog::new()
-                .add_filter("Pictures", &["png", "jpg", "jpeg", "hdr", "exr"])
+                .add_filter("Pictures", &PICTURE_EXTENSIONS)
+                .add_filter("All files", &["*"])
                 .pick_file();
             // The editor may have been closed meanwhile.
             let _ = sender.send(file);

@@ -1,0 +1,77 @@
+//! Which format a picture has: its content tells, whatever its name says.
+
+use super::super::error::Problem;
+use image::ImageFormat;
+
+/// How many of a file's first bytes are looked at.
+pub(super) const HEAD: usize = 32;
+
+/// The formats that are read, for messages.
+const READ: &str = "PNG, JPEG, WebP, TGA, BMP, GIF, DDS, Radiance HDR and OpenEXR are read";
+
+/// The format by a file's first bytes.
+pub(super) fn recognised(head: &[u8]) -> Result<ImageFormat, Problem> {
+    use ImageFormat as F;
+    // Radiance's own programs write `#?RADIANCE`, others `#?RGBE` or their own name.
+    if head.starts_with(b"#?") {
+        return Ok(F::Hdr);
+    }
+    match image::guess_format(head) {
+        Ok(format @ (F::Png | F::Jpeg | F::WebP | F::Bmp | F::Gif | F::Dds | F::OpenExr)) => {
+            Ok(format)
+        }
+        Ok(other) => {
+            let name = other.extensions_str().first().copied().unwrap_or_default();
+            Err(Problem::Malformed(format!(
+                "is a picture of the kind .{name}, which is not read; {READ}"
+            )))
+        }
+        Err(_) if looks_like_tga(head) => Ok(F::Tga),
+        Err(_) => Err(Problem::Malformed(format!(
+            "is not a picture that can be decoded; {READ}"
+        ))),
+    }
+}
+
+/// A TGA has no mark at its beginning, but a head whose numbers few other files have (Truevision TGA
+/// File Format Specification 2.0, 1991, fields 2 to 5).
+fn looks_like_tga(head: &[u8]) -> bool {
+    let Some(&[_, has_palette, kind, ..]) = head.first_chunk::<18>() else {
+        return false;
+    };
+    let number = |at: usize| u16::from_le_bytes([head[at], head[at + 1]]);
+    let (palette, size, bits) = (head[7], [number(12), number(14)], head[16]);
+    let known = match (has_palette, kind) {
+        (1, 1 | 9) => matches!(palette, 15 | 16 | 24 | 32) && matches!(bits, 8 | 16),
+        (0 | 1, 2 | 10) => matches!(bits, 15 | 16 | 24 | 32),
+        (0 | 1, 3 | 11) => matches!(bits, 8 | 16),
+        _ => false,
+    };
+    known && !size.contains(&0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tga_is_known_by_the_numbers_in_its_head_and_text_is_none() {
+        let mut head = [0_u8; 18];
+        (head[2], head[12], head[14], head[16]) = (2, 4, 4, 24);
+        assert_eq!(recognised(&head).unwrap(), ImageFormat::Tga);
+        head[16] = 23;
+        assert!(recognised(&head).is_err(), "23 bits");
+        for text in [&b""[..], b"solid cube of text that is long", b"\x01\x01"] {
+            assert!(recognised(text).is_err(), "{text:?}");
+        }
+    }
+
+    #[test]
+    fn a_picture_of_a_kind_that_is_not_read_is_called_by_it() {
+        let problem = recognised(b"II*\0 and so on").unwrap_err().to_string();
+        assert!(
+            problem.contains(".tiff") && problem.contains("PNG"),
+            "{problem}"
+        );
+    }
+}
