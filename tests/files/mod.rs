@@ -3,4 +3,6 @@
 pub mod app;
 mod gltf;
 mod models;
+mod names;
 mod round_trip;
+mod sets;

@@ -9,4 +9,4 @@ mod write;
 mod write_mtl;
 
 pub(crate) use read::read_obj;
-pub(crate) use write::write_obj;
+pub(crate) use write::{mtl_of, write_obj};

@@ -6,12 +6,15 @@ use super::super::folder::Folder;
 use crate::io::Limits;
 use crate::scene::{Phong, TextureSource};
 use bevy::color::LinearRgba;
+use std::path::PathBuf;
 
 /// An MTL file holds text of a few lines a material; more than this is something else.
 const FILE_BYTES: u64 = 1 << 26;
 
 /// The materials of an MTL file.
 pub(super) struct Library {
+    /// Where it lies.
+    pub file: PathBuf,
     /// As tobj wants them.
     pub loaded: tobj::MTLLoadResult,
     /// What could not be taken over.
@@ -35,6 +38,7 @@ pub(super) fn read_mtl(name: &str, folder: &Folder, limits: &Limits) -> Result<L
         checked.push('\n');
     }
     Ok(Library {
+        file: file.clone(),
         loaded: tobj::load_mtl_buf(&mut checked.as_bytes()),
         notes,
     })
