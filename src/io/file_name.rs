@@ -125,6 +125,14 @@ fn of_bytes(bytes: Vec<u8>) -> Option<OsString> {
     String::from_utf8(bytes).ok().map(OsString::from)
 }
 
+/// The path of a file in a model file, where no picture is generated.
+pub(crate) fn of_file(path: String) -> String {
+    match path.starts_with(BUILTIN) {
+        true => format!("./{path}"),
+        false => path,
+    }
+}
+
 /// Whether a path can stand in a line of an OBJ or MTL file, where nothing is escaped, and be read again.
 pub(crate) fn fits_a_line(path: &str) -> bool {
     let is_clean = !path.contains(|c: char| c.is_control() || c == '\\');

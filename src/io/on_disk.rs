@@ -1,9 +1,5 @@
 //! Whether another program has changed the open scene's file.
 
-use super::Limits;
-use super::identity::same_file;
-use super::sources::SceneFiles;
-use bevy::prelude::World;
 use serde::{Deserialize, Serialize};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
@@ -38,7 +34,10 @@ fn digest(bytes: &[u8]) -> u64 {
 
 /// Whether this file, which the open scene was read from or written to last, says something else by now. One that is
 /// gone, or cannot be read, holds nothing that could be lost.
-pub(crate) fn has_changed(world: &World, file: &Path) -> bool {
+#[cfg(feature = "editor")]
+pub(crate) fn has_changed(world: &bevy::prelude::World, file: &Path) -> bool {
+    use super::identity::same_file;
+    use super::sources::SceneFiles;
     let known = world.get_resource::<SceneFiles>();
     let Some(known) = known.and_then(|files| files.on_disk.as_ref()) else {
         return false;
@@ -46,7 +45,7 @@ pub(crate) fn has_changed(world: &World, file: &Path) -> bool {
     if !file.is_file() || !same_file(&known.file, file) {
         return false;
     }
-    match super::read_bytes(file, Limits::default().file_bytes) {
+    match super::read_bytes(file, super::Limits::default().file_bytes) {
         Ok(bytes) => digest(&bytes) != known.digest,
         // Emptied, or longer than any scene.
         Err(_) => true,

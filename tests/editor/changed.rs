@@ -31,7 +31,7 @@ fn changed_twice(file: &Path) -> (App, Vec<u8>) {
     let mut second = editor("cornell-box");
     act(&mut second, Action::Open(file.to_path_buf()));
     second.update();
-    add(&mut second, "Cube");
+    add(&mut second, "Cuboid");
     act(&mut second, Action::Save);
     assert_eq!(question(&second), None, "nobody else has changed it");
     add(&mut first, "Sphere");
@@ -74,7 +74,7 @@ fn reloading_opens_what_the_other_program_wrote() {
     app.update();
     assert_eq!(question(&app), None);
     assert_eq!(fs::read(&file).unwrap(), theirs);
-    named(&mut app, "Cube");
+    named(&mut app, "Cuboid");
     assert!(!app.world().resource::<Document>().unsaved());
     add(&mut app, "Sphere");
     act(&mut app, Action::Save);

@@ -1,5 +1,5 @@
 use super::super::error::{FileError, Problem};
-use super::super::file_name::{encoded, split_fragment};
+use super::super::file_name::{encoded, of_file, split_fragment};
 use super::super::folder::Folder;
 use super::super::model::{Model, Node};
 use super::super::picture::{PictureUse, decode_picture, read_picture};
@@ -141,7 +141,7 @@ fn texture_source(document: &Document, texture: &gltf::Texture) -> Result<String
                 Ok(file) if !file.is_file() => {
                     Err(document.error(part(), Problem::MissingFile { path }))
                 }
-                Ok(_) => Ok(path),
+                Ok(_) => Ok(of_file(path)),
             }
         }
     }

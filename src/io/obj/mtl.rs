@@ -2,6 +2,7 @@
 //! program at a colour with fewer than three numbers, and because an error should name its line.
 
 use super::super::error::{FileError, Place, Problem};
+use super::super::file_name::of_file;
 use super::super::folder::Folder;
 use crate::io::Limits;
 use crate::scene::{Phong, TextureSource};
@@ -90,7 +91,7 @@ fn check_line(
             if !full.is_file() {
                 return Err(Problem::MissingFile { path });
             }
-            Ok(format!("{word} {path}"))
+            Ok(format!("{word} {}", of_file(path)))
         }
         _ if word.starts_with("map_") || matches!(word, "bump" | "disp" | "decal" | "refl") => {
             notes.push(format!("`{word}` has no place in Phong and was left out"));

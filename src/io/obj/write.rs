@@ -24,7 +24,7 @@ pub(crate) fn mtl_of(file: &Path) -> PathBuf {
 /// it, and pictures that are no files into PNGs beside it. Returns what could not be said.
 ///
 /// The OBJ that lies there names a complete set of files at any time. Everything is written aside first. Pictures
-/// get names that are free; the MTL cannot, if it is to be called like the OBJ. Where an OBJ is there that may name
+/// get names that are free; the MTL does not, if it is to be called like the OBJ. Where an OBJ is there that may name
 /// an MTL with another content, the new MTL is written under a name of its own beside it, and an OBJ that names
 /// that one takes the old one's place; nothing needs the old MTL then, and it is replaced, and at last the OBJ
 /// again.
@@ -46,7 +46,7 @@ pub(crate) fn write_obj(world: &mut World, file: &Path) -> Result<Vec<String>, F
     let library = |mtl: &Path| Staged::new(mtl, |out| out.write_all(text.as_bytes()));
 
     let old = text_of(&mtl);
-    let mut staged = pictures;
+    let mut staged = Vec::new();
     let mut between = None;
     if file.is_file() && old.as_ref().is_some_and(|old| *old != text.as_bytes()) {
         let name = free_name(&mtl);
@@ -59,9 +59,9 @@ pub(crate) fn write_obj(world: &mut World, file: &Path) -> Result<Vec<String>, F
         staged.push(library(&mtl)?);
     }
     staged.push(obj(&mtl_name)?);
-    for file in staged {
-        file.commit()?;
-    }
+    // From here on an OBJ may name them.
+    pictures.keep();
+    staged.into_iter().try_for_each(Staged::commit)?;
     for file in replaced.iter().chain(&left).chain(&between) {
         // It is complete without them: what cannot be removed stays.
         let _ = fs::remove_file(file);

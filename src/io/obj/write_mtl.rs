@@ -3,7 +3,7 @@ use super::super::exported::{Exported, pixels_of};
 use super::super::file_name::{BUILTIN, fits_a_line, split_fragment};
 use super::super::folder::{Folder, stays_inside};
 use super::super::identity::folder_of;
-use super::super::replace::Staged;
+use super::super::replace::replace_file;
 use super::super::scene_file::Rebase;
 use super::super::sources::SceneFiles;
 use crate::io::Limits;
@@ -22,10 +22,32 @@ use std::path::{Path, PathBuf};
 pub(super) struct Library {
     /// Of the MTL file.
     pub text: String,
-    /// Pictures beside it that are not there yet.
-    pub pictures: Vec<Staged>,
+    /// Pictures that were written beside it.
+    pub pictures: Created,
     /// Files that were brought along by the MTL that was there, and that nothing names any more.
     pub replaced: Vec<PathBuf>,
+}
+
+/// Files that were not there before. They go again when this is dropped, unless they are kept. Not [`Staged`] ones, as
+/// there may be thousands, and each of those is an open file.
+///
+/// [`Staged`]: super::super::replace::Staged
+#[derive(Default)]
+pub(super) struct Created(Vec<PathBuf>);
+
+impl Created {
+    pub fn keep(mut self) {
+        self.0.clear();
+    }
+}
+
+impl Drop for Created {
+    fn drop(&mut self) {
+        for file in &self.0 {
+            // What cannot be tidied up adds nothing to the error that is reported.
+            let _ = std::fs::remove_file(file);
+        }
+    }
 }
 
 /// The materials for this MTL file. A picture that is a file is named from its folder; one that is not, that
@@ -44,7 +66,7 @@ pub(super) fn library(
         file,
         rebase: Rebase::new(world, file),
         beside: Vec::new(),
-        staged: Vec::new(),
+        created: Created::default(),
         taken: HashSet::new(),
     };
     pictures.take_names(exported);
@@ -73,7 +95,7 @@ pub(super) fn library(
     Ok(Library {
         text,
         replaced: pictures.replaced(&old),
-        pictures: pictures.staged,
+        pictures: pictures.created,
     })
 }
 
@@ -90,7 +112,7 @@ struct Pictures<'a> {
     rebase: Rebase,
     /// Sources that become files beside the MTL, and their names.
     beside: Vec<(String, String)>,
-    staged: Vec<Staged>,
+    created: Created,
     /// Files that materials name, which stay as they are.
     taken: HashSet<String>,
 }
@@ -180,8 +202,8 @@ impl Pictures<'_> {
         let (name, is_there) = self.free_name(extension, &bytes);
         if !is_there {
             let place = folder_of(self.file).join(&name);
-            let staged = Staged::new(&place, |out| out.write_all(&bytes))?;
-            self.staged.push(staged);
+            replace_file(&place, |out| out.write_all(&bytes))?;
+            self.created.0.push(place);
         }
         notes.push(format!("the picture `{path}` was written as `{name}`"));
         self.beside.push((path.clone(), name.clone()));
