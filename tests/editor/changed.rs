@@ -4,11 +4,15 @@ use super::scene_copy::SceneCopy;
 use super::{act, editor, named};
 use bevy::app::{App, AppExit};
 use bevy::ecs::message::Messages;
-use glassbox::editor::Action;
 use glassbox::editor::action::Addition;
-use glassbox::editor::document::{Answer, Document, Purpose, Question, answer};
+use glassbox::editor::document::{
+    Answer, Document, Purpose, Question, RecoveryFolder, adopt, answer,
+};
+use glassbox::editor::{Action, headless_editor_with_recovery};
+use glassbox::io::{OpenOptions, SceneSource, open};
 use std::fs;
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 fn question(app: &App) -> Option<Question> {
     app.world().resource::<Document>().question.clone()
@@ -131,6 +135,46 @@ fn a_file_that_is_gone_is_written_again_and_one_that_says_the_same_is_not_asked_
     fs::write(&file, "").unwrap();
     act(&mut app, Action::Save);
     assert_eq!(question(&app), changed(&file));
+}
+
+#[test]
+fn recovered_work_is_not_saved_over_what_was_changed_since() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, copies) = (
+        folder.path().join("a.scn.ron"),
+        folder.path().join("copies"),
+    );
+    let mut app = headless_editor_with_recovery(&copies);
+    let source = SceneSource::named("triangle");
+    open(app.world_mut(), &source, OpenOptions::default()).unwrap();
+    adopt(app.world_mut(), "triangle", None);
+    app.update();
+    act(&mut app, Action::SaveAs(file.clone()));
+    let mut recovery = app.world_mut().resource_mut::<RecoveryFolder>();
+    recovery.copy_every(Duration::ZERO);
+    add(&mut app, "Sphere");
+    let is_labelled = || {
+        let copies = fs::read_dir(&copies).into_iter().flatten().flatten();
+        let mut names = copies.map(|copy| copy.file_name().into_string().unwrap());
+        names.any(|name| name.ends_with(".label.ron"))
+    };
+    let start = Instant::now();
+    while !is_labelled() {
+        assert!(start.elapsed().as_secs() < 60, "no copy was written");
+        app.update();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    drop(app);
+    fs::write(&file, "theirs").unwrap();
+    let mut next = headless_editor_with_recovery(&copies);
+    next.update();
+    let asked = matches!(question(&next), Some(Question::Recover(_)));
+    assert!(asked, "{:?}", question(&next));
+    answer(next.world_mut(), Answer::Yes);
+    next.update();
+    act(&mut next, Action::Save);
+    assert_eq!(question(&next), changed(&file));
+    assert_eq!(fs::read(&file).unwrap(), b"theirs");
 }
 
 #[cfg(unix)]
