@@ -6,6 +6,7 @@ use super::super::identity::folder_of;
 use super::super::model::MeshParts;
 use super::super::place::world_from;
 use super::super::replace::Staged;
+use super::stem_of;
 use super::write_mtl::{Library, library, text_of};
 use bevy::asset::Assets;
 use bevy::math::{Affine3A, Mat3A, Vec3};
@@ -82,7 +83,7 @@ fn name_in_obj(mtl: &Path) -> Result<String, FileError> {
 
 /// A name for a file that stands for the MTL until that can be replaced.
 fn free_name(mtl: &Path) -> String {
-    let stem = mtl.file_stem().unwrap_or_default().to_string_lossy();
+    let stem = stem_of(mtl);
     let mut names = (1_u32..).map(|number| format!("{stem}{BETWEEN}{number}.mtl"));
     let is_free = |name: &String| !folder_of(mtl).join(name).exists();
     names.find(is_free).unwrap_or_default()
@@ -102,8 +103,7 @@ fn left_between(file: &Path, mtl: &Path) -> Option<PathBuf> {
     let name = start
         .lines()
         .find_map(|line| line.strip_prefix("mtllib "))?;
-    let stem = mtl.file_stem()?.to_str()?;
-    let number = name.strip_prefix(stem)?.strip_prefix(BETWEEN)?;
+    let number = name.strip_prefix(&stem_of(mtl))?.strip_prefix(BETWEEN)?;
     let number = number.strip_suffix(".mtl")?;
     let is_own = !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit());
     is_own.then(|| folder_of(mtl).join(name))

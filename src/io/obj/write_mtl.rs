@@ -6,6 +6,7 @@ use super::super::identity::folder_of;
 use super::super::replace::replace_file;
 use super::super::scene_file::Rebase;
 use super::super::sources::SceneFiles;
+use super::stem_of;
 use crate::io::Limits;
 use crate::scene::TextureSource;
 use bevy::asset::Handle;
@@ -139,14 +140,9 @@ impl Pictures<'_> {
         self.taken = named.collect();
     }
 
-    fn stem(&self) -> String {
-        let stem = self.file.file_stem().unwrap_or_default();
-        stem.to_string_lossy().into_owned()
-    }
-
     /// A name for a picture that is written beside the file, and whether this very picture has it already.
     fn free_name(&self, extension: &str, bytes: &[u8]) -> (String, bool) {
-        let stem = self.stem();
+        let stem = stem_of(self.file);
         let mut number = self.beside.len();
         loop {
             let name = format!("{stem}-texture{number}.{extension}");
@@ -212,7 +208,7 @@ impl Pictures<'_> {
 
     /// Pictures that the old MTL brought along, by their names, and that neither the new one nor the scene names.
     fn replaced(&self, old: &[u8]) -> Vec<PathBuf> {
-        let start = format!("{}-texture", self.stem());
+        let start = format!("{}-texture", stem_of(self.file));
         let is_own = |name: &&str| {
             let rest = name.strip_prefix(&start);
             let number = rest.and_then(|rest| {
