@@ -21,6 +21,7 @@ pub(super) struct Convert {
 pub(super) fn run(args: Convert) -> Result<(), Failure> {
     check_save(&args.output).map_err(Failure::of_output)?;
     let mut stage = Stage::open(&args.scene, args.quiet)?;
+    stage.check_outputs([&*args.output])?;
     let notes = save(stage.app.world_mut(), &args.output)?;
     if !args.quiet {
         for note in notes {

@@ -4,8 +4,8 @@ use super::Failure;
 use super::output::{say, tell};
 use super::shown::read_output;
 use crate::io::{
-    self, Limits, PictureFormat, check_picture, check_writable, read_part, write_part,
-    write_rendered,
+    self, Limits, PictureFormat, check_outputs, check_picture, check_writable, read_part,
+    write_part, write_rendered,
 };
 use crate::scene::RenderSettings;
 use clap::Args;
@@ -26,6 +26,7 @@ pub(super) struct Merge {
 
 pub(super) fn run(args: Merge) -> Result<(), Failure> {
     let format = PictureFormat::of(&args.output).map_err(Failure::of_output)?;
+    check_outputs([&*args.output], args.parts.iter().map(PathBuf::as_path))?;
     check_writable(&args.output)?;
     let mut merge = io::Merge::default();
     for file in &args.parts {

@@ -13,8 +13,8 @@ use crate::film::views::View;
 use crate::film::{FirstHits, render_samples};
 use crate::inspect::build_time;
 use crate::io::{
-    FileError, Part, PictureFormat, check_picture, check_writable, picture_notes, replace_file,
-    write_part, write_rendered,
+    FileError, Part, PictureFormat, check_outputs, check_picture, check_writable, picture_notes,
+    replace_file, write_part, write_rendered,
 };
 use crate::sync::TracedCamera;
 use crate::trace::{RayCounts, digest, samples_per_pixel};
@@ -80,6 +80,8 @@ pub(super) fn run(args: Render) -> Result<(), Failure> {
 
 fn render_scene(args: &Render) -> Result<(), Failure> {
     // Where nothing can be written nothing needs to be rendered.
+    let outputs = || [&args.output].into_iter().chain(&args.stats);
+    check_outputs(outputs().map(PathBuf::as_path), [&*args.scene.scene])?;
     check_writable(&args.output)?;
     let mut stage = Stage::open(&args.scene, args.quiet)?;
     let settings = stage.settings();
@@ -95,6 +97,7 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
     let world = stage.sync().world.clone();
     let cameras = chosen(&stage, args)?;
     let files = file_names(&args.output, &cameras);
+    stage.check_outputs(files.iter().chain(&args.stats).map(PathBuf::as_path))?;
     for file in &files {
         check_writable(file)?;
     }

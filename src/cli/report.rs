@@ -5,8 +5,8 @@ use super::output::say;
 use super::progress::Progress;
 use super::settings::check_scene;
 use super::stage::{SceneArgs, Stage, with_threads};
-use crate::io::{FileError, SceneSource, check_writable};
-use crate::report::{self, Options, Part, Subject, Table, write_report};
+use crate::io::{FileError, SceneSource, check_outputs, check_writable};
+use crate::report::{self, Options, Part, Subject, Table, is_report_file, write_report};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -81,15 +81,19 @@ fn measure(args: &Report, parts: Vec<Part>, scenes: &[PathBuf]) -> Result<(), Fa
     } else {
         scenes.to_vec()
     };
+    let (file, folder) = places(args);
+    let outputs = outputs(&file, &folder);
+    if let Some(table) = &args.editing {
+        check_outputs(outputs.iter().map(PathBuf::as_path), [&**table])?;
+    }
     let subjects = scenes
         .iter()
-        .map(|scene| subject(scene, args))
+        .map(|scene| subject(scene, args, &outputs))
         .collect::<Result<Vec<Subject>, Failure>>()?;
     let editing = args.editing.as_deref().map(table).transpose()?;
     if parts.contains(&Part::Kernels) {
         report::kernels::check_embree().map_err(Failure::System)?;
     }
-    let (file, folder) = places(args);
     check_places(&file, &folder)?;
     let options = Options {
         editing,
@@ -132,12 +136,13 @@ fn measure(args: &Report, parts: Vec<Part>, scenes: &[PathBuf]) -> Result<(), Fa
     }
 }
 
-fn subject(scene: &Path, args: &Report) -> Result<Subject, Failure> {
+fn subject(scene: &Path, args: &Report, outputs: &[PathBuf]) -> Result<Subject, Failure> {
     let source = SceneArgs {
         scene: scene.to_path_buf(),
         allow_outside: args.allow_outside,
     };
     let mut stage = Stage::open(&source, args.quiet)?;
+    stage.check_outputs(outputs.iter().map(PathBuf::as_path))?;
     let settings = stage.settings().clone();
     check_scene(&stage.name, &settings)?;
     let world = stage.sync().world.clone();
@@ -187,6 +192,21 @@ fn check_places(file: &Path, folder: &Path) -> Result<(), Failure> {
         }
     }
     Ok(())
+}
+
+/// The Markdown file, and what is there already of all that the report may replace.
+fn outputs(file: &Path, folder: &Path) -> Vec<PathBuf> {
+    let here = Path::new(".");
+    let folder = if folder.as_os_str().is_empty() {
+        here
+    } else {
+        folder
+    };
+    let there = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let own = there.filter(|entry| entry.file_name().to_str().is_some_and(is_report_file));
+    own.map(|entry| entry.path())
+        .chain([file.to_path_buf()])
+        .collect()
 }
 
 /// A table that another program wrote.

@@ -3,12 +3,12 @@
 use super::Failure;
 use super::output::tell;
 use crate::app::headless_app;
-use crate::io::{LoadProblems, OpenOptions, SceneSource, open};
+use crate::io::{LoadProblems, OpenOptions, SceneFiles, SceneSource, check_outputs, open};
 use crate::scene::RenderSettings;
 use crate::sync::{Traced, TracedCamera, TracedCameras};
 use bevy::app::App;
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Which scene a command opens, and how.
 #[derive(Args)]
@@ -53,6 +53,15 @@ impl Stage {
             quiet,
             warned: 0,
         })
+    }
+
+    /// Refuses outputs that would replace a file that the scene was read from, or each other.
+    pub fn check_outputs<'a>(
+        &self,
+        outputs: impl IntoIterator<Item = &'a Path>,
+    ) -> Result<(), Failure> {
+        let files = self.app.world().resource::<SceneFiles>();
+        Ok(check_outputs(outputs, files.inputs())?)
     }
 
     /// The scene's settings; what is written to them counts from the next [`Self::sync`] on.

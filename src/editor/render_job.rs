@@ -6,7 +6,7 @@
 use super::document::SceneOpened;
 use super::notice::Notices;
 use crate::film::{Ending, Progressive, State, Status};
-use crate::io::{FileError, check_picture, picture_notes, write_rendered};
+use crate::io::{FileError, check_not_read, check_picture, picture_notes, write_rendered};
 use crate::scene::{RenderSettings, SceneId, SettingProblem, setting_problems};
 use crate::sync::{Traced, TracedCameras};
 use crate::trace;
@@ -152,6 +152,7 @@ pub fn start_render(world: &mut World, request: RenderRequest) -> Result<(), Ren
         return Err(RenderRefused::Setting(problem));
     }
     let size = request.settings.size;
+    check_not_read(world, &request.file)?;
     check_picture(&request.file, size.x.into(), size.y.into())?;
     let cameras = &world.resource::<TracedCameras>().0;
     let (camera, name) = match &request.camera {

@@ -115,6 +115,12 @@ pub enum Problem {
     Unwritable(String),
     #[error("the folder does not exist; create it first")]
     NoFolder,
+    #[error("is the same file as `{input}`, which is read here; write under another name")]
+    IsRead { input: String },
+    #[error("is the same file as `{other}`, which is written too; give one of them another name")]
+    WrittenTwice { other: String },
+    #[error("{0}; choose another name")]
+    Unnameable(String),
     #[error("files that end in `{extension}` are not {wanted}")]
     UnknownExtension {
         extension: String,

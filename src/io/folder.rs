@@ -1,6 +1,7 @@
 //! Paths in scene files: relative to the file's folder, `/` between their parts, and inside it.
 
 use super::error::{FileError, Problem};
+use super::file_name::{decoded, encoded};
 use std::path::{Component, Path, PathBuf};
 
 /// The folder that the paths of a scene start from.
@@ -24,7 +25,7 @@ impl Folder {
     /// The file that a path in a scene means. Where it leaves the folder, through `..`, as an
     /// absolute path or over a symbolic link, that is an error unless it was allowed.
     pub fn resolve(&self, path: &str) -> Result<PathBuf, FileError> {
-        let full = self.path.join(path);
+        let full = self.file_of(path);
         if self.allow_outside {
             return Ok(full);
         }
@@ -46,7 +47,17 @@ impl Folder {
         Ok(full)
     }
 
-    /// How a file is named from this folder, with `/` between the parts and `..` where it must be.
+    /// The file that a path in a scene means, wherever that lies.
+    pub(crate) fn file_of(&self, path: &str) -> PathBuf {
+        let full = self.path.join(path);
+        match decoded(path) {
+            Some(decoded) if !full.exists() => self.path.join(decoded),
+            _ => full,
+        }
+    }
+
+    /// How a file is named from this folder, with `/` between the parts and `..` where it must be; what a
+    /// scene could not say is escaped.
     pub fn name_of(&self, file: &Path) -> String {
         let absolute = |path: &Path| {
             let path = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
@@ -67,7 +78,7 @@ impl Folder {
         let down = there
             .components()
             .skip(shared)
-            .map(|part| part.as_os_str().to_string_lossy().into_owned());
+            .map(|part| encoded(part.as_os_str()));
         up.chain(down).collect::<Vec<_>>().join("/")
     }
 }
@@ -121,6 +132,23 @@ mod tests {
         for good in ["a", "a/b", "./a", "a/../b"] {
             assert!(stays_inside(good), "{good} was taken as outside");
         }
+    }
+
+    #[test]
+    fn a_name_that_a_scene_could_not_say_comes_back_and_one_with_escapes_of_its_own_too() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = Folder {
+            path: folder.path().into(),
+            allow_outside: false,
+        };
+        for name in ["a\\b.png", "c:d.png", "e%20f.png", "g%5Ch.png"] {
+            let file = folder.path.join(name);
+            std::fs::write(&file, "").unwrap();
+            assert_eq!(folder.resolve(&folder.name_of(&file)).unwrap(), file);
+        }
+        // As a person writes it.
+        let file = folder.resolve("e%20f.png").unwrap();
+        assert_eq!(file, folder.path.join("e%20f.png"));
     }
 
     #[test]

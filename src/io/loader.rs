@@ -1,14 +1,14 @@
 use super::error::{FileError, Problem};
+use super::file_name::{BUILTIN, split_fragment};
 use super::folder::Folder;
 use super::model::Model;
 use super::picture::{PictureUse, read_picture};
-use super::sources::{BUILTIN, split_fragment};
 use super::{Limits, extension, gltf, obj, shapes};
 use crate::scene::{MeshSource, TextureSource};
 use bevy::image::Image;
 use bevy::mesh::Mesh;
-use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::collections::{BTreeSet, HashMap};
 use std::path::PathBuf;
 
 /// Loads what sources name, and parses each model file once however many of its meshes are asked
@@ -19,6 +19,8 @@ pub(crate) struct Loader<'a> {
     models: HashMap<String, Model>,
     /// Those that hold pictures.
     documents: HashMap<PathBuf, gltf::Document>,
+    /// Every file that was read.
+    pub read: BTreeSet<PathBuf>,
 }
 
 impl<'a> Loader<'a> {
@@ -28,6 +30,7 @@ impl<'a> Loader<'a> {
             limits,
             models: HashMap::new(),
             documents: HashMap::new(),
+            read: BTreeSet::new(),
         }
     }
 
@@ -45,7 +48,9 @@ impl<'a> Loader<'a> {
             Entry::Vacant(free) => {
                 let file = self.folder.resolve(path)?;
                 let folder = Folder::of(&file, self.folder.allow_outside);
-                free.insert(read_model(&file, &folder, self.limits)?)
+                let model = read_model(&file, &folder, self.limits)?;
+                self.read.extend(model.files.iter().cloned());
+                free.insert(model)
             }
         };
         let key = match model.meshes.keys().next() {
@@ -86,13 +91,16 @@ impl<'a> Loader<'a> {
             None => (fragment, usage),
         };
         if part.is_empty() {
-            return read_picture(&file, usage, self.limits);
+            let picture = read_picture(&file, usage, self.limits)?;
+            self.read.insert(file);
+            return Ok(picture);
         }
         let document = match self.documents.entry(file) {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(free) => {
                 let folder = Folder::of(free.key(), self.folder.allow_outside);
                 let document = gltf::Document::read(free.key(), &folder, self.limits)?;
+                self.read.extend(document.files());
                 free.insert(document)
             }
         };

@@ -19,15 +19,18 @@
 pub mod builtin;
 mod error;
 mod exported;
+pub(crate) mod file_name;
 mod folder;
 mod frame;
 mod gltf;
+mod identity;
 mod ids;
 mod import;
 mod limits;
 mod loader;
 mod model;
 mod obj;
+mod on_disk;
 mod open;
 mod part;
 mod picture;
@@ -43,10 +46,14 @@ mod sources;
 
 pub use error::{FileError, Place, Problem};
 pub use folder::Folder;
+pub use identity::check_outputs;
 pub use import::{Imported, import};
 pub use limits::Limits;
+#[cfg(feature = "editor")]
+pub(crate) use on_disk::{OnDisk, has_changed};
 pub use open::{OpenOptions, Opened, SceneSource, open, open_empty};
 pub use part::{Merge, MergeError, Part, read_part, write_part};
+pub(crate) use picture::stage_picture;
 pub use picture::{
     Note, PICTURE_EXTENSIONS, PictureFormat, check_picture, check_size, picture_notes,
     write_picture, write_picture_with_notes, write_rendered,
@@ -55,7 +62,9 @@ pub use problems::{LoadProblem, LoadProblems};
 #[cfg(feature = "editor")]
 pub(crate) use reload::{Reloaded, SourceFile, source_files};
 pub use replace::check_writable;
-pub(crate) use replace::replace_file;
+pub(crate) use replace::{Staged, replace_file};
+#[cfg(feature = "editor")]
+pub(crate) use save::check_not_read;
 pub use save::{check_save, save};
 #[cfg(feature = "editor")]
 pub(crate) use scene_file::{

@@ -5,6 +5,7 @@ use bevy::asset::RenderAssetUsages;
 use bevy::mesh::{Indices, Mesh, PrimitiveTopology};
 use bevy::transform::components::Transform;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 /// The content of a model file.
 #[derive(Default)]
@@ -17,6 +18,8 @@ pub(crate) struct Model {
     pub meshes: BTreeMap<String, Mesh>,
     /// What could not be taken over, a line each.
     pub notes: Vec<String>,
+    /// Every file that it was read from.
+    pub files: Vec<PathBuf>,
 }
 
 /// One entity to be.

@@ -1,5 +1,6 @@
 use super::builtin::{self, BuiltinScene};
 use super::error::{FileError, Problem};
+use super::file_name::encoded;
 use super::folder::Folder;
 use super::frame::frame;
 use super::ids::assign_ids;
@@ -19,6 +20,7 @@ use bevy::ecs::name::Name;
 use bevy::image::Image;
 use bevy::mesh::Mesh;
 use bevy::prelude::{Entity, World};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// What can be opened.
@@ -134,9 +136,12 @@ fn open_scene(
     }: OpenOptions,
 ) -> Result<(), FileError> {
     let scene = read_scene(file, &limits)?;
+    let on_disk = scene.on_disk.clone();
     let loaded = Loaded::for_scene(&scene, &folder, &limits, tolerant)
         .map_err(|error| name_referrer(file, error))?;
-    clear(world, SceneFiles::new(folder, limits));
+    let mut files = SceneFiles::new(folder, limits);
+    files.on_disk = Some(on_disk);
+    clear(world, files);
     let held = loaded.hand_over(world);
     let entities = scene
         .spawn(world)
@@ -154,9 +159,7 @@ fn open_model(
     folder: Folder,
     limits: Limits,
 ) -> Result<Vec<String>, FileError> {
-    let path = file
-        .file_name()
-        .map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let path = file.file_name().map_or_else(String::new, encoded);
     let mut model = model;
     let loaded = Loaded::of_model(&mut model, &path, &mut Loader::new(&folder, &limits))?;
     clear(world, SceneFiles::new(folder, limits));
@@ -250,6 +253,8 @@ fn name_referrer(file: &Path, error: FileError) -> FileError {
 pub(super) struct Loaded {
     pub meshes: Vec<(MeshSource, Mesh)>,
     pub pictures: Vec<(TextureSource, PictureUse, Image)>,
+    /// Every file that was read for it.
+    read: BTreeSet<PathBuf>,
 }
 
 /// Keeps assets alive until entities hold them.
@@ -285,6 +290,7 @@ impl Loaded {
                 _ => {}
             }
         }
+        loaded.read = loader.read;
         Ok(loaded)
     }
 
@@ -299,6 +305,8 @@ impl Loaded {
             let path = path.to_owned();
             loaded.meshes.push((MeshSource::File { path, name }, mesh));
         }
+        loaded.read.clone_from(&loader.read);
+        loaded.read.extend(model.files.iter().cloned());
         Ok(loaded)
     }
 
@@ -332,6 +340,7 @@ impl Loaded {
     }
 
     pub fn hand_over(self, world: &mut World) -> Held {
+        world.resource_mut::<SceneFiles>().note_read(self.read);
         let meshes = world.resource_scope(|world, mut files: bevy::prelude::Mut<SceneFiles>| {
             let mut assets = world.resource_mut::<Assets<Mesh>>();
             let add = |(source, mesh)| {

@@ -2,16 +2,17 @@
 
 use super::Limits;
 use super::error::FileError;
+use super::file_name::{BUILTIN, split_fragment};
 use super::folder::Folder;
 use super::loader::Loader;
 use super::picture::PictureUse;
-use super::sources::{BUILTIN, SceneFiles, mesh_key, split_fragment};
+use super::sources::{SceneFiles, mesh_key};
 use crate::scene::{Environment, MeshSource, Phong, TextureSource};
 use bevy::asset::Assets;
 use bevy::image::Image;
 use bevy::mesh::Mesh;
 use bevy::prelude::World;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::path::PathBuf;
 
 /// A file that the open scene reads, and what it reads from it.
@@ -107,7 +108,11 @@ impl SourceFile {
             let picture = loader.picture(source, *usage)?;
             pictures.push((source.clone(), *usage, picture));
         }
-        Ok(Reloaded { meshes, pictures })
+        Ok(Reloaded {
+            meshes,
+            pictures,
+            read: loader.read,
+        })
     }
 }
 
@@ -115,15 +120,17 @@ impl SourceFile {
 pub(crate) struct Reloaded {
     meshes: Vec<(MeshSource, Mesh)>,
     pictures: Vec<(TextureSource, PictureUse, Image)>,
+    read: BTreeSet<PathBuf>,
 }
 
 impl Reloaded {
     /// Puts it in the place of what was loaded before; handles stay. What was not loaded before is
     /// tried anew by those that name it. True where anything came of it.
     pub fn apply(self, world: &mut World) -> bool {
-        let Some(files) = world.remove_resource::<SceneFiles>() else {
+        let Some(mut files) = world.remove_resource::<SceneFiles>() else {
             return false;
         };
+        files.note_read(self.read);
         let mut missing = false;
         let mut replaced = false;
         if let Some(mut assets) = world.get_resource_mut::<Assets<Mesh>>() {

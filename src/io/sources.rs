@@ -7,6 +7,7 @@
 use super::error::FileError;
 use super::folder::Folder;
 use super::loader::Loader;
+use super::on_disk::OnDisk;
 use super::picture::PictureUse;
 use super::{LoadProblem, LoadProblems};
 use crate::io::Limits;
@@ -15,10 +16,8 @@ use bevy::asset::{AssetId, Assets, Handle};
 use bevy::image::Image;
 use bevy::mesh::{Mesh, Mesh3d};
 use bevy::prelude::{Changed, Commands, DetectChanges, Entity, Query, Res, ResMut, Resource};
-use std::collections::HashMap;
-
-/// How the path of a picture begins that Glassbox generates.
-pub(crate) const BUILTIN: &str = "builtin:";
+use std::collections::{BTreeSet, HashMap};
+use std::path::{Path, PathBuf};
 
 /// Where the open scene's paths start from, and what was loaded from them.
 ///
@@ -31,6 +30,11 @@ pub struct SceneFiles {
     pub limits: Limits,
     meshes: HashMap<String, AssetId<Mesh>>,
     pictures: HashMap<(String, PictureUse), AssetId<Image>>,
+    /// The scene file, as it was read or written last; none of a model or a built-in scene.
+    pub(super) on_disk: Option<OnDisk>,
+    /// Every file that was read for the scene but its own. What an edit does not use any more stays: undoing
+    /// brings it back.
+    read: BTreeSet<PathBuf>,
 }
 
 impl SceneFiles {
@@ -41,6 +45,35 @@ impl SceneFiles {
             limits,
             ..Self::default()
         }
+    }
+
+    /// Takes note of files that were read for the scene.
+    pub(super) fn note_read(&mut self, files: impl IntoIterator<Item = PathBuf>) {
+        self.read.extend(files);
+    }
+
+    /// What the scene's own file said when it was read or written last.
+    #[cfg(feature = "editor")]
+    pub(crate) fn on_disk(&self) -> Option<&OnDisk> {
+        self.on_disk.as_ref()
+    }
+
+    /// Says that the scene is that of another file than it was read from: of the one that its copy was made of.
+    #[cfg(feature = "editor")]
+    pub(crate) fn set_on_disk(&mut self, on_disk: Option<OnDisk>) {
+        self.on_disk = on_disk;
+    }
+
+    /// Models, what they bring along, and pictures that were read for the scene: what writing it must not
+    /// replace.
+    pub fn sources(&self) -> impl Iterator<Item = &Path> {
+        self.read.iter().map(PathBuf::as_path)
+    }
+
+    /// The scene's own file, and all that it was read from: what nothing else may be written over.
+    pub fn inputs(&self) -> impl Iterator<Item = &Path> {
+        let scene = self.on_disk.iter().map(OnDisk::file);
+        scene.chain(self.sources())
     }
 
     /// Takes over a mesh that was loaded already. The handle must live until an entity holds it.
@@ -143,6 +176,7 @@ pub(crate) fn resolve_meshes(
             Err(error) => problems.add(Some(entity), LoadProblem::MESH, error),
         }
     }
+    files.note_read(loader.read);
 }
 
 /// Gives each material whose pictures changed their handles.
@@ -189,6 +223,7 @@ pub(crate) fn resolve_pictures(
         }
         commands.entity(entity).insert(maps);
     }
+    files.note_read(loader.read);
 }
 
 /// Loads the environment's map where it changed.
@@ -208,7 +243,9 @@ pub(crate) fn resolve_environment(
         Some(source) => {
             let (folder, limits) = (files.folder.clone(), files.limits.clone());
             let mut loader = Loader::new(&folder, &limits);
-            match files.picture(source, PictureUse::Color, &mut images, &mut loader) {
+            let picture = files.picture(source, PictureUse::Color, &mut images, &mut loader);
+            files.note_read(loader.read);
+            match picture {
                 Ok(handle) => Some(handle),
                 Err(error) => {
                     problems.add(None, LoadProblem::ENVIRONMENT, error);
@@ -220,11 +257,6 @@ pub(crate) fn resolve_environment(
     if map.0 != handle {
         map.0 = handle;
     }
-}
-
-/// The file's name and the part after `#` of a picture's path.
-pub(crate) fn split_fragment(path: &str) -> (&str, &str) {
-    path.split_once('#').unwrap_or((path, ""))
 }
 
 #[cfg(test)]

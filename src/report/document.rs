@@ -1,33 +1,62 @@
 //! A report as files: Markdown, CSV, and plots and pictures that the Markdown shows.
 
 use super::{Report, Section};
-use crate::io::{FileError, replace_file, write_picture};
+use crate::io::{FileError, Staged, stage_picture};
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
 
 /// Writes the report as Markdown into `file`, and what that shows and refers to into a folder, which is made where it
-/// does not exist.
+/// does not exist. All of it is complete on the disk before any of it takes its place, the Markdown last: where
+/// that fails the old report is whole.
 pub fn write_report(report: &Report, file: &Path, folder: &Path) -> Result<(), FileError> {
     for folder in file.parent().into_iter().chain([folder]) {
         std::fs::create_dir_all(folder).map_err(|error| FileError::writing(folder, &error))?;
     }
+    let mut staged = Vec::new();
     for section in &report.sections {
         for table in &section.tables {
-            write_text(&folder.join(format!("{}.csv", table.file)), &table.csv())?;
+            let file = folder.join(format!("{}.csv", table.file));
+            staged.push(stage_text(&file, &table.csv())?);
         }
         for plot in &section.plots {
-            write_text(&folder.join(format!("{}.svg", plot.file)), &plot.svg())?;
-            let shown = plot.raster();
+            let file = folder.join(format!("{}.svg", plot.file));
+            staged.push(stage_text(&file, &plot.svg())?);
             let file = folder.join(format!("{}.png", plot.file));
-            write_picture(&file, shown.width, shown.height, &shown.pixels)?;
+            let shown = plot.raster();
+            let picture = stage_picture(&file, shown.width, shown.height, &shown.pixels)?;
+            staged.push(picture);
         }
         for (name, _, shown) in &section.pictures {
             let file = folder.join(format!("{name}.png"));
-            write_picture(&file, shown.width, shown.height, &shown.pixels)?;
+            let picture = stage_picture(&file, shown.width, shown.height, &shown.pixels)?;
+            staged.push(picture);
         }
     }
-    write_text(file, &markdown(report, &way(file, folder)))
+    staged.push(stage_text(file, &markdown(report, &way(file, folder)))?);
+    staged.into_iter().try_for_each(Staged::commit)
+}
+
+/// What the names of a report's tables, plots and pictures are, or begin with before a dash.
+const FILES: [&str; 9] = [
+    "kernels",
+    "leaks",
+    "builders",
+    "sampling",
+    "slopes",
+    "features",
+    "trees",
+    "stability",
+    "editing",
+];
+
+/// Whether a report may write a file of this name beside its Markdown.
+pub fn is_report_file(name: &str) -> bool {
+    let Some((stem, "csv" | "svg" | "png")) = name.rsplit_once('.') else {
+        return false;
+    };
+    let first = stem.split('-').next();
+    first.is_some_and(|first| FILES.contains(&first))
 }
 
 /// What comes before a file's name in a link from the report to the folder.
@@ -39,8 +68,8 @@ fn way(file: &Path, folder: &Path) -> String {
         .collect()
 }
 
-fn write_text(file: &Path, text: &str) -> Result<(), FileError> {
-    replace_file(file, |writer| writer.write_all(text.as_bytes()))
+fn stage_text(file: &Path, text: &str) -> Result<Staged, FileError> {
+    Staged::new(file, |writer| writer.write_all(text.as_bytes()))
 }
 
 /// The whole report as Markdown; `way` leads to its tables, plots and pictures.

@@ -33,7 +33,7 @@ mod subject;
 mod table;
 mod timing;
 
-pub use document::write_report;
+pub use document::{is_report_file, write_report};
 pub use machine::Machine;
 pub use plot::{Axis, Dash, Marker, Plot, Series};
 pub use section::{Options, Part, Report, Section, Watch, run};

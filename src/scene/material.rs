@@ -49,7 +49,8 @@ impl Default for Phong {
 #[reflect(Default, Clone, PartialEq, Debug, Hash)]
 pub struct TextureSource {
     /// Relative to the scene file's folder, with `/` between its parts. `model.glb#texture0` is a
-    /// picture inside a glTF file; `builtin:checker` is one that Glassbox generates.
+    /// picture inside a glTF file; `builtin:checker` is one that Glassbox generates. Where no such file is there, `%` and
+    /// two hexadecimal digits are a byte of a name; `\`, `:` and bytes that are no UTF-8 are written so.
     pub path: String,
 }
 

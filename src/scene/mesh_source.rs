@@ -15,7 +15,8 @@ pub enum MeshSource {
     Shape(Shape),
     /// One mesh of an OBJ, glTF or GLB file.
     File {
-        /// Relative to the scene file's folder, with `/` between its parts.
+        /// Relative to the scene file's folder, with `/` between its parts and escapes as in
+        /// [`TextureSource::path`](super::TextureSource::path).
         path: String,
         /// Which mesh of the file, as the importer names it; empty for the file's only mesh.
         name: String,

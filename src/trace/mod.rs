@@ -55,8 +55,7 @@ pub use environment::Environment;
 pub use first_hit::{FirstHit, central_hits, central_ray, first_hits};
 pub use footprint::Cone;
 pub use lights::{
-    DirectionalLight, LightPoint, Lights, MovingLight, ParallelogramLight, PointLight,
-    SegmentLight,
+    DirectionalLight, LightPoint, Lights, MovingLight, ParallelogramLight, PointLight, SegmentLight,
 };
 pub use material::Material;
 pub use needs::{Needs, samples_per_pixel};

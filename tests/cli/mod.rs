@@ -2,7 +2,10 @@
 //! are there afterwards.
 
 mod failures;
+mod own_files;
 mod pictures;
+#[cfg(unix)]
+mod places;
 mod report;
 mod statistics;
 mod views;

@@ -1,5 +1,6 @@
 //! The editor without a window: edits, undo, files.
 
+mod changed;
 mod files;
 mod pasting;
 mod random;

@@ -8,8 +8,8 @@ use glassbox::editor::render_job::{
     RenderFrom, RenderJob, RenderRefused, RenderRequest, start_render,
 };
 use glassbox::film::render;
-use glassbox::io::write_picture;
-use glassbox::scene::RenderSettings;
+use glassbox::io::{SceneFiles, write_picture};
+use glassbox::scene::{Environment, RenderSettings, TextureSource};
 use glassbox::sync::{Traced, TracedCameras};
 use std::fs;
 use std::path::Path;
@@ -121,4 +121,34 @@ fn a_cancelled_render_writes_nothing_and_what_cannot_be_is_refused_at_once() {
         request.camera = RenderFrom::Camera(glassbox::scene::SceneId(999));
     });
     assert!(no_camera.contains("camera"), "{no_camera}");
+}
+
+#[test]
+fn a_picture_that_the_scene_reads_or_has_read_is_not_rendered_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("t.png");
+    write_picture(&file, 2, 1, &[[1.0, 0.0, 0.0], [0.0; 3]]).unwrap();
+    let before = fs::read(&file).unwrap();
+    let mut app = editor("triangle");
+    act(&mut app, Action::SaveAs(folder.path().join("a.scn.ron")));
+    let map = TextureSource {
+        path: folder.path().join("t.png").display().to_string(),
+    };
+    app.world_mut()
+        .resource_mut::<SceneFiles>()
+        .folder
+        .allow_outside = true;
+    app.world_mut().resource_mut::<Environment>().map = Some(map);
+    app.update();
+    // Undoing brings it back.
+    act(&mut app, Action::Undo);
+    app.update();
+    assert_eq!(app.world().resource::<Environment>().map, None);
+    let wanted = request(&app, &file, 1);
+    let refused = start_render(app.world_mut(), wanted);
+    let Err(RenderRefused::File(error)) = refused else {
+        panic!("{refused:?}");
+    };
+    assert!(error.to_string().contains("same file"), "{error}");
+    assert_eq!(fs::read(&file).unwrap(), before);
 }

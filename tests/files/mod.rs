@@ -3,5 +3,7 @@
 pub mod app;
 mod gltf;
 mod models;
+mod names;
 mod pictures;
 mod round_trip;
+mod sets;

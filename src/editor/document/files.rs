@@ -9,7 +9,9 @@ use crate::editor::notice::Notices;
 use crate::editor::preferences::Preferences;
 use crate::editor::render_job::RenderJob;
 use crate::editor::selection::Selection;
-use crate::io::{OpenOptions, Problem, SceneSource, open, open_empty, save, source_files};
+use crate::io::{
+    OpenOptions, Problem, SceneFiles, SceneSource, has_changed, open, open_empty, save,
+};
 use bevy::app::AppExit;
 use bevy::ecs::world::World;
 use std::path::Path;
@@ -139,30 +141,30 @@ fn remember(world: &mut World, path: &Path) {
     }
 }
 
-/// Whether the scene's meshes or pictures come from this file.
-fn is_read_by_scene(world: &mut World, path: &Path) -> bool {
-    let Ok(path) = path.canonicalize() else {
-        return false;
-    };
-    let same = |file: &Path| file.canonicalize().is_ok_and(|file| file == path);
-    source_files(world).iter().any(|source| same(&source.file))
+/// Opens the scene's file again, as another program has left it.
+pub(super) fn reload(world: &mut World, path: &Path) {
+    let files = world.get_resource::<SceneFiles>();
+    let allow_outside = files.is_some_and(|files| files.folder.allow_outside);
+    open_file(world, path, allow_outside);
+}
+
+/// Writes the scene, unless that would undo what another program did to the file: then that is asked.
+pub(super) fn save_to(world: &mut World, path: &Path) {
+    if has_changed(world, path) {
+        let file = path.to_path_buf();
+        world.resource_mut::<Document>().question = Some(Question::Changed { file });
+    } else {
+        write_to(world, path);
+    }
 }
 
 /// Writes the scene, and then does what was waiting for that. A model file is an export: the
 /// document stays the scene it was. Where writing fails the old file stays, and so does the
 /// document.
-pub(super) fn save_to(world: &mut World, path: &Path) {
+pub(super) fn write_to(world: &mut World, path: &Path) {
     world.resource_mut::<Gesture>().end();
     note_state_now(world);
     let then = world.resource_mut::<Document>().then.take();
-    if !is_scene(path) && is_read_by_scene(world, path) {
-        let text = format!(
-            "{}: the open scene reads this file; export it under another name",
-            path.display()
-        );
-        world.resource_mut::<Notices>().fault(text);
-        return;
-    }
     let notes = match save(world, path) {
         Ok(notes) => notes,
         Err(error) => {

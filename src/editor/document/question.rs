@@ -33,6 +33,12 @@ pub enum Question {
         /// What writes it.
         then: Action,
     },
+    /// Another program has changed the scene's file since it was read or written here. Answers: `Yes` overwrites it,
+    /// `No` opens it as it is now, `Elsewhere` asks for another file, `Cancel`.
+    Changed {
+        /// The file.
+        file: PathBuf,
+    },
     /// Whether a scene may refer to files outside its folder. Answers: `Yes`, `Cancel`.
     Outside {
         /// The scene.
@@ -64,10 +70,12 @@ pub enum Purpose {
 /// What a person decided.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Answer {
-    /// Save, replace, allow, quit, recover.
+    /// Save, replace, overwrite, allow, quit, recover.
     Yes,
-    /// Go on without saving; delete what could be recovered.
+    /// Go on without saving; delete what could be recovered; reload.
     No,
+    /// Save under another name.
+    Elsewhere,
     /// Leave everything as it is.
     Cancel,
     /// This file.
@@ -99,6 +107,12 @@ pub fn answer(world: &mut World, answer: Answer) {
             world.resource_mut::<Document>().then = None;
         }
         (Question::Replace { then, .. }, Answer::Yes) => perform_now(world, &then),
+        (Question::Changed { file }, Answer::Yes) => files::write_to(world, &file),
+        (Question::Changed { file }, Answer::No) => {
+            world.resource_mut::<Document>().then = None;
+            files::reload(world, &file);
+        }
+        (Question::Changed { .. }, Answer::Elsewhere) => dialog::ask(world, Purpose::SaveAs),
         (Question::Outside { file, .. }, Answer::Yes) => files::open_file(world, &file, true),
         (Question::Rendering { .. }, Answer::Yes) => files::quit(world),
         (Question::Recover(found), Answer::Yes) => recovery::recover(world, &found),

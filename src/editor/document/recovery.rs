@@ -10,7 +10,7 @@ use super::{Document, adopt};
 use crate::editor::history::History;
 use crate::editor::notice::Notices;
 use crate::editor::selection::Selection;
-use crate::io::{OpenOptions, SceneContent, SceneSource, open, replace_file};
+use crate::io::{OnDisk, OpenOptions, SceneContent, SceneFiles, SceneSource, open, replace_file};
 use bevy::app::{App, AppExit, Last, Startup};
 use bevy::ecs::message::MessageReader;
 use bevy::ecs::resource::Resource;
@@ -52,6 +52,8 @@ pub struct Recovered {
     pub path: Option<PathBuf>,
     /// How old the copy is.
     pub age: Duration,
+    /// The scene's file as that editor knew it.
+    on_disk: Option<OnDisk>,
     copy: PathBuf,
 }
 
@@ -60,6 +62,9 @@ pub struct Recovered {
 struct Label {
     name: String,
     path: Option<PathBuf>,
+    /// Of the file at the path.
+    #[serde(default)]
+    on_disk: Option<OnDisk>,
 }
 
 const COPY: &str = "scn.ron";
@@ -137,10 +142,15 @@ fn abandoned(folder: &Path) -> Vec<Recovered> {
         let age = fs::metadata(&copy).ok()?.modified().ok()?.elapsed();
         let label = fs::read_to_string(beside(&copy, LABEL)).ok();
         let label = label.and_then(|text| ron::from_str::<Label>(&text).ok());
-        let (name, path) = label.map_or(("a scene".into(), None), |label| (label.name, label.path));
+        let label = label.unwrap_or_else(|| Label {
+            name: "a scene".into(),
+            path: None,
+            on_disk: None,
+        });
         Some(Recovered {
-            name,
-            path,
+            name: label.name,
+            path: label.path,
+            on_disk: label.on_disk,
             age: age.unwrap_or_default(),
             copy,
         })
@@ -165,6 +175,8 @@ pub(super) fn recover(world: &mut World, found: &Recovered) {
         return;
     }
     world.resource_mut::<Selection>().set([]);
+    let on_disk = found.on_disk.clone();
+    world.resource_mut::<SceneFiles>().set_on_disk(on_disk);
     adopt(world, found.name.clone(), found.path.as_deref());
     let mut document = world.resource_mut::<Document>();
     document.saved = None;
@@ -216,9 +228,11 @@ fn copy_unsaved(world: &mut World) {
         if recovery.copied == Some(state) {
             return;
         }
+        let files = world.get_resource::<SceneFiles>();
         let label = Label {
             name: document.name.clone(),
             path: document.path.clone(),
+            on_disk: files.and_then(SceneFiles::on_disk).cloned(),
         };
         match recovery.begin(world, label) {
             Ok(()) => recovery.copied = Some(state),
@@ -254,8 +268,13 @@ impl RecoveryFolder {
         let content = SceneContent::of_scene(world, &copy).map_err(|error| error.to_string())?;
         let write = move || {
             let label = ron::to_string(&label).map_err(|error| error.to_string())?;
-            replace_file(&beside, |out| out.write_all(label.as_bytes()))
-                .and_then(|()| content.write(&copy))
+            if fs::read(&beside).is_ok_and(|old| old != label.as_bytes()) {
+                // Of another scene than the copy will be: a copy without one is saved over no file.
+                fs::remove_file(&beside).map_err(|error| error.to_string())?;
+            }
+            content
+                .write(&copy)
+                .and_then(|_| replace_file(&beside, |out| out.write_all(label.as_bytes())))
                 .map_err(|error| error.to_string())
         };
         let thread = thread::Builder::new().name("autosave".into()).spawn(write);

@@ -1,6 +1,6 @@
 //! Pictures of the window.
 
-use crate::io::replace_file;
+use crate::io::{check_not_read, replace_file};
 use crate::view::shoot_window;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
@@ -20,6 +20,10 @@ impl Shot {
 
 /// Writes what the window shows with the next frame.
 pub(super) fn shoot(world: &mut World, path: PathBuf) {
+    if let Err(error) = check_not_read(world, &path) {
+        world.resource_mut::<Shot>().0 = Some(Err(error.to_string()));
+        return;
+    }
     world.resource_mut::<Shot>().0 = None;
     shoot_window(world, move |shot: &mut Shot, image| {
         shot.0 = Some(write(image, &path));
@@ -34,12 +38,7 @@ fn write(image: &Image, path: &Path) -> Result<(), String> {
     let format = image::ImageFormat::from_path(path).map_err(|e| e.to_string())?;
     let picture = picture.to_rgb8();
     let written = replace_file(path, |file| {
-        // The encoders want to seek; a window's picture is small.
-        let mut bytes = std::io::Cursor::new(Vec::new());
-        picture
-            .write_to(&mut bytes, format)
-            .map_err(std::io::Error::other)?;
-        std::io::Write::write_all(file, bytes.get_ref())
+        (picture.write_to(file, format)).map_err(std::io::Error::other)
     });
     written.map_err(|error| error.to_string())
 }

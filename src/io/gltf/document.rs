@@ -35,6 +35,18 @@ impl Document {
         Ok(document)
     }
 
+    /// This file and those that it names.
+    pub fn files(&self) -> Vec<PathBuf> {
+        let json = self.gltf.as_json();
+        let buffers = json.buffers.iter().map(|buffer| buffer.uri.as_deref());
+        let images = json.images.iter().map(|image| image.uri.as_deref());
+        let uris = buffers.chain(images).flatten();
+        let beside = uris
+            .filter(|uri| !is_data(uri))
+            .filter_map(|uri| self.folder.resolve(&path_of(uri)).ok());
+        beside.chain([self.file.clone()]).collect()
+    }
+
     /// An error at a part of this file.
     pub(super) fn error(&self, part: impl Into<String>, problem: Problem) -> FileError {
         FileError::at(&self.file, Place::Part(part.into()), problem)

@@ -1,4 +1,5 @@
 use super::super::error::{FileError, Problem};
+use super::super::file_name::{encoded, of_file, split_fragment};
 use super::super::folder::Folder;
 use super::super::model::{Model, Node};
 use super::super::picture::{PictureUse, decode_picture, read_picture};
@@ -19,7 +20,10 @@ use std::path::Path;
 /// The texture coordinates are those of the base colour's picture, with its transform applied.
 pub(crate) fn read_gltf(file: &Path, folder: &Folder, limits: &Limits) -> Result<Model, FileError> {
     let document = Document::read(file, folder, limits)?;
-    let mut model = Model::default();
+    let mut model = Model {
+        files: document.files(),
+        ..Model::default()
+    };
     let gltf = &document.gltf;
     for material in gltf.materials() {
         let name = material.name().map(str::to_owned);
@@ -93,7 +97,8 @@ fn material_of(
             ));
         }
         if has_alpha(material) {
-            let separator = if source.contains('#') { "." } else { "#" };
+            let has_part = !split_fragment(&source).1.is_empty();
+            let separator = if has_part { "." } else { "#" };
             let path = format!("{source}{separator}alpha");
             phong.opacity_map = Some(TextureSource { path });
         }
@@ -127,11 +132,7 @@ fn texture_source(document: &Document, texture: &gltf::Texture) -> Result<String
     match document.texture(texture)? {
         Picture::Inside(_) => {
             let file = document.file.file_name().unwrap_or_default();
-            Ok(format!(
-                "{}#texture{}",
-                file.to_string_lossy(),
-                texture.index()
-            ))
+            Ok(format!("{}#texture{}", encoded(file), texture.index()))
         }
         Picture::Beside(path) => {
             let part = || format!("texture {}", texture.index());
@@ -140,7 +141,7 @@ fn texture_source(document: &Document, texture: &gltf::Texture) -> Result<String
                 Ok(file) if !file.is_file() => {
                     Err(document.error(part(), Problem::MissingFile { path }))
                 }
-                Ok(_) => Ok(path),
+                Ok(_) => Ok(of_file(path)),
             }
         }
     }

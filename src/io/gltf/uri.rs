@@ -33,7 +33,8 @@ fn digit(character: u8) -> Option<u8> {
     }
 }
 
-/// The path that a URI stands for: `%20` becomes a space, and so on. What is no escape stays.
+/// The path that a URI stands for, as scenes say it: `%20` becomes a space, and so on. What is no escape stays,
+/// and escapes that are no text too.
 pub(super) fn path_of(uri: &str) -> String {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.as_bytes();
@@ -54,7 +55,7 @@ pub(super) fn path_of(uri: &str) -> String {
             }
         }
     }
-    String::from_utf8_lossy(&bytes).into_owned()
+    String::from_utf8(bytes).unwrap_or_else(|_| uri.to_owned())
 }
 
 /// Whether a URI is data.
@@ -86,5 +87,6 @@ mod tests {
         assert_eq!(path_of("a%20b%2Fc.png"), "a b/c.png");
         assert_eq!(path_of("100%"), "100%");
         assert_eq!(path_of("%zz"), "%zz");
+        assert_eq!(path_of("a%FF.png"), "a%FF.png", "no text");
     }
 }

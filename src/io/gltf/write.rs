@@ -1,9 +1,9 @@
 use super::super::error::FileError;
 use super::super::exported::{Exported, Material, gather, pixels_of};
+use super::super::file_name::split_fragment;
 use super::super::model::MeshParts;
 use super::super::picture::encode_png;
 use super::super::replace::replace_file;
-use super::super::sources::split_fragment;
 use super::glb::Bytes;
 use super::lamps::{camera_json, directional_json, point_json};
 use super::material::material_json;

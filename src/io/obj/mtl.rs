@@ -2,16 +2,20 @@
 //! program at a colour with fewer than three numbers, and because an error should name its line.
 
 use super::super::error::{FileError, Place, Problem};
+use super::super::file_name::of_file;
 use super::super::folder::Folder;
 use crate::io::Limits;
 use crate::scene::{Phong, TextureSource};
 use bevy::color::LinearRgba;
+use std::path::PathBuf;
 
 /// An MTL file holds text of a few lines a material; more than this is something else.
 const FILE_BYTES: u64 = 1 << 26;
 
 /// The materials of an MTL file.
 pub(super) struct Library {
+    /// Where it lies.
+    pub file: PathBuf,
     /// As tobj wants them.
     pub loaded: tobj::MTLLoadResult,
     /// What could not be taken over.
@@ -35,6 +39,7 @@ pub(super) fn read_mtl(name: &str, folder: &Folder, limits: &Limits) -> Result<L
         checked.push('\n');
     }
     Ok(Library {
+        file: file.clone(),
         loaded: tobj::load_mtl_buf(&mut checked.as_bytes()),
         notes,
     })
@@ -86,7 +91,7 @@ fn check_line(
             if !full.is_file() {
                 return Err(Problem::MissingFile { path });
             }
-            Ok(format!("{word} {path}"))
+            Ok(format!("{word} {}", of_file(path)))
         }
         _ if word.starts_with("map_") || matches!(word, "bump" | "disp" | "decal" | "refl") => {
             notes.push(format!("`{word}` has no place in Phong and was left out"));

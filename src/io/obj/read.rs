@@ -10,7 +10,7 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::BufReader;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Reads an OBJ: one object for each `o` or `g` and material in it. The mesh is called like the
 /// object where that has one material, `object/material` where it has several.
@@ -20,9 +20,11 @@ use std::path::Path;
 pub(crate) fn read_obj(file: &Path, folder: &Folder, limits: &Limits) -> Result<Model, FileError> {
     let reader = super::super::open_to_read(file, limits.file_bytes)?;
     let mut notes = Vec::new();
-    let (models, materials) = parse(file, reader, folder, limits, &mut notes)?;
+    let mut files = vec![file.to_path_buf()];
+    let (models, materials) = parse(file, reader, folder, limits, &mut notes, &mut files)?;
     let mut model = Model {
         notes,
+        files,
         ..Model::default()
     };
     for material in &materials {
@@ -54,10 +56,12 @@ fn parse(
     folder: &Folder,
     limits: &Limits,
     notes: &mut Vec<String>,
+    files: &mut Vec<PathBuf>,
 ) -> Result<Parsed, FileError> {
     let seen = RefCell::new(Seen::default());
     let mut lines = Lines::new(reader, file, limits, &seen);
     let library_notes = RefCell::new(Vec::new());
+    let libraries = RefCell::new(Vec::new());
     let loaded = tobj::load_obj_buf(&mut lines, &tobj::GPU_LOAD_OPTIONS, |path| {
         let name = path.to_string_lossy().replace('\\', "/");
         let library = read_mtl(&name, folder, limits);
@@ -65,6 +69,7 @@ fn parse(
         match library {
             Ok(library) => {
                 library_notes.borrow_mut().extend(library.notes);
+                libraries.borrow_mut().push(library.file);
                 if let Ok((_, names)) = &library.loaded {
                     seen.materials.extend(names.keys().cloned());
                 }
@@ -102,6 +107,7 @@ fn parse(
     let (models, materials) = loaded.map_err(generic)?;
     let materials = materials.map_err(generic)?;
     notes.append(&mut library_notes.into_inner());
+    files.append(&mut libraries.into_inner());
     if !seen.undefined.is_empty() {
         let names: Vec<_> = seen.undefined.into_iter().collect();
         notes.push(format!(

@@ -1,57 +1,160 @@
-use super::super::error::FileError;
-use super::super::exported::{Exported, Object, gather};
+use super::super::error::{FileError, Problem};
+use super::super::exported::{Exported, gather};
+use super::super::file_name::fits_a_line;
+use super::super::folder::stays_inside;
+use super::super::identity::folder_of;
 use super::super::model::MeshParts;
 use super::super::place::world_from;
-use super::super::replace::replace_file;
-use super::write_mtl::write_mtl;
+use super::super::replace::Staged;
+use super::stem_of;
+use super::write_mtl::{Library, library, text_of};
 use bevy::asset::Assets;
 use bevy::math::{Affine3A, Mat3A, Vec3};
 use bevy::mesh::Mesh;
 use bevy::prelude::World;
-use std::io::{self, Write};
-use std::path::Path;
+use std::fs;
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+
+/// The material file that is written with an OBJ.
+pub(crate) fn mtl_of(file: &Path) -> PathBuf {
+    file.with_extension("mtl")
+}
 
 /// Writes the scene's objects into an OBJ, in the world's space, its materials into an MTL beside
 /// it, and pictures that are no files into PNGs beside it. Returns what could not be said.
+///
+/// The OBJ that lies there names a complete set of files at any time. Everything is written aside first. Pictures
+/// get names that are free; the MTL does not, if it is to be called like the OBJ. Where an OBJ is there that may name
+/// an MTL with another content, the new MTL is written under a name of its own beside it, and an OBJ that names
+/// that one takes the old one's place; nothing needs the old MTL then, and it is replaced, and at last the OBJ
+/// again.
 pub(crate) fn write_obj(world: &mut World, file: &Path) -> Result<Vec<String>, FileError> {
+    let mtl = mtl_of(file);
+    let mtl_name = name_in_obj(&mtl)?;
     let mut exported = gather(world);
     exported.note_lights_and_cameras(world);
     super::super::check_writable(file)?;
-    let mtl = file.with_extension("mtl");
-    write_mtl(world, &mtl, &mut exported)?;
-    let mtl_name = mtl.file_name().unwrap_or_default().to_string_lossy();
-    let Some(meshes) = world.get_resource::<Assets<Mesh>>() else {
-        return Ok(exported.notes);
-    };
-    let Exported {
-        objects,
-        materials,
-        mut notes,
-        ..
-    } = exported;
-    replace_file(file, |out| {
-        writeln!(out, "# Glassbox {}", env!("CARGO_PKG_VERSION"))?;
-        writeln!(out, "mtllib {mtl_name}")?;
-        let mut counts = Counts::default();
-        for object in &objects {
-            let Some(parts) = meshes.get(object.mesh).and_then(MeshParts::of) else {
-                notes.push(format!(
+    super::super::check_writable(&mtl)?;
+    let left = left_between(file, &mtl);
+    let Library {
+        text,
+        pictures,
+        replaced,
+    } = library(world, &mtl, left.as_deref(), &mut exported)?;
+    let scene = Drawn::of(world, &mut exported);
+    let obj = |mtl: &str| Staged::new(file, |out| scene.write(mtl, out));
+    let library = |mtl: &Path| Staged::new(mtl, |out| out.write_all(text.as_bytes()));
+
+    let old = text_of(&mtl);
+    let mut staged = Vec::new();
+    let mut between = None;
+    if file.is_file() && old.as_ref().is_some_and(|old| *old != text.as_bytes()) {
+        let name = free_name(&mtl);
+        let place = folder_of(&mtl).join(&name);
+        staged.push(library(&place)?);
+        staged.push(obj(&name)?);
+        between = Some(place);
+    }
+    if old.is_none_or(|old| old != text.as_bytes()) {
+        staged.push(library(&mtl)?);
+    }
+    staged.push(obj(&mtl_name)?);
+    // From here on an OBJ may name them.
+    pictures.keep();
+    staged.into_iter().try_for_each(Staged::commit)?;
+    for file in replaced.iter().chain(&left).chain(&between) {
+        // It is complete without them: what cannot be removed stays.
+        let _ = fs::remove_file(file);
+    }
+    Ok(exported.notes)
+}
+
+/// How the OBJ names its MTL.
+fn name_in_obj(mtl: &Path) -> Result<String, FileError> {
+    let name = mtl.file_name().and_then(|name| name.to_str());
+    let name = name.filter(|name| fits_a_line(name) && stays_inside(name));
+    name.map(str::to_owned).ok_or_else(|| {
+        let text = "its material file is called like it, and a line of an OBJ holds no such name (line breaks, `\\`, \
+                    a drive, bytes that are no UTF-8, a space or a dash at the start)";
+        FileError::new(mtl.with_extension("obj"), Problem::Unnameable(text.into()))
+    })
+}
+
+/// A name for a file that stands for the MTL until that can be replaced.
+fn free_name(mtl: &Path) -> String {
+    let stem = stem_of(mtl);
+    let mut names = (1_u32..).map(|number| format!("{stem}{BETWEEN}{number}.mtl"));
+    let is_free = |name: &String| !folder_of(mtl).join(name).exists();
+    names.find(is_free).unwrap_or_default()
+}
+
+/// What the names of such files have before their number.
+const BETWEEN: &str = "-new";
+
+/// Such a file that the OBJ names because whoever wrote it was killed before the end.
+fn left_between(file: &Path, mtl: &Path) -> Option<PathBuf> {
+    const LINES: u64 = 1 << 12;
+    let is_file = file.is_file();
+    let mut start = Vec::new();
+    let reader = is_file.then(|| fs::File::open(file).ok()).flatten()?;
+    reader.take(LINES).read_to_end(&mut start).ok()?;
+    let start = String::from_utf8_lossy(&start);
+    let name = start
+        .lines()
+        .find_map(|line| line.strip_prefix("mtllib "))?;
+    let number = name.strip_prefix(&stem_of(mtl))?.strip_prefix(BETWEEN)?;
+    let number = number.strip_suffix(".mtl")?;
+    let is_own = !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit());
+    is_own.then(|| folder_of(mtl).join(name))
+}
+
+/// What the OBJ holds.
+struct Drawn<'a> {
+    objects: Vec<DrawnObject<'a>>,
+}
+
+struct DrawnObject<'a> {
+    name: String,
+    material: String,
+    parts: MeshParts<'a>,
+    world_from_object: Affine3A,
+}
+
+impl<'a> Drawn<'a> {
+    fn of(world: &'a World, exported: &mut Exported) -> Self {
+        let meshes = world.get_resource::<Assets<Mesh>>();
+        let mut objects = Vec::with_capacity(exported.objects.len());
+        for object in std::mem::take(&mut exported.objects) {
+            let mesh = meshes.and_then(|meshes| meshes.get(object.mesh));
+            let Some(parts) = mesh.and_then(MeshParts::of) else {
+                exported.notes.push(format!(
                     "`{}`: its mesh is no indexed triangle list",
                     object.name
                 ));
                 continue;
             };
+            objects.push(DrawnObject {
+                name: object.name,
+                material: exported.materials[object.material].name.clone(),
+                parts,
+                world_from_object: world_from(world, object.entity),
+            });
+        }
+        Self { objects }
+    }
+
+    fn write(&self, mtl: &str, out: &mut impl Write) -> io::Result<()> {
+        writeln!(out, "# Glassbox {}", env!("CARGO_PKG_VERSION"))?;
+        writeln!(out, "mtllib {mtl}")?;
+        let mut counts = Counts::default();
+        for object in &self.objects {
             writeln!(out, "o {}", object.name)?;
-            writeln!(out, "usemtl {}", materials[object.material].name)?;
-            write_object(out, &parts, world_from_object(world, object), &mut counts)?;
+            writeln!(out, "usemtl {}", object.material)?;
+            write_object(out, &object.parts, object.world_from_object, &mut counts)?;
         }
         Ok(())
-    })?;
-    Ok(notes)
-}
-
-fn world_from_object(world: &World, object: &Object) -> Affine3A {
-    world_from(world, object.entity)
+    }
 }
 
 /// How much the objects so far have written; OBJ counts through the whole file.

@@ -1,9 +1,12 @@
 use super::super::error::FileError;
 use super::super::exported::{Exported, pixels_of};
+use super::super::file_name::{BUILTIN, fits_a_line, split_fragment};
 use super::super::folder::{Folder, stays_inside};
+use super::super::identity::folder_of;
 use super::super::replace::replace_file;
 use super::super::scene_file::Rebase;
-use super::super::sources::BUILTIN;
+use super::super::sources::SceneFiles;
+use super::stem_of;
 use crate::io::Limits;
 use crate::scene::TextureSource;
 use bevy::asset::Handle;
@@ -12,64 +15,105 @@ use bevy::image::Image;
 use bevy::prelude::World;
 use image::DynamicImage;
 use std::collections::HashSet;
-use std::io::Write;
-use std::path::Path;
+use std::fmt::Write as _;
+use std::io::{Cursor, Write as _};
+use std::path::{Path, PathBuf};
 
-/// Writes the materials. A picture that is a file is named from the MTL's folder; one that is not,
-/// or lies elsewhere, is written beside it as `NAME-texture0.png` (or `.exr` where it holds floats).
-pub(super) fn write_mtl(
+/// The materials of an OBJ, and what they need.
+pub(super) struct Library {
+    /// Of the MTL file.
+    pub text: String,
+    /// Pictures that were written beside it.
+    pub pictures: Created,
+    /// Files that were brought along by the MTL that was there, and that nothing names any more.
+    pub replaced: Vec<PathBuf>,
+}
+
+/// Files that were not there before. They go again when this is dropped, unless they are kept. Not [`Staged`] ones, as
+/// there may be thousands, and each of those is an open file.
+///
+/// [`Staged`]: super::super::replace::Staged
+#[derive(Default)]
+pub(super) struct Created(Vec<PathBuf>);
+
+impl Created {
+    pub fn keep(mut self) {
+        self.0.clear();
+    }
+}
+
+impl Drop for Created {
+    fn drop(&mut self) {
+        for file in &self.0 {
+            // What cannot be tidied up adds nothing to the error that is reported.
+            let _ = std::fs::remove_file(file);
+        }
+    }
+}
+
+/// The materials for this MTL file. A picture that is a file is named from its folder; one that is not, that
+/// lies elsewhere or has a name that no line can hold, is written beside it as `NAME-texture0.png` (or `.exr` where
+/// it holds floats). `left` is another MTL that is replaced with this one.
+pub(super) fn library(
     world: &World,
     file: &Path,
+    left: Option<&Path>,
     exported: &mut Exported,
-) -> Result<(), FileError> {
+) -> Result<Library, FileError> {
+    let old = [Some(file), left].into_iter().flatten().filter_map(text_of);
+    let old = old.collect::<Vec<_>>().join(&b'\n');
     let mut pictures = Pictures {
         world,
         file,
         rebase: Rebase::new(world, file),
-        written: Vec::new(),
-        replaced: super::super::read_bytes(file, Limits::default().file_bytes).unwrap_or_default(),
+        beside: Vec::new(),
+        created: Created::default(),
         taken: HashSet::new(),
     };
     pictures.take_names(exported);
-    let mut maps = Vec::new();
+    let mut text = String::new();
     for material in &exported.materials {
         let (phong, loaded) = (&material.phong, &material.maps);
         let notes = &mut exported.notes;
-        maps.push([
-            pictures.name(phong.diffuse_map.as_ref(), loaded.diffuse.as_ref(), notes)?,
-            pictures.name(phong.opacity_map.as_ref(), loaded.opacity.as_ref(), notes)?,
-        ]);
-    }
-    replace_file(file, |out| {
-        for (material, [diffuse, opacity]) in exported.materials.iter().zip(&maps) {
-            let phong = &material.phong;
-            let rgb = |c: LinearRgba| format!("{} {} {}", c.red, c.green, c.blue);
-            writeln!(out, "newmtl {}", material.name)?;
-            writeln!(out, "Kd {}", rgb(phong.diffuse))?;
-            writeln!(out, "Ks {}", rgb(phong.specular))?;
-            writeln!(out, "Ns {}", phong.shininess)?;
-            writeln!(out, "d {}", phong.opacity)?;
-            writeln!(out, "Ke {}", rgb(phong.emission))?;
-            if let Some(picture) = diffuse {
-                writeln!(out, "map_Kd {picture}")?;
-            }
-            if let Some(picture) = opacity {
-                writeln!(out, "map_d {picture}")?;
-            }
-            writeln!(out)?;
+        let diffuse = pictures.name(phong.diffuse_map.as_ref(), loaded.diffuse.as_ref(), notes)?;
+        let opacity = pictures.name(phong.opacity_map.as_ref(), loaded.opacity.as_ref(), notes)?;
+        let rgb = |c: LinearRgba| format!("{} {} {}", c.red, c.green, c.blue);
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "newmtl {}", material.name);
+        let _ = writeln!(text, "Kd {}", rgb(phong.diffuse));
+        let _ = writeln!(text, "Ks {}", rgb(phong.specular));
+        let _ = writeln!(text, "Ns {}", phong.shininess);
+        let _ = writeln!(text, "d {}", phong.opacity);
+        let _ = writeln!(text, "Ke {}", rgb(phong.emission));
+        if let Some(picture) = diffuse {
+            let _ = writeln!(text, "map_Kd {picture}");
         }
-        Ok(())
+        if let Some(picture) = opacity {
+            let _ = writeln!(text, "map_d {picture}");
+        }
+        text.push('\n');
+    }
+    Ok(Library {
+        text,
+        replaced: pictures.replaced(&old),
+        pictures: pictures.created,
     })
+}
+
+/// The content of a file that is there.
+pub(super) fn text_of(file: &Path) -> Option<Vec<u8>> {
+    // Not of a pipe, which would be waited for.
+    let there = file.is_file();
+    there.then(|| super::super::read_bytes(file, Limits::default().file_bytes).unwrap_or_default())
 }
 
 struct Pictures<'a> {
     world: &'a World,
     file: &'a Path,
     rebase: Rebase,
-    /// Sources that were written beside the file, and their names.
-    written: Vec<(String, String)>,
-    /// The MTL that was there: the pictures that it brought along are replaced with it.
-    replaced: Vec<u8>,
+    /// Sources that become files beside the MTL, and their names.
+    beside: Vec<(String, String)>,
+    created: Created,
     /// Files that materials name, which stay as they are.
     taken: HashSet<String>,
 }
@@ -77,9 +121,15 @@ struct Pictures<'a> {
 impl Pictures<'_> {
     /// A picture that is a file, as the MTL can name it.
     fn named(&self, path: &str) -> Option<String> {
-        let is_file = !path.starts_with(BUILTIN) && !path.contains('#');
-        let named = is_file.then(|| self.rebase.path(path, &mut Vec::new()));
-        named.filter(|named| stays_inside(named))
+        let is_file = !path.starts_with(BUILTIN) && split_fragment(path).1.is_empty();
+        let named = is_file.then(|| self.rebase.path(path, &mut Vec::new()))?;
+        // Nothing is escaped in an MTL.
+        let here = Folder::of(self.file, true);
+        let named = match here.file_of(&named).strip_prefix(&here.path) {
+            Ok(inside) => inside.to_str()?.to_owned(),
+            Err(_) => named,
+        };
+        (fits_a_line(&named) && stays_inside(&named)).then_some(named)
     }
 
     /// Notes the names that no picture may be written under.
@@ -90,23 +140,27 @@ impl Pictures<'_> {
         self.taken = named.collect();
     }
 
-    fn is_replaced(&self, name: &str) -> bool {
-        let mut lines = self.replaced.split(|&byte| byte == b'\n');
-        lines.any(|line| line.trim_ascii_end().ends_with(name.as_bytes()))
-    }
-
-    /// A name for a picture that is written beside the file.
-    fn free_name(&self, extension: &str, folder: &Path) -> String {
-        let stem = self.file.file_stem().unwrap_or_default().to_string_lossy();
-        let mut number = self.written.len();
+    /// A name for a picture that is written beside the file, and whether this very picture has it already.
+    fn free_name(&self, extension: &str, bytes: &[u8]) -> (String, bool) {
+        let stem = stem_of(self.file);
+        let mut number = self.beside.len();
         loop {
             let name = format!("{stem}-texture{number}.{extension}");
-            let written = self.written.iter().any(|(_, other)| *other == name);
-            let kept = folder.join(&name).exists() && !self.is_replaced(&name);
-            if !(written || kept || self.taken.contains(&name)) {
-                return name;
-            }
             number += 1;
+            let given = self.beside.iter().any(|(_, other)| *other == name);
+            if given || self.taken.contains(&name) {
+                continue;
+            }
+            let place = folder_of(self.file).join(&name);
+            match place.symlink_metadata() {
+                Err(_) => return (name, false),
+                Ok(there) if there.is_file() && there.len() == bytes.len() as u64 => {
+                    if text_of(&place).is_some_and(|there| there == bytes) {
+                        return (name, true);
+                    }
+                }
+                Ok(_) => {}
+            }
         }
     }
 
@@ -123,7 +177,7 @@ impl Pictures<'_> {
         if let Some(named) = self.named(path) {
             return Ok(Some(named));
         }
-        if let Some((_, name)) = self.written.iter().find(|(source, _)| source == path) {
+        if let Some((_, name)) = self.beside.iter().find(|(source, _)| source == path) {
             return Ok(Some(name.clone()));
         }
         let pixels = loaded.and_then(|handle| pixels_of(self.world, handle.id()));
@@ -133,25 +187,51 @@ impl Pictures<'_> {
             ));
             return Ok(None);
         };
-        let extension = match pixels {
-            DynamicImage::ImageRgba32F(_) => "exr",
-            _ => "png",
+        let (extension, format) = match pixels {
+            DynamicImage::ImageRgba32F(_) => ("exr", image::ImageFormat::OpenExr),
+            _ => ("png", image::ImageFormat::Png),
         };
-        let folder = Folder::of(self.file, true).path;
-        let name = self.free_name(extension, &folder);
-        write_pixels(&folder.join(&name), &pixels)?;
+        let mut bytes = Cursor::new(Vec::new());
+        let encoded = pixels.write_to(&mut bytes, format);
+        encoded.map_err(|error| FileError::writing(self.file, &std::io::Error::other(error)))?;
+        let bytes = bytes.into_inner();
+        let (name, is_there) = self.free_name(extension, &bytes);
+        if !is_there {
+            let place = folder_of(self.file).join(&name);
+            replace_file(&place, |out| out.write_all(&bytes))?;
+            self.created.0.push(place);
+        }
         notes.push(format!("the picture `{path}` was written as `{name}`"));
-        self.written.push((path.clone(), name.clone()));
+        self.beside.push((path.clone(), name.clone()));
         Ok(Some(name))
     }
-}
 
-fn write_pixels(file: &Path, pixels: &DynamicImage) -> Result<(), FileError> {
-    let format = match pixels {
-        DynamicImage::ImageRgba32F(_) => image::ImageFormat::OpenExr,
-        _ => image::ImageFormat::Png,
-    };
-    replace_file(file, |out| {
-        pixels.write_to(out, format).map_err(std::io::Error::other)
-    })
+    /// Pictures that the old MTL brought along, by their names, and that neither the new one nor the scene names.
+    fn replaced(&self, old: &[u8]) -> Vec<PathBuf> {
+        let start = format!("{}-texture", stem_of(self.file));
+        let is_own = |name: &&str| {
+            let rest = name.strip_prefix(&start);
+            let number = rest.and_then(|rest| {
+                let without_png = rest.strip_suffix(".png");
+                without_png.or_else(|| rest.strip_suffix(".exr"))
+            });
+            number.is_some_and(|n| !n.is_empty() && n.bytes().all(|byte| byte.is_ascii_digit()))
+        };
+        let old = String::from_utf8_lossy(old);
+        let names = old.lines().filter_map(|line| {
+            let (word, name) = line.split_once(' ')?;
+            word.starts_with("map_").then_some(name.trim())
+        });
+        let files = self.world.get_resource::<SceneFiles>();
+        let is_used = |name: &&str| {
+            let place = folder_of(self.file).join(name);
+            self.taken.contains(*name)
+                || self.beside.iter().any(|(_, other)| other == name)
+                || files.is_some_and(|files| {
+                    super::super::check_outputs([&*place], files.inputs()).is_err()
+                })
+        };
+        let names = names.filter(is_own).filter(|name| !is_used(name));
+        names.map(|name| folder_of(self.file).join(name)).collect()
+    }
 }

@@ -11,7 +11,7 @@ mod write;
 
 pub(crate) use read::{PictureUse, decode_picture, read_picture};
 pub use rendered::{Note, picture_notes, write_rendered};
-pub(crate) use write::encode_png;
+pub(crate) use write::{encode_png, stage_picture};
 pub use write::{write_picture, write_picture_with_notes};
 
 use super::error::{FileError, Problem};

@@ -1,5 +1,5 @@
 use super::super::error::{FileError, Problem};
-use super::super::replace::replace_file;
+use super::super::replace::Staged;
 use super::{PictureFormat, check_format_size};
 use image::codecs::jpeg::JpegEncoder;
 use image::{DynamicImage, ImageBuffer, ImageResult};
@@ -34,6 +34,26 @@ pub fn write_picture_with_notes(
     pixels: &[[f32; 3]],
     notes: &[(&str, String)],
 ) -> Result<(), FileError> {
+    stage(path, width, height, pixels, notes)?.commit()
+}
+
+/// The same, complete beside its place: for one of several files that belong together.
+pub(crate) fn stage_picture(
+    path: &Path,
+    width: u32,
+    height: u32,
+    pixels: &[[f32; 3]],
+) -> Result<Staged, FileError> {
+    stage(path, width, height, pixels, &[])
+}
+
+fn stage(
+    path: &Path,
+    width: u32,
+    height: u32,
+    pixels: &[[f32; 3]],
+    notes: &[(&str, String)],
+) -> Result<Staged, FileError> {
     let format = PictureFormat::of(path)?;
     check_format_size(path, format, width.into(), height.into())?;
     let wrong_size = || {
@@ -57,7 +77,7 @@ pub fn write_picture_with_notes(
         ImageBuffer::from_raw(width, height, bytes).map(DynamicImage::ImageRgb8)
     }
     .ok_or_else(wrong_size)?;
-    replace_file(path, |writer| {
+    Staged::new(path, |writer| {
         io_result(match format {
             PictureFormat::Png if !notes.is_empty() => {
                 return write_png(writer, &picture, notes);

@@ -1,4 +1,5 @@
 use super::super::error::{FileError, Place, Problem};
+use super::super::on_disk::OnDisk;
 use super::FileVersion;
 use super::check::check_value;
 use super::kept::{is_kept_component, kept_types};
@@ -22,6 +23,8 @@ use std::path::Path;
 /// The content of a scene file, checked, before it becomes entities.
 pub(crate) struct SceneFile {
     content: DynamicWorld,
+    /// The file that it was read from.
+    pub on_disk: OnDisk,
 }
 
 /// Reads a scene file and checks everything in it that can be checked without other files.
@@ -55,7 +58,10 @@ pub(crate) fn read_scene_text(
     .deserialize(&mut deserializer)
     .and_then(|content| deserializer.end().map(|()| content))
     .map_err(|error| ron_error(file, &deserializer.span_error(error)))?;
-    let mut scene = SceneFile { content };
+    let mut scene = SceneFile {
+        content,
+        on_disk: OnDisk::new(file, bytes),
+    };
     scene
         .content
         .resources

@@ -1,6 +1,8 @@
 use super::super::error::{FileError, Problem};
+use super::super::file_name::{BUILTIN, split_fragment};
 use super::super::folder::Folder;
 use super::super::ids::assign_ids;
+use super::super::on_disk::OnDisk;
 use super::super::replace::replace_file;
 use super::super::sources::SceneFiles;
 use super::kept::{kept_only, kept_types};
@@ -23,7 +25,10 @@ use std::path::Path;
 /// thing that the file cannot say.
 pub(crate) fn write_scene(world: &mut World, file: &Path) -> Result<Vec<String>, FileError> {
     let content = SceneContent::of_scene(world, file)?;
-    content.write(file)?;
+    let written = content.write(file)?;
+    if let Some(mut files) = world.get_resource_mut::<SceneFiles>() {
+        files.on_disk = Some(written);
+    }
     Ok(content.notes)
 }
 
@@ -142,9 +147,10 @@ impl SceneContent {
     }
 
     /// Writes the file: complete, or not at all.
-    pub fn write(&self, file: &Path) -> Result<(), FileError> {
+    pub fn write(&self, file: &Path) -> Result<OnDisk, FileError> {
         let text = self.to_text(file)?;
-        replace_file(file, |writer| writer.write_all(text.as_bytes()))
+        replace_file(file, |writer| writer.write_all(text.as_bytes()))?;
+        Ok(OnDisk::new(file, text.as_bytes()))
     }
 }
 
@@ -207,16 +213,14 @@ impl Rebase {
 
     /// The same file, named from the other folder.
     pub fn path(&self, path: &str, notes: &mut Vec<String>) -> String {
-        if path.starts_with(super::super::sources::BUILTIN) {
+        if path.starts_with(BUILTIN) {
             return path.to_owned();
         }
-        let (name, fragment) = match path.split_once('#') {
-            Some((name, fragment)) => (name, Some(fragment)),
-            None => (path, None),
-        };
-        let full = self.from.path.join(name);
+        let (name, fragment) = split_fragment(path);
+        let full = self.from.file_of(name);
         let mut named = self.to.name_of(&full);
-        if self.from.name_of(&full) == named {
+        // What a person typed may be a name that no scene can say as it stands.
+        if self.from.name_of(&full) == named && !name.contains(['\\', ':']) {
             return path.to_owned();
         }
         if named.starts_with("..") {
@@ -224,7 +228,7 @@ impl Rebase {
                 "`{named}` lies outside the written file's folder: copy it there, or open with --allow-outside"
             ));
         }
-        if let Some(fragment) = fragment {
+        if !fragment.is_empty() {
             named = format!("{named}#{fragment}");
         }
         named

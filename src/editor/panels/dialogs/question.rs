@@ -25,6 +25,7 @@ pub(super) fn question_ui(context: &egui::Context, world: &mut World, panels: &m
         },
         Question::Waiting { .. } => "A file dialog is open",
         Question::Replace { .. } => "The file exists",
+        Question::Changed { .. } => "The file has changed",
         Question::Outside { .. } => "Files outside the folder",
         Question::Rendering { .. } => "A picture is being rendered",
         Question::Recover(_) => "Unsaved work was found",
@@ -68,6 +69,33 @@ pub(super) fn question_ui(context: &egui::Context, world: &mut World, panels: &m
                 &[
                     ("Replace", "The old file is lost", Answer::Yes),
                     ("Cancel", "Leaves it as it is", Answer::Cancel),
+                ],
+            );
+        }
+        Question::Changed { file } => {
+            ui.label(format!(
+                "Another program has changed {} since it was opened or saved here.",
+                file.display()
+            ));
+            answered = buttons_ui(
+                ui,
+                &[
+                    (
+                        "Save as…",
+                        "Keeps both: asks for another name for what is open here",
+                        Answer::Elsewhere,
+                    ),
+                    (
+                        "Reload",
+                        "Opens the file as it is now; the changes made here are lost",
+                        Answer::No,
+                    ),
+                    (
+                        "Overwrite",
+                        "Saves what is open here; the other program's changes are lost",
+                        Answer::Yes,
+                    ),
+                    ("Cancel", "Leaves everything as it is", Answer::Cancel),
                 ],
             );
         }

@@ -2,7 +2,7 @@
 
 use super::super::says::Says;
 use crate::editor::notice::Notices;
-use crate::io::replace_file;
+use crate::io::{check_not_read, replace_file};
 use bevy::ecs::world::World;
 use bevy_egui::egui::{Button, Key, TextEdit, Ui};
 use std::io::Write;
@@ -66,7 +66,9 @@ pub(super) fn save_text_ui(
     }
     let written = is_csv(&file).and_then(|is_csv| {
         let text = text(is_csv);
-        replace_file(&file, |out| out.write_all(text.as_bytes())).map_err(|why| why.to_string())
+        check_not_read(world, &file)
+            .and_then(|()| replace_file(&file, |out| out.write_all(text.as_bytes())))
+            .map_err(|why| why.to_string())
     });
     form.refused = written.as_ref().err().cloned();
     if written.is_ok() {
