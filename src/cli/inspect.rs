@@ -127,6 +127,9 @@ fn inspect(args: &Inspect, gizmos: &InspectSettings) -> Result<(), Failure> {
     }
     let settings = settings.clone();
     check_scene(&stage.name, &settings)?;
+    if args.picture.is_some() {
+        stage.check_film(settings.size)?;
+    }
     let world = stage.sync().world.clone();
     let names = names(&mut stage);
     let camera = stage.camera(args.camera.as_deref())?;

@@ -1,12 +1,12 @@
 //! `glassbox merge`: parts of a picture to a picture.
 
 use super::Failure;
+use super::memory::MemoryArgs;
 use super::output::{say, tell};
 use super::shown::read_output;
 use crate::io::{
-    self, Limits, PictureFormat, check_writable, read_part, write_part, write_rendered,
+    self, Limits, PictureFormat, check_writable, film_bytes, read_part, write_part, write_rendered,
 };
-use crate::scene::RenderSettings;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -18,6 +18,8 @@ pub(super) struct Merge {
     /// Picture file; an .exr is a part again, with the samples of all
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
+    #[command(flatten)]
+    pub memory: MemoryArgs,
     /// Print nothing but errors
     #[arg(long)]
     pub quiet: bool,
@@ -27,16 +29,23 @@ pub(super) fn run(args: Merge) -> Result<(), Failure> {
     let format = PictureFormat::of(&args.output)?;
     check_writable(&args.output)?;
     let mut merge = io::Merge::default();
+    let mut output = None;
     for file in &args.parts {
-        merge.add(file, read_part(file, &Limits::default())?)?;
+        let limits = Limits {
+            // Beside what the parts before it have become.
+            memory: (args.memory.budget()).holding(merge.size().map_or(0, film_bytes)),
+            ..Limits::default()
+        };
+        let part = read_part(file, &limits)?;
+        output.get_or_insert(read_output(file, &part)?);
+        merge.add(file, part)?;
     }
     let part = merge.finish()?;
     if format == PictureFormat::Exr {
         write_part(&args.output, &part)?;
     } else {
-        let mut settings = RenderSettings::default();
-        read_output(&part.output, &mut settings)?;
-        write_rendered(&args.output, &part.film.picture(), &settings.output, &[])?;
+        let output = output.unwrap_or_default();
+        write_rendered(&args.output, &part.film.picture(), &output, &[])?;
     }
     if args.quiet {
         return Ok(());

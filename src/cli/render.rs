@@ -90,6 +90,7 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
     }
     let settings = settings.clone();
     check_scene(&stage.name, &settings)?;
+    stage.check_film(settings.size)?;
     let world = stage.sync().world.clone();
     let cameras = chosen(&stage, args)?;
     let files = file_names(&args.output, &cameras);

@@ -1,11 +1,12 @@
 //! `glassbox report`: speed against error, measured on this machine.
 
 use super::Failure;
+use super::memory::MemoryArgs;
 use super::output::say;
 use super::progress::Progress;
 use super::settings::check_scene;
 use super::stage::{SceneArgs, Stage, with_threads};
-use crate::io::{SceneSource, check_writable};
+use crate::io::{SceneSource, TEXT_BYTES, check_writable, read_text};
 use crate::report::{self, Options, Part, Subject, Table, write_report};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -47,6 +48,8 @@ pub(super) struct Report {
     /// Let scenes refer to files outside their own folder
     #[arg(long)]
     allow_outside: bool,
+    #[command(flatten)]
+    memory: MemoryArgs,
     /// Print nothing but errors
     #[arg(long)]
     quiet: bool,
@@ -136,10 +139,12 @@ fn subject(scene: &Path, args: &Report) -> Result<Subject, Failure> {
     let source = SceneArgs {
         scene: scene.to_path_buf(),
         allow_outside: args.allow_outside,
+        memory: args.memory.clone(),
     };
     let mut stage = Stage::open(&source, args.quiet)?;
     let settings = stage.settings().clone();
     check_scene(&stage.name, &settings)?;
+    stage.check_film(settings.size)?;
     let world = stage.sync().world.clone();
     let camera = stage.cameras().0.first().cloned();
     let camera = camera.ok_or_else(|| {
@@ -182,8 +187,7 @@ fn check_writable_in(file: &Path) -> Result<(), Failure> {
 
 /// A table that another program wrote.
 fn table(file: &Path) -> Result<Table, Failure> {
-    let text = std::fs::read_to_string(file)
-        .map_err(|error| Failure::System(format!("{}: {error}", file.display())))?;
+    let text = read_text(file, TEXT_BYTES)?;
     Table::from_csv("editing", "Edits", &text)
         .map_err(|error| Failure::System(format!("{}: {error}", file.display())))
 }

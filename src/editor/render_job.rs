@@ -7,7 +7,7 @@ use super::document::SceneOpened;
 use super::notice::Notices;
 use crate::film::{Ending, Progressive, State, Status};
 use crate::io::{
-    FileError, PictureFormat, check_size, check_writable, picture_notes, write_rendered,
+    FileError, PictureFormat, check_film, check_size, check_writable, picture_notes, write_rendered,
 };
 use crate::scene::{RenderSettings, SceneId, SettingProblem, setting_problems};
 use crate::sync::{Traced, TracedCameras};
@@ -161,6 +161,7 @@ pub fn start_render(world: &mut World, request: RenderRequest) -> Result<(), Ren
         size.y.into(),
         &Default::default(),
     )?;
+    check_film(world, &request.file, size)?;
     check_writable(&request.file)?;
     let cameras = &world.resource::<TracedCameras>().0;
     let (camera, name) = match &request.camera {

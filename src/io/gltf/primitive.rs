@@ -1,5 +1,6 @@
 //! The triangles of a primitive.
 
+use super::super::budget::mesh_bytes;
 use super::super::error::Problem;
 use super::super::model::triangle_mesh;
 use super::accessors::{floats, indices};
@@ -31,6 +32,13 @@ pub(super) fn read_primitive(
     let Some(accessor) = primitive.get(&gltf::Semantic::Positions) else {
         return Err(Problem::Malformed("it has no positions".into()));
     };
+    let corners = primitive.indices();
+    let corners = corners.map_or(accessor.count(), |indices| indices.count()) as u64;
+    let triangles = match mode {
+        Mode::Triangles => corners / 3,
+        _ => corners,
+    };
+    (document.limits.memory).claim(mesh_bytes(accessor.count() as u64, triangles))?;
     let positions = floats::<3>(document, &accessor)?;
     finite("a vertex", positions.as_flattened())?;
     let count = positions.len();

@@ -22,12 +22,14 @@ pub(super) fn write_mtl(
     file: &Path,
     exported: &mut Exported,
 ) -> Result<(), FileError> {
+    let limits = Limits::default();
     let mut pictures = Pictures {
         world,
         file,
         rebase: Rebase::new(world, file),
         written: Vec::new(),
-        replaced: super::super::read_bytes(file, Limits::default().file_bytes).unwrap_or_default(),
+        replaced: super::super::read_bytes(file, limits.file_bytes, &limits.memory)
+            .unwrap_or_default(),
         taken: HashSet::new(),
     };
     pictures.take_names(exported);

@@ -1,10 +1,12 @@
 //! Picture files: PNG and JPEG hold a screen's values in 8 bits, OpenEXR and Radiance HDR hold
 //! linear light in floating point. The extension decides.
 
+mod jpeg;
 mod read;
 mod rendered;
 mod write;
 
+pub(crate) use jpeg::cut_short;
 pub(crate) use read::{PictureUse, decode_picture, read_picture};
 pub use rendered::{Note, picture_notes, write_rendered};
 pub(crate) use write::encode_png;

@@ -1,10 +1,10 @@
 use super::super::error::{FileError, Problem};
 use super::{PictureFormat, check_size};
-use crate::io::Limits;
+use crate::io::budget::picture_bytes;
+use crate::io::{Limits, open_regular};
 use bevy::asset::RenderAssetUsages;
 use bevy::image::Image;
-use image::{DynamicImage, ImageBuffer, ImageReader, Luma};
-use std::fs::File;
+use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageReader, Luma};
 use std::io::{BufRead, BufReader, Cursor, Seek};
 use std::path::Path;
 
@@ -27,11 +27,7 @@ pub(crate) fn read_picture(
 ) -> Result<Image, FileError> {
     let format = PictureFormat::of(path)?;
     let open = || {
-        let file = File::open(path).map_err(|error| FileError::reading(path, &error))?;
-        let metadata = file.metadata();
-        if metadata.is_ok_and(|metadata| metadata.is_dir()) {
-            return Err(FileError::new(path, Problem::IsAFolder));
-        }
+        let file = open_regular(path)?;
         Ok(ImageReader::with_format(
             BufReader::new(file),
             format.image_format(),
@@ -59,10 +55,16 @@ fn decode<R: BufRead + Seek>(
     usage: PictureUse,
     limits: &Limits,
 ) -> Result<Image, FileError> {
-    let (width, height) = header
-        .into_dimensions()
+    let header = header
+        .into_decoder()
         .map_err(|error| failure(name, error))?;
+    let ((width, height), color) = (header.dimensions(), header.color_type());
+    drop(header);
     check_size(name, width.into(), height.into(), limits)?;
+    let channel = color.bytes_per_pixel() / color.channel_count();
+    (limits.memory)
+        .claim(picture_bytes(width, height, channel.into()))
+        .map_err(|problem| FileError::new(name, problem))?;
     let mut decoder_limits = image::Limits::default();
     // Four channels of 16 bytes at most, and as much again for what a decoder needs meanwhile.
     decoder_limits.max_alloc = Some(limits.pixels.saturating_mul(32));
