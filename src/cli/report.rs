@@ -33,7 +33,7 @@ pub(super) struct Report {
     /// Folder for tables and plots, where they are not to lie beside the report
     #[arg(long, value_name = "DIR")]
     files: Option<PathBuf>,
-    /// Fewer rays, rounds and samples: about two minutes for a scene on two cores
+    /// Fewer rays, rounds and samples: 20 seconds to two minutes for a scene on two cores
     #[arg(long)]
     quick: bool,
     /// Chooses the random numbers

@@ -155,7 +155,7 @@ fn an_import_counts_what_is_open_already_and_leaves_it_as_it_is() {
     let file = write(folder.path(), "grid.obj", grid);
     let mut app = app();
     let world = app.world_mut();
-    open(world, &SceneSource::named(&file), within(60)).unwrap();
+    open(world, &SceneSource::named(&file), within(50)).unwrap();
     let count = |world: &mut World| world.query::<&SceneId>().iter(world).count();
     let before = count(world);
     let error = import(world, &file, || SceneId(99)).unwrap_err();

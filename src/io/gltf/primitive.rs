@@ -32,13 +32,6 @@ pub(super) fn read_primitive(
     let Some(accessor) = primitive.get(&gltf::Semantic::Positions) else {
         return Err(Problem::Malformed("it has no positions".into()));
     };
-    let corners = primitive.indices();
-    let corners = corners.map_or(accessor.count(), |indices| indices.count()) as u64;
-    let triangles = match mode {
-        Mode::Triangles => corners / 3,
-        _ => corners,
-    };
-    (document.limits.memory).claim(mesh_bytes(accessor.count() as u64, triangles))?;
     let positions = floats::<3>(document, &accessor)?;
     finite("a vertex", positions.as_flattened())?;
     let count = positions.len();
@@ -92,6 +85,7 @@ pub(super) fn read_primitive(
             limit: document.limits.triangles,
         });
     }
+    (document.limits.memory).claim(mesh_bytes(0, triangles))?;
     if primitive.get(&gltf::Semantic::Colors(0)).is_some() {
         notes.push(format!("{name}: its vertex colours were left out"));
     }

@@ -3,10 +3,11 @@ use super::{Part, channel_name};
 use crate::film::{Film, Sum};
 use crate::io::error::{FileError, Problem};
 use crate::io::limits::Limits;
+use crate::io::picture::block_bytes;
 use crate::io::{check_size, open_to_read};
 use exr::block::reader::ChunksReader;
+use exr::meta::MetaData;
 use exr::meta::attribute::SampleType;
-use exr::meta::{BlockDescription, MetaData};
 use exr::prelude::{AttributeValue, Text, Vec2};
 use glam::UVec2;
 use std::fs::{self, File};
@@ -46,10 +47,10 @@ pub fn read_part(path: &Path, limits: &Limits) -> Result<Part, FileError> {
     if length.saturating_mul(BEST_RATIO) < width * height * BYTES {
         return Err(incomplete());
     }
-    // While it is read: words, sums, the film, and a block of all channels compressed and not.
+    // A block of all channels, compressed and not.
     let block = block_bytes(header).saturating_mul(3);
     (limits.memory)
-        .claim((width * height * 160).saturating_add(block))
+        .claim((width * height * PIXEL).saturating_add(block))
         .map_err(|problem| FileError::new(path, problem))?;
     let file = open_to_read(path, limits.file_bytes)?;
     let sums = read_sums(file, header).ok_or_else(incomplete)?;
@@ -67,25 +68,12 @@ pub fn read_part(path: &Path, limits: &Limits) -> Result<Part, FileError> {
 
 const NO_PART: &str =
     "is no part of a picture; `glassbox render --samples A..B -o part.exr` makes parts";
-/// Of a pixel in memory: 15 channels of 4.
+/// Of a pixel while it is read: words of 48 bytes become a sum of 48, and that one of 64 in the film.
+const PIXEL: u64 = 120;
+/// Of a pixel in the file's blocks: 15 channels of 4.
 const BYTES: u64 = 60;
 /// Run-length encoding makes 2 bytes of at most 128.
 const BEST_RATIO: u64 = 64;
-
-/// Of one block of the file, with whatever channels it holds besides ours.
-fn block_bytes(header: &exr::meta::header::Header) -> u64 {
-    let size = header.layer_size;
-    let pixels = match header.blocks {
-        BlockDescription::ScanLines => {
-            header.compression.scan_lines_per_block() as u64 * size.x() as u64
-        }
-        BlockDescription::Tiles(tiles) => {
-            (tiles.tile_size.x() as u64).saturating_mul(tiles.tile_size.y() as u64)
-        }
-    };
-    let pixels = pixels.min(size.x() as u64 * size.y() as u64);
-    pixels.saturating_mul(header.channels.bytes_per_pixel as u64)
-}
 
 /// The sums of all pixels, row by row. Of other channels nothing is kept.
 fn read_sums(file: BufReader<File>, header: &exr::meta::header::Header) -> Option<Vec<Sum>> {

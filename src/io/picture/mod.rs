@@ -1,11 +1,13 @@
 //! Picture files: PNG and JPEG hold a screen's values in 8 bits, OpenEXR and Radiance HDR hold
 //! linear light in floating point. The extension decides.
 
+mod exr_blocks;
 mod jpeg;
 mod read;
 mod rendered;
 mod write;
 
+pub(crate) use exr_blocks::block_bytes;
 pub(crate) use jpeg::cut_short;
 pub(crate) use read::{PictureUse, decode_picture, read_picture};
 pub use rendered::{Note, picture_notes, write_rendered};

@@ -1,10 +1,10 @@
 use super::super::error::{FileError, Problem};
-use super::{PictureFormat, check_size};
+use super::{PictureFormat, block_bytes, check_size};
 use crate::io::budget::picture_bytes;
 use crate::io::{Limits, open_regular};
 use bevy::asset::RenderAssetUsages;
 use bevy::image::Image;
-use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageReader, Luma};
+use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, Luma};
 use std::io::{BufRead, BufReader, Cursor, Seek};
 use std::path::Path;
 
@@ -55,6 +55,7 @@ fn decode<R: BufRead + Seek>(
     usage: PictureUse,
     limits: &Limits,
 ) -> Result<Image, FileError> {
+    let (header, blocks) = count_blocks(header).map_err(|error| failure(name, error.into()))?;
     let header = header
         .into_decoder()
         .map_err(|error| failure(name, error))?;
@@ -63,7 +64,7 @@ fn decode<R: BufRead + Seek>(
     check_size(name, width.into(), height.into(), limits)?;
     let channel = color.bytes_per_pixel() / color.channel_count();
     (limits.memory)
-        .claim(picture_bytes(width, height, channel.into()))
+        .claim(picture_bytes(width, height, channel.into()).saturating_add(blocks))
         .map_err(|problem| FileError::new(name, problem))?;
     let mut decoder_limits = image::Limits::default();
     // Four channels of 16 bytes at most, and as much again for what a decoder needs meanwhile.
@@ -71,6 +72,24 @@ fn decode<R: BufRead + Seek>(
     body.limits(decoder_limits);
     let picture = body.decode().map_err(|error| failure(name, error))?;
     Ok(to_image(picture, usage))
+}
+
+/// The reader again, and the bytes of the blocks that an OpenEXR file decodes at a time: each thread has one, compressed
+/// and not. Other formats go line by line.
+fn count_blocks<R: BufRead + Seek>(
+    header: ImageReader<R>,
+) -> std::io::Result<(ImageReader<R>, u64)> {
+    const AT_A_TIME: u64 = 8;
+    if header.format() != Some(ImageFormat::OpenExr) {
+        return Ok((header, 0));
+    }
+    let mut file = header.into_inner();
+    let meta = exr::meta::MetaData::read_from_buffered(&mut file, false);
+    file.rewind()?;
+    let headers = meta.map(|meta| meta.headers).unwrap_or_default();
+    let blocks = headers.iter().map(block_bytes).max().unwrap_or_default();
+    let reader = ImageReader::with_format(file, ImageFormat::OpenExr);
+    Ok((reader, blocks.saturating_mul(AT_A_TIME)))
 }
 
 fn to_image(picture: DynamicImage, usage: PictureUse) -> Image {
