@@ -73,15 +73,15 @@ impl Budget {
 
     /// Speaks for so many bytes, or says that they are not there.
     pub(crate) fn claim(&self, bytes: u64) -> Result<(), Problem> {
-        let claimed = self.claimed.fetch_add(bytes, Ordering::Relaxed);
-        let left = self.bytes.saturating_sub(claimed);
-        if bytes <= left {
-            return Ok(());
-        }
-        self.claimed.fetch_sub(bytes, Ordering::Relaxed);
-        Err(Problem::OutOfMemory {
+        let with_these = |claimed: u64| {
+            let sum = claimed.checked_add(bytes);
+            sum.filter(|sum| *sum <= self.bytes)
+        };
+        let relaxed = Ordering::Relaxed;
+        let claimed = self.claimed.fetch_update(relaxed, relaxed, with_these);
+        claimed.map(|_| ()).map_err(|claimed| Problem::OutOfMemory {
             needs: Size(bytes),
-            left: Size(left),
+            left: Size(self.bytes.saturating_sub(claimed)),
             whole: Size(self.bytes),
         })
     }
