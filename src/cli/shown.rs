@@ -47,7 +47,7 @@ mod tests {
     fn part(output: String) -> Part {
         Part {
             digest: "0".into(),
-            samples: vec![0..1],
+            samples: std::iter::once(0..1).collect(),
             uniform: true,
             output,
             film: Film::new(UVec2::ONE),
