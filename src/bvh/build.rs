@@ -24,11 +24,9 @@ pub fn build_tree(boxes: &[Aabb], options: &BuildOptions) -> Bvh2 {
     let options = options.clamped();
     match options.builder {
         _ if boxes.is_empty() => Bvh2::default(),
-        Builder::None => {
-            let primitives: Vec<u32> = (0..boxes.len() as u32).collect();
-            let nodes = [Bvh2Node::new(Aabb::default(), boxes.len() as u32, 0)];
-            finish(&nodes, &primitives, boxes, &options)
-        }
+        Builder::None => one_leaf(boxes, &options),
+        // There is one way to build it. Models of hundreds of thousands of such meshes are read.
+        _ if boxes.len() == 1 => one_leaf(boxes, &options),
         Builder::Median => top_down(boxes, &options, &|items, depth, _| {
             median::cut(items, depth, &options)
         }),
@@ -51,6 +49,12 @@ pub fn build_tree(boxes: &[Aabb], options: &BuildOptions) -> Bvh2 {
             finish(&tree.nodes, &tree.primitive_indices, boxes, &options)
         }
     }
+}
+
+fn one_leaf(boxes: &[Aabb], options: &BuildOptions) -> Bvh2 {
+    let primitives: Vec<u32> = (0..boxes.len() as u32).collect();
+    let nodes = [Bvh2Node::new(Aabb::default(), boxes.len() as u32, 0)];
+    finish(&nodes, &primitives, boxes, options)
 }
 
 fn top_down<Cut>(boxes: &[Aabb], options: &BuildOptions, cut: &Cut) -> Bvh2

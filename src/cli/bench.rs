@@ -46,6 +46,7 @@ fn measure(args: &Bench) -> Result<Performance, Failure> {
     args.settings.apply(settings)?;
     let settings = settings.clone();
     check_scene(&stage.name, &settings)?;
+    stage.check_film(settings.size)?;
     let world = stage.sync().world.clone();
     let camera = stage.camera(None)?;
     let test = PerformanceTest {

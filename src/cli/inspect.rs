@@ -132,6 +132,7 @@ fn inspect(args: &Inspect, gizmos: &InspectSettings) -> Result<(), Failure> {
     if let Some(file) = &args.picture {
         let size = settings.size;
         check_picture(file, size.x.into(), size.y.into()).map_err(Failure::of_output)?;
+        stage.check_film(size)?;
     }
     let world = stage.sync().world.clone();
     let names = names(&mut stage);

@@ -1,13 +1,13 @@
 //! `glassbox merge`: parts of a picture to a picture.
 
 use super::Failure;
+use super::memory::MemoryArgs;
 use super::output::{say, tell};
 use super::shown::read_output;
 use crate::io::{
-    self, Limits, PictureFormat, check_outputs, check_picture, check_writable, read_part,
-    write_part, write_rendered,
+    self, Limits, PictureFormat, check_outputs, check_picture, check_writable, film_bytes,
+    read_part, write_part, write_rendered,
 };
-use crate::scene::RenderSettings;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -19,6 +19,8 @@ pub(super) struct Merge {
     /// Picture file; an .exr is a part again, with the samples of all
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
+    #[command(flatten)]
+    pub memory: MemoryArgs,
     /// Print nothing but errors
     #[arg(long)]
     pub quiet: bool,
@@ -29,19 +31,25 @@ pub(super) fn run(args: Merge) -> Result<(), Failure> {
     check_outputs([&*args.output], args.parts.iter().map(PathBuf::as_path))?;
     check_writable(&args.output)?;
     let mut merge = io::Merge::default();
+    let mut output = None;
     for file in &args.parts {
-        let part = read_part(file, &Limits::default())?;
+        let limits = Limits {
+            // Beside what the parts before it have become.
+            memory: (args.memory.budget()).holding(merge.size().map_or(0, film_bytes)),
+            ..Limits::default()
+        };
+        let part = read_part(file, &limits)?;
         let size = part.film.size();
         check_picture(&args.output, size.x.into(), size.y.into()).map_err(Failure::of_output)?;
+        output.get_or_insert(read_output(file, &part)?);
         merge.add(file, part)?;
     }
     let part = merge.finish()?;
     if format == PictureFormat::Exr {
         write_part(&args.output, &part)?;
     } else {
-        let mut settings = RenderSettings::default();
-        read_output(&part.output, &mut settings)?;
-        write_rendered(&args.output, &part.film.picture(), &settings.output, &[])?;
+        let output = output.unwrap_or_default();
+        write_rendered(&args.output, &part.film.picture(), &output, &[])?;
     }
     if args.quiet {
         return Ok(());

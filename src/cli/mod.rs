@@ -10,6 +10,7 @@ mod convert;
 mod failure;
 mod gizmos;
 mod inspect;
+mod memory;
 mod merge;
 mod output;
 mod progress;
@@ -44,6 +45,8 @@ struct Cli {
     #[cfg(feature = "editor")]
     #[arg(long, value_name = "FILE")]
     script: Option<PathBuf>,
+    #[command(flatten)]
+    memory: memory::MemoryArgs,
 }
 
 #[derive(Subcommand)]
@@ -78,9 +81,9 @@ fn execute(arguments: impl IntoIterator<Item = OsString>) -> Result<ExitCode, Fa
     let cli = Cli::try_parse_from(arguments)?;
     match cli.command {
         #[cfg(feature = "editor")]
-        None => return welcome::run(cli.scene, cli.script.as_deref()),
+        None => return welcome::run(cli.scene, cli.script.as_deref(), cli.memory),
         #[cfg(not(feature = "editor"))]
-        None => welcome::run(cli.scene)?,
+        None => welcome::run(cli.scene, cli.memory)?,
         Some(Command::Render(render)) => render::run(render)?,
         Some(Command::Merge(merge)) => merge::run(merge)?,
         Some(Command::Bvh(bvh)) => bvh::run(bvh)?,

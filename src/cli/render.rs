@@ -94,6 +94,7 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
     check_scene(&stage.name, &settings)?;
     let size = settings.size;
     check_picture(&args.output, size.x.into(), size.y.into()).map_err(Failure::of_output)?;
+    stage.check_film(size)?;
     let world = stage.sync().world.clone();
     let cameras = chosen(&stage, args)?;
     let files = file_names(&args.output, &cameras);

@@ -1,11 +1,12 @@
 //! `glassbox report`: speed against error, measured on this machine.
 
 use super::Failure;
+use super::memory::MemoryArgs;
 use super::output::say;
 use super::progress::Progress;
 use super::settings::check_scene;
 use super::stage::{SceneArgs, Stage, with_threads};
-use crate::io::{FileError, SceneSource, check_outputs, check_writable};
+use crate::io::{FileError, SceneSource, TEXT_BYTES, check_outputs, check_writable, read_text};
 use crate::report::{self, Options, Part, Subject, Table, is_report_file, write_report};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -32,7 +33,7 @@ pub(super) struct Report {
     /// Folder for tables and plots, where they are not to lie beside the report
     #[arg(long, value_name = "DIR")]
     files: Option<PathBuf>,
-    /// Fewer rays, rounds and samples: about two minutes for a scene on two cores
+    /// Fewer rays, rounds and samples: 20 seconds to two minutes for a scene on two cores
     #[arg(long)]
     quick: bool,
     /// Chooses the random numbers
@@ -47,6 +48,8 @@ pub(super) struct Report {
     /// Let scenes refer to files outside their own folder
     #[arg(long)]
     allow_outside: bool,
+    #[command(flatten)]
+    memory: MemoryArgs,
     /// Print nothing but errors
     #[arg(long)]
     quiet: bool,
@@ -140,11 +143,13 @@ fn subject(scene: &Path, args: &Report, outputs: &[PathBuf]) -> Result<Subject, 
     let source = SceneArgs {
         scene: scene.to_path_buf(),
         allow_outside: args.allow_outside,
+        memory: args.memory.clone(),
     };
     let mut stage = Stage::open(&source, args.quiet)?;
     stage.check_outputs(outputs.iter().map(PathBuf::as_path))?;
     let settings = stage.settings().clone();
     check_scene(&stage.name, &settings)?;
+    stage.check_film(settings.size)?;
     let world = stage.sync().world.clone();
     let camera = stage.cameras().0.first().cloned();
     let camera = camera.ok_or_else(|| {
@@ -211,8 +216,7 @@ fn outputs(file: &Path, folder: &Path) -> Vec<PathBuf> {
 
 /// A table that another program wrote.
 fn table(file: &Path) -> Result<Table, Failure> {
-    let text = std::fs::read_to_string(file)
-        .map_err(|error| Failure::System(format!("{}: {error}", file.display())))?;
+    let text = read_text(file, TEXT_BYTES)?;
     Table::from_csv("editing", "Edits", &text)
         .map_err(|error| Failure::System(format!("{}: {error}", file.display())))
 }

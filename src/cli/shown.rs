@@ -1,8 +1,9 @@
 //! How a picture is shown, as a part of a picture keeps it.
 
-use super::Failure;
 use super::set::Assignment;
-use crate::scene::{RenderSettings, SETTINGS};
+use crate::io::{FileError, Part, Problem};
+use crate::scene::{Output, RenderSettings, SETTINGS, setting_problems};
+use std::path::Path;
 
 /// How a picture is shown, as a part keeps it: every setting of `output`, `key=value`.
 pub(super) fn output_text(settings: &RenderSettings) -> String {
@@ -14,19 +15,44 @@ pub(super) fn output_text(settings: &RenderSettings) -> String {
     words.join(" ")
 }
 
-/// Takes over what [`output_text`] wrote.
-pub(super) fn read_output(text: &str, settings: &mut RenderSettings) -> Result<(), Failure> {
-    for word in text.split_whitespace() {
-        let assignment: Assignment = word.parse().map_err(Failure::Usage)?;
-        assignment.apply(settings)?;
+/// How a part is shown: takes over what [`output_text`] wrote into it. A part may come from anywhere, so its values are
+/// checked as the command line's are.
+pub(super) fn read_output(file: &Path, part: &Part) -> Result<Output, FileError> {
+    let damaged = |why: String| {
+        let text = format!("is a part whose `output` cannot be read ({why}); render it again");
+        FileError::new(file, Problem::Malformed(text))
+    };
+    let mut settings = RenderSettings::default();
+    for word in part.output.split_whitespace() {
+        if !word.starts_with("output.") {
+            return Err(damaged(format!("`{word}`")));
+        }
+        let assignment: Assignment = word.parse().map_err(damaged)?;
+        let applied = assignment.apply(&mut settings);
+        applied.map_err(|failure| damaged(failure.to_string()))?;
     }
-    Ok(())
+    match setting_problems(&settings).into_iter().next() {
+        Some(problem) => Err(damaged(problem.to_string())),
+        None => Ok(settings.output),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::film::Film;
     use crate::scene::ViewTransform;
+    use bevy::math::UVec2;
+
+    fn part(output: String) -> Part {
+        Part {
+            digest: "0".into(),
+            samples: std::iter::once(0..1).collect(),
+            uniform: true,
+            output,
+            film: Film::new(UVec2::ONE),
+        }
+    }
 
     #[test]
     fn what_a_part_keeps_of_the_output_gives_the_same_output() {
@@ -34,8 +60,26 @@ mod tests {
         settings.output.exposure = -1.25;
         settings.output.view_transform = ViewTransform::AgX;
         settings.output.bloom.intensity = 0.5;
-        let mut read = RenderSettings::default();
-        read_output(&output_text(&settings), &mut read).unwrap();
-        assert_eq!(read, settings);
+        let read = read_output(Path::new("a.exr"), &part(output_text(&settings))).unwrap();
+        assert_eq!(read, settings.output);
+    }
+
+    #[test]
+    fn a_forged_part_cannot_be_shown_with_what_no_setting_may_be() {
+        for output in [
+            "output.exposure=NaN",
+            "output.exposure=1e38",
+            "output.bloom.intensity=inf",
+            "output.exposure",
+            "output.none=1",
+            "size=4x4",
+        ] {
+            let error = read_output(Path::new("a.exr"), &part(output.into())).unwrap_err();
+            let text = error.to_string();
+            assert!(
+                text.starts_with("a.exr: ") && text.contains("output"),
+                "{text}"
+            );
+        }
     }
 }

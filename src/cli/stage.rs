@@ -1,12 +1,16 @@
 //! Opening a scene for a command: the app, its notes and warnings, and the threads it runs on.
 
 use super::Failure;
+use super::memory::MemoryArgs;
 use super::output::tell;
 use crate::app::headless_app;
-use crate::io::{LoadProblems, OpenOptions, SceneFiles, SceneSource, check_outputs, open};
+use crate::io::{
+    LoadProblems, OpenOptions, SceneFiles, SceneSource, check_film, check_outputs, open,
+};
 use crate::scene::RenderSettings;
 use crate::sync::{Traced, TracedCamera, TracedCameras};
 use bevy::app::App;
+use bevy::math::UVec2;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -18,6 +22,8 @@ pub(super) struct SceneArgs {
     /// Let the scene refer to files outside its own folder
     #[arg(long)]
     pub allow_outside: bool,
+    #[command(flatten)]
+    pub memory: MemoryArgs,
 }
 
 /// A scene that is open.
@@ -35,6 +41,7 @@ impl Stage {
         let mut app = headless_app();
         let options = OpenOptions {
             allow_outside: args.allow_outside,
+            limits: args.memory.limits(),
             ..OpenOptions::default()
         };
         let opened = open(app.world_mut(), &SceneSource::named(&args.scene), options)?;
@@ -70,6 +77,11 @@ impl Stage {
             .world_mut()
             .resource_mut::<RenderSettings>()
             .into_inner()
+    }
+
+    /// Refuses a film of this size that does not fit into memory beside the scene.
+    pub fn check_film(&self, size: UVec2) -> Result<(), Failure> {
+        Ok(check_film(self.app.world(), Path::new(&self.name), size)?)
     }
 
     /// Brings the tracer's world up to date, and warns of what it had to leave out.

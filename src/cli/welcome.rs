@@ -2,6 +2,7 @@
 //! what it can do without one.
 
 use super::Failure;
+use super::memory::MemoryArgs;
 #[cfg(not(feature = "editor"))]
 use super::output::say;
 #[cfg(feature = "editor")]
@@ -25,13 +26,21 @@ use std::process::ExitCode;
 /// Without a display the scene is rendered to a file instead. A script, and a display without a
 /// graphics adapter, are errors then: someone waits for a window.
 #[cfg(feature = "editor")]
-pub(super) fn run(scene: Option<PathBuf>, script: Option<&Path>) -> Result<ExitCode, Failure> {
+pub(super) fn run(
+    scene: Option<PathBuf>,
+    script: Option<&Path>,
+    memory: MemoryArgs,
+) -> Result<ExitCode, Failure> {
     let script = script.map(Script::read).transpose();
     let script = script.map_err(|error| Failure::System(error.to_string()))?;
     match editor::check() {
         Ok(()) => {
             let scene = scene.unwrap_or_else(|| PathBuf::from(DEFAULT));
-            Ok(editor::run(SceneSource::named(scene), script))
+            Ok(editor::run(
+                SceneSource::named(scene),
+                script,
+                memory.limits(),
+            ))
         }
         Err(no_window @ (NoWindow::Display(_) | NoWindow::Library(_))) if script.is_none() => {
             let instead = match no_window {
@@ -46,7 +55,7 @@ pub(super) fn run(scene: Option<PathBuf>, script: Option<&Path>) -> Result<ExitC
                     "{no_window}{instead}. What follows is `glassbox render`, which needs none"
                 ),
             );
-            show(scene)?;
+            show(scene, memory)?;
             Ok(ExitCode::SUCCESS)
         }
         Err(no_window) => Err(Failure::System(no_window.to_string())),
@@ -55,7 +64,7 @@ pub(super) fn run(scene: Option<PathBuf>, script: Option<&Path>) -> Result<ExitC
 
 /// Says what can be done, and shows it.
 #[cfg(not(feature = "editor"))]
-pub(super) fn run(scene: Option<PathBuf>) -> Result<(), Failure> {
+pub(super) fn run(scene: Option<PathBuf>, memory: MemoryArgs) -> Result<(), Failure> {
     say(format_args!(
         "Glassbox {}: a scene editor whose ray tracer you can see into.\n\
          This build has no window; these commands work without one:\n\
@@ -70,17 +79,18 @@ pub(super) fn run(scene: Option<PathBuf>) -> Result<(), Failure> {
          Each explains itself with --help.",
         env!("CARGO_PKG_VERSION")
     ))?;
-    show(scene)
+    show(scene, memory)
 }
 
 /// Renders a scene to a picture in the working folder.
-fn show(scene: Option<PathBuf>) -> Result<(), Failure> {
+fn show(scene: Option<PathBuf>, memory: MemoryArgs) -> Result<(), Failure> {
     let scene = scene.unwrap_or_else(|| PathBuf::from(DEFAULT));
     let output = picture_name(&scene);
     render(Render {
         scene: SceneArgs {
             scene,
             allow_outside: false,
+            memory,
         },
         output,
         settings: SettingArgs {

@@ -2,7 +2,7 @@
 //! user's configuration folder. Nothing in it belongs to a scene.
 
 use super::notice::Notices;
-use crate::io::replace_file;
+use crate::io::{Problem, read_text, replace_file};
 use bevy::app::{App, AppExit, Last, Plugin};
 use bevy::ecs::message::MessageReader;
 use bevy::ecs::resource::Resource;
@@ -153,15 +153,11 @@ impl Preferences {
 }
 
 fn read(file: &Path) -> Result<Option<Preferences>, String> {
-    let metadata = match fs::metadata(file) {
-        Ok(metadata) => metadata,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-        Err(error) => return Err(error.to_string()),
+    let text = match read_text(file, LARGEST) {
+        Ok(text) => text,
+        Err(error) if matches!(error.problem, Problem::NotFound) => return Ok(None),
+        Err(error) => return Err(error.problem.to_string()),
     };
-    if metadata.len() > LARGEST {
-        return Err(format!("{} bytes are too many", metadata.len()));
-    }
-    let text = fs::read_to_string(file).map_err(|error| error.to_string())?;
     ron::from_str(&text)
         .map(Some)
         .map_err(|error| error.to_string())

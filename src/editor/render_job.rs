@@ -6,7 +6,9 @@
 use super::document::SceneOpened;
 use super::notice::Notices;
 use crate::film::{Ending, Progressive, State, Status};
-use crate::io::{FileError, check_not_read, check_picture, picture_notes, write_rendered};
+use crate::io::{
+    FileError, check_film, check_not_read, check_picture, picture_notes, write_rendered,
+};
 use crate::scene::{RenderSettings, SceneId, SettingProblem, setting_problems};
 use crate::sync::{Traced, TracedCameras};
 use crate::trace;
@@ -154,6 +156,7 @@ pub fn start_render(world: &mut World, request: RenderRequest) -> Result<(), Ren
     let size = request.settings.size;
     check_not_read(world, &request.file)?;
     check_picture(&request.file, size.x.into(), size.y.into())?;
+    check_film(world, &request.file, size)?;
     let cameras = &world.resource::<TracedCameras>().0;
     let (camera, name) = match &request.camera {
         RenderFrom::View(camera) => ((**camera).clone(), "the view".to_owned()),

@@ -5,7 +5,7 @@ use super::pace::PacePlugin;
 use super::plugins::parts;
 use super::preferences::config_folder;
 use super::script::Script;
-use crate::io::SceneSource;
+use crate::io::{Limits, SceneFiles, SceneSource};
 use bevy::DefaultPlugins;
 use bevy::app::{App, AppExit, PluginGroup};
 use bevy::log::{Level, LogPlugin};
@@ -13,8 +13,9 @@ use bevy::window::{Window, WindowPlugin};
 use std::path::Path;
 use std::process::ExitCode;
 
-/// Opens the window with this scene, until it is closed, and plays the script in it.
-pub fn run(scene: SceneSource, script: Option<Script>) -> ExitCode {
+/// Opens the window with this scene, until it is closed, and plays the script in it. All scenes that are opened share
+/// the limits.
+pub fn run(scene: SceneSource, script: Option<Script>, limits: Limits) -> ExitCode {
     let mut app = App::new();
     let window = WindowPlugin {
         primary_window: Some(Window {
@@ -33,16 +34,16 @@ pub fn run(scene: SceneSource, script: Option<Script>) -> ExitCode {
         ..LogPlugin::default()
     };
     let document = DocumentPlugin {
+        recovery: config_folder().map(|folder| folder.join("recovery")),
         // A script finds the same editor every time.
-        recovery: config_folder()
-            .filter(|_| script.is_none())
-            .map(|folder| folder.join("recovery")),
+        leaves_recovered: script.is_some(),
         ..DocumentPlugin::default()
     };
     app.add_plugins(DefaultPlugins.set(window).set(log))
         .add_plugins(parts(document))
         .add_plugins(PacePlugin);
     let world = app.world_mut();
+    world.resource_mut::<SceneFiles>().limits = limits;
     match &scene {
         SceneSource::File(path) => open_file(world, path, false),
         SceneSource::Builtin(scene) => open_file(world, Path::new(scene.name), false),

@@ -1,3 +1,4 @@
+use super::budget::Size;
 use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -126,6 +127,8 @@ pub enum Problem {
         extension: String,
         wanted: &'static str,
     },
+    #[error("is neither a file nor a folder but a pipe or a device; name a file")]
+    NotAFile,
     #[error("is empty")]
     Empty,
     #[error("{size} bytes, and the limit is {limit}; split it up")]
@@ -144,6 +147,8 @@ pub enum Problem {
     Malformed(String),
     #[error("ends too early: {0}; get a complete copy")]
     Truncated(String),
+    #[error("was cut off: below its last line it is grey; get a complete copy")]
+    CutShort,
     #[error("{what} {index} is used, and there are {count}; the file is damaged")]
     IndexOutOfRange {
         what: &'static str,
@@ -206,6 +211,14 @@ pub enum Problem {
     NoSuchEntity(String),
     #[error("the extension {0} is required and not supported; export without it")]
     UnsupportedExtension(String),
+    #[error(
+        "needs {needs} of memory, and {left} are left of the {whole} that a scene may take; make it smaller, or allow more with --memory"
+    )]
+    OutOfMemory {
+        needs: Size,
+        left: Size,
+        whole: Size,
+    },
     #[error("{0}; correct the numbers of the shape")]
     Shape(String),
 }

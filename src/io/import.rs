@@ -1,5 +1,6 @@
 //! Adding to the open scene what a model file holds.
 
+use super::budget::beside;
 use super::error::FileError;
 use super::folder::Folder;
 use super::loader::{Loader, read_model};
@@ -38,13 +39,15 @@ pub fn import(
 ) -> Result<Imported, FileError> {
     world.init_resource::<SceneFiles>();
     let files = world.resource::<SceneFiles>();
-    let (scene_folder, limits) = (files.folder.clone(), files.limits.clone());
+    let (scene_folder, mut limits) = (files.folder.clone(), files.limits.clone());
+    limits.memory = beside(&limits.memory, world);
     let folder = Folder::of(file, scene_folder.allow_outside);
     let mut model = read_model(file, &folder, &limits)?;
     let path = scene_folder.name_of(file);
     let mut loaded = Loaded::of_model(&mut model, &path, &mut Loader::new(&folder, &limits))?;
     let rebase = Rebase::between(folder, scene_folder);
     let mut notes = std::mem::take(&mut model.notes);
+    notes.append(&mut loaded.notes);
     for (source, _, _) in &mut loaded.pictures {
         source.path = rebase.path(&source.path, &mut notes);
     }

@@ -1,3 +1,5 @@
+use super::budget::Budget;
+
 /// How much a file may ask for. What asks for more is refused before anything is allocated.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Limits {
@@ -15,6 +17,8 @@ pub struct Limits {
     pub depth: u64,
     /// Bytes of one line of a text file.
     pub line_bytes: usize,
+    /// Memory of everything together.
+    pub memory: Budget,
 }
 
 impl Limits {
@@ -32,6 +36,7 @@ impl Default for Limits {
             entities: 1 << 24,
             depth: 256,
             line_bytes: 1 << 20,
+            memory: Budget::default(),
         }
     }
 }

@@ -1,14 +1,16 @@
+use super::budget::mesh_bytes;
 use super::error::{FileError, Problem};
 use super::file_name::{BUILTIN, split_fragment};
 use super::folder::Folder;
 use super::model::Model;
-use super::picture::{PictureUse, read_picture};
-use super::{Limits, extension, gltf, obj, shapes};
+use super::picture::{PictureUse, cut_short, read_picture};
+use super::{Limits, extension, gltf, obj, open_regular, shapes};
 use crate::scene::{MeshSource, TextureSource};
 use bevy::image::Image;
 use bevy::mesh::Mesh;
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
+use std::io::BufReader;
 use std::path::PathBuf;
 
 /// Loads what sources name, and parses each model file once however many of its meshes are asked
@@ -21,6 +23,8 @@ pub(crate) struct Loader<'a> {
     documents: HashMap<PathBuf, gltf::Document>,
     /// Every file that was read.
     pub read: BTreeSet<PathBuf>,
+    /// What is wrong with pictures that were loaded all the same.
+    pub notes: Vec<FileError>,
 }
 
 impl<'a> Loader<'a> {
@@ -31,6 +35,7 @@ impl<'a> Loader<'a> {
             models: HashMap::new(),
             documents: HashMap::new(),
             read: BTreeSet::new(),
+            notes: Vec::new(),
         }
     }
 
@@ -38,8 +43,12 @@ impl<'a> Loader<'a> {
     pub fn mesh(&mut self, source: &MeshSource) -> Result<Mesh, FileError> {
         let (path, name) = match source {
             MeshSource::Shape(shape) => {
-                return shapes::mesh(shape)
-                    .map_err(|error| FileError::new("shape", Problem::Shape(error.to_string())));
+                let count = shapes::triangle_count(shape).map_err(shape_error)?;
+                // No shape has more vertices than triangles, but for the smallest.
+                (self.limits.memory)
+                    .claim(mesh_bytes(count, count))
+                    .map_err(|problem| FileError::new("shape", problem))?;
+                return shapes::mesh(shape).map_err(shape_error);
             }
             MeshSource::File { path, name } => (path, name),
         };
@@ -92,6 +101,8 @@ impl<'a> Loader<'a> {
         };
         if part.is_empty() {
             let picture = read_picture(&file, usage, self.limits)?;
+            let bytes = BufReader::new(open_regular(&file)?);
+            self.notes.extend(cut_short(&file, bytes));
             self.read.insert(file);
             return Ok(picture);
         }
@@ -104,8 +115,12 @@ impl<'a> Loader<'a> {
                 free.insert(document)
             }
         };
-        gltf::read_texture(document, part, usage)
+        gltf::read_texture(document, part, usage, &mut self.notes)
     }
+}
+
+fn shape_error(error: shapes::ShapeError) -> FileError {
+    FileError::new("shape", Problem::Shape(error.to_string()))
 }
 
 /// Reads a model file of any kind, by its extension.

@@ -16,6 +16,7 @@
 //! Texture coordinates count from a picture's top left corner, v downwards, as Bevy and glTF do;
 //! OBJ, which counts from the bottom, is turned over on the way in and out.
 
+mod budget;
 pub mod builtin;
 mod error;
 mod exported;
@@ -36,6 +37,7 @@ mod part;
 mod picture;
 pub(crate) mod place;
 mod problems;
+mod regular;
 #[cfg(feature = "editor")]
 mod reload;
 mod replace;
@@ -44,6 +46,8 @@ mod scene_file;
 pub mod shapes;
 mod sources;
 
+pub use budget::{Budget, Size, check_film};
+pub(crate) use budget::{beside, film_bytes};
 pub use error::{FileError, Place, Problem};
 pub use folder::Folder;
 pub use identity::check_outputs;
@@ -59,6 +63,8 @@ pub use picture::{
     write_picture, write_picture_with_notes, write_rendered,
 };
 pub use problems::{LoadProblem, LoadProblems};
+pub(crate) use regular::{TEXT_BYTES, open_regular, read_text};
+use regular::{open_to_read, read_bytes};
 #[cfg(feature = "editor")]
 pub(crate) use reload::{Reloaded, SourceFile, source_files};
 pub use replace::check_writable;
@@ -81,8 +87,6 @@ use bevy::image::Image;
 use bevy::mesh::Mesh;
 use bevy::prelude::IntoScheduleConfigs;
 use bevy::transform::TransformSystems;
-use std::fs::File;
-use std::io::{BufReader, Read};
 use std::path::Path;
 
 /// Resolves sources into handles. Needs Bevy's `AssetPlugin`, and no renderer.
@@ -128,37 +132,4 @@ pub(crate) fn extension(path: &Path) -> String {
     }
     name.rsplit_once('.')
         .map_or_else(String::new, |(_, extension)| extension.to_owned())
-}
-
-/// Opens a file that shall be read, no larger than the limit.
-fn open_to_read(path: &Path, limit: u64) -> Result<BufReader<File>, FileError> {
-    let reading = |error: std::io::Error| FileError::reading(path, &error);
-    let file = File::open(path).map_err(reading)?;
-    let metadata = file.metadata().map_err(reading)?;
-    if metadata.is_dir() {
-        return Err(FileError::new(path, Problem::IsAFolder));
-    }
-    let size = metadata.len();
-    if size > limit {
-        return Err(FileError::new(path, Problem::TooLarge { size, limit }));
-    }
-    if metadata.is_file() && size == 0 {
-        return Err(FileError::new(path, Problem::Empty));
-    }
-    Ok(BufReader::with_capacity(1 << 16, file))
-}
-
-/// The content of a file, no larger than the limit.
-fn read_bytes(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
-    let mut bytes = Vec::new();
-    let mut reader = open_to_read(path, limit)?.take(limit.saturating_add(1));
-    reader
-        .read_to_end(&mut bytes)
-        .map_err(|error| FileError::reading(path, &error))?;
-    // A pipe has no size beforehand.
-    let size = bytes.len() as u64;
-    if size > limit {
-        return Err(FileError::new(path, Problem::TooLarge { size, limit }));
-    }
-    Ok(bytes)
 }

@@ -45,7 +45,8 @@ pub(crate) fn has_changed(world: &bevy::prelude::World, file: &Path) -> bool {
     if !file.is_file() || !same_file(&known.file, file) {
         return false;
     }
-    match super::read_bytes(file, super::Limits::default().file_bytes) {
+    let limits = super::Limits::default();
+    match super::read_bytes(file, limits.file_bytes, &limits.memory) {
         Ok(bytes) => digest(&bytes) != known.digest,
         // Emptied, or longer than any scene.
         Err(_) => true,

@@ -1,3 +1,4 @@
+use super::budget::{Budget, beside, mesh_bytes};
 use super::builtin::{self, BuiltinScene};
 use super::error::{FileError, Problem};
 use super::file_name::encoded;
@@ -9,16 +10,17 @@ use super::model::Model;
 use super::picture::PictureUse;
 use super::scene_file::{SceneFile, read_scene, scene_entities};
 use super::sources::{SceneFiles, resolve_environment, resolve_meshes, resolve_pictures};
-use super::{Limits, LoadProblems, extension};
+use super::{Limits, LoadProblems, extension, shapes};
 use crate::scene::{
     Environment, MeshSource, Phong, RenderSettings, SceneId, TextureSource, UsesMaterial,
 };
 use bevy::asset::{Assets, Handle};
+use bevy::camera::primitives::{Aabb, MeshAabb};
 use bevy::camera::visibility::Visibility;
 use bevy::ecs::hierarchy::ChildOf;
 use bevy::ecs::name::Name;
 use bevy::image::Image;
-use bevy::mesh::Mesh;
+use bevy::mesh::{Mesh, Mesh3d};
 use bevy::prelude::{Entity, World};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -72,8 +74,10 @@ pub struct Opened {
 pub fn open(
     world: &mut World,
     source: &SceneSource,
-    options: OpenOptions,
+    mut options: OpenOptions,
 ) -> Result<Opened, FileError> {
+    // What is open stays in memory until the other scene is complete.
+    options.limits.memory = beside(&options.limits.memory, world);
     let file = match source {
         SceneSource::Builtin(scene) => return Ok(open_builtin(world, scene, options)),
         SceneSource::File(file) => file,
@@ -92,7 +96,7 @@ pub fn open(
     }
     let folder = Folder::of(file, options.allow_outside);
     match extension.as_str() {
-        "scn.ron" | "ron" => open_scene(world, file, folder, options)?,
+        "scn.ron" | "ron" => opened.notes = open_scene(world, file, folder, options)?,
         "obj" | "gltf" | "glb" => {
             let model = read_model(file, &folder, &options.limits)?;
             opened.notes = open_model(world, model, file, folder, options.limits)?;
@@ -134,11 +138,13 @@ fn open_scene(
     OpenOptions {
         limits, tolerant, ..
     }: OpenOptions,
-) -> Result<(), FileError> {
+) -> Result<Vec<String>, FileError> {
     let scene = read_scene(file, &limits)?;
     let on_disk = scene.on_disk.clone();
-    let loaded = Loaded::for_scene(&scene, &folder, &limits, tolerant)
+    check_shapes(&scene, &limits.memory).map_err(|problem| FileError::new(file, problem))?;
+    let mut loaded = Loaded::for_scene(&scene, &folder, &limits, tolerant)
         .map_err(|error| name_referrer(file, error))?;
+    let notes = std::mem::take(&mut loaded.notes);
     let mut files = SceneFiles::new(folder, limits);
     files.on_disk = Some(on_disk);
     clear(world, files);
@@ -149,7 +155,7 @@ fn open_scene(
     assign_ids(world, &entities);
     resolve(world);
     drop(held);
-    Ok(())
+    Ok(notes)
 }
 
 fn open_model(
@@ -161,10 +167,12 @@ fn open_model(
 ) -> Result<Vec<String>, FileError> {
     let path = file.file_name().map_or_else(String::new, encoded);
     let mut model = model;
-    let loaded = Loaded::of_model(&mut model, &path, &mut Loader::new(&folder, &limits))?;
+    let mut loaded = Loaded::of_model(&mut model, &path, &mut Loader::new(&folder, &limits))?;
+    let mut picture_notes = std::mem::take(&mut loaded.notes);
     clear(world, SceneFiles::new(folder, limits));
     let held = loaded.hand_over(world);
-    let notes = std::mem::take(&mut model.notes);
+    let mut notes = std::mem::take(&mut model.notes);
+    notes.append(&mut picture_notes);
     let mut next = 0;
     spawn_model(world, model, &path, &mut || {
         next += 1;
@@ -197,21 +205,29 @@ pub(super) fn spawn_model(
         .collect();
     let mut spawned: Vec<Entity> = Vec::with_capacity(model.nodes.len());
     for node in model.nodes {
-        let mut entity = world.spawn((
+        let base = (
             next(),
             Name::new(node.name),
             node.transform,
             Visibility::default(),
-        ));
+        );
+        let material = node.material.and_then(|index| materials.get(index));
+        let material = material.map(|&material| UsesMaterial(material));
+        let mesh = node.mesh.map(|name| {
+            let path = path.to_owned();
+            let source = MeshSource::File { path, name };
+            let (handle, bounds) = loaded_mesh(world, &source).unwrap_or_default();
+            (source, Mesh3d(handle), bounds)
+        });
+        // All at once: each kind of entity that they would be on the way would keep its room for all of them.
+        let mut entity = match (mesh, material) {
+            (Some(mesh), Some(material)) => world.spawn((base, mesh, material)),
+            (Some(mesh), None) => world.spawn((base, mesh)),
+            (None, Some(material)) => world.spawn((base, material)),
+            (None, None) => world.spawn(base),
+        };
         if let Some(&parent) = node.parent.and_then(|parent| spawned.get(parent)) {
             entity.insert(ChildOf(parent));
-        }
-        if let Some(name) = node.mesh {
-            let path = path.to_owned();
-            entity.insert(MeshSource::File { path, name });
-        }
-        if let Some(&material) = node.material.and_then(|index| materials.get(index)) {
-            entity.insert(UsesMaterial(material));
         }
         if let Some(lamp) = node.point_lamp {
             entity.insert(lamp);
@@ -230,9 +246,35 @@ pub(super) fn spawn_model(
     }
 }
 
+/// Refuses shapes that are too many together before the first is made. Their numbers are checked one by one.
+fn check_shapes(scene: &SceneFile, memory: &Budget) -> Result<(), Problem> {
+    let mut seen = std::collections::HashSet::new();
+    let mut bytes = 0_u64;
+    for source in scene.mesh_sources() {
+        if let MeshSource::Shape(shape) = source
+            && seen.insert(super::sources::mesh_key(source))
+            && let Ok(triangles) = shapes::triangle_count(shape)
+        {
+            bytes = bytes.saturating_add(mesh_bytes(triangles, triangles));
+        }
+    }
+    memory.apart().claim(bytes)
+}
+
+/// The mesh of a source that has been handed over, and the box around it.
+fn loaded_mesh(world: &mut World, source: &MeshSource) -> Option<(Handle<Mesh>, Aabb)> {
+    let files = world.get_resource::<SceneFiles>()?;
+    let id = files.loaded_mesh(source, world.get_resource::<Assets<Mesh>>()?)?;
+    let mut assets = world.resource_mut::<Assets<Mesh>>();
+    let bounds = assets.get(id)?.compute_aabb();
+    Some((assets.get_strong_handle(id)?, bounds.unwrap_or_default()))
+}
+
 /// Replaces the open scene by one with a camera and a light, and nothing to see.
 pub fn open_empty(world: &mut World) {
-    clear(world, SceneFiles::default());
+    let limits = world.get_resource::<SceneFiles>();
+    let limits = limits.map(|files| files.limits.clone()).unwrap_or_default();
+    clear(world, SceneFiles::new(Folder::default(), limits));
     frame(world);
     resolve(world);
 }
@@ -255,6 +297,8 @@ pub(super) struct Loaded {
     pub pictures: Vec<(TextureSource, PictureUse, Image)>,
     /// Every file that was read for it.
     read: BTreeSet<PathBuf>,
+    /// What is wrong with some of it, a line each.
+    pub notes: Vec<String>,
 }
 
 /// Keeps assets alive until entities hold them.
@@ -290,6 +334,7 @@ impl Loaded {
                 _ => {}
             }
         }
+        loaded.take_notes(&mut loader);
         loaded.read = loader.read;
         Ok(loaded)
     }
@@ -301,6 +346,7 @@ impl Loaded {
         for (source, usage) in materials.flat_map(|(_, phong)| pictures_of(phong)) {
             loaded.load_picture(source, usage, loader)?;
         }
+        loaded.take_notes(loader);
         for (name, mesh) in std::mem::take(&mut model.meshes) {
             let path = path.to_owned();
             loaded.meshes.push((MeshSource::File { path, name }, mesh));
@@ -308,6 +354,13 @@ impl Loaded {
         loaded.read.clone_from(&loader.read);
         loaded.read.extend(model.files.iter().cloned());
         Ok(loaded)
+    }
+
+    /// A picture that is used in two ways is told of once.
+    fn take_notes(&mut self, loader: &mut Loader) {
+        self.notes = loader.notes.drain(..).map(|e| e.to_string()).collect();
+        self.notes.sort();
+        self.notes.dedup();
     }
 
     fn load_picture(

@@ -98,7 +98,12 @@ pub(crate) fn source_files(world: &mut World) -> Vec<SourceFile> {
 impl SourceFile {
     /// Loads all of it, on any thread.
     pub fn load(&self, folder: &Folder, limits: &Limits) -> Result<Reloaded, FileError> {
-        let mut loader = Loader::new(folder, limits);
+        // Each time anew: what it was before is let go.
+        let limits = Limits {
+            memory: limits.memory.apart(),
+            ..limits.clone()
+        };
+        let mut loader = Loader::new(folder, &limits);
         let mut meshes = Vec::new();
         for source in &self.meshes {
             meshes.push((source.clone(), loader.mesh(source)?));

@@ -4,6 +4,7 @@
 //! Two objects with the same source share one mesh. Where a source cannot be loaded, what was
 //! loaded before stays, and [`LoadProblems`] says why.
 
+use super::budget::held_bytes;
 use super::error::FileError;
 use super::folder::Folder;
 use super::loader::Loader;
@@ -74,6 +75,14 @@ impl SceneFiles {
     pub fn inputs(&self) -> impl Iterator<Item = &Path> {
         let scene = self.on_disk.iter().map(OnDisk::file);
         scene.chain(self.sources())
+    }
+
+    /// The limits for what is loaded beside these assets.
+    fn limits_beside(&self, meshes: &Assets<Mesh>, images: &Assets<Image>) -> Limits {
+        Limits {
+            memory: self.limits.memory.holding(held_bytes(meshes, images)),
+            ..self.limits.clone()
+        }
     }
 
     /// Takes over a mesh that was loaded already. The handle must live until an entity holds it.
@@ -149,7 +158,11 @@ impl SceneFiles {
 
 /// A source as a key. `Debug` prints floating point numbers so that they read back the same.
 pub(crate) fn mesh_key(source: &MeshSource) -> String {
-    format!("{source:?}")
+    match source {
+        // Neither a path nor a shape's numbers have zeros in them.
+        MeshSource::File { path, name } => [path, "\0", name].concat(),
+        MeshSource::Shape(shape) => format!("{shape:?}"),
+    }
 }
 
 /// Gives each object whose source changed the mesh that it names.
@@ -157,13 +170,14 @@ pub(crate) fn resolve_meshes(
     mut commands: Commands,
     mut files: ResMut<SceneFiles>,
     mut meshes: ResMut<Assets<Mesh>>,
+    images: Res<Assets<Image>>,
     mut problems: ResMut<LoadProblems>,
     changed: Query<(Entity, &MeshSource, Option<&Mesh3d>), Changed<MeshSource>>,
 ) {
     if changed.is_empty() {
         return;
     }
-    let (folder, limits) = (files.folder.clone(), files.limits.clone());
+    let (folder, limits) = (files.folder.clone(), files.limits_beside(&meshes, &images));
     // One for all, so that a file with many meshes is parsed once.
     let mut loader = Loader::new(&folder, &limits);
     for (entity, source, current) in &changed {
@@ -184,13 +198,14 @@ pub(crate) fn resolve_pictures(
     mut commands: Commands,
     mut files: ResMut<SceneFiles>,
     mut images: ResMut<Assets<Image>>,
+    meshes: Res<Assets<Mesh>>,
     mut problems: ResMut<LoadProblems>,
     changed: Query<(Entity, &Phong, Option<&PhongMaps>), Changed<Phong>>,
 ) {
     if changed.is_empty() {
         return;
     }
-    let (folder, limits) = (files.folder.clone(), files.limits.clone());
+    let (folder, limits) = (files.folder.clone(), files.limits_beside(&meshes, &images));
     // One for all, so that a file with many pictures is parsed once.
     let mut loader = Loader::new(&folder, &limits);
     for (entity, phong, current) in &changed {
@@ -224,6 +239,9 @@ pub(crate) fn resolve_pictures(
         commands.entity(entity).insert(maps);
     }
     files.note_read(loader.read);
+    for note in loader.notes {
+        problems.add(None, LoadProblem::PICTURE, note);
+    }
 }
 
 /// Loads the environment's map where it changed.
@@ -231,6 +249,7 @@ pub(crate) fn resolve_environment(
     environment: Res<Environment>,
     mut files: ResMut<SceneFiles>,
     mut images: ResMut<Assets<Image>>,
+    meshes: Res<Assets<Mesh>>,
     mut problems: ResMut<LoadProblems>,
     mut map: ResMut<EnvironmentMap>,
 ) {
@@ -241,10 +260,13 @@ pub(crate) fn resolve_environment(
     let handle = match &environment.map {
         None => None,
         Some(source) => {
-            let (folder, limits) = (files.folder.clone(), files.limits.clone());
+            let (folder, limits) = (files.folder.clone(), files.limits_beside(&meshes, &images));
             let mut loader = Loader::new(&folder, &limits);
             let picture = files.picture(source, PictureUse::Color, &mut images, &mut loader);
             files.note_read(loader.read);
+            for note in loader.notes {
+                problems.add(None, LoadProblem::ENVIRONMENT, note);
+            }
             match picture {
                 Ok(handle) => Some(handle),
                 Err(error) => {

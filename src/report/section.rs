@@ -38,7 +38,7 @@ impl Part {
 pub struct Options {
     /// What it holds.
     pub parts: Vec<Part>,
-    /// Fewer rays, rounds and samples: about two minutes for a scene on two cores.
+    /// Fewer rays, rounds and samples: 20 seconds to two minutes for a scene on two cores.
     pub quick: bool,
     /// Chooses all random numbers.
     pub seed: u32,

@@ -1,7 +1,14 @@
 //! What draws the window.
 
 use bevy::ecs::system::{Res, SystemParam};
-use bevy::render::renderer::RenderAdapterInfo;
+use bevy::ecs::world::World;
+use bevy::render::renderer::{RenderAdapterInfo, RenderDevice};
+
+/// Pixels on a side of the largest picture that can be drawn; `None` where nothing draws.
+pub(crate) fn largest_side(world: &World) -> Option<u32> {
+    let device = world.get_resource::<RenderDevice>()?;
+    Some(device.limits().max_texture_dimension_2d)
+}
 
 /// What Bevy draws with, for a system.
 #[derive(SystemParam)]

@@ -35,6 +35,7 @@ mod symbols;
 mod traced;
 
 pub use adapter::Adapter;
+pub(crate) use adapter::largest_side;
 pub use cameras::{interface_camera, lines_camera, picture_camera};
 pub use handle_camera::{HandleCameraPlugin, draws_handles};
 pub use lines::{DrawnLines, Line, LinesPlugin};

@@ -3,9 +3,12 @@
 
 mod gltf;
 mod limits;
+mod memory;
 mod models;
 mod output;
 mod pictures;
+#[cfg(unix)]
+mod pipes;
 mod scenes;
 
 use crate::files::app::app;

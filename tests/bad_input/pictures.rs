@@ -133,3 +133,21 @@ fn an_empty_picture() {
     let (_folder, file) = textured("a.png", b"");
     says(&refused(&file), &["a.png"]);
 }
+
+#[test]
+fn half_a_jpeg_is_shown_and_said_to_be_half() {
+    let picture = image::RgbImage::from_fn(64, 64, |x, y| image::Rgb([x as u8, y as u8, 90]));
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    picture
+        .write_to(&mut bytes, image::ImageFormat::Jpeg)
+        .unwrap();
+    let bytes = bytes.into_inner();
+    for (part, notes) in [(&bytes[..], 0), (&bytes[..bytes.len() / 2], 1)] {
+        let (_folder, file) = textured("a.jpg", part);
+        let (_, opened) = crate::files::app::opened(&file);
+        let told = opened.notes.iter().filter(|note| note.contains("a.jpg"));
+        let told: Vec<&String> = told.collect();
+        assert_eq!(told.len(), notes, "{:?}", opened.notes);
+        assert!(told.iter().all(|note| note.contains("cut off")), "{told:?}");
+    }
+}

@@ -262,3 +262,65 @@ fn a_reader_that_closes_the_pipe_is_no_error_and_a_full_disk_is_one() {
         );
     }
 }
+
+#[test]
+fn what_needs_more_memory_than_it_may_take_is_refused_before_it_is_made() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let render = |more: &[&str], code: i32, parts: &[&str]| {
+        let arguments = [&["render", "triangle", "-o", "a.png"], more].concat();
+        fails(folder, &arguments, code, parts);
+    };
+    let film = ["--size", "8000x8000", "--memory", "500M"];
+    render(&film, 1, &["triangle", "500 MB", "--memory"]);
+    render(&["--memory", "6"], 2, &["--memory", "6G"]);
+    render(&["--memory", "0G"], 2, &["--memory", "above 0"]);
+    let bench = ["bench", "triangle", "--size", "8000x8000", "--memory", "1G"];
+    fails(folder, &bench, 1, &["triangle", "--memory"]);
+    let part = [
+        "render",
+        "triangle",
+        "--size",
+        "200x200",
+        "--quiet",
+        "--samples",
+    ];
+    for (samples, file) in [("0..1", "a.exr"), ("1..2", "b.exr")] {
+        super::succeeds(folder, &[&part[..], &[samples, "-o", file]].concat());
+    }
+    // The first fits, and not the second beside it.
+    let merge = ["merge", "a.exr", "b.exr", "-o", "c.exr", "--memory"];
+    fails(
+        folder,
+        &[&merge[..], &["8M"]].concat(),
+        1,
+        &["b.exr", "--memory"],
+    );
+    super::succeeds(folder, &[&merge[..], &["40M"]].concat());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_shells_limit_on_memory_is_kept_to() {
+    let folder = tempfile::tempdir().unwrap();
+    let sphere = "Shape(Sphere(radius: 1.0, segments: 4400, rings: 2160))";
+    let text = format!(
+        "(resources: {{\"glassbox::io::FileVersion\": (1)}}, entities: {{\
+         1: (components: {{\"glassbox::scene::MeshSource\": {sphere}}})}})"
+    );
+    std::fs::write(folder.path().join("a.scn.ron"), text).unwrap();
+    let glassbox = env!("CARGO_BIN_EXE_glassbox");
+    let command = format!("ulimit -v 4000000; exec {glassbox} render a.scn.ron -o a.png");
+    let output = std::process::Command::new("sh")
+        .args(["-c", &command])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    let (_, err) = texts(&output);
+    assert_eq!(output.status.code(), Some(1), "{err}");
+    assert_eq!(err.lines().count(), 1, "{err}");
+    // Three quarters of 3.8 GB without what the program itself has mapped.
+    let told = ["2.4", "2.5", "2.6", "2.7", "2.8"];
+    let told = told.map(|size| format!("{size} GB that a scene may take"));
+    assert!(told.iter().any(|told| err.contains(told)), "{err}");
+}

@@ -1,6 +1,11 @@
 //! Parts of pictures, by the program as people run it.
 
 use crate::cli::{files, glassbox, succeeds, texts};
+use exr::prelude::{
+    AnyChannel, Blocks, Compression, Encoding, FlatSamples, LineOrder, ReadChannels, ReadLayers,
+    Vec2, WritableImage, read,
+};
+use glassbox::io::{Budget, Limits, read_part, write_part};
 use std::path::Path;
 use std::process::Command;
 
@@ -231,4 +236,106 @@ fn the_recipe_for_gnu_parallel_gives_what_one_run_gives() {
     succeeds(folder.path(), &merge);
     part(folder.path(), "0..16", "whole.exr");
     assert!(bytes(folder.path(), "merged.exr") == bytes(folder.path(), "whole.exr"));
+}
+
+/// The part with a thousand channels more than it should have, all zeros, in blocks of this kind.
+fn swollen(part: &Path, blocks: Blocks, to: &Path) {
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .from_file(part);
+    let mut image = image.unwrap();
+    let layer = &mut image.layer_data;
+    let pixels = layer.size.area();
+    let mut list = layer.channel_data.list.clone();
+    for i in 0..1000 {
+        let zeros = FlatSamples::U32(vec![0; pixels]);
+        list.push(AnyChannel::new(format!("extra.{i:04}").as_str(), zeros));
+    }
+    layer.channel_data = exr::prelude::AnyChannels::sort(list);
+    layer.encoding = Encoding {
+        compression: Compression::RLE,
+        blocks,
+        line_order: LineOrder::Increasing,
+    };
+    image.write().to_file(to).unwrap();
+}
+
+#[test]
+fn channels_that_are_not_ours_take_no_memory_and_blocks_that_would_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let size = ["--size", "96x64", "--spp", "1"];
+    let render = [
+        "render",
+        "triangle",
+        "--quiet",
+        "--samples",
+        "0..1",
+        "-o",
+        "a.exr",
+    ];
+    succeeds(folder.path(), &[&render[..], &size[..2]].concat());
+    swollen(&at("a.exr"), Blocks::ScanLines, &at("lines.exr"));
+    swollen(&at("a.exr"), Blocks::Tiles(Vec2(96, 64)), &at("tile.exr"));
+    let limits = Limits {
+        memory: Budget::of(6 << 20),
+        ..Limits::default()
+    };
+    let whole = read_part(&at("a.exr"), &Limits::default()).unwrap();
+    assert!(read_part(&at("lines.exr"), &limits).unwrap() == whole);
+    let error = read_part(&at("tile.exr"), &limits).unwrap_err().to_string();
+    assert!(
+        error.contains("tile.exr") && error.contains("--memory"),
+        "{error}"
+    );
+    assert!(read_part(&at("tile.exr"), &Limits::default()).unwrap() == whole);
+}
+
+#[test]
+fn a_forged_part_is_refused_whatever_is_to_be_written() {
+    let folder = tempfile::tempdir().unwrap();
+    part(folder.path(), "0..2", "a.exr");
+    let mut forged = read_part(&folder.path().join("a.exr"), &Limits::default()).unwrap();
+    forged.output = "output.exposure=NaN".into();
+    write_part(&folder.path().join("forged.exr"), &forged).unwrap();
+    for to in ["b.png", "b.exr", "b.hdr"] {
+        let output = glassbox(folder.path(), &["merge", "forged.exr", "-o", to]);
+        let (_, err) = texts(&output);
+        assert_eq!(output.status.code(), Some(1), "{err}");
+        assert!(
+            err.lines().count() == 1 && err.contains("forged.exr"),
+            "{err}"
+        );
+        assert!(err.contains("exposure"), "{err}");
+    }
+    assert_eq!(files(folder.path()), ["a.exr", "forged.exr"]);
+}
+
+#[test]
+fn the_same_picture_is_the_same_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let render = |threads: &str, file: &str| {
+        let what = [
+            "render", "triangle", "--size", "700x500", "--spp", "1", "--quiet",
+        ];
+        succeeds(
+            folder,
+            &[&what[..], &["--threads", threads, "-o", file]].concat(),
+        );
+        bytes(folder, file)
+    };
+    for format in ["png", "jpg", "hdr", "exr"] {
+        let first = render("1", &format!("first.{format}"));
+        for threads in ["2", "3", "4"] {
+            assert!(
+                render(threads, &format!("again.{format}")) == first,
+                "{format}"
+            );
+        }
+    }
 }

@@ -56,3 +56,52 @@ fn the_scripts_that_come_with_glassbox_are_understood() {
     }
     assert!(read >= 5, "there are {read}");
 }
+
+#[test]
+fn a_size_that_no_window_can_have_is_named_with_its_line() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let output = display.play(folder.path(), &[], "[\n  Size(65000, 65000),\n  Quit,\n]");
+    let (_, err) = texts(&output);
+    assert_eq!(output.status.code(), Some(1), "{err}");
+    assert_eq!(err.lines().count(), 1, "{err}");
+    assert!(err.contains("script.ron:2: Size(65000, 65000)"), "{err}");
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_in_the_terminal_keeps_unsaved_work_and_a_script_that_quits_leaves_none() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let edit = "Wait(Frames(5)), Set(of: Some(\"Lamp\"), path: \"PointLamp.intensity\", to: 0.5)";
+    let copies = || {
+        let kept = std::fs::read_dir(folder.join("settings/recovery"));
+        let kept = kept.into_iter().flatten().flatten();
+        let names = kept.map(|entry| entry.file_name().to_string_lossy().into_owned());
+        names.filter(|name| name.ends_with(".scn.ron")).count()
+    };
+    display.plays(folder, &["cornell-box"], &format!("[{edit}, Quit]"));
+    assert_eq!(copies(), 0, "given up by the script");
+
+    let script = folder.join("script.ron");
+    std::fs::write(&script, format!("[{edit}, Screenshot(\"done.png\")]")).unwrap();
+    let mut command = display.command(folder);
+    command.args(["cornell-box", "--script"]).arg(&script);
+    let mut editor = command.spawn().unwrap();
+    let start = std::time::Instant::now();
+    while !folder.join("done.png").exists() {
+        assert!(start.elapsed() < super::PATIENCE, "there was no picture");
+        std::thread::sleep(std::time::Duration::from_millis(100));
+    }
+    let killed = std::process::Command::new("kill")
+        .args(["-INT", &editor.id().to_string()])
+        .status();
+    assert!(killed.unwrap().success());
+    assert_eq!(editor.wait().unwrap().code(), Some(130));
+    assert_eq!(copies(), 1, "Ctrl+C is nobody's consent");
+}

@@ -91,11 +91,12 @@ pub(super) fn is_scene(path: &Path) -> bool {
 pub(in crate::editor) fn open_file(world: &mut World, path: &Path, allow_outside: bool) {
     let source = SceneSource::named(path);
     let is_file = matches!(source, SceneSource::File(_));
+    let files = world.get_resource::<SceneFiles>();
     let options = OpenOptions {
         allow_outside,
+        limits: files.map(|files| files.limits.clone()).unwrap_or_default(),
         // What it cannot show is said, and can be mended here.
         tolerant: true,
-        ..OpenOptions::default()
     };
     match open(world, &source, options) {
         Ok(opened) => {

@@ -20,6 +20,7 @@ mod window;
 
 pub(super) use files::open_file;
 pub use question::{Answer, Purpose, Question, answer};
+pub(super) use recovery::give_up_work;
 pub use recovery::{Recovered, RecoveryFolder};
 pub(super) use window::{picture_at, typed_picture};
 
@@ -109,6 +110,8 @@ impl Document {
 pub struct DocumentPlugin {
     /// Where copies of unsaved work are kept; `None` keeps none.
     pub recovery: Option<PathBuf>,
+    /// Whether copies that others have left there are not offered at the start.
+    pub leaves_recovered: bool,
     /// The window keeps its own title.
     pub keeps_title: bool,
 }
@@ -121,7 +124,7 @@ impl Plugin for DocumentPlugin {
             .add_systems(EditorUpdate, (dialog::take_choices, act).chain())
             .add_systems(Last, (note_state, tell_load_problems));
         if let Some(folder) = &self.recovery {
-            recovery::add_to(app, folder);
+            recovery::add_to(app, folder, !self.leaves_recovered);
         }
         watch::add_to(app);
         window::add_to(app, self.keeps_title);

@@ -96,7 +96,10 @@ pub fn answer(world: &mut World, answer: Answer) {
                 None => dialog::ask(world, Purpose::SaveAs),
             }
         }
-        (Question::Unsaved { then }, Answer::No) => perform_now(world, &then),
+        (Question::Unsaved { then }, Answer::No) => {
+            recovery::give_up_work(world);
+            perform_now(world, &then);
+        }
         (Question::Path { .. }, Answer::Path(path)) if path.as_os_str().is_empty() => {
             world.resource_mut::<Document>().then = None;
         }

@@ -3,19 +3,25 @@
 //! While there are unsaved changes a copy of the scene is written every minute, under a temporary
 //! name that is then changed, so that it is complete at any time. Beside it lies a file that this
 //! process holds locked: the lock goes with the process, however that ends, so the next editor
-//! knows which copies nobody is working on. An editor that ends as it should takes its copy away.
+//! knows which copies nobody is working on.
+//!
+//! The copy goes where the work is saved, or somebody said that it shall not be. However else the program ends, by a
+//! signal too, a last copy is written where there is time, and stays.
 
 use super::question::Question;
-use super::{Document, adopt};
+use super::{Document, adopt, note_state_now};
 use crate::editor::history::History;
 use crate::editor::notice::Notices;
 use crate::editor::selection::Selection;
-use crate::io::{OnDisk, OpenOptions, SceneContent, SceneFiles, SceneSource, open, replace_file};
+use crate::io::{
+    OnDisk, OpenOptions, SceneContent, SceneFiles, SceneSource, TEXT_BYTES, open, open_regular,
+    read_text, replace_file,
+};
 use bevy::app::{App, AppExit, Last, Startup};
-use bevy::ecs::message::MessageReader;
+use bevy::ecs::message::{MessageCursor, Messages};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::schedule::IntoScheduleConfigs;
-use bevy::ecs::system::ResMut;
+use bevy::ecs::system::Local;
 use bevy::ecs::world::{Mut, World};
 use serde::{Deserialize, Serialize};
 use std::fs::{self, File};
@@ -39,8 +45,13 @@ pub struct RecoveryFolder {
     next: Instant,
     /// The state that the copy holds.
     copied: Option<u64>,
-    writing: Option<JoinHandle<Result<(), String>>>,
+    /// The copy that is being written, and of which state.
+    writing: Option<(JoinHandle<Result<(), String>>, u64)>,
     failed: bool,
+    /// Whether copies of editors that are gone are offered.
+    offers: bool,
+    /// The state that somebody does not want to keep.
+    given_up: Option<u64>,
 }
 
 /// Unsaved work of an editor that did not end as it should.
@@ -88,7 +99,7 @@ fn beside(copy: &Path, extension: &str) -> PathBuf {
     copy.with_file_name(format!("{stem}.{extension}"))
 }
 
-pub(super) fn add_to(app: &mut App, folder: &Path) {
+pub(super) fn add_to(app: &mut App, folder: &Path, offers: bool) {
     app.insert_resource(RecoveryFolder {
         folder: folder.to_path_buf(),
         session: session_name(),
@@ -98,9 +109,11 @@ pub(super) fn add_to(app: &mut App, folder: &Path) {
         copied: None,
         writing: None,
         failed: false,
+        offers,
+        given_up: None,
     })
     .add_systems(Startup, offer)
-    .add_systems(Last, (copy_unsaved, clear_at_exit).chain());
+    .add_systems(Last, (copy_unsaved, end).chain());
 }
 
 /// Another for every editor: process numbers are used again.
@@ -112,7 +125,8 @@ fn session_name() -> String {
 
 /// Looks for work that nobody is doing any more.
 fn offer(world: &mut World) {
-    if world.resource::<Document>().question.is_some() {
+    let asked = world.resource::<Document>().question.is_some();
+    if asked || !world.resource::<RecoveryFolder>().offers {
         // Next time.
         return;
     }
@@ -134,13 +148,13 @@ fn abandoned(folder: &Path) -> Vec<Recovered> {
             return None;
         }
         let lock = beside(&copy, LOCK);
-        if let Ok(lock) = File::open(lock)
+        if let Ok(lock) = open_regular(&lock)
             && lock.try_lock().is_err()
         {
             return None;
         }
         let age = fs::metadata(&copy).ok()?.modified().ok()?.elapsed();
-        let label = fs::read_to_string(beside(&copy, LABEL)).ok();
+        let label = read_text(&beside(&copy, LABEL), TEXT_BYTES).ok();
         let label = label.and_then(|text| ron::from_str::<Label>(&text).ok());
         let label = label.unwrap_or_else(|| Label {
             name: "a scene".into(),
@@ -164,11 +178,13 @@ fn abandoned(folder: &Path) -> Vec<Recovered> {
 /// Opens what was recovered: unsaved, and called what it was called.
 pub(super) fn recover(world: &mut World, found: &Recovered) {
     let source = SceneSource::File(found.copy.clone());
+    let files = world.get_resource::<SceneFiles>();
+    let limits = files.map(|files| files.limits.clone());
     // Its paths lead from our folder to wherever the files lie.
     let options = OpenOptions {
         allow_outside: true,
         tolerant: true,
-        ..OpenOptions::default()
+        limits: limits.unwrap_or_default(),
     };
     if let Err(error) = open(world, &source, options) {
         world.resource_mut::<Notices>().fault(error.to_string());
@@ -181,52 +197,90 @@ pub(super) fn recover(world: &mut World, found: &Recovered) {
     let mut document = world.resource_mut::<Document>();
     document.saved = None;
     document.unsaved = true;
+    finish_copy(world);
     if let Some(mut folder) = world.get_resource_mut::<RecoveryFolder>() {
         // The copy is deleted: until it is saved this editor needs one of its own.
-        folder.next = Instant::now();
         folder.copied = None;
     }
-    copy_unsaved(world);
-    let writing = world
-        .get_resource_mut::<RecoveryFolder>()
-        .and_then(|mut folder| folder.writing.take());
-    if writing.is_some_and(|writing| matches!(writing.join(), Ok(Ok(())))) {
+    copy_now(world);
+    if finish_copy(world) {
         found.delete();
     }
 }
 
-/// Writes a copy where there is something that no file and no copy holds.
+/// Waits for the copy that is being written. True where there is one that is complete.
+fn finish_copy(world: &mut World) -> bool {
+    let recovery = world.get_resource_mut::<RecoveryFolder>();
+    let Some((writing, state)) = recovery.and_then(|mut recovery| recovery.writing.take()) else {
+        return false;
+    };
+    let written = writing.join().unwrap_or_else(|_| Err("a bug".to_owned()));
+    let mut recovery = world.resource_mut::<RecoveryFolder>();
+    match written {
+        Ok(()) => {
+            recovery.copied = Some(state);
+            let again = std::mem::take(&mut recovery.failed);
+            if again {
+                let mut notices = world.resource_mut::<Notices>();
+                notices.tell("unsaved work is copied again");
+            }
+            true
+        }
+        Err(why) => {
+            complain(world, &why);
+            false
+        }
+    }
+}
+
+/// Each time: the next try is a minute away, and the work is at risk until it succeeds.
+fn complain(world: &mut World, why: &str) {
+    world.resource_mut::<RecoveryFolder>().failed = true;
+    let text = format!("unsaved work is not copied: {why}");
+    world.resource_mut::<Notices>().fault(text);
+}
+
+/// The work as it is now need not be kept: somebody said so, or a script ends the program.
+pub(in crate::editor) fn give_up_work(world: &mut World) {
+    note_state_now(world);
+    let state = Some(world.resource::<History>().state());
+    if let Some(mut recovery) = world.get_resource_mut::<RecoveryFolder>() {
+        recovery.given_up = state;
+    }
+}
+
+/// Writes a copy where there is something that no file and no copy holds, once a minute.
 fn copy_unsaved(world: &mut World) {
     let Some(recovery) = world.get_resource::<RecoveryFolder>() else {
         return;
     };
-    let writing = recovery
-        .writing
-        .as_ref()
-        .is_some_and(|writing| !writing.is_finished());
-    if writing || recovery.next > Instant::now() {
+    match &recovery.writing {
+        Some((writing, _)) if !writing.is_finished() => return,
+        Some(_) => {
+            finish_copy(world);
+        }
+        None => {}
+    }
+    if world.resource::<RecoveryFolder>().next <= Instant::now() {
+        copy_now(world);
+    }
+}
+
+/// Begins a copy, if there is something that no file and no copy holds.
+fn copy_now(world: &mut World) {
+    if !world.contains_resource::<RecoveryFolder>() {
         return;
     }
-    world.resource_scope(|world, mut recovery: Mut<RecoveryFolder>| {
-        if let Some(writing) = recovery.writing.take() {
-            let why = match writing.join() {
-                Ok(Ok(())) => None,
-                Ok(Err(why)) => Some(why),
-                Err(_) => Some("a bug".to_owned()),
-            };
-            if let Some(why) = why {
-                recovery.complain(world, &why);
-            }
-        }
+    let result = world.resource_scope(|world, mut recovery: Mut<RecoveryFolder>| {
         recovery.next = Instant::now() + recovery.every;
         let state = world.resource::<History>().state();
         let document = world.resource::<Document>();
         if !document.unsaved {
             recovery.remove();
-            return;
+            return Ok(());
         }
         if recovery.copied == Some(state) {
-            return;
+            return Ok(());
         }
         let files = world.get_resource::<SceneFiles>();
         let label = Label {
@@ -234,11 +288,11 @@ fn copy_unsaved(world: &mut World) {
             path: document.path.clone(),
             on_disk: files.and_then(SceneFiles::on_disk).cloned(),
         };
-        match recovery.begin(world, label) {
-            Ok(()) => recovery.copied = Some(state),
-            Err(why) => recovery.complain(world, &why),
-        }
+        recovery.begin(world, label, state)
     });
+    if let Err(why) = result {
+        complain(world, &why);
+    }
 }
 
 impl RecoveryFolder {
@@ -253,7 +307,7 @@ impl RecoveryFolder {
     }
 
     /// Takes the scene's content, and writes it on a thread of its own.
-    fn begin(&mut self, world: &mut World, label: Label) -> Result<(), String> {
+    fn begin(&mut self, world: &mut World, label: Label, state: u64) -> Result<(), String> {
         if self.lock.is_none() {
             fs::create_dir_all(&self.folder)
                 .map_err(|error| format!("{}: {error}", self.folder.display()))?;
@@ -278,22 +332,14 @@ impl RecoveryFolder {
                 .map_err(|error| error.to_string())
         };
         let thread = thread::Builder::new().name("autosave".into()).spawn(write);
-        self.writing = Some(thread.map_err(|error| error.to_string())?);
+        let thread = thread.map_err(|error| error.to_string())?;
+        self.writing = Some((thread, state));
         Ok(())
-    }
-
-    fn complain(&mut self, world: &mut World, why: &str) {
-        if !self.failed {
-            // Once: what cannot be written now will not be written a minute later.
-            self.failed = true;
-            let text = format!("unsaved work is not copied: {why}");
-            world.resource_mut::<Notices>().fault(text);
-        }
     }
 
     /// Takes this editor's copy away.
     fn remove(&mut self) {
-        if let Some(writing) = self.writing.take() {
+        if let Some((writing, _)) = self.writing.take() {
             // What it wrote is deleted.
             let _ = writing.join();
         }
@@ -306,8 +352,31 @@ impl RecoveryFolder {
     }
 }
 
-fn clear_at_exit(mut exits: MessageReader<AppExit>, mut recovery: ResMut<RecoveryFolder>) {
-    if exits.read().next().is_some() {
-        recovery.remove();
+/// The program ends. An exit alone is nobody's consent: Ctrl+C in a terminal asks for one too.
+fn end(world: &mut World, mut exits: Local<MessageCursor<AppExit>>) {
+    if exits
+        .read(world.resource::<Messages<AppExit>>())
+        .next()
+        .is_none()
+    {
+        return;
     }
+    note_state_now(world);
+    let state = world.resource::<History>().state();
+    let unsaved = world.resource::<Document>().unsaved;
+    let mut recovery = world.resource_mut::<RecoveryFolder>();
+    if !unsaved || recovery.given_up == Some(state) {
+        recovery.remove();
+        return;
+    }
+    finish_copy(world);
+    copy_now(world);
+    finish_copy(world);
+    let kept = world.resource::<RecoveryFolder>().copied == Some(state);
+    let what = match kept {
+        true => "note: unsaved work was kept; the next start offers it",
+        false => "error: unsaved work could not be kept",
+    };
+    // The window is gone, and where standard error is closed nobody listens.
+    let _ = writeln!(std::io::stderr(), "{what}");
 }

@@ -8,7 +8,7 @@
 
 use crate::editor::notice::Notices;
 use crate::editor::schedule::EditorUpdate;
-use crate::io::{Folder, Limits, Reloaded, SceneFiles, SourceFile, source_files};
+use crate::io::{Folder, Limits, Reloaded, SceneFiles, SourceFile, beside, source_files};
 use crate::scene::{Environment, MeshSource, Phong};
 use bevy::app::App;
 use bevy::ecs::change_detection::DetectChanges;
@@ -140,7 +140,8 @@ fn order(world: &mut World) {
     let Some(scene) = world.get_resource::<SceneFiles>() else {
         return;
     };
-    let (folder, limits) = (scene.folder.clone(), scene.limits.clone());
+    let (folder, mut limits) = (scene.folder.clone(), scene.limits.clone());
+    limits.memory = beside(&limits.memory, world);
     let mut watcher = world.resource_mut::<Watcher>();
     watcher.stale = false;
     watcher.next = Instant::now() + EVERY;

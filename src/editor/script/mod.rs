@@ -27,6 +27,7 @@ mod spot;
 mod step;
 mod value;
 
+use crate::io::{FileError, TEXT_BYTES, read_text};
 use bevy::app::App;
 use bevy::ecs::world::World;
 use player::Player;
@@ -38,13 +39,8 @@ use step::Step;
 #[derive(Debug, thiserror::Error)]
 pub enum ScriptError {
     /// The file cannot be read.
-    #[error("{}: {error}", .path.display())]
-    File {
-        /// Of the script.
-        path: PathBuf,
-        /// What the system said.
-        error: std::io::Error,
-    },
+    #[error(transparent)]
+    File(#[from] FileError),
     /// A step is not known or not written as it should be.
     #[error("{}:{line}: {text}", .path.display())]
     Step {
@@ -68,10 +64,7 @@ pub struct Script {
 impl Script {
     /// Reads a script, and all of its steps.
     pub fn read(path: &Path) -> Result<Self, ScriptError> {
-        let text = std::fs::read_to_string(path).map_err(|error| ScriptError::File {
-            path: path.to_path_buf(),
-            error,
-        })?;
+        let text = read_text(path, TEXT_BYTES)?;
         Self::parse(path, &text)
     }
 
@@ -99,8 +92,14 @@ impl Script {
                 let from = 1 + text[..before].matches('\n').count();
                 fault((from + further).max(line), error.code.to_string())
             })?;
-            if let Step::Key(keys) | Step::Hold(keys) | Step::LetGo(keys) = &parsed {
-                keyboard::parse(keys).map_err(|text| fault(line, text))?;
+            match &parsed {
+                Step::Key(keys) | Step::Hold(keys) | Step::LetGo(keys) => {
+                    keyboard::parse(keys).map_err(|text| fault(line, text))?;
+                }
+                Step::Size(width, height) => {
+                    check_size(*width, *height).map_err(|text| fault(line, text))?;
+                }
+                _ => {}
             }
             steps.push((line, parsed));
         }
@@ -113,6 +112,21 @@ impl Script {
     /// Plays it in this app from its first frame on.
     pub(super) fn play_in(self, app: &mut App) {
         player::add(app, Player::new(self));
+    }
+}
+
+/// Pixels on a side of a window; every graphics driver draws so many.
+const WINDOW_SIDE: u32 = 8192;
+
+fn check_size(width: u32, height: u32) -> Result<(), String> {
+    match [width, height]
+        .iter()
+        .all(|side| (1..=WINDOW_SIDE).contains(side))
+    {
+        true => Ok(()),
+        false => Err(format!(
+            "Size({width}, {height}): a window has 1 to {WINDOW_SIDE} pixels on a side"
+        )),
     }
 }
 
@@ -199,6 +213,8 @@ mod tests {
             ),
             ("[\n  Key(\"Ctrl+Blue\"),\n]", 2, "Blue"),
             ("[\n  Set(path: \"a\", too: 1),\n]", 2, "too"),
+            ("[\n  Quit,\n  Size(65000, 65000),\n]", 3, "1 to 8192"),
+            ("[\n  Size(0, 600),\n]", 2, "Size(0, 600)"),
             ("[\n  Quit,\n  Click(On(\"a\"),\n]", 4, ""),
         ] {
             let error = parse(text).unwrap_err();

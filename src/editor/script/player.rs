@@ -1,6 +1,7 @@
 //! Plays a script: a movement, a press or a release a frame, as the window would send them.
 
 use super::super::action::Action;
+use super::super::document::give_up_work;
 use super::super::selection::Selection;
 use super::super::viewport::EditorCamera;
 use super::claims::check;
@@ -10,8 +11,9 @@ use super::screen::{Shot, shoot};
 use super::spot::{Texts, named, place, read_texts};
 use super::step::{Button, Spot, Step, Until};
 use super::{Script, value};
+use crate::io::check_film;
 use crate::scene::SceneId;
-use crate::view::TracedRender;
+use crate::view::{TracedRender, largest_side};
 use bevy::app::{App, AppExit, First, PostUpdate};
 use bevy::ecs::entity::Entity;
 use bevy::ecs::query::With;
@@ -19,7 +21,7 @@ use bevy::ecs::resource::Resource;
 use bevy::ecs::world::{Mut, World};
 use bevy::input::ButtonState;
 use bevy::input::keyboard::KeyCode;
-use bevy::math::Vec2;
+use bevy::math::{UVec2, Vec2};
 use bevy::prelude::IntoScheduleConfigs;
 use bevy::window::{PrimaryWindow, Window, WindowResized};
 use bevy_egui::EguiPostUpdateSet;
@@ -138,6 +140,8 @@ fn play(world: &mut World) {
             // Where standard error is closed the exit code still says it.
             let _ = writeln!(std::io::stderr(), "error: {path}:{line}: {text}");
             player.ended = true;
+            // What a script did it can do again.
+            give_up_work(world);
             world.write_message(AppExit::error());
         }
     });
@@ -234,6 +238,7 @@ fn begin(world: &mut World, player: &mut Player, step: Step) -> Result<(), Strin
             player.settle();
         }
         Step::Size(width, height) => {
+            check_window(world, &player.path, UVec2::new(width, height))?;
             let mut windows = world.query_filtered::<(Entity, &mut Window), With<PrimaryWindow>>();
             let (width, height) = (width as f32, height as f32);
             if let Ok((window, mut component)) = windows.single_mut(world) {
@@ -255,11 +260,27 @@ fn begin(world: &mut World, player: &mut Player, step: Step) -> Result<(), Strin
         }
         Step::Quit => {
             player.ended = true;
+            give_up_work(world);
             world.write_message(AppExit::Success);
         }
         claim => check(world, claim)?,
     }
     Ok(())
+}
+
+/// Refuses a size that the window cannot have: the graphics driver would end the program.
+fn check_window(world: &mut World, script: &Path, size: UVec2) -> Result<(), String> {
+    let mut windows = world.query_filtered::<&Window, With<PrimaryWindow>>();
+    let scale = windows.single(world).map_or(1.0, Window::scale_factor);
+    let pixels = (size.as_vec2() * scale).as_uvec2();
+    let most = largest_side(world).unwrap_or(u32::MAX);
+    if pixels.max_element() > most {
+        let UVec2 { x, y } = size;
+        return Err(format!(
+            "Size({x}, {y}): {most} pixels on a side is the most that can be drawn here"
+        ));
+    }
+    check_film(world, script, pixels).map_err(|error| error.problem.to_string())
 }
 
 fn click(world: &mut World, player: &mut Player, spot: &Spot, times: u32) -> Result<(), String> {

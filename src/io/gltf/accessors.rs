@@ -90,10 +90,8 @@ fn elements<T: Copy>(
         });
     }
     let size = accessor.size();
-    let mut values = match accessor.view() {
-        Some(view) => strided(document, &view, accessor.offset(), count, size)?
-            .map(&read)
-            .collect(),
+    let pieces = match accessor.view() {
+        Some(view) => Some(strided(document, &view, accessor.offset(), count, size)?),
         None if count > MOST_CLAIMED => {
             return Err(Problem::TooMany {
                 what: "values that no bytes stand behind",
@@ -101,6 +99,13 @@ fn elements<T: Copy>(
                 limit: MOST_CLAIMED as u64,
             });
         }
+        None => None,
+    };
+    // Here, and again in the tracer.
+    let bytes = 2 * count as u64 * size_of::<T>() as u64;
+    document.limits.memory.claim(bytes)?;
+    let mut values = match pieces {
+        Some(pieces) => pieces.map(&read).collect(),
         None => vec![zero; count],
     };
     if let Some(sparse) = accessor.sparse() {

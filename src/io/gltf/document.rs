@@ -17,8 +17,10 @@ pub(crate) struct Document {
 impl Document {
     /// Reads a `.gltf` or `.glb` file and the buffers that it refers to.
     pub fn read(file: &Path, folder: &Folder, limits: &Limits) -> Result<Self, FileError> {
-        let bytes = super::super::read_bytes(file, limits.file_bytes)?;
-        check_header(&bytes).map_err(|problem| FileError::new(file, problem))?;
+        let bytes = super::super::read_bytes(file, limits.file_bytes, &limits.memory)?;
+        check_header(&bytes)
+            .and_then(|()| limits.memory.claim(json_bytes(&bytes)))
+            .map_err(|problem| FileError::new(file, problem))?;
         let gltf::Gltf { document, blob } = gltf::Gltf::from_slice_without_validation(&bytes)
             .map_err(|error| parse_error(file, error))?;
         drop(bytes);
@@ -162,7 +164,7 @@ impl Document {
         if !file.exists() {
             return Err(self.error(part, Problem::MissingFile { path }));
         }
-        super::super::read_bytes(&file, self.limits.file_bytes)
+        super::super::read_bytes(&file, self.limits.file_bytes, &self.limits.memory)
     }
 }
 
@@ -215,6 +217,22 @@ fn check_header(bytes: &[u8]) -> Result<(), Problem> {
         }
         _ => Ok(()),
     }
+}
+
+/// What the JSON of a file becomes in memory: for each object in it the largest that there is, and its texts. Data that
+/// is written as text has no braces.
+fn json_bytes(bytes: &[u8]) -> u64 {
+    const LARGEST: u64 = 1000;
+    let json = match bytes.split_at_checked(20) {
+        Some((header, rest)) if header.starts_with(b"glTF") => {
+            let length = header[12..16].iter().rev();
+            let length = length.fold(0, |sum, &byte| sum << 8 | usize::from(byte));
+            rest.get(..length).unwrap_or(rest)
+        }
+        _ => bytes,
+    };
+    let objects = json.iter().filter(|&&byte| byte == b'{').count();
+    LARGEST * objects as u64 + json.len() as u64
 }
 
 fn parse_error(file: &Path, error: gltf::Error) -> FileError {

@@ -1,5 +1,6 @@
 //! The triangles of a primitive.
 
+use super::super::budget::mesh_bytes;
 use super::super::error::Problem;
 use super::super::model::triangle_mesh;
 use super::accessors::{floats, indices};
@@ -84,6 +85,7 @@ pub(super) fn read_primitive(
             limit: document.limits.triangles,
         });
     }
+    (document.limits.memory).claim(mesh_bytes(0, triangles))?;
     if primitive.get(&gltf::Semantic::Colors(0)).is_some() {
         notes.push(format!("{name}: its vertex colours were left out"));
     }

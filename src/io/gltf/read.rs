@@ -2,16 +2,17 @@ use super::super::error::{FileError, Problem};
 use super::super::file_name::{encoded, of_file, split_fragment};
 use super::super::folder::Folder;
 use super::super::model::{Model, Node};
-use super::super::picture::{PictureUse, decode_picture, read_picture};
+use super::super::picture::{PictureUse, cut_short, decode_picture, read_picture};
 use super::document::{Document, Picture};
 use super::lamps::{Lamp, camera_of, lamp_of};
 use super::material::{has_alpha, phong_of};
 use super::primitive::{mesh_name, read_primitive};
-use crate::io::Limits;
+use crate::io::{Limits, open_regular};
 use crate::scene::{Phong, TextureSource};
 use bevy::image::Image;
 use bevy::math::{Mat4, Quat, Vec3};
 use bevy::transform::components::Transform;
+use std::io::BufReader;
 use std::path::Path;
 
 /// Reads a glTF or GLB file: the default scene, or the first, or all nodes where there is none.
@@ -56,11 +57,13 @@ pub(crate) fn read_gltf(file: &Path, folder: &Folder, limits: &Limits) -> Result
     Ok(model)
 }
 
-/// Reads a picture of a file: `part` is `texture` and the index of a texture.
+/// Reads a picture of a file: `part` is `texture` and the index of a texture. What is wrong with one that can be shown
+/// goes to the notes.
 pub(crate) fn read_texture(
     document: &Document,
     part: &str,
     usage: PictureUse,
+    notes: &mut Vec<FileError>,
 ) -> Result<Image, FileError> {
     let (file, limits) = (&document.file, &document.limits);
     let index = part.strip_prefix("texture").and_then(|n| n.parse().ok());
@@ -70,10 +73,18 @@ pub(crate) fn read_texture(
         return Err(FileError::new(file, Problem::NoSuchTexture { name, count }));
     };
     match document.texture(&texture)? {
-        Picture::Beside(path) => read_picture(&document.folder.resolve(&path)?, usage, limits),
+        Picture::Beside(path) => {
+            let path = document.folder.resolve(&path)?;
+            let picture = read_picture(&path, usage, limits)?;
+            notes.extend(cut_short(&path, BufReader::new(open_regular(&path)?)));
+            Ok(picture)
+        }
         Picture::Inside(bytes) => {
             let name = format!("{}#{part}", file.display());
-            decode_picture(Path::new(&name), &bytes, usage, limits)
+            let name = Path::new(&name);
+            let picture = decode_picture(name, &bytes, usage, limits)?;
+            notes.extend(cut_short(name, &*bytes));
+            Ok(picture)
         }
     }
 }

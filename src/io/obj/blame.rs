@@ -2,14 +2,13 @@
 //! one, after the failure; [`unbounded`] sees beforehand what tobj would take for something else.
 
 use super::super::error::{FileError, Place, Problem};
-use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::num::IntErrorKind;
 use std::path::Path;
 
 /// The first line of an OBJ that names a number that is not one, or a corner that does not exist.
 pub(super) fn first_fault(file: &Path) -> Option<FileError> {
-    let mut reader = BufReader::new(File::open(file).ok()?);
+    let mut reader = BufReader::new(super::super::open_regular(file).ok()?);
     let mut buffer = Vec::new();
     let mut counts = [0_usize; 3];
     for number in 1.. {

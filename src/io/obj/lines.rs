@@ -1,6 +1,7 @@
 use super::super::error::{FileError, Place, Problem};
 use super::blame::unbounded;
 use crate::io::Limits;
+use crate::io::budget::Growing;
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::io::{self, BufRead, Read};
@@ -42,6 +43,9 @@ pub(super) struct Lines<'a, R> {
     faces_of_part: u64,
     /// Vertices, texture coordinates and normals so far.
     counts: [usize; 3],
+    /// Lines that may begin one.
+    meshes: u64,
+    memory: Growing<'a>,
 }
 
 impl<'a, R: BufRead> Lines<'a, R> {
@@ -56,6 +60,8 @@ impl<'a, R: BufRead> Lines<'a, R> {
             object: b"o unnamed_object\n".to_vec(),
             faces_of_part: 0,
             counts: [0; 3],
+            meshes: 0,
+            memory: Growing::of(&limits.memory),
         }
     }
 
@@ -160,9 +166,11 @@ impl<'a, R: BufRead> Lines<'a, R> {
                 self.object.extend_from_slice(line.trim().as_bytes());
                 self.object.push(b'\n');
                 self.faces_of_part = 0;
+                self.meshes += 1;
             }
             Some("mtllib") => seen.has_mtllib = true,
             Some("usemtl") => {
+                self.meshes += 1;
                 let name = line.split_once(' ').unwrap_or_default().1.trim();
                 if seen.has_mtllib && !seen.materials.contains(name) {
                     return Err(Problem::UnknownMaterial { name: name.into() });
@@ -173,7 +181,10 @@ impl<'a, R: BufRead> Lines<'a, R> {
             }
             _ => {}
         }
-        Ok(())
+        let triangles = seen.triangles;
+        drop(seen);
+        let vertices = self.counts.into_iter().max().unwrap_or_default() as u64;
+        self.memory.reach(vertices, triangles, self.meshes)
     }
 }
 

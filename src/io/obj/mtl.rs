@@ -5,6 +5,7 @@ use super::super::error::{FileError, Place, Problem};
 use super::super::file_name::of_file;
 use super::super::folder::Folder;
 use crate::io::Limits;
+use crate::io::budget::ENTITY;
 use crate::scene::{Phong, TextureSource};
 use bevy::color::LinearRgba;
 use std::path::PathBuf;
@@ -28,7 +29,7 @@ pub(super) fn read_mtl(name: &str, folder: &Folder, limits: &Limits) -> Result<L
     let file = &folder.resolve(name)?;
     let prefix = name.rfind('/').map_or("", |slash| &name[..=slash]);
     let limit = FILE_BYTES.min(limits.file_bytes);
-    let bytes = super::super::read_bytes(file, limit)?;
+    let bytes = super::super::read_bytes(file, limit, &limits.memory)?;
     let text = String::from_utf8_lossy(&bytes);
     let mut checked = String::with_capacity(text.len());
     let mut notes = Vec::new();
@@ -38,6 +39,10 @@ pub(super) fn read_mtl(name: &str, folder: &Folder, limits: &Limits) -> Result<L
         checked.push_str(&line);
         checked.push('\n');
     }
+    let materials = checked.lines().filter(|line| line.starts_with("newmtl"));
+    (limits.memory)
+        .claim(ENTITY * materials.count() as u64)
+        .map_err(|problem| FileError::new(file, problem))?;
     Ok(Library {
         file: file.clone(),
         loaded: tobj::load_mtl_buf(&mut checked.as_bytes()),

@@ -104,7 +104,10 @@ pub(super) fn library(
 pub(super) fn text_of(file: &Path) -> Option<Vec<u8>> {
     // Not of a pipe, which would be waited for.
     let there = file.is_file();
-    there.then(|| super::super::read_bytes(file, Limits::default().file_bytes).unwrap_or_default())
+    let limits = Limits::default();
+    there.then(|| {
+        super::super::read_bytes(file, limits.file_bytes, &limits.memory).unwrap_or_default()
+    })
 }
 
 struct Pictures<'a> {

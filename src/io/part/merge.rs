@@ -1,4 +1,5 @@
 use super::{MOST_SAMPLES, Part};
+use glam::UVec2;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -55,6 +56,11 @@ pub struct Merge {
 }
 
 impl Merge {
+    /// Pixels of the picture; `None` before the first part.
+    pub fn size(&self) -> Option<UVec2> {
+        self.sum.as_ref().map(|part| part.film.size())
+    }
+
     /// Adds a part, or says why it does not belong to those before; then nothing has changed.
     pub fn add(&mut self, file: &Path, part: Part) -> Result<(), MergeError> {
         if !part.uniform {

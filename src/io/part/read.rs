@@ -3,13 +3,15 @@ use super::{Part, channel_name};
 use crate::film::{Film, Sum};
 use crate::io::error::{FileError, Problem};
 use crate::io::limits::Limits;
+use crate::io::picture::block_bytes;
 use crate::io::{check_size, open_to_read};
+use exr::block::reader::ChunksReader;
 use exr::meta::MetaData;
-use exr::prelude::{
-    AnyChannels, AttributeValue, FlatSamples, ReadChannels, ReadLayers, Text, read,
-};
+use exr::meta::attribute::SampleType;
+use exr::prelude::{AttributeValue, Text, Vec2};
 use glam::UVec2;
-use std::fs;
+use std::fs::{self, File};
+use std::io::BufReader;
 use std::path::Path;
 
 /// Reads a part. Whether it is one, and how large, is found out before anything is decoded.
@@ -45,16 +47,13 @@ pub fn read_part(path: &Path, limits: &Limits) -> Result<Part, FileError> {
     if length.saturating_mul(BEST_RATIO) < width * height * BYTES {
         return Err(incomplete());
     }
-    let image = read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .first_valid_layer()
-        .all_attributes()
-        .non_parallel()
-        .from_buffered(open_to_read(path, limits.file_bytes)?)
-        .map_err(|_| incomplete())?;
-    let sums = read_sums(&image.layer_data.channel_data).ok_or_else(incomplete)?;
+    // A block of all channels, compressed and not.
+    let block = block_bytes(header).saturating_mul(3);
+    (limits.memory)
+        .claim((width * height * PIXEL).saturating_add(block))
+        .map_err(|problem| FileError::new(path, problem))?;
+    let file = open_to_read(path, limits.file_bytes)?;
+    let sums = read_sums(file, header).ok_or_else(incomplete)?;
     let count: u64 = samples.iter().map(|range| range.end - range.start).sum();
     let film = Film::of_sums(UVec2::new(width as u32, height as u32), &sums, count as u32)
         .ok_or_else(incomplete)?;
@@ -69,37 +68,52 @@ pub fn read_part(path: &Path, limits: &Limits) -> Result<Part, FileError> {
 
 const NO_PART: &str =
     "is no part of a picture; `glassbox render --samples A..B -o part.exr` makes parts";
-/// Of a pixel in memory: 15 channels of 4.
+/// Of a pixel while it is read: words of 48 bytes become a sum of 48, and that one of 64 in the film.
+const PIXEL: u64 = 120;
+/// Of a pixel in the file's blocks: 15 channels of 4.
 const BYTES: u64 = 60;
 /// Run-length encoding makes 2 bytes of at most 128.
 const BEST_RATIO: u64 = 64;
 
-fn read_sums(channels: &AnyChannels<FlatSamples>) -> Option<Vec<Sum>> {
-    let words = |component, word| {
-        let name = channel_name(component, word);
-        let channel = channels
-            .list
-            .iter()
-            .find(|channel| channel.name.to_string() == name)?;
-        match &channel.sample_data {
-            FlatSamples::U32(words) => Some(words),
-            _ => None,
-        }
-    };
-    let mut all = Vec::with_capacity(12);
+/// The sums of all pixels, row by row. Of other channels nothing is kept.
+fn read_sums(file: BufReader<File>, header: &exr::meta::header::Header) -> Option<Vec<Sum>> {
+    let channels = &header.channels;
+    let mut places = vec![None; channels.list.len()];
     for component in 0..3 {
         for word in 0..4 {
-            all.push(words(component, word)?);
+            let name = channel_name(component, word);
+            let mut names = channels.list.iter();
+            let place = names.position(|channel| {
+                channel.name.to_string() == name && channel.sample_type == SampleType::U32
+            })?;
+            places[place] = Some((component, word));
         }
     }
-    let length = all.first()?.len();
-    if all.iter().any(|words| words.len() != length) {
-        return None;
-    }
-    let sum = |pixel| {
-        Sum::from_words(std::array::from_fn(|component| {
-            std::array::from_fn(|word| all[4 * component + word][pixel])
-        }))
-    };
-    Some((0..length).map(sum).collect())
+    let (width, height) = (header.layer_size.x(), header.layer_size.y());
+    let mut words = vec![[[0_u32; 4]; 3]; width * height];
+    let mut found = 0;
+    let chunks = exr::block::read(file, false).ok()?.all_chunks(false).ok()?;
+    let taken = chunks.decompress_sequential(false, |_, block| {
+        if block.index.layer != 0 || block.index.level != Vec2(0, 0) {
+            return Ok(());
+        }
+        for line in block.lines(channels) {
+            let (Some((component, word)), at) = (places[line.location.channel], line.location)
+            else {
+                continue;
+            };
+            let start = at.position.y() * width + at.position.x();
+            let row = words.get_mut(start..start + at.sample_count);
+            let row = row.filter(|_| at.position.x() + at.sample_count <= width);
+            let row = row
+                .ok_or_else(|| exr::error::Error::Invalid("a block outside the picture".into()))?;
+            for (pixel, bytes) in row.iter_mut().zip(line.value.as_chunks().0) {
+                pixel[component][word] = u32::from_ne_bytes(*bytes);
+                found += 1;
+            }
+        }
+        Ok(())
+    });
+    (taken.is_ok() && found == 12 * words.len())
+        .then(|| words.into_iter().map(Sum::from_words).collect())
 }

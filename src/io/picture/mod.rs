@@ -3,17 +3,22 @@
 //! are more kinds of it: WebP, TGA, BMP, DDS, and the first frame of a GIF.
 
 mod content;
+mod exr_blocks;
+mod jpeg;
 mod open_exr;
 mod radiance;
 mod read;
 mod rendered;
 mod write;
 
+pub(crate) use exr_blocks::block_bytes;
+pub(crate) use jpeg::cut_short;
 pub(crate) use read::{PictureUse, decode_picture, read_picture};
 pub use rendered::{Note, picture_notes, write_rendered};
 pub(crate) use write::{encode_png, stage_picture};
 pub use write::{write_picture, write_picture_with_notes};
 
+use super::budget::picture_bytes;
 use super::error::{FileError, Problem};
 use super::{Limits, check_writable};
 use std::path::Path;
@@ -113,6 +118,20 @@ pub const PICTURE_EXTENSIONS: [&str; 11] = [
 /// for what it needs meanwhile.
 fn decoder_bytes(limits: &Limits) -> u64 {
     limits.pixels.saturating_mul(32)
+}
+
+/// Refuses a picture that is empty or beyond the limits, and speaks for the memory of one with so many bytes a channel
+/// that is not.
+fn claim_picture(
+    file: &Path,
+    (width, height): (u32, u32),
+    channel_bytes: u8,
+    limits: &Limits,
+) -> Result<(), FileError> {
+    check_size(file, width.into(), height.into(), limits)?;
+    let bytes = picture_bytes(width, height, channel_bytes.into());
+    let claimed = limits.memory.claim(bytes);
+    claimed.map_err(|problem| FileError::new(file, problem))
 }
 
 /// Refuses a picture that is empty or beyond the limits, before memory is asked for.

@@ -12,12 +12,11 @@
 
 use super::super::error::{FileError, Problem};
 use super::read::one_line;
-use super::{check_size, decoder_bytes};
+use super::{block_bytes, check_size, claim_picture, decoder_bytes};
 use crate::io::Limits;
 use exr::block::UncompressedBlock;
 use exr::block::reader::ChunksReader;
 use exr::error::{Error, UnitResult};
-use exr::meta::BlockDescription;
 use exr::meta::attribute::SampleType;
 use exr::meta::header::Header;
 use exr::prelude::{Vec2, f16};
@@ -68,6 +67,9 @@ pub(super) fn decode(
     })
 }
 
+/// Blocks that are decoded at the same time.
+const BLOCKS_AT_A_TIME: u64 = 8;
+
 /// Refuses what asks for too much memory: as a picture, or for one of the blocks that it is kept in, which
 /// hold every channel.
 fn check_memory(name: &Path, header: &Header, limits: &Limits) -> Result<(), FileError> {
@@ -78,23 +80,17 @@ fn check_memory(name: &Path, header: &Header, limits: &Limits) -> Result<(), Fil
     for size in [display, data] {
         check_size(name, size.width() as u64, size.height() as u64, limits)?;
     }
-    let pixels = match header.blocks {
-        BlockDescription::Tiles(tiles) => {
-            let size = tiles.tile_size;
-            (size.width().min(data.width())).saturating_mul(size.height().min(data.height()))
-        }
-        BlockDescription::ScanLines => {
-            let lines = header.compression.scan_lines_per_block();
-            lines.saturating_mul(data.width())
-        }
-    };
-    let bytes = pixels.saturating_mul(header.channels.bytes_per_pixel) as u64;
+    let bytes = block_bytes(header);
     let limit = decoder_bytes(limits);
     if bytes > limit {
         let text = format!("keeps {bytes} bytes in one block, and the limit is {limit}");
         return Err(FileError::new(name, Problem::Malformed(text)));
     }
-    Ok(())
+    let size = (display.width() as u32, display.height() as u32);
+    claim_picture(name, size, 4, limits)?;
+    // Each thread has one, compressed and not.
+    let claimed = limits.memory.claim(bytes.saturating_mul(BLOCKS_AT_A_TIME));
+    claimed.map_err(|problem| FileError::new(name, problem))
 }
 
 /// The channels that are taken, as indices into those of a part of the file.

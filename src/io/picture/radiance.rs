@@ -5,7 +5,7 @@
 //! Pixels", Graphics Gems II, 1991; Radiance's `filefmts.pdf`, "Radiance Picture File Format").
 
 use super::super::error::{FileError, Problem};
-use super::check_size;
+use super::claim_picture;
 use super::read::failure;
 use crate::io::Limits;
 use image::DynamicImage;
@@ -46,7 +46,7 @@ pub(super) fn decode(
     } else {
         (pixels, rows)
     };
-    check_size(name, width.into(), height.into(), limits)?;
+    claim_picture(name, (width, height), 4, limits)?;
     let told = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {rows} +X {pixels}\n");
     let decoder = HdrDecoder::new(Cursor::new(told).chain(reader));
     let picture = decoder.and_then(DynamicImage::from_decoder);

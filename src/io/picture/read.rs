@@ -1,7 +1,7 @@
 use super::super::error::{FileError, Problem};
 use super::super::open_to_read;
 use super::content::{HEAD, recognised};
-use super::{check_size, decoder_bytes, open_exr, radiance};
+use super::{claim_picture, decoder_bytes, open_exr, radiance};
 use crate::io::Limits;
 use crate::scene::SRGB_16_BITS;
 use crate::trace::srgb::decode_table_16;
@@ -96,7 +96,8 @@ fn decode_as(
     reader.limits(decoder_limits);
     let decoder = reader.into_decoder().map_err(fails)?;
     let (width, height) = decoder.dimensions();
-    check_size(name, width.into(), height.into(), limits)?;
+    let channel = decoder.color_type().bytes_per_pixel() / decoder.color_type().channel_count();
+    claim_picture(name, (width, height), channel, limits)?;
     DynamicImage::from_decoder(decoder).map_err(fails)
 }
 

@@ -82,7 +82,7 @@ fn stage(
             PictureFormat::Png if !notes.is_empty() => {
                 return write_png(writer, &picture, notes);
             }
-            PictureFormat::Exr if !notes.is_empty() => {
+            PictureFormat::Exr => {
                 return write_exr(writer, width, height, pixels, notes);
             }
             PictureFormat::Jpeg => {
@@ -149,12 +149,12 @@ fn write_exr(
         let [r, g, b] = pixels[at.y() * size.0 + at.x()];
         (r, g, b)
     };
-    let layer = Layer::new(
-        size,
-        attributes,
-        Encoding::FAST_LOSSLESS,
-        SpecificChannels::rgb(pixel),
-    );
+    // In this order however many threads compress the tiles, so that the same picture is the same file.
+    let encoding = Encoding {
+        line_order: LineOrder::Increasing,
+        ..Encoding::FAST_LOSSLESS
+    };
+    let layer = Layer::new(size, attributes, encoding, SpecificChannels::rgb(pixel));
     let written = Image::from_layer(layer).write().to_buffered(writer);
     written.map_err(|error| match error {
         exr::error::Error::Io(error) => error,
@@ -231,6 +231,28 @@ mod tests {
                         error <= tolerance * largest,
                         "{name}: {pixel:?} came back as {back:?}"
                     );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_bytes_of_a_picture_are_the_same_each_time() {
+        let folder = tempfile::tempdir().unwrap();
+        let (width, height) = (500, 400);
+        let pixels: Vec<[f32; 3]> = (0..width * height)
+            .map(|i| [i as f32, (i % 97) as f32 * 0.1, (i / 500) as f32])
+            .collect();
+        for name in ["a.exr", "a.hdr", "a.png", "a.jpg"] {
+            for notes in [vec![], vec![("Software", "Glassbox".to_owned())]] {
+                let path = folder.path().join(name);
+                let write = || {
+                    write_picture_with_notes(&path, width, height, &pixels, &notes).unwrap();
+                    std::fs::read(&path).unwrap()
+                };
+                let first = write();
+                for _ in 0..8 {
+                    assert!(write() == first, "{name} differs, notes: {}", notes.len());
                 }
             }
         }

@@ -29,7 +29,7 @@ pub(crate) struct SceneFile {
 
 /// Reads a scene file and checks everything in it that can be checked without other files.
 pub(crate) fn read_scene(file: &Path, limits: &Limits) -> Result<SceneFile, FileError> {
-    let bytes = super::super::read_bytes(file, limits.file_bytes)?;
+    let bytes = super::super::read_bytes(file, limits.file_bytes, &limits.memory)?;
     read_scene_text(file, &bytes, limits)
 }
 
@@ -47,6 +47,10 @@ pub(crate) fn read_scene_text(
         let problem = Problem::Malformed("is not UTF-8 text".into());
         FileError::at(file, Place::Line(line as u64), problem)
     })?;
+    // What the text says, as values that know their types, and as entities.
+    (limits.memory)
+        .claim(4 * bytes.len() as u64)
+        .map_err(|problem| FileError::new(file, problem))?;
     check_version(file, text)?;
     let registry = kept_types();
     let mut deserializer =
