@@ -11,6 +11,8 @@ pub struct Texture {
     texels: Texels,
     /// Made when first asked for: a scene without mipmaps has none.
     levels: OnceLock<Vec<Texture>>,
+    /// Looked for when first asked for.
+    brightest: OnceLock<Vec3>,
 }
 
 /// How the texels are kept: as the file had them, so that a large map stays small.
@@ -78,6 +80,7 @@ impl Texture {
             height,
             texels,
             levels: OnceLock::new(),
+            brightest: OnceLock::new(),
         }
     }
 
@@ -118,6 +121,14 @@ impl Texture {
             }
             Texels::Linear32(t) => Vec3::from(t[i]),
         }
+    }
+
+    /// The largest value of each channel, linear RGB.
+    pub(super) fn brightest(&self) -> Vec3 {
+        *self.brightest.get_or_init(|| {
+            let rows = (0..self.height).flat_map(|y| (0..self.width).map(move |x| (x, y)));
+            rows.fold(Vec3::ZERO, |most, (x, y)| most.max(self.texel(x, y, false)))
+        })
     }
 
     /// Alpha of one texel in [0, 1]; floating-point pictures are opaque.
