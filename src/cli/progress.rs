@@ -57,7 +57,7 @@ fn status_text(status: &Status) -> String {
         status.mrays_per_s()
     );
     if let Some(error) = status.error() {
-        text += &format!(", error {:.2} %", 100.0 * error.relative());
+        text += &format!(", error {error}");
     }
     if let Some(left) = status.seconds_left {
         text += &format!(", {left:.0} s left");
@@ -84,6 +84,7 @@ mod tests {
         let error = ErrorEstimate {
             rmse: 0.1,
             relative_mse: 1e-4,
+            is_bound: false,
         };
         let mut status = Status {
             state: State::Running,

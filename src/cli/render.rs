@@ -111,6 +111,7 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
         height: settings.size.y,
         spp: 0,
         relative_error: None,
+        relative_error_is_bound: false,
         threads: rayon::current_num_threads(),
         builder: builder_name(settings.tree.builder),
         build_ms: build_time(&world).as_secs_f64() * 1e3,
@@ -162,7 +163,7 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
         }
         if !args.quiet {
             let error = match rendered.status.error() {
-                Some(error) => format!(", error {:.2} %", 100.0 * error.relative()),
+                Some(error) => format!(", error {error}"),
                 None => String::new(),
             };
             say(format_args!(
@@ -175,11 +176,14 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
             ))?;
         }
         stats.spp = stats.spp.max(spp);
-        let error = rendered.status.error().map(|error| error.relative());
-        stats.relative_error = [stats.relative_error, error]
-            .into_iter()
-            .flatten()
-            .reduce(f64::max);
+        if let Some(error) = rendered.status.error()
+            && stats
+                .relative_error
+                .is_none_or(|most| error.relative() > most)
+        {
+            stats.relative_error = Some(error.relative());
+            stats.relative_error_is_bound = error.is_bound;
+        }
         stats.render_ms += rendered.seconds * 1e3;
         stats.rays += rendered.rays;
     }

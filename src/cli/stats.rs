@@ -18,6 +18,8 @@ pub(super) struct Stats {
     pub spp: u32,
     /// The largest estimated relative error of the pictures; none with one sample.
     pub relative_error: Option<f64>,
+    /// Whether that is an upper bound, of what features may hide that no sample has met.
+    pub relative_error_is_bound: bool,
     pub threads: usize,
     pub builder: &'static str,
     /// Milliseconds of tree building: every mesh and the tree over them, added up.

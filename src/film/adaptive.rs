@@ -50,8 +50,9 @@ struct Step {
 }
 
 /// The cells whose samples are doubled next, up to `most` a pixel, so that the sum over all pixels of
-/// the relative squared error falls to `goal` soonest. Empty where all have `most`.
-pub(super) fn choose(cells: &[Cell], most: u64, goal: f64) -> Vec<Task> {
+/// the relative squared error falls to `goal` soonest; and once it is there, those in which unmet light
+/// may still hide more (`hidden` times what they err by it). Empty where all have `most`.
+pub(super) fn choose(cells: &[Cell], most: u64, goal: f64, hidden: f64) -> Vec<Task> {
     let (mut error, mut spent) = (0.0, 0.0);
     let mut steps = Vec::new();
     let decline = Decline::of(cells.iter().map(|cell| &cell.own));
@@ -79,10 +80,12 @@ pub(super) fn choose(cells: &[Cell], most: u64, goal: f64) -> Vec<Task> {
     });
     let mut rays = 0.0;
     let mut chosen = Vec::new();
+    let small = goal > 0.0 && error <= goal;
     for step in steps {
+        let blind = small && hidden * unseen(&cells[step.cell]) > goal;
         let enough = rays >= LEAST_SHARE * spent && error <= AIM * goal;
-        if enough || rays >= LARGEST_SHARE * spent {
-            break;
+        if !blind && (enough || rays >= LARGEST_SHARE * spent) {
+            continue;
         }
         rays += step.rays;
         error -= step.gain;
@@ -94,6 +97,12 @@ pub(super) fn choose(cells: &[Cell], most: u64, goal: f64) -> Vec<Task> {
         });
     }
     together(chosen)
+}
+
+/// How much these pixels err by light that no sample has met, for each sample; the darker half decides.
+fn unseen(cell: &Cell) -> f64 {
+    let of = |moves: &Moves| moves.reach_with(cell.own.count).relative;
+    of(&cell.own).max(of(&cell.other))
 }
 
 /// What the other half says of this one: its relative squared error.
@@ -137,6 +146,7 @@ mod tests {
             relative: [square, 2.0 * square, 4.0 * square],
             count,
             pixels: 128,
+            ..Moves::default()
         };
         Cell {
             tile,
@@ -156,7 +166,7 @@ mod tests {
             cell(1, 0, (0.0, 16), (0.0, 16)),
             cell(1, 1, (0.0, 16), (0.0, 16)),
         ];
-        let tasks = choose(&cells, 1 << 20, 0.1);
+        let tasks = choose(&cells, 1 << 20, 0.1, 0.0);
         assert_eq!(
             tasks,
             [Task {
@@ -177,7 +187,7 @@ mod tests {
             .collect();
         cells[198].rays = 10.0;
         cells[199].rays = 10.0;
-        let tasks = choose(&cells, 1 << 20, 0.0);
+        let tasks = choose(&cells, 1 << 20, 0.0, 0.0);
         assert!(tasks.iter().all(|task| task.range == (16..32)));
         let tiles: Vec<_> = tasks.iter().map(|task| task.tile).collect();
         assert!(
@@ -193,14 +203,14 @@ mod tests {
             cell(0, 1, (1.0, 64), (0.0, 100)),
         ];
         assert_eq!(
-            choose(&cells, 100, 0.0),
+            choose(&cells, 100, 0.0, 0.0),
             [Task {
                 tile: 0,
                 pixels: Pixels::Half(1),
                 range: 64..100
             }]
         );
-        assert_eq!(choose(&cells[..1], 100, 0.0), []);
+        assert_eq!(choose(&cells[..1], 100, 0.0, 0.0), []);
     }
 
     #[test]
@@ -209,8 +219,8 @@ mod tests {
             .flat_map(|tile| [0, 1].map(|half| cell(tile, half, (1.0, 16), (1.0, 16))))
             .collect();
         // 200 in all; every step takes away a half of one.
-        let near = choose(&cells, 1 << 20, 199.0 / AIM);
-        let far = choose(&cells, 1 << 20, 1.0);
+        let near = choose(&cells, 1 << 20, 199.0 / AIM, 0.0);
+        let far = choose(&cells, 1 << 20, 1.0, 0.0);
         let steps = |tasks: &[Task]| {
             tasks
                 .iter()

@@ -62,6 +62,9 @@ impl Engine {
                 let ids = some.iter().map(|&pixel| SampleId { pixel, index: 0 });
                 let rays = scratch.evaluate(&self.subject, ids, &self.batch);
                 preview.take(some, scratch.values());
+                if scratch.is_near_lamps() {
+                    preview.meet_near_lamps();
+                }
                 rays
             });
             self.note_rays(rays);
@@ -81,7 +84,7 @@ impl Engine {
             // Where samples go depends on what they cost, and must not depend on how far a preview came.
             return Vec::new();
         }
-        let Some(preview) = self.preview() else {
+        let Some(preview) = self.preview().filter(|preview| preview.is_enough()) else {
             return Vec::new();
         };
         let mut known = vec![None; TILE_PIXELS];

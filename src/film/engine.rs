@@ -9,6 +9,7 @@ use super::sample_chunk::{BatchSize, Subject, with_scratch};
 use super::status::{Ending, State, Status, TrendPoint, seconds_left};
 use super::tile_state::{Chunk, TileState};
 use super::tiles::{Tile, TileGrid};
+use super::unmet::Unmet;
 use crate::trace::RayCounts;
 use bevy::math::URect;
 use glam::{UVec2, Vec2};
@@ -44,6 +45,7 @@ pub(super) struct Engine {
     pub preview: Mutex<Option<Arc<Preview>>>,
     pub(super) queue: Mutex<Queue>,
     pub(super) batch: BatchSize,
+    pub(super) unmet: Unmet,
     pub control: Control,
     /// The picture is complete at every such pixel of every such row; 0 before the first picture.
     divider: AtomicU32,
@@ -75,6 +77,7 @@ impl Engine {
             preview: Mutex::default(),
             queue: Mutex::default(),
             batch: BatchSize::new(&subject),
+            unmet: Unmet::default(),
             control: Control::new(),
             divider: AtomicU32::new(0),
             progress: Mutex::default(),
@@ -238,9 +241,10 @@ impl Engine {
             let stopped = || self.must_stop();
             let rays = scratch.sum_chunk(&self.subject, tile, chunk, &known, &self.batch, &stopped);
             let Some(rays) = rays else { return false };
+            self.unmet.met(&scratch.octaves);
             let pixels = {
                 let mut state = lock(&self.tiles[chunk.tile as usize]);
-                state.absorb(chunk, &scratch.sums, rays.total());
+                state.absorb(chunk, &scratch.sums, &scratch.near, rays.total());
                 state
                     .tile
                     .pixels()
@@ -258,10 +262,16 @@ impl Engine {
 
     /// How far the film is from the converged one; `None` before there is anything to compare.
     pub fn error(&self) -> Option<ErrorEstimate> {
-        if self.mode.samples.start > 0 {
+        if self.mode.samples.start > 0 || self.samples() < 2.0 {
             return None;
         }
-        ErrorEstimate::of(&self.moves())
+        ErrorEstimate::of(&self.moves(), self.unmet.hidden(&self.subject, 1))
+    }
+
+    /// The squared error that unmet features may leave in a pixel, per reach of a sample, if they lie in all
+    /// alike.
+    pub fn hidden_in_a_pixel(&self) -> f64 {
+        self.unmet.hidden(&self.subject, 1) / self.pixels().max(1.0)
     }
 
     /// How the errors of the whole picture decline.
@@ -270,7 +280,7 @@ impl Engine {
     }
 
     /// Of each half of each tile.
-    fn moves(&self) -> Vec<Moves> {
+    pub(super) fn moves(&self) -> Vec<Moves> {
         let tiles = self.tiles.iter();
         tiles.flat_map(|tile| lock(tile).moves).collect()
     }

@@ -9,9 +9,14 @@
 //! D² varies much by chance, r is mostly what pictures usually have ([`Decline`]).
 //!
 //! With that, the estimate of the picture's error is 0.8 to 1.5 times the true one, from 16 samples on, but
-//! for two things that no move shows:
+//! for three things that no move shows:
 //!
 //! - What no sample has found: a bright spot that one sample in a thousand meets is missing at 16 samples.
+//!   What such spots may hide at most is known ([`unmet`](super::unmet)), and no smaller error is told: where
+//!   the pixels moved less, or not at all, that bound is told, and said to be one.
+//! - A lamp so close that few of its points give nearly all of its light. There the tracer knows what
+//!   the light has to be, and so the error itself ([`Workspace::deviations`](crate::trace::Workspace)): it is
+//!   told where it is more than what the moves say.
 //! - An edge that runs exactly along a row (or column) of pixels and covers the same part p of each, where
 //!   it is so strong that this row makes most of the picture's error. N stratified samples have one stratum
 //!   that the edge cuts, at the same fraction f of it in every pixel, f = frac(pN): e²(N) = J²·f(1-f)/N²
@@ -22,8 +27,10 @@
 //!   has such a scene, a lamp 470 times as bright as the ceiling around it, and says what was measured.
 
 use super::TILE;
-use super::tiles::FilmPixel;
+use super::tiles::{FilmPixel, NearError};
+use super::unmet::Reach;
 use glam::UVec2;
+use std::fmt;
 
 /// Added to a pixel's squared value before its squared error is divided by it, so that black pixels
 /// count too: a tenth of full white, squared (Rousselle, Knaus and Zwicker 2011 use the same).
@@ -40,12 +47,27 @@ pub struct ErrorEstimate {
     /// Mean over all pixels of squared error / (value² + [`RELATIVE_FLOOR`]), where the squared error
     /// and the value are averaged over the channels.
     pub relative_mse: f64,
+    /// Whether that is what features may hide, at most, that no sample has met: the samples themselves
+    /// differ by less, or not at all.
+    pub is_bound: bool,
 }
 
 impl ErrorEstimate {
     /// Root of [`Self::relative_mse`]: 0.01 is an error of one percent.
     pub fn relative(&self) -> f64 {
         self.relative_mse.sqrt()
+    }
+}
+
+/// In percent, for people: `1.37 %`, or `at most 0.42 %`, rounded up, where it is a bound.
+impl fmt::Display for ErrorEstimate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let percent = 100.0 * self.relative();
+        if self.is_bound {
+            write!(f, "at most {:.2} %", (100.0 * percent).ceil() / 100.0)
+        } else {
+            write!(f, "{percent:.2} %")
+        }
     }
 }
 
@@ -61,24 +83,35 @@ pub(super) struct Moves {
     pub count: u32,
     /// How many pixels.
     pub pixels: u32,
+    /// Sums over the pixels of what lamps close by leave them off by: known, and not estimated.
+    pub near: Expected,
+    /// Sums over the pixels of how much they err by light that no sample has met.
+    pub reach: Reach,
 }
 
 /// A tile's pixels with their means.
 pub(super) struct Means<'a> {
     pixels: &'a [FilmPixel],
+    /// What lamps close by leave each off by; empty where none is close.
+    near: &'a [NearError],
     /// How much of the tile lies in the picture.
     extent: UVec2,
-    /// Averaged over the channels.
+    /// Averaged over the channels, less what lamps close by leave them off by.
     means: Vec<f64>,
 }
 
 impl<'a> Means<'a> {
-    pub fn of(pixels: &'a [FilmPixel], extent: UVec2) -> Self {
+    pub fn of(pixels: &'a [FilmPixel], near: &'a [NearError], extent: UVec2) -> Self {
         let mean = |pixel: &FilmPixel| f64::from(pixel.sum.mean(pixel.count).element_sum()) / 3.0;
+        let mut means: Vec<f64> = pixels.iter().map(mean).collect();
+        for (mean, near) in means.iter_mut().zip(near) {
+            *mean -= f64::from(near.mean);
+        }
         Self {
             pixels,
+            near,
             extent,
-            means: pixels.iter().map(mean).collect(),
+            means,
         }
     }
 
@@ -93,6 +126,13 @@ impl<'a> Means<'a> {
                 moves.absolute[i] += f64::from(moved);
                 moves.relative[i] += f64::from(moved) * weight;
             }
+            if let Some(near) = self.near.get(at) {
+                moves.near.absolute += f64::from(near.squared);
+                moves.near.relative += f64::from(near.squared) * weight;
+            }
+            let reach = Reach::of(self.means[at]);
+            moves.reach.absolute += reach.absolute;
+            moves.reach.relative += reach.relative;
             moves.count = pixel.count;
             moves.pixels += 1;
         }
@@ -212,27 +252,45 @@ impl Moves {
             ratio / (1.0 - ratio) * moved * since
         };
         Some(Expected {
-            absolute: of(self.absolute[0], decline.absolute),
-            relative: of(self.relative[0], decline.relative),
+            absolute: of(self.absolute[0], decline.absolute).max(self.near.absolute),
+            relative: of(self.relative[0], decline.relative).max(self.near.relative),
         })
+    }
+
+    /// The means over the pixels of how much they err by unmet light, for so many samples of each.
+    pub fn reach_with(&self, count: u32) -> Reach {
+        let samples = f64::from(self.pixels.max(1)) * f64::from(count.max(1));
+        Reach {
+            absolute: self.reach.absolute / samples,
+            relative: self.reach.relative / samples,
+        }
     }
 }
 
 impl ErrorEstimate {
-    /// Of pixels that lie in several groups; `None` where of one of them it is not known.
-    pub(super) fn of(groups: &[Moves]) -> Option<Self> {
+    /// Of pixels that lie in several groups, where unmet light may leave `hidden` times what they err by
+    /// it; `None` where of one of them it is not known.
+    pub(super) fn of(groups: &[Moves], hidden: f64) -> Option<Self> {
         let decline = Decline::of(groups);
         let (mut absolute, mut relative, mut pixels) = (0.0, 0.0, 0);
+        let mut worst = Reach::default();
         for moves in groups.iter().filter(|moves| moves.pixels > 0) {
             let expected = moves.expected(&decline)?;
             absolute += expected.absolute;
             relative += expected.relative;
             pixels += moves.pixels;
+            let reach = moves.reach_with(moves.count);
+            worst.absolute = worst.absolute.max(reach.absolute);
+            worst.relative = worst.relative.max(reach.relative);
         }
         let pixels = f64::from(pixels.max(1));
+        let measured = relative / pixels;
+        // A pixel that lacks all of its light errs by one.
+        let unmet = (hidden * worst.relative / pixels).min(1.0);
         Some(Self {
-            rmse: (absolute / pixels).sqrt(),
-            relative_mse: relative / pixels,
+            rmse: (absolute.max(hidden * worst.absolute) / pixels).sqrt(),
+            relative_mse: measured.max(unmet),
+            is_bound: unmet > measured,
         })
     }
 }
@@ -249,6 +307,7 @@ mod tests {
             relative: squares.map(|square| 4.0 * square),
             count,
             pixels: 10,
+            ..Moves::default()
         }
     }
 
@@ -268,8 +327,9 @@ mod tests {
             }
             pixel.count = 16;
         }
-        let moves =
-            |tile: &[FilmPixel], size| Means::of(tile, UVec2::splat(size)).moves(0..tile.len());
+        let moves = |tile: &[FilmPixel], size| {
+            Means::of(tile, &[], UVec2::splat(size)).moves(0..tile.len())
+        };
         tile[100].sum.add(Vec3::splat(160.0));
         tile[100].moved = [100.0; 3];
         // Its mean is 10.1, which has moved by 10.
@@ -350,11 +410,11 @@ mod tests {
     fn nothing_that_moved_errs_by_nothing_and_one_sample_says_nothing() {
         assert_eq!(alone([0.0; 3], 64).absolute, 0.0);
         assert!(alone([1.0, 0.0, 0.0], 8).absolute.is_finite());
-        assert_eq!(ErrorEstimate::of(&[moves([0.0; 3], 1)]), None);
+        assert_eq!(ErrorEstimate::of(&[moves([0.0; 3], 1)], 0.0), None);
         let known = moves([1.0, 2.0, 4.0], 16);
-        assert!(ErrorEstimate::of(&[known]).is_some());
+        assert!(ErrorEstimate::of(&[known], 0.0).is_some());
         let merged = moves([f64::INFINITY; 3], 16);
-        assert_eq!(ErrorEstimate::of(&[known, merged]), None);
+        assert_eq!(ErrorEstimate::of(&[known, merged], 0.0), None);
         assert!(Decline::of([&known, &merged]).absolute.is_finite());
     }
 

@@ -40,6 +40,7 @@ mod sum;
 mod test_scene;
 mod tile_state;
 mod tiles;
+mod unmet;
 mod view_transform;
 pub mod views;
 
@@ -50,6 +51,7 @@ pub use eight_bits::develop_rgba8;
 pub use error::{ErrorEstimate, RELATIVE_FLOOR};
 pub use first_hits::FirstHits;
 pub use gaussian::{MAX_SIGMA, blurred, kernel};
+pub use per_pixel::PixelError;
 pub use picture::Picture;
 pub use progressive::Progressive;
 pub use render::{Rendered, render, render_samples, render_while};

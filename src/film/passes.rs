@@ -2,8 +2,9 @@
 
 use super::adaptive::{self, Cell};
 use super::engine::Engine;
-use super::error::LEAST_SAMPLES;
+use super::error::{ErrorEstimate, LEAST_SAMPLES};
 use super::tile_state::{Chunk, Pixels, TILE_PIXELS};
+use super::unmet::OFTEN;
 use super::{Ending, lock};
 use std::ops::Range;
 
@@ -23,14 +24,19 @@ impl Engine {
         }
         let goal = f64::from(settings.sampling.error);
         let judged = start == 0 && *level >= u64::from(LEAST_SAMPLES);
-        let estimate = self.error().unwrap_or_default();
-        if goal > 0.0 && judged && estimate.relative() <= goal {
-            return Err(Ending::Error);
+        let mut hidden = 0.0;
+        if goal > 0.0 && judged {
+            hidden = self.unmet.hidden(&self.subject, OFTEN);
+            let estimate = ErrorEstimate::of(&self.moves(), hidden).unwrap_or_default();
+            if estimate.relative() <= goal {
+                return Err(Ending::Error);
+            }
         }
         let has_goal = goal > 0.0 || settings.sampling.time > 0.0;
         if settings.sampling.adaptive && has_goal && judged {
             let cells = self.cells();
-            let chosen = adaptive::choose(&cells, end, goal * goal * self.pixels());
+            let goal = goal * goal * self.pixels();
+            let chosen = adaptive::choose(&cells, end, goal, hidden);
             if chosen.is_empty() {
                 return Err(Ending::Samples);
             }

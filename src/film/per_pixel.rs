@@ -2,12 +2,22 @@
 
 use super::error::{Decline, Means, Moves};
 use super::tile_state::half_of;
-use super::tiles::{FilmPixel, Tile, TileGrid};
+use super::tiles::{FilmPixel, NearError, Tile, TileGrid};
 use super::{Film, TILE};
 
 /// Edge in pixels of the square whose pixels are estimated together: the means of a single pixel
 /// moved too much by chance.
 const SQUARE: u32 = 4;
+
+/// The estimated relative error of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PixelError {
+    /// 0.01 is one percent; NaN where it is not known.
+    pub relative: f32,
+    /// Whether that is the pixel's part of what features may hide, at most, that no sample has met: the
+    /// samples themselves differ by less, or not at all.
+    pub is_bound: bool,
+}
 
 impl Film {
     /// The number of each pixel's samples, row by row from the top.
@@ -21,14 +31,16 @@ impl Film {
     /// The estimated relative error of each pixel, row by row from the top: 0.01 is one percent. Its
     /// 4 × 4 pixels' part of their tile's error, so that the mean square is the picture's
     /// ([`ErrorEstimate::relative_mse`](super::ErrorEstimate)); NaN where it is not known: of
-    /// less than two samples, of samples without the first ones, and of a merged film.
+    /// less than two samples, of samples without the first ones, and of a merged film. Where they moved by
+    /// less than what features may hide that no sample has met, it is that.
     pub fn relative_errors(&self) -> Vec<f32> {
         let tiles = self.half_tiles();
-        self.errors_of(&tiles, &Decline::of(tiles.iter().map(|half| &half.whole)))
+        let errors = self.errors_of(&tiles, &Decline::of(tiles.iter().map(|half| &half.whole)));
+        errors.into_iter().map(|error| error.relative).collect()
     }
 
     /// The same where this film is a part of one whose errors decline so.
-    pub(super) fn relative_errors_in(&self, decline: &Decline) -> Vec<f32> {
+    pub(super) fn errors_in(&self, decline: &Decline) -> Vec<PixelError> {
         self.errors_of(&self.half_tiles(), decline)
     }
 
@@ -37,15 +49,18 @@ impl Film {
         TileGrid::new(self.size())
             .tiles()
             .enumerate()
-            .flat_map(|(number, tile)| HalfTile::both(tile, self.tile(number)))
+            .flat_map(|(number, tile)| {
+                let (pixels, near) = self.tile(number);
+                HalfTile::both(tile, pixels, near)
+            })
             .collect()
     }
 
-    fn errors_of(&self, tiles: &[HalfTile], decline: &Decline) -> Vec<f32> {
+    fn errors_of(&self, tiles: &[HalfTile], decline: &Decline) -> Vec<PixelError> {
         let size = self.size();
-        let mut errors = vec![f32::NAN; size.x as usize * size.y as usize];
+        let mut errors = vec![PixelError::UNKNOWN; size.x as usize * size.y as usize];
         for halves in tiles.chunks_exact(2) {
-            let squares = square_errors(halves, decline);
+            let squares = square_errors(halves, decline, self.hidden);
             for (pixel, at) in halves[0].tile.pixels() {
                 let place = pixel.y as usize * size.x as usize + pixel.x as usize;
                 errors[place] = squares[square_of(at)];
@@ -53,6 +68,13 @@ impl Film {
         }
         errors
     }
+}
+
+impl PixelError {
+    const UNKNOWN: Self = Self {
+        relative: f32::NAN,
+        is_bound: false,
+    };
 }
 
 /// Squares along a tile's edge.
@@ -75,8 +97,8 @@ struct HalfTile {
 }
 
 impl HalfTile {
-    fn both(tile: Tile, pixels: &[FilmPixel]) -> [Self; 2] {
-        let means = Means::of(pixels, tile.extent);
+    fn both(tile: Tile, pixels: &[FilmPixel], near: &[NearError]) -> [Self; 2] {
+        let means = Means::of(pixels, near, tile.extent);
         let moves = |half: usize, which: &dyn Fn(usize) -> bool| {
             let places = tile.pixels().map(|(_, at)| at);
             means.moves(places.filter(|&at| half_of(at) == half && which(at)))
@@ -89,28 +111,44 @@ impl HalfTile {
     }
 }
 
-/// The relative error of each square: its share of what its tile's halves err by.
-fn square_errors(halves: &[HalfTile], decline: &Decline) -> [f32; SQUARES * SQUARES] {
+/// The relative error of each square: its share of what its tile's halves err by, or of what unmet features
+/// may hide in it.
+fn square_errors(
+    halves: &[HalfTile],
+    decline: &Decline,
+    hidden: f64,
+) -> [PixelError; SQUARES * SQUARES] {
     std::array::from_fn(|i| {
-        let (mut sum, mut pixels) = (0.0, 0);
+        let (mut sum, mut unmet, mut pixels) = (0.0, 0.0, 0);
         for half in halves.iter().filter(|half| half.squares[i].pixels > 0) {
             let Some(expected) = half.whole.expected(decline) else {
-                return f32::NAN;
+                return PixelError::UNKNOWN;
             };
-            let part = half.squares[i].relative[0];
+            let square = &half.squares[i];
+            let is_near = half.whole.near.relative >= expected.relative;
+            let (part, of) = if is_near {
+                (square.near.relative, half.whole.near.relative)
+            } else {
+                (square.relative[0], half.whole.relative[0])
+            };
             if part > 0.0 {
-                sum += expected.relative * part / half.whole.relative[0];
+                sum += expected.relative * part / of;
             }
-            pixels += half.squares[i].pixels;
+            let in_square = f64::from(square.pixels);
+            unmet += hidden * square.reach_with(square.count).relative * in_square;
+            pixels += square.pixels;
         }
-        (sum / f64::from(pixels.max(1))).sqrt() as f32
+        PixelError {
+            relative: (sum.max(unmet) / f64::from(pixels.max(1))).sqrt() as f32,
+            is_bound: unmet > sum,
+        }
     })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::film::{Rendered, render, render_samples, test_scene};
+    use crate::film::{ErrorEstimate, Rendered, render, render_samples, test_scene};
     use glam::UVec2;
 
     fn rendered(spp: u32) -> Rendered {
@@ -131,11 +169,15 @@ mod tests {
 
     #[test]
     fn the_mean_square_of_the_pixels_errors_is_the_pictures() {
-        let rendered = rendered(16);
+        let mut rendered = rendered(16);
+        // What no sample has met is a bound for the whole, wherever it lies.
+        rendered.film.hidden = 0.0;
         let errors = rendered.film.relative_errors();
         let squares: f64 = errors.iter().map(|&e| f64::from(e).powi(2)).sum();
         let mean = squares / errors.len() as f64;
-        let picture = rendered.status.error().unwrap().relative_mse;
+        let halves = rendered.film.half_tiles();
+        let moves: Vec<Moves> = halves.iter().map(|half| half.whole).collect();
+        let picture = ErrorEstimate::of(&moves, 0.0).unwrap().relative_mse;
         assert!(
             (mean / picture - 1.0).abs() < 1e-4,
             "{mean}, the picture's {picture}"

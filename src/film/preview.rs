@@ -8,7 +8,7 @@ use super::tiles::Tile;
 use crate::trace::{RayCounts, SampleId};
 use glam::{UVec2, Vec2, Vec3};
 use std::sync::OnceLock;
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
 /// Tracing the first picture should take this long, in seconds: two frames of a screen, 33 ms, have
@@ -32,6 +32,8 @@ pub(super) struct Preview {
     divider: AtomicU32,
     /// Counts how often it has changed.
     version: AtomicU32,
+    /// A sample met a lamp close by, of which its value alone does not tell all that the film keeps.
+    near_lamps: AtomicBool,
 }
 
 /// Its pixels row by row, but for those that were known before it began: they are in a coarser one.
@@ -45,6 +47,7 @@ impl Preview {
             lattices: Default::default(),
             divider: AtomicU32::new(1),
             version: AtomicU32::new(0),
+            near_lamps: AtomicBool::new(false),
         };
         preview.begin(coarsest_divider(area.extent));
         preview
@@ -90,6 +93,16 @@ impl Preview {
             }
         }
         self.version.fetch_add(1, Ordering::Release);
+    }
+
+    /// A sample met a lamp close by.
+    pub fn meet_near_lamps(&self) {
+        self.near_lamps.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether the values are all that the film wants to know of these samples.
+    pub fn is_enough(&self) -> bool {
+        !self.near_lamps.load(Ordering::Relaxed)
     }
 
     /// Is another one after every change, and 0 before the first.
@@ -194,6 +207,9 @@ pub(super) fn time_samples(
             let ids = some.iter().map(|&pixel| SampleId { pixel, index: 0 });
             rays += scratch.evaluate(subject, ids, batch);
             preview.take(some, scratch.values());
+            if scratch.is_near_lamps() {
+                preview.meet_near_lamps();
+            }
             timed += some.len();
             if start.elapsed() > LONG_ENOUGH {
                 break;

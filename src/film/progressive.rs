@@ -4,7 +4,7 @@ use super::control::Signal;
 use super::engine::{Engine, Mode};
 use super::pool::{Purpose, shared_pool};
 use super::sample_chunk::Subject;
-use super::{Ending, Film, Snapshot, Status, Sum};
+use super::{Ending, Film, PixelError, Snapshot, Status, Sum};
 use crate::scene::RenderSettings;
 use crate::trace::{Camera, World, samples_per_pixel};
 use bevy::math::URect;
@@ -142,11 +142,11 @@ impl Progressive {
         self.engine.film()
     }
 
-    /// Samples of one pixel so far, and its estimated relative error, NaN where it is not known;
-    /// `None` outside the picture. Cheap: for what is under a pointer.
-    pub fn pixel(&self, pixel: UVec2) -> Option<(u32, f32)> {
+    /// Samples of one pixel so far, and its estimated relative error; `None` outside the picture. Cheap: for
+    /// what is under a pointer.
+    pub fn pixel(&self, pixel: UVec2) -> Option<(u32, PixelError)> {
         let (film, place) = self.engine.tile_film(pixel)?;
-        let errors = film.relative_errors_in(&self.engine.decline());
+        let errors = film.errors_in(&self.engine.decline());
         let error = errors[(place.y * film.size().x + place.x) as usize];
         Some((film.count(place.x, place.y), error))
     }
@@ -366,7 +366,10 @@ mod tests {
         for pixel in [UVec2::ZERO, UVec2::new(33, 20), UVec2::new(69, 44)] {
             let (samples, error) = render.pixel(pixel).unwrap();
             assert_eq!(samples, film.count(pixel.x, pixel.y));
-            assert_eq!(error, errors[(pixel.y * SIZE.x + pixel.x) as usize]);
+            assert_eq!(
+                error.relative,
+                errors[(pixel.y * SIZE.x + pixel.x) as usize]
+            );
             let sum = *film.sum(pixel.x, pixel.y);
             assert_eq!(render.pixel_sum(pixel), Some((sum, samples)));
         }

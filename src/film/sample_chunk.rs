@@ -3,6 +3,7 @@
 use super::Sum;
 use super::tile_state::{Chunk, TILE_PIXELS};
 use super::tiles::Tile;
+use super::unmet::{NO_OCTAVES, Octaves, octave};
 use crate::scene::RenderSettings;
 use crate::trace::lights::sample_count;
 use crate::trace::{Camera, RayCounts, SampleId, Workspace, World, radiance};
@@ -93,7 +94,6 @@ fn rays_of_first_hit(subject: &Subject) -> u64 {
 }
 
 /// What a thread keeps from chunk to chunk, so that none allocates.
-#[derive(Default)]
 pub(super) struct Scratch {
     places: Vec<(UVec2, usize)>,
     samples: Vec<SampleId>,
@@ -101,6 +101,24 @@ pub(super) struct Scratch {
     workspace: Workspace,
     /// `TILE_PIXELS` for each segment of the chunk.
     pub sums: Vec<Sum>,
+    /// As many, of what lamps close by add too much; none where no sample met one.
+    pub near: Vec<Sum>,
+    /// How bright the chunk's samples are.
+    pub octaves: Octaves,
+}
+
+impl Default for Scratch {
+    fn default() -> Self {
+        Self {
+            places: Vec::new(),
+            samples: Vec::new(),
+            values: Vec::new(),
+            workspace: Workspace::default(),
+            sums: Vec::new(),
+            near: Vec::new(),
+            octaves: NO_OCTAVES,
+        }
+    }
 }
 
 thread_local! {
@@ -129,6 +147,8 @@ impl Scratch {
     ) -> Option<RayCounts> {
         let mut rays = RayCounts::default();
         self.sums.clear();
+        self.near.clear();
+        self.octaves.fill(0);
         for segment in chunk.segments() {
             let first = self.sums.len();
             self.sums.resize(first + TILE_PIXELS, Sum::default());
@@ -139,6 +159,7 @@ impl Scratch {
                 // The first segment is sample 0 alone.
                 for &(_, at) in &places {
                     if let Some(value) = known[at] {
+                        self.octaves[octave(value)] += 1;
                         self.sums[at].add(value);
                     }
                 }
@@ -156,6 +177,11 @@ impl Scratch {
                 rays += self.evaluate(subject, ids, batch);
                 for (i, value) in (next..end).zip(&self.values) {
                     self.sums[first + place(i).1].add(*value);
+                    self.octaves[octave(*value)] += 1;
+                }
+                for &(i, deviation) in self.workspace.deviations() {
+                    self.near.resize(self.sums.len(), Sum::default());
+                    self.near[first + place(next + u64::from(i)).1].add(deviation);
                 }
                 next = end;
                 if stopped() {
@@ -164,6 +190,9 @@ impl Scratch {
                 }
             }
             self.places = places;
+        }
+        if !self.near.is_empty() {
+            self.near.resize(self.sums.len(), Sum::default());
         }
         Some(rays)
     }
@@ -192,6 +221,11 @@ impl Scratch {
         // when the system thinks that it was enough: 4 ms later on Linux, and an edit waits several times.
         std::thread::yield_now();
         rays
+    }
+
+    /// Whether a sample of the last [`Self::evaluate`] met a lamp close by.
+    pub fn is_near_lamps(&self) -> bool {
+        !self.workspace.deviations().is_empty()
     }
 
     /// What the last [`Self::evaluate`] found.

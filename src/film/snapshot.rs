@@ -3,7 +3,7 @@
 use super::engine::Engine;
 use super::preview::Preview;
 use super::tile_state::{TILE_PIXELS, TileState};
-use super::tiles::{FilmPixel, Tile};
+use super::tiles::{FilmPixel, NearError, Tile};
 use super::{Film, Picture, TILE, lock};
 use glam::{UVec2, Vec3};
 use rayon::prelude::*;
@@ -88,13 +88,23 @@ impl Engine {
 
     pub fn film(&self) -> Film {
         let mut pixels = Vec::with_capacity(self.tiles.len() * TILE_PIXELS);
+        let mut near = Vec::new();
         for state in &self.tiles {
-            let end = pixels.len() + TILE_PIXELS;
-            pixels.extend_from_slice(&lock(state).pixels);
+            let (start, end) = (pixels.len(), pixels.len() + TILE_PIXELS);
+            let state = lock(state);
+            pixels.extend_from_slice(&state.pixels);
             // A tile that no pass has reached has none.
             pixels.resize(end, FilmPixel::default());
+            let errors = state.near_errors();
+            if !errors.is_empty() {
+                near.resize(start, NearError::default());
+                near.extend(errors);
+            }
         }
-        Film::from_tiles(self.size(), pixels)
+        if !near.is_empty() {
+            near.resize(pixels.len(), NearError::default());
+        }
+        Film::from_tiles(self.size(), pixels, near, self.hidden_in_a_pixel())
     }
 
     /// The film of the one tile that a pixel lies in, and the pixel's place there.
@@ -108,8 +118,11 @@ impl Engine {
         let mut pixels = state.pixels.to_vec();
         // A tile that no pass has reached has none.
         pixels.resize(TILE_PIXELS, FilmPixel::default());
-        let film = Film::from_tiles(state.tile.extent, pixels);
-        Some((film, pixel - state.tile.origin))
+        let near = state.near_errors();
+        let extent = state.tile.extent;
+        drop(state);
+        let film = Film::from_tiles(extent, pixels, near, self.hidden_in_a_pixel());
+        Some((film, pixel % TILE))
     }
 }
 

@@ -131,6 +131,7 @@ mod tests {
                 rmse: 1.0,
                 // An error of 0.1 · seconds^-0.75.
                 relative_mse: 0.01 * seconds.powf(-1.5),
+                is_bound: false,
             },
         };
         Status {

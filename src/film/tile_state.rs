@@ -2,7 +2,7 @@
 //! is known of its error.
 
 use super::error::{Means, Moves};
-use super::tiles::{FilmPixel, NOT_KNOWN, Tile};
+use super::tiles::{FilmPixel, NOT_KNOWN, NearError, Tile};
 use super::{Sum, TILE};
 use std::ops::Range;
 
@@ -69,6 +69,8 @@ pub(super) struct TileState {
     pub tile: Tile,
     /// `TILE_PIXELS`, or none before the first pass: a render begins without waiting for memory.
     pub pixels: Box<[FilmPixel]>,
+    /// Of each pixel the sum of what lamps close by add too much; none where no sample met one.
+    near: Box<[Sum]>,
     pending: Option<Box<Pending>>,
     /// How far the means moved, for each half of the pixels.
     pub moves: [Moves; 2],
@@ -82,6 +84,8 @@ pub(super) struct TileState {
 /// The pieces of a pass that have arrived; they enter the pixels when it is complete.
 struct Pending {
     sums: Vec<Sum>,
+    /// The same of what lamps close by add too much; none where no sample met one.
+    near: Vec<Sum>,
     /// Samples a pixel of each half still waits for; 0 where no pass has begun.
     missing: [u64; 2],
 }
@@ -91,6 +95,7 @@ impl TileState {
         Self {
             tile,
             pixels: Box::default(),
+            near: Box::default(),
             pending: None,
             moves: [Moves::default(); 2],
             rays: 0,
@@ -99,9 +104,9 @@ impl TileState {
         }
     }
 
-    /// Takes the sums of a chunk, `TILE_PIXELS` for each of its segments. True where they complete
-    /// the pass and so have entered the pixels.
-    pub fn absorb(&mut self, chunk: &Chunk, sums: &[Sum], rays: u64) -> bool {
+    /// Takes the sums of a chunk, `TILE_PIXELS` for each of its segments, and as many of what lamps close by
+    /// add too much, or none. True where they complete the pass and so have entered the pixels.
+    pub fn absorb(&mut self, chunk: &Chunk, sums: &[Sum], near: &[Sum], rays: u64) -> bool {
         let length = chunk.range.end - chunk.range.start;
         self.rays += rays;
         self.samples += length
@@ -111,20 +116,31 @@ impl TileState {
                 .filter(|(_, at)| chunk.pixels.has(*at))
                 .count() as u64;
         if chunk.is_whole() {
+            let mut near = near.chunks_exact(TILE_PIXELS);
             for (segment, sums) in chunk.segments().zip(sums.chunks_exact(TILE_PIXELS)) {
-                self.commit(chunk.pixels, sums, segment.end - segment.start);
+                let near = near.next().unwrap_or_default();
+                self.commit(chunk.pixels, sums, near, segment.end - segment.start);
             }
             return true;
         }
         let mut pending = self.pending.take().unwrap_or_else(|| {
             Box::new(Pending {
                 sums: vec![Sum::default(); TILE_PIXELS],
+                near: Vec::new(),
                 missing: [0; 2],
             })
         });
         for (at, sum) in pending.sums.iter_mut().enumerate() {
             if chunk.pixels.has(at) {
                 sum.merge(&sums[at]);
+            }
+        }
+        if !near.is_empty() {
+            pending.near.resize(TILE_PIXELS, Sum::default());
+        }
+        for (at, (sum, near)) in pending.near.iter_mut().zip(near).enumerate() {
+            if chunk.pixels.has(at) {
+                sum.merge(near);
             }
         }
         for half in 0..2 {
@@ -136,10 +152,13 @@ impl TileState {
         let first = usize::from(!chunk.pixels.has_half(0));
         let complete = pending.missing[first] == 0;
         if complete {
-            self.commit(chunk.pixels, &pending.sums, chunk.of);
-            for (at, sum) in pending.sums.iter_mut().enumerate() {
-                if chunk.pixels.has(at) {
-                    *sum = Sum::default();
+            self.commit(chunk.pixels, &pending.sums, &pending.near, chunk.of);
+            let Pending { sums, near, .. } = &mut *pending;
+            for sums in [sums, near] {
+                for (at, sum) in sums.iter_mut().enumerate() {
+                    if chunk.pixels.has(at) {
+                        *sum = Sum::default();
+                    }
                 }
             }
         }
@@ -150,7 +169,7 @@ impl TileState {
     }
 
     /// Adds `count` samples to every pixel, whose sums are given.
-    fn commit(&mut self, pixels: Pixels, sums: &[Sum], count: u64) {
+    fn commit(&mut self, pixels: Pixels, sums: &[Sum], near: &[Sum], count: u64) {
         if self.pixels.is_empty() {
             self.pixels = vec![FilmPixel::default(); TILE_PIXELS].into();
         }
@@ -167,7 +186,16 @@ impl TileState {
             pixel.sum.merge(&sums[at]);
             pixel.count += count as u32;
         }
-        let means = Means::of(&self.pixels, self.tile.extent);
+        if !near.is_empty() && self.near.is_empty() {
+            self.near = vec![Sum::default(); TILE_PIXELS].into();
+        }
+        for (at, (sum, near)) in self.near.iter_mut().zip(near).enumerate() {
+            if pixels.has(at) {
+                sum.merge(near);
+            }
+        }
+        let near = self.near_errors();
+        let means = Means::of(&self.pixels, &near, self.tile.extent);
         for half in 0..2 {
             if pixels.has_half(half) {
                 let places = self.tile.pixels().map(|(_, at)| at);
@@ -175,6 +203,14 @@ impl TileState {
             }
         }
         self.version = self.version.wrapping_add(1);
+    }
+
+    /// What lamps close by leave each pixel off by; empty where none is close.
+    pub fn near_errors(&self) -> Vec<NearError> {
+        let pixels = self.near.iter().zip(&self.pixels);
+        pixels
+            .map(|(sum, pixel)| NearError::of(sum, pixel.count))
+            .collect()
     }
 }
 
@@ -227,10 +263,10 @@ mod tests {
         for segment in chunk(0..4, 4, Pixels::All).segments() {
             first.extend(sums(segment));
         }
-        assert!(whole.absorb(&chunk(0..4, 4, Pixels::All), &first, 10));
+        assert!(whole.absorb(&chunk(0..4, 4, Pixels::All), &first, &[], 10));
         let mut pieces = tile();
-        assert!(pieces.absorb(&chunk(0..4, 4, Pixels::All), &first, 10));
-        assert!(whole.absorb(&chunk(4..8, 4, Pixels::All), &sums(4..8), 10));
+        assert!(pieces.absorb(&chunk(0..4, 4, Pixels::All), &first, &[], 10));
+        assert!(whole.absorb(&chunk(4..8, 4, Pixels::All), &sums(4..8), &[], 10));
         for (range, half, complete) in [
             (6..8, 1, false),
             (6..8, 0, false),
@@ -241,6 +277,7 @@ mod tests {
             let done = pieces.absorb(
                 &chunk(range.clone(), 4, Pixels::Half(half)),
                 &sums(range),
+                &[],
                 0,
             );
             assert_eq!(done, complete);
@@ -261,7 +298,7 @@ mod tests {
         for segment in chunk(0..8, 8, Pixels::All).segments() {
             all.extend(sums(segment));
         }
-        tile.absorb(&chunk(0..8, 8, Pixels::All), &all, 0);
+        tile.absorb(&chunk(0..8, 8, Pixels::All), &all, &[], 0);
         // Means of 0..1, 0..2, 0..4, 0..8 in thousands: 0, 0.5, 1.5, 3.5.
         assert_eq!(tile.pixels[0].moved, [4e6, 1e6, 0.25e6]);
     }

@@ -54,22 +54,30 @@ impl<R: Recorder> Batch<'_, R> {
                 Some(light.point(u, lighting))
             });
         }
-        for light in &lights.segments {
+        for (i, light) in lights.segments.iter().enumerate() {
             self.recorder.light(LightKind::Segment, light.id);
             let size = (light.ends[1] - light.ends[0]).length();
             let count = (light.samples, size);
             let at = seen_from(light.id);
+            let first = workspace.shadows.len();
             self.gather_area(path, surface, light.id, count, weight, workspace, |u| {
                 light.point(at, u[0], lighting)
             });
+            if let Some(expected) = workspace.near_lights.segment(i, light, surface, at) {
+                self.gather_near(path, count, weight * expected, first, workspace);
+            }
         }
-        for light in &lights.parallelograms {
+        for (i, light) in lights.parallelograms.iter().enumerate() {
             self.recorder.light(LightKind::Parallelogram, light.id);
             let count = (light.samples, light.area_normal().length());
             let at = seen_from(light.id);
+            let first = workspace.shadows.len();
             self.gather_area(path, surface, light.id, count, weight, workspace, |u| {
                 light.point(at, u, lighting)
             });
+            if let Some(expected) = workspace.near_lights.parallelogram(i, light, surface, at) {
+                self.gather_near(path, count, weight * expected, first, workspace);
+            }
         }
     }
 
@@ -109,6 +117,28 @@ impl<R: Recorder> Batch<'_, R> {
         }
     }
 
+    /// The light points whose shadow rays begin with the `first` are those of a lamp close by.
+    fn gather_near(
+        &self,
+        path: &Path,
+        (samples, size): (u32, f32),
+        expected: Vec3,
+        first: usize,
+        workspace: &mut Workspace,
+    ) {
+        let features = &self.settings.features;
+        if samples == 0 || !features.shadows {
+            return;
+        }
+        let points = if path.first {
+            sample_count(samples, size, features.scale_light_samples)
+        } else {
+            1
+        };
+        let shadows = first..workspace.shadows.len();
+        (workspace.near_lights).found(path.sample, points, expected, shadows);
+    }
+
     fn gather_point(
         &mut self,
         path: &Path,
@@ -140,13 +170,16 @@ impl<R: Recorder> Batch<'_, R> {
     pub(super) fn add_arriving_light(&mut self, workspace: &mut Workspace) {
         self.counts.shadow += workspace.shadow_rays.len() as u64;
         if self.settings.features.transparency && self.world.needs.transparency {
+            workspace.occluded.clear();
             for (shadow, ray) in workspace.shadows.iter().zip(&workspace.shadow_rays) {
                 self.recorder.next_shadow();
                 let transmittance = self.transmittance(ray);
                 self.recorder.arrived(transmittance);
                 let value = shadow.value * transmittance;
+                workspace.occluded.push(value == Vec3::ZERO);
                 self.add(shadow.sample, value);
             }
+            workspace.compare_near_lights();
             return;
         }
         let aggregate = &self.world.aggregate;
@@ -158,6 +191,7 @@ impl<R: Recorder> Batch<'_, R> {
                 self.add(shadow.sample, shadow.value);
             }
         }
+        workspace.compare_near_lights();
     }
 
     /// What a shadow ray lets through: the product of `(1-d) · lerp(1, kd, d)` over its crossings.

@@ -24,6 +24,15 @@ impl Environment {
         };
         self.intensity * map.sample_sphere(equirectangular(direction, self.rotation))
     }
+
+    /// The largest radiance of any direction, channel by channel; of the background alone where the map
+    /// is not in use.
+    pub(super) fn brightest(&self, map_in_use: bool) -> Vec3 {
+        match &self.map {
+            Some(map) if map_in_use => self.intensity * map.brightest(),
+            _ => self.background,
+        }
+    }
 }
 
 /// Place of a direction in an equirectangular picture: u in [0, 1] around the y axis, v in [0, 1]

@@ -1,5 +1,6 @@
 //! The value of samples: a batch at a time, bounce by bounce.
 
+use super::near_lights::NearLights;
 use super::recorder::Recorder;
 use super::sampler::{Purpose, Sampler};
 use super::{Camera, Cone, ImagePlane, Surface, World};
@@ -82,6 +83,21 @@ pub struct Workspace {
     pub(super) shadows: Vec<Shadow>,
     pub(super) shadow_rays: Vec<Ray>,
     pub(super) occluded: Vec<bool>,
+    pub(super) near_lights: NearLights,
+}
+
+impl Workspace {
+    /// Of which samples of the last batch the light of a lamp close by differs by how much from what it has
+    /// to be on average, where that is known: the index into the batch and linear RGB. A sample may be
+    /// named several times. The mean over a pixel's samples is the error that those lamps leave in it.
+    pub fn deviations(&self) -> &[(u32, Vec3)] {
+        self.near_lights.deviations()
+    }
+
+    /// Once it is known what is occluded.
+    pub(super) fn compare_near_lights(&mut self) {
+        self.near_lights.compare(&self.shadows, &self.occluded);
+    }
 }
 
 /// A path on its way: its next ray, and what that ray's radiance will be multiplied by.
@@ -148,6 +164,7 @@ pub(super) fn radiance_with<R: Recorder>(
 ) -> RayCounts {
     assert_eq!(samples.len(), values.len(), "one value for each sample");
     values.fill(Vec3::ZERO);
+    workspace.near_lights.begin(&world.lights, settings);
     let mut batch = Batch {
         world,
         settings,

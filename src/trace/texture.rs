@@ -15,6 +15,8 @@ pub struct Texture {
     levels: OnceLock<Vec<Texture>>,
     /// Those whose colours are weighted by alpha, likewise.
     cut_out_levels: OnceLock<Vec<Texture>>,
+    /// Looked for when first asked for.
+    brightest: OnceLock<Vec3>,
 }
 
 /// Why texels are no picture.
@@ -70,6 +72,7 @@ impl Texture {
             texels,
             levels: OnceLock::new(),
             cut_out_levels: OnceLock::new(),
+            brightest: OnceLock::new(),
         }
     }
 
@@ -111,6 +114,14 @@ impl Texture {
     /// grey map (MTL's map_d) and a colour map with alpha (glTF) say what they mean.
     pub(super) fn texel_opacity(&self, x: u32, y: u32) -> f32 {
         self.alpha(x, y) * self.texel(x, y, true).max_element()
+    }
+
+    /// The largest value of each channel, linear RGB.
+    pub(super) fn brightest(&self) -> Vec3 {
+        *self.brightest.get_or_init(|| {
+            let rows = (0..self.height).flat_map(|y| (0..self.width).map(move |x| (x, y)));
+            rows.fold(Vec3::ZERO, |most, (x, y)| most.max(self.texel(x, y, false)))
+        })
     }
 
     /// Colour at `uv`, repeated in both directions. `footprint` is the edge of the square that the

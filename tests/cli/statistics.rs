@@ -1,7 +1,9 @@
 //! Numbers and lists: `--stats`, `bvh`, `bench`, `scenes`, `--help`.
 
 use super::{glassbox, succeeds, texts};
-use glassbox::scene::SETTINGS;
+use glassbox::app::headless_app;
+use glassbox::io::save;
+use glassbox::scene::{SETTINGS, SceneCamera, SceneId};
 use serde_json::Value;
 
 #[test]
@@ -17,7 +19,7 @@ fn stats_hold_exactly_the_documented_keys_and_add_up() {
         keys.sort();
         keys
     };
-    let wanted = "build_ms builder height instances mrays_per_s rays relative_error render_ms scene spp threads triangles width";
+    let wanted = "build_ms builder height instances mrays_per_s rays relative_error relative_error_is_bound render_ms scene spp threads triangles width";
     assert_eq!(keys(&stats).join(" "), wanted);
     assert_eq!(
         keys(&stats["rays"]).join(" "),
@@ -50,6 +52,22 @@ fn stats_hold_exactly_the_documented_keys_and_add_up() {
         (rate - said).abs() < 1e-6 * rate,
         "{rate} computed, {said} said"
     );
+}
+
+#[test]
+fn a_picture_whose_samples_all_agree_tells_a_bound_of_its_error_and_not_zero() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut app = headless_app();
+    app.world_mut().spawn((SceneId(1), SceneCamera::default()));
+    save(app.world_mut(), &folder.path().join("empty.scn.ron")).unwrap();
+    let arguments = "render empty.scn.ron -o a.png --size 20x10 --error 0.02 --stats a.json";
+    let said = succeeds(folder.path(), &arguments.split(' ').collect::<Vec<_>>());
+    assert!(said.contains(", error at most 1."), "{said}");
+    let text = std::fs::read_to_string(folder.path().join("a.json")).unwrap();
+    let stats: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(stats["relative_error_is_bound"], true, "{text}");
+    let error = stats["relative_error"].as_f64().unwrap();
+    assert!(error > 0.01 && error <= 0.02, "{text}");
 }
 
 #[test]

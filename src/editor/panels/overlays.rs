@@ -4,7 +4,7 @@
 use super::line_legend::line_legend_ui;
 use super::notices::{hint_ui, is_over, notices_ui};
 use super::pattern::pattern_ui;
-use super::readout::value_text;
+use super::readout::PixelValue;
 use super::says::Says;
 use super::state::Panels;
 use super::theme::accent;
@@ -206,7 +206,7 @@ fn legend_body(
     ui: &mut Ui,
     (kind, scale): (View, &Scale),
     range: Option<[f32; 2]>,
-    under: Option<f32>,
+    under: Option<PixelValue>,
 ) -> Option<[f32; 2]> {
     let width = 200.0;
     let (bar, _) = ui.allocate_exact_size(vec2(width, 12.0), Sense::hover());
@@ -228,7 +228,7 @@ fn legend_body(
         }
     }
     ui.painter().add(mesh);
-    if let Some(value) = under.filter(|value| value.is_finite()) {
+    if let Some(value) = under.map(|under| under.value).filter(|v| v.is_finite()) {
         let part = ((value - scale.low) / (scale.high - scale.low)).clamp(0.0, 1.0);
         let x = bar.min.x + part * width;
         let marker =
@@ -266,8 +266,8 @@ fn legend_body(
         }
     });
     let text = match under {
-        Some(value) if value.is_finite() => format!("{} {}", value_text(kind, value), scale.unit),
-        Some(value) => value_text(kind, value),
+        Some(under) if under.value.is_finite() => format!("{} {}", under.text(kind), scale.unit),
+        Some(under) => under.text(kind),
         None => "move the pointer over the picture for its value".into(),
     };
     ui.weak(text);
@@ -282,7 +282,7 @@ pub(super) fn value_under_pointer(
     view: &TracedView,
     render: &TracedRender,
     panels: &mut Panels,
-) -> Option<f32> {
+) -> Option<PixelValue> {
     let at = ui
         .ctx()
         .pointer_latest_pos()
@@ -297,8 +297,11 @@ pub(super) fn value_under_pointer(
     let pixel = pixel.min(size - UVec2::ONE);
     let film = || render.render()?.pixel(pixel);
     match view.view {
-        View::Samples => film().map(|(samples, _)| samples as f32),
-        View::Error => film().map(|(_, error)| error),
+        View::Samples => film().map(|(samples, _)| (samples as f32).into()),
+        View::Error => film().map(|(_, error)| PixelValue {
+            value: error.relative,
+            is_bound: error.is_bound,
+        }),
         kind => {
             let key = (
                 std::sync::Arc::as_ptr(world) as usize,
@@ -319,11 +322,12 @@ pub(super) fn value_under_pointer(
                 }
             };
             panels.under_pointer = Some((key, hit));
-            Some(match kind {
+            let value = match kind {
                 View::Nodes => hit.cost.nodes as f32,
                 View::Triangles => hit.cost.triangles as f32,
                 _ => hit.depth,
-            })
+            };
+            Some(value.into())
         }
     }
 }

@@ -47,7 +47,7 @@ pub(super) fn readout_ui(ui: &Ui, free: Rect, world: &mut World, panels: &mut Pa
         }),
         view => value.map(|value| {
             let unit = unit.map_or("", |scale| scale.unit);
-            format!("{} {unit}", value_text(view, value))
+            format!("{} {unit}", value.text(view))
         }),
     };
     let text = text.unwrap_or_default();
@@ -70,8 +70,33 @@ fn pixel_under_pointer(
     (place.x >= view.divider).then(|| pixel.min(size - UVec2::ONE))
 }
 
+/// What a heatmap shows at a pixel.
+#[derive(Clone, Copy)]
+pub(super) struct PixelValue {
+    pub value: f32,
+    /// Whether that is an upper bound.
+    pub is_bound: bool,
+}
+
+impl PixelValue {
+    /// With all digits that it has.
+    pub fn text(self, view: View) -> String {
+        let at_most = if self.is_bound { "at most " } else { "" };
+        format!("{at_most}{}", value_text(view, self.value))
+    }
+}
+
+impl From<f32> for PixelValue {
+    fn from(value: f32) -> Self {
+        Self {
+            value,
+            is_bound: false,
+        }
+    }
+}
+
 /// A heatmap's number with all that it has: counts are whole.
-pub(super) fn value_text(view: View, value: f32) -> String {
+fn value_text(view: View, value: f32) -> String {
     match view {
         _ if value.is_nan() => "not known yet".into(),
         _ if value.is_infinite() => "nothing there".into(),
@@ -93,5 +118,11 @@ mod tests {
         assert_eq!(value_text(View::Error, 0.0001234), "1.234e-4");
         assert_eq!(value_text(View::Error, f32::NAN), "not known yet");
         assert_eq!(value_text(View::Depth, f32::INFINITY), "nothing there");
+        let bound = PixelValue {
+            value: 0.01,
+            is_bound: true,
+        };
+        assert_eq!(bound.text(View::Error), "at most 0.01000");
+        assert_eq!(PixelValue::from(12.0).text(View::Samples), "12");
     }
 }

@@ -4,7 +4,7 @@ use super::says::{Says, take_hint};
 use super::state::{Dialog, Panels};
 use crate::editor::render_job::RenderJob;
 use crate::editor::viewport::EditorCamera;
-use crate::film::{Ending, State};
+use crate::film::{Ending, ErrorEstimate, State};
 use crate::io::LoadProblems;
 use crate::sync::Traced;
 use crate::trace;
@@ -45,13 +45,13 @@ pub(super) fn status_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
                 |error| {
                     let slope = status.decline();
                     let trend = slope.map_or_else(String::new, |slope| format!(" ~ t^-{slope:.2}"));
-                    format!("error {}{trend}", percent(error.relative()))
+                    format!("error {}{trend}", error_text(&error))
                 },
             );
             figure(
                 ui,
                 &error,
-                "Estimated relative error of the picture, and how it falls with time: t^-0.5 is plain random sampling",
+                "Estimated relative error of the picture, and how it falls with time: t^-0.5 is plain random sampling. At most: what may hide that no sample has met, where the samples themselves differ by less",
             );
             figure(
                 ui,
@@ -204,6 +204,15 @@ fn count(samples: f64) -> String {
         format!("{samples:.0}")
     } else {
         format!("{samples:.1}")
+    }
+}
+
+/// A picture's error; a bound is rounded up, so that it is not 0.
+pub(super) fn error_text(error: &ErrorEstimate) -> String {
+    if error.is_bound {
+        error.to_string()
+    } else {
+        percent(error.relative())
     }
 }
 

@@ -46,7 +46,8 @@ pub fn picture_notes(camera: &str, settings: &RenderSettings, status: &Status) -
         ("Samples", format!("{}", status.samples)),
     ];
     if let Some(error) = status.error() {
-        notes.push(("Error", format!("{:.3e}", error.relative())));
+        let bound = if error.is_bound { "at most " } else { "" };
+        notes.push(("Error", format!("{bound}{:.3e}", error.relative())));
     }
     notes
 }

@@ -4,7 +4,7 @@ use super::super::fields::{Number, integer, row};
 use super::super::menu_bar::cameras;
 use super::super::says::Says;
 use super::super::state::Panels;
-use super::super::status::percent;
+use super::super::status::error_text;
 use super::question::whole_path_ui;
 use crate::editor::render_job::{
     RenderFrom, RenderJob, RenderProgress, RenderRequest, start_render,
@@ -162,7 +162,7 @@ fn progress_ui(ui: &mut Ui, world: &mut World, progress: &RenderProgress) {
     };
     if let Some(status) = &progress.status {
         if let Some(error) = status.error() {
-            text += &format!(", error {}", percent(error.relative()));
+            text += &format!(", error {}", error_text(&error));
         }
         if let Some(left) = status.seconds_left.filter(|_| !progress.writing) {
             text += &format!(", {left:.0} s left");

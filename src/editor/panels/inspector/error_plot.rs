@@ -2,7 +2,7 @@
 //! a straight line is a power law and its slope the exponent.
 
 use super::super::says::Says;
-use super::super::status::percent;
+use super::super::status::{error_text, percent};
 use super::super::theme::accent;
 use super::still_plot::still_plot;
 use crate::film::{Status, TrendPoint};
@@ -28,10 +28,12 @@ fn places(trend: &[TrendPoint]) -> Vec<[f64; 2]> {
 pub(super) fn error_plot_ui(ui: &mut Ui, status: Option<&Status>, curve: &mut ErrorCurve) {
     let places = status.map_or_else(Vec::new, |status| places(&status.trend));
     let slope = status.and_then(Status::decline);
-    let label = match (slope, places.last()) {
-        (Some(slope), Some(last)) => {
-            let error = percent(10_f64.powf(last[1]));
-            format!("{error} now, falling as t^-{slope:.2}")
+    let told = status
+        .and_then(Status::error)
+        .filter(|_| !places.is_empty());
+    let label = match (slope, told) {
+        (Some(slope), Some(error)) => {
+            format!("{} now, falling as t^-{slope:.2}", error_text(&error))
         }
         // The plot stays where it is, so that what is below it does not jump with every edit.
         (_, None) => "known after a few samples".to_owned(),
@@ -150,6 +152,7 @@ mod tests {
             error: ErrorEstimate {
                 rmse: 0.0,
                 relative_mse,
+                is_bound: false,
             },
         };
         let trend = [point(0.0, 1.0), point(10.0, 1e-4), point(20.0, 0.0)];
