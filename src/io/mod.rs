@@ -2,7 +2,8 @@
 //!
 //! [`open`] replaces the open scene by a file's or a built-in one, [`save`] writes it. Between the
 //! two the systems of [`IoPlugin`] keep handles in step with sources. Everything that can fail ends
-//! in a [`FileError`], one line that names the file, the place in it and what would help.
+//! in a [`FileError`], one line that names the file, the place in it and what would help. What can be shown is shown
+//! all the same: what is left out or replaced then is told in [`Notes`], and never passed over in silence.
 //!
 //! | file | in | out |
 //! |---|---|---|
@@ -26,11 +27,14 @@ mod import;
 mod limits;
 mod loader;
 mod model;
+mod names;
+mod notes;
 mod obj;
 mod open;
 mod part;
 mod picture;
 pub(crate) mod place;
+mod polygon;
 mod problems;
 #[cfg(feature = "editor")]
 mod reload;
@@ -44,6 +48,7 @@ pub use error::{FileError, Place, Problem};
 pub use folder::Folder;
 pub use import::{Imported, import};
 pub use limits::Limits;
+pub use notes::{FileNote, Notes};
 pub use open::{OpenOptions, Opened, SceneSource, open, open_empty};
 pub use part::{Merge, MergeError, Part, read_part, write_part};
 pub use picture::{

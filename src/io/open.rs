@@ -5,6 +5,7 @@ use super::frame::frame;
 use super::ids::assign_ids;
 use super::loader::{Loader, read_model};
 use super::model::Model;
+use super::notes::Notes;
 use super::picture::PictureUse;
 use super::scene_file::{SceneFile, read_scene, scene_entities};
 use super::sources::{SceneFiles, resolve_environment, resolve_meshes, resolve_pictures};
@@ -19,6 +20,7 @@ use bevy::ecs::name::Name;
 use bevy::image::Image;
 use bevy::mesh::Mesh;
 use bevy::prelude::{Entity, World};
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 /// What can be opened.
@@ -50,6 +52,8 @@ pub struct OpenOptions {
     /// Whether a scene is opened although something that it names cannot be loaded, a picture that was deleted or a
     /// shape that has no size: that is left out then, and [`LoadProblems`] says why. Not so what is outside.
     pub tolerant: bool,
+    /// Whether a model without a camera or a light is left without.
+    pub unframed: bool,
     /// How much files may ask for.
     pub limits: Limits,
 }
@@ -59,14 +63,15 @@ pub struct OpenOptions {
 pub struct Opened {
     /// The built-in scene's name, or the file's without its folder.
     pub name: String,
-    /// What was left out, changed or added, a line each.
-    pub notes: Vec<String>,
+    /// What was left out, changed or added.
+    pub notes: Notes,
 }
 
 /// Replaces the open scene by another. Everything is loaded and checked first: on an error the
 /// world is as it was.
 ///
-/// A model file without a camera or a light gets one of each that it lacks, and a note says so.
+/// A model file without a camera or a light gets one of each that it lacks, and a note says so, unless that is
+/// [`OpenOptions::unframed`].
 pub fn open(
     world: &mut World,
     source: &SceneSource,
@@ -80,7 +85,7 @@ pub fn open(
         name: file
             .file_name()
             .map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
-        notes: Vec::new(),
+        notes: Notes::default(),
     };
     let extension = extension(file);
     if !file.exists() && extension.is_empty() {
@@ -89,12 +94,15 @@ pub fn open(
         return Err(FileError::new(file, Problem::NoSuchScene { known }));
     }
     let folder = Folder::of(file, options.allow_outside);
+    let unframed = options.unframed;
     match extension.as_str() {
         "scn.ron" | "ron" => open_scene(world, file, folder, options)?,
         "obj" | "gltf" | "glb" => {
             let model = read_model(file, &folder, &options.limits)?;
             opened.notes = open_model(world, model, file, folder, options.limits)?;
-            opened.notes.extend(frame(world));
+            if !unframed {
+                frame(world, file, &mut opened.notes);
+            }
         }
         _ => {
             return Err(FileError::new(
@@ -121,7 +129,7 @@ fn open_builtin(world: &mut World, scene: &BuiltinScene, options: OpenOptions) -
     resolve(world);
     Opened {
         name: scene.name.to_owned(),
-        notes: Vec::new(),
+        notes: Notes::default(),
     }
 }
 
@@ -153,12 +161,12 @@ fn open_model(
     file: &Path,
     folder: Folder,
     limits: Limits,
-) -> Result<Vec<String>, FileError> {
+) -> Result<Notes, FileError> {
     let path = file
         .file_name()
         .map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let mut model = model;
-    let loaded = Loaded::of_model(&mut model, &path, &mut Loader::new(&folder, &limits))?;
+    let loaded = Loaded::of_model(&mut model, &path, &mut Loader::new(&folder, &limits));
     clear(world, SceneFiles::new(folder, limits));
     let held = loaded.hand_over(world);
     let notes = std::mem::take(&mut model.notes);
@@ -230,7 +238,7 @@ pub(super) fn spawn_model(
 /// Replaces the open scene by one with a camera and a light, and nothing to see.
 pub fn open_empty(world: &mut World) {
     clear(world, SceneFiles::default());
-    frame(world);
+    frame(world, Path::new(""), &mut Notes::default());
     resolve(world);
 }
 
@@ -266,7 +274,7 @@ impl Loaded {
         let fatal = |error: &FileError| !tolerant || matches!(error.problem, Problem::Outside);
         let mut loaded = Self::default();
         let mut loader = Loader::new(folder, limits);
-        let mut seen = std::collections::HashSet::new();
+        let mut seen = HashSet::new();
         for source in scene.mesh_sources() {
             if seen.insert(super::sources::mesh_key(source)) {
                 match loader.mesh(source) {
@@ -288,18 +296,41 @@ impl Loaded {
         Ok(loaded)
     }
 
-    /// A model's meshes, which are taken out of it, and the pictures of its materials.
-    pub fn of_model(model: &mut Model, path: &str, loader: &mut Loader) -> Result<Self, FileError> {
+    /// A model's meshes, which are taken out of it, and the pictures of its materials. One that cannot be read is
+    /// noted, and its material is left without.
+    pub fn of_model(model: &mut Model, path: &str, loader: &mut Loader) -> Self {
         let mut loaded = Self::default();
-        let materials = model.materials.iter();
-        for (source, usage) in materials.flat_map(|(_, phong)| pictures_of(phong)) {
-            loaded.load_picture(source, usage, loader)?;
+        let mut failed = HashSet::new();
+        for (_, phong) in &mut model.materials {
+            let maps = [
+                (&mut phong.diffuse_map, PictureUse::Color),
+                (&mut phong.opacity_map, PictureUse::Data),
+            ];
+            for (map, usage) in maps {
+                let Some(source) = map else { continue };
+                // One that many materials name is tried once.
+                let key = (source.clone(), usage);
+                if !failed.contains(&key)
+                    && let Err(FileError {
+                        file,
+                        place,
+                        problem,
+                    }) = loaded.load_picture(source, usage, loader)
+                {
+                    let instead = "its materials have no picture there";
+                    model.notes.add(&file, place, problem.to_string(), instead);
+                    failed.insert(key.clone());
+                }
+                if failed.contains(&key) {
+                    *map = None;
+                }
+            }
         }
         for (name, mesh) in std::mem::take(&mut model.meshes) {
             let path = path.to_owned();
             loaded.meshes.push((MeshSource::File { path, name }, mesh));
         }
-        Ok(loaded)
+        loaded
     }
 
     fn load_picture(

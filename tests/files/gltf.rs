@@ -73,7 +73,7 @@ fn document(primitive: Value, change: impl FnOnce(&mut Value)) -> (App, Vec<Stri
     glassbox::io::write_picture(&folder.path().join("a b.png"), 1, 1, &[[0.5; 3]]).unwrap();
     let file = write(folder.path(), "a.gltf", document.to_string());
     let (app, opened) = opened(&file);
-    (app, opened.notes)
+    (app, opened.notes.lines())
 }
 
 fn plain() -> Value {

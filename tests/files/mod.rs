@@ -2,5 +2,6 @@
 
 pub mod app;
 mod gltf;
-mod models;
+pub mod models;
+mod obj;
 mod round_trip;

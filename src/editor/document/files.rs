@@ -99,9 +99,7 @@ pub(in crate::editor) fn open_file(world: &mut World, path: &Path, allow_outside
         Ok(opened) => {
             finish_opening(world, opened.name.clone(), is_file.then_some(path));
             let mut notices = world.resource_mut::<Notices>();
-            for note in opened.notes {
-                notices.tell(format!("{}: {note}", opened.name));
-            }
+            notices.notes(&opened.name, opened.notes.lines());
         }
         Err(error)
             if matches!(
@@ -177,9 +175,7 @@ pub(super) fn save_to(world: &mut World, path: &Path) {
     let mut notices = world.resource_mut::<Notices>();
     let verb = if is_scene { "Saved" } else { "Exported" };
     notices.tell(format!("{verb} {}", path.display()));
-    for note in notes {
-        notices.tell(format!("{name}: {note}"));
-    }
+    notices.notes(&name, notes);
     if !is_scene {
         return;
     }
