@@ -51,6 +51,12 @@ impl<'a> Json<'a> {
         self.get("extensions")?.get(name)
     }
 
+    /// Whether an extension adds something here, which is not read by that.
+    pub fn has_extension(self, name: &str) -> bool {
+        let extensions = self.get("extensions");
+        extensions.is_some_and(|extensions| extensions.value.get(name).is_some())
+    }
+
     /// The elements of a list; none where there is none.
     pub fn list(self, key: &str) -> impl ExactSizeIterator<Item = Self> + 'a {
         let list = self.get(key).and_then(|list| list.value.as_array());

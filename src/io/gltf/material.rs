@@ -139,6 +139,7 @@ pub(super) fn phong_of(document: &Document, index: usize, material: Json, name: 
         &mut phong,
         is_exact,
     );
+    let emissive_picture = material.get("emissiveTexture").and_then(TextureInfo::of);
     let emissive = material.numbers("emissiveFactor").unwrap_or([0.0; 3]);
     let strength = material.extension("KHR_materials_emissive_strength");
     let strength = strength.and_then(|strength| strength.number("emissiveStrength"));
@@ -146,7 +147,7 @@ pub(super) fn phong_of(document: &Document, index: usize, material: Json, name: 
         let strength = strength.unwrap_or(1.0);
         phong.emission = color(emissive.map(|e| at_least_0(e * strength)));
     }
-    if material.get("emissiveTexture").is_some() && phong.emission != LinearRgba::BLACK {
+    if emissive_picture.is_some() && phong.emission != LinearRgba::BLACK {
         note("an emissive picture, of", "left out, and what it scales");
         phong.emission = LinearRgba::BLACK;
     }

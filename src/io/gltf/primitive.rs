@@ -10,6 +10,8 @@ use super::rest::Pose;
 use bevy::math::Vec2;
 use bevy::mesh::Mesh;
 
+const DRACO: &str = "KHR_draco_mesh_compression";
+
 const LINE_STRIP: usize = 3;
 const TRIANGLES: usize = 4;
 const TRIANGLE_STRIP: usize = 5;
@@ -27,7 +29,7 @@ pub(super) fn read_primitive(
         document.note(name, "points and lines", "left out");
         return Ok(None);
     }
-    let compressed = primitive.extension("KHR_draco_mesh_compression");
+    let is_compressed = primitive.has_extension(DRACO);
     let attributes = primitive.get("attributes");
     let Some(attributes) = attributes.filter(|attributes| attributes.index("POSITION").is_some())
     else {
@@ -35,13 +37,11 @@ pub(super) fn read_primitive(
         return Ok(None);
     };
     let read = triangles(document, primitive, attributes, mode, name, pose);
-    match compressed {
-        // What stands beside it may be whole.
-        Some(_) => {
-            read.map_err(|_| Problem::UnsupportedExtension("KHR_draco_mesh_compression".to_owned()))
-        }
-        None => read,
-    }
+    read.map_err(|problem| match is_compressed {
+        // What stands beside it might have been whole.
+        true => Problem::UnsupportedExtension(DRACO.to_owned()),
+        false => problem,
+    })
 }
 
 fn triangles(
