@@ -52,7 +52,11 @@ impl Triangulator {
         }
         if !self.project(polygon) {
             triangles.extend(fan);
-            return Fit::Flat;
+            // The two halves of a bow tie face opposite ways.
+            return match is_a_line(polygon) {
+                true => Fit::Flat,
+                false => Fit::Crossed,
+            };
         }
         if fan.clone().all(|[a, b, c]| self.turn(a, b, c) > 0.0) {
             triangles.extend(fan);
@@ -219,6 +223,19 @@ impl Triangulator {
     }
 }
 
+/// Whether all corners lie on one line.
+fn is_a_line(polygon: &[Vec3]) -> bool {
+    let from_first = |&corner: &Vec3| (corner - polygon[0]).as_dvec3();
+    let sides = polygon.iter().map(from_first);
+    let longest = sides
+        .clone()
+        .max_by(|a, b| a.length().total_cmp(&b.length()));
+    let longest = longest.unwrap_or_default();
+    sides
+        .into_iter()
+        .all(|side| side.cross(longest) == DVec3::ZERO)
+}
+
 /// What counts as an ear. Less is asked for where a round has found none.
 #[derive(Clone, Copy)]
 enum Patience {
@@ -337,6 +354,8 @@ mod tests {
         let bow_tie = polygon(&[[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 3.0]]);
         let (some, fit, _) = triangles(&bow_tie);
         assert_eq!((some.len(), fit), (2, Fit::Crossed));
+        let even = polygon(&[[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]]);
+        assert_eq!(triangles(&even).1, Fit::Crossed, "halves of the same size");
         let line = polygon(&[[0.0, 0.0], [1.0, 1.0], [2.0, 2.0], [3.0, 3.0]]);
         assert_eq!(triangles(&line).1, Fit::Flat);
         let point = [Vec3::ONE; 5];
