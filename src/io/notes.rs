@@ -134,13 +134,10 @@ impl fmt::Display for FileNote {
             write!(out, "{before}`{name}`")
         })?;
         let more = self.names.len().saturating_sub(NAMES_OF_A_LINE);
-        if more > 0 {
-            let or_more = if self.names.len() == MOST_NAMES {
-                " or more"
-            } else {
-                ""
-            };
-            write!(out, " and {more}{or_more} others")?;
+        match self.names.len() {
+            MOST_NAMES => write!(out, " and many more")?,
+            _ if more > 0 => write!(out, " and {more} more")?,
+            _ => {}
         }
         write!(out, "; {}", self.instead)?;
         if self.count as usize > self.names.len().max(1) {
@@ -171,7 +168,7 @@ mod tests {
         assert_eq!(
             notes.lines(),
             [
-                "a.obj:3: there is no picture `a`, `b`, `c` and 1 others; left out (5 times)",
+                "a.obj:3: there is no picture `a`, `b`, `c` and 1 more; left out (5 times)",
                 "a.obj:9: points; left out (2 times)",
             ]
         );

@@ -103,7 +103,7 @@ fn text_is_read_however_it_is_encoded_and_spaced() {
         plain.replace("f 1 2 3", "F 1.0 2 \\\n3").into_bytes(),
         [&[0xff, 0xfe], &wide[..]].concat(),
     ] {
-        let (mut app, told, _folder) = open(&[("a.obj", &bytes)]);
+        let (mut app, told, _folder) = open(&[("a.obj", &bytes[..])]);
         assert_eq!((area(&mut app), &told[..]), (0.5, &[][..]), "{bytes:?}");
     }
 }
@@ -123,7 +123,7 @@ fn materials_are_found_wherever_their_library_is_named_and_however_it_is_spelt()
         let red: &[u8] = b"newmtl Red Paint#1\nkd 1 0 0\n";
         let (mut app, told, _folder) = open(&[
             ("a.obj", text.as_bytes()),
-            ("one.mtl", b"newmtl blue\n"),
+            ("one.mtl", &b"newmtl blue\n"[..]),
             ("two.mtl", red),
             ("my lib.mtl", red),
         ]);
@@ -153,7 +153,7 @@ fn a_picture_is_found_however_its_name_is_spelt() {
 
 #[test]
 fn a_picture_is_placed_by_its_options() {
-    let mtl = b"newmtl a\nmap_Kd -s 2 3 1 -o 0.5 0.25 0 -blendu on -bm 1 wall.png\n";
+    let mtl: &[u8] = b"newmtl a\nmap_Kd -s 2 3 1 -o 0.5 0.25 0 -blendu on -bm 1 wall.png\n";
     let text = format!("mtllib a.mtl\nusemtl a\n{SQUARE}f 1/1 2/2 3/3\n");
     let (mut app, told, _folder) = open(&[("a.obj", text.as_bytes()), ("a.mtl", mtl)]);
     assert!(told.is_empty(), "{told:?}");
@@ -275,7 +275,7 @@ fn smoothing_groups_give_normals_where_the_file_has_none() {
 
 #[test]
 fn a_face_without_texture_coordinates_leaves_those_of_the_others() {
-    let mtl = b"newmtl a\nmap_Kd wall.png\n";
+    let mtl: &[u8] = b"newmtl a\nmap_Kd wall.png\n";
     let text = format!("mtllib a.mtl\no wall\nusemtl a\n{SQUARE}f 1/1 2/2 3/3\nf 1 3 4\n");
     let (mut app, told, _folder) = open(&[("a.obj", text.as_bytes()), ("a.mtl", mtl)]);
     assert!(told.is_empty(), "{told:?}");
