@@ -10,7 +10,7 @@ mod scenes;
 
 use crate::files::app::app;
 use bevy::mesh::Mesh3d;
-use bevy::prelude::World;
+use bevy::prelude::{Entity, With, World};
 use glassbox::io::{FileError, OpenOptions, SceneSource, open};
 use glassbox::scene::{PointLamp, SceneId};
 use std::path::Path;
@@ -65,8 +65,8 @@ pub fn opens_and_says(file: &Path, parts: &[&str]) -> usize {
         "{parts:?} is not said once: {lines:#?}"
     );
     let world = app.world_mut();
-    let mut query = world.query_filtered::<bevy::prelude::Entity, bevy::prelude::With<Mesh3d>>();
+    let mut query = world.query_filtered::<Entity, With<Mesh3d>>();
     let objects: Vec<_> = query.iter(world).collect();
-    let triangles = |&object: &_| crate::files::app::triangles(world, object).len();
+    let triangles = |&object: &Entity| crate::files::app::triangles(world, object).len();
     objects.iter().map(triangles).sum()
 }

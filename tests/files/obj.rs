@@ -104,7 +104,8 @@ fn text_is_read_however_it_is_encoded_and_spaced() {
         [&[0xff, 0xfe], &wide[..]].concat(),
     ] {
         let (mut app, told, _folder) = open(&[("a.obj", &bytes[..])]);
-        assert_eq!((area(&mut app), &told[..]), (0.5, &[][..]), "{bytes:?}");
+        assert_eq!(area(&mut app), 0.5, "{bytes:?}");
+        assert!(told.is_empty(), "{bytes:?}: {told:?}");
     }
 }
 
@@ -256,7 +257,7 @@ fn smoothing_groups_give_normals_where_the_file_has_none() {
     // Two faces of a roof.
     let roof = "v 0 0 0\nv 0 1 0\nv 1 0 1\nv 1 1 1\nv 2 0 0\nv 2 1 0\n";
     let faces = "f 1 3 4 2\nf 3 5 6 4\n";
-    let mut normals = |group: &str| {
+    let normals = |group: &str| {
         let (mut app, _) = obj(&format!("{roof}{group}\n{faces}"));
         attribute(&mut app, Mesh::ATTRIBUTE_NORMAL).map(|normals| match normals {
             VertexAttributeValues::Float32x3(normals) => normals,
