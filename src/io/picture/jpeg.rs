@@ -18,8 +18,9 @@ pub(crate) fn cut_short(name: &Path, bytes: impl BufRead) -> Option<FileError> {
 fn reaches_end(mut bytes: impl BufRead) -> io::Result<()> {
     let mut next = || -> io::Result<u8> {
         let byte = bytes.fill_buf()?.first().copied();
+        let byte = byte.ok_or_else(|| io::Error::from(ErrorKind::UnexpectedEof))?;
         bytes.consume(1);
-        byte.ok_or_else(|| ErrorKind::UnexpectedEof.into())
+        Ok(byte)
     };
     if [next()?, next()?] != [0xff, 0xd8] {
         return Ok(());
