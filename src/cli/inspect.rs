@@ -53,10 +53,10 @@ pub(super) struct Inspect {
     #[arg(long, value_name = "NAME")]
     camera: Option<String>,
     /// Draw the picture from here instead of from the camera, to see its rays from the side
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse_point, requires = "target")]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_point, requires = "target", allow_hyphen_values = true)]
     eye: Option<Vec3>,
     /// With --eye: where to look
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse_point, requires = "eye")]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_point, requires = "eye", allow_hyphen_values = true)]
     target: Option<Vec3>,
     /// How trees are built
     #[arg(long, value_enum)]

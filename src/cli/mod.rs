@@ -6,6 +6,7 @@
 
 mod bench;
 mod bvh;
+mod check;
 mod convert;
 mod failure;
 mod gizmos;
@@ -63,6 +64,8 @@ enum Command {
     Scenes,
     /// Convert a scene: .scn.ron, .obj, .gltf, .glb or a built-in one to .scn.ron, .obj or .glb
     Convert(convert::Convert),
+    /// Open files without rendering them: what they hold, and what of it cannot be shown
+    Check(check::Check),
     /// Time a scene with each builder and print a table in Markdown
     Bench(bench::Bench),
     /// Measure speed against error and write a report
@@ -90,6 +93,7 @@ fn execute(arguments: impl IntoIterator<Item = OsString>) -> Result<ExitCode, Fa
         Some(Command::Inspect(inspect)) => inspect::run(inspect)?,
         Some(Command::Scenes) => scenes::run()?,
         Some(Command::Convert(convert)) => convert::run(convert)?,
+        Some(Command::Check(check)) => check::run(check)?,
         Some(Command::Bench(bench)) => bench::run(bench)?,
         Some(Command::Report(report)) => report::run(report)?,
     }

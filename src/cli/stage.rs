@@ -46,8 +46,8 @@ impl Stage {
         };
         let opened = open(app.world_mut(), &SceneSource::named(&args.scene), options)?;
         if !quiet {
-            for note in &opened.notes {
-                tell("note", format_args!("{}: {note}", opened.name));
+            for note in opened.notes.iter() {
+                tell("note", note);
             }
             for problem in &app.world().resource::<LoadProblems>().problems {
                 let (what, error) = (problem.what, &problem.error);

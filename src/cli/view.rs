@@ -19,7 +19,7 @@ pub(super) struct ViewArgs {
     pub view: View,
     /// Values at the ends of a heatmap's palette (default: from 0, or for depth the 1st percentile,
     /// to the 99th)
-    #[arg(long, value_name = "A..B")]
+    #[arg(long, value_name = "A..B", allow_hyphen_values = true)]
     pub range: Option<ValueRange>,
     /// Write the palette with its range into a heatmap's lower left corner
     #[arg(long)]

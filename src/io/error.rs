@@ -59,7 +59,7 @@ impl fmt::Display for FileError {
 }
 
 /// Writes on, with a space for each control character: line breaks, and what steers a terminal.
-struct OneLine<'a, 'b>(&'a mut fmt::Formatter<'b>);
+pub(super) struct OneLine<'a, 'b>(pub &'a mut fmt::Formatter<'b>);
 
 impl fmt::Write for OneLine<'_, '_> {
     fn write_str(&mut self, text: &str) -> fmt::Result {

@@ -1,4 +1,6 @@
+use super::error::Place;
 use super::ids::assign_ids;
+use super::notes::Notes;
 use super::place::world_from;
 use crate::scene::{
     DirectionalLamp, ParallelogramLamp, PointLamp, Projection, SceneCamera, SegmentLamp,
@@ -10,6 +12,7 @@ use bevy::mesh::{Mesh, Mesh3d, VertexAttributeValues};
 use bevy::prelude::{Entity, Or, With, World};
 use bevy::transform::components::Transform;
 use std::f32::consts::PI;
+use std::path::Path;
 
 /// From the middle of what is shown to the camera: from the front, a little from the right, above.
 const VIEW_FROM: Vec3 = Vec3::new(0.55, 0.45, 1.0);
@@ -21,8 +24,8 @@ const LIGHT_FROM: Vec3 = Vec3::new(-0.5, 1.0, 0.8);
 const MARGIN: f32 = 1.05;
 
 /// Gives a scene without a camera one that shows all of it, and a scene without a light a
-/// directional one. Returns a line for each.
-pub(crate) fn frame(world: &mut World) -> Vec<String> {
+/// directional one. A note says so; `file` is where it came from.
+pub(crate) fn frame(world: &mut World, file: &Path, notes: &mut Notes) {
     type Lamp = Or<(
         With<PointLamp>,
         With<DirectionalLamp>,
@@ -31,12 +34,12 @@ pub(crate) fn frame(world: &mut World) -> Vec<String> {
     )>;
     let no_camera = count::<With<SceneCamera>>(world) == 0;
     let no_lamp = count::<Lamp>(world) == 0;
-    let mut notes = Vec::new();
     let mut added = Vec::new();
     if no_camera {
         let transform = framing(bounds(world));
         added.push(spawn(world, "Camera", transform, SceneCamera::default()));
-        notes.push("no camera in the file: one that shows everything was added".to_owned());
+        let instead = "one that shows everything was added";
+        notes.add(file, Place::Whole, "has no camera", instead);
     }
     if no_lamp {
         let transform = Transform::from_translation(LIGHT_FROM).looking_at(Vec3::ZERO, Vec3::Y);
@@ -46,10 +49,14 @@ pub(crate) fn frame(world: &mut World) -> Vec<String> {
             ..DirectionalLamp::default()
         };
         added.push(spawn(world, "Light", transform, lamp));
-        notes.push("no light in the file: a directional one was added".to_owned());
+        notes.add(
+            file,
+            Place::Whole,
+            "has no light",
+            "a directional one was added",
+        );
     }
     assign_ids(world, &added);
-    notes
 }
 
 fn spawn(

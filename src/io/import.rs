@@ -1,9 +1,10 @@
 //! Adding to the open scene what a model file holds.
 
 use super::budget::beside;
-use super::error::FileError;
+use super::error::{FileError, Place};
 use super::folder::Folder;
 use super::loader::{Loader, read_model};
+use super::notes::Notes;
 use super::open::{Loaded, resolve, spawn_model};
 use super::scene_file::Rebase;
 use super::sources::SceneFiles;
@@ -23,8 +24,8 @@ pub struct Imported {
     pub root: Option<Entity>,
     /// Materials that its objects share.
     pub materials: Vec<Entity>,
-    /// What was left out or changed, a line each.
-    pub notes: Vec<String>,
+    /// What was left out or changed.
+    pub notes: Notes,
 }
 
 /// Adds what an OBJ, glTF or GLB file holds to the open scene; on an error the world is as it was.
@@ -44,18 +45,20 @@ pub fn import(
     let folder = Folder::of(file, scene_folder.allow_outside);
     let mut model = read_model(file, &folder, &limits)?;
     let path = scene_folder.name_of(file);
-    let mut loaded = Loaded::of_model(&mut model, &path, &mut Loader::new(&folder, &limits))?;
+    let mut loaded = Loaded::of_model(&mut model, &path, &mut Loader::new(&folder, &limits));
     let rebase = Rebase::between(folder, scene_folder);
     let mut notes = std::mem::take(&mut model.notes);
-    notes.append(&mut loaded.notes);
+    notes.append(std::mem::take(&mut loaded.notes));
+    let mut outside = Vec::new();
     for (source, _, _) in &mut loaded.pictures {
-        source.path = rebase.path(&source.path, &mut notes);
+        source.path = rebase.path(&source.path, &mut outside);
     }
     for (_, phong) in &mut model.materials {
-        rebase.apply(phong, &mut notes);
+        rebase.apply(phong, &mut outside);
     }
-    notes.sort();
-    notes.dedup();
+    for what in outside {
+        notes.add(file, Place::Whole, what, "shown from there");
+    }
     if path.starts_with("..") {
         world.resource_mut::<SceneFiles>().folder.allow_outside = true;
     }

@@ -2,7 +2,8 @@
 //!
 //! [`open`] replaces the open scene by a file's or a built-in one, [`save`] writes it. Between the
 //! two the systems of [`IoPlugin`] keep handles in step with sources. Everything that can fail ends
-//! in a [`FileError`], one line that names the file, the place in it and what would help.
+//! in a [`FileError`], one line that names the file, the place in it and what would help. What can be shown is shown
+//! all the same: what is left out or replaced then is told in [`Notes`], and never passed over in silence.
 //!
 //! | file | in | out |
 //! |---|---|---|
@@ -30,12 +31,15 @@ mod import;
 mod limits;
 mod loader;
 mod model;
+mod names;
+mod notes;
 mod obj;
 mod on_disk;
 mod open;
 mod part;
 mod picture;
 pub(crate) mod place;
+mod polygon;
 mod problems;
 mod regular;
 #[cfg(feature = "editor")]
@@ -53,6 +57,7 @@ pub use folder::Folder;
 pub use identity::check_outputs;
 pub use import::{Imported, import};
 pub use limits::Limits;
+pub use notes::{FileNote, Notes};
 #[cfg(feature = "editor")]
 pub(crate) use on_disk::{OnDisk, has_changed};
 pub use open::{OpenOptions, Opened, SceneSource, open, open_empty};

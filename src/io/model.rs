@@ -1,5 +1,6 @@
 //! What an importer found in a file, before it becomes entities.
 
+use super::notes::Notes;
 use crate::scene::{DirectionalLamp, Phong, PointLamp, SceneCamera};
 use bevy::asset::RenderAssetUsages;
 use bevy::mesh::{Indices, Mesh, PrimitiveTopology};
@@ -16,14 +17,14 @@ pub(crate) struct Model {
     pub nodes: Vec<Node>,
     /// By the name that `MeshSource::File` carries.
     pub meshes: BTreeMap<String, Mesh>,
-    /// What could not be taken over, a line each.
-    pub notes: Vec<String>,
+    /// What could not be taken over.
+    pub notes: Notes,
     /// Every file that it was read from.
     pub files: Vec<PathBuf>,
 }
 
 /// One entity to be.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Node {
     pub name: String,
     /// Index of its parent, smaller than its own.

@@ -7,6 +7,7 @@ use super::frame::frame;
 use super::ids::assign_ids;
 use super::loader::{Loader, read_model};
 use super::model::Model;
+use super::notes::Notes;
 use super::picture::PictureUse;
 use super::scene_file::{SceneFile, read_scene, scene_entities};
 use super::sources::{SceneFiles, resolve_environment, resolve_meshes, resolve_pictures};
@@ -22,7 +23,7 @@ use bevy::ecs::name::Name;
 use bevy::image::Image;
 use bevy::mesh::{Mesh, Mesh3d};
 use bevy::prelude::{Entity, World};
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
 
 /// What can be opened.
@@ -54,6 +55,8 @@ pub struct OpenOptions {
     /// Whether a scene is opened although something that it names cannot be loaded, a picture that was deleted or a
     /// shape that has no size: that is left out then, and [`LoadProblems`] says why. Not so what is outside.
     pub tolerant: bool,
+    /// Whether a model without a camera or a light is left without.
+    pub unframed: bool,
     /// How much files may ask for.
     pub limits: Limits,
 }
@@ -63,14 +66,15 @@ pub struct OpenOptions {
 pub struct Opened {
     /// The built-in scene's name, or the file's without its folder.
     pub name: String,
-    /// What was left out, changed or added, a line each.
-    pub notes: Vec<String>,
+    /// What was left out, changed or added.
+    pub notes: Notes,
 }
 
 /// Replaces the open scene by another. Everything is loaded and checked first: on an error the
 /// world is as it was.
 ///
-/// A model file without a camera or a light gets one of each that it lacks, and a note says so.
+/// A model file without a camera or a light gets one of each that it lacks, and a note says so, unless that is
+/// [`OpenOptions::unframed`].
 pub fn open(
     world: &mut World,
     source: &SceneSource,
@@ -86,7 +90,7 @@ pub fn open(
         name: file
             .file_name()
             .map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
-        notes: Vec::new(),
+        notes: Notes::default(),
     };
     let extension = extension(file);
     if !file.exists() && extension.is_empty() {
@@ -95,12 +99,15 @@ pub fn open(
         return Err(FileError::new(file, Problem::NoSuchScene { known }));
     }
     let folder = Folder::of(file, options.allow_outside);
+    let unframed = options.unframed;
     match extension.as_str() {
         "scn.ron" | "ron" => opened.notes = open_scene(world, file, folder, options)?,
         "obj" | "gltf" | "glb" => {
             let model = read_model(file, &folder, &options.limits)?;
             opened.notes = open_model(world, model, file, folder, options.limits)?;
-            opened.notes.extend(frame(world));
+            if !unframed {
+                frame(world, file, &mut opened.notes);
+            }
         }
         _ => {
             return Err(FileError::new(
@@ -127,7 +134,7 @@ fn open_builtin(world: &mut World, scene: &BuiltinScene, options: OpenOptions) -
     resolve(world);
     Opened {
         name: scene.name.to_owned(),
-        notes: Vec::new(),
+        notes: Notes::default(),
     }
 }
 
@@ -138,7 +145,7 @@ fn open_scene(
     OpenOptions {
         limits, tolerant, ..
     }: OpenOptions,
-) -> Result<Vec<String>, FileError> {
+) -> Result<Notes, FileError> {
     let scene = read_scene(file, &limits)?;
     let on_disk = scene.on_disk.clone();
     check_shapes(&scene, &limits.memory).map_err(|problem| FileError::new(file, problem))?;
@@ -164,15 +171,15 @@ fn open_model(
     file: &Path,
     folder: Folder,
     limits: Limits,
-) -> Result<Vec<String>, FileError> {
+) -> Result<Notes, FileError> {
     let path = file.file_name().map_or_else(String::new, encoded);
     let mut model = model;
-    let mut loaded = Loaded::of_model(&mut model, &path, &mut Loader::new(&folder, &limits))?;
-    let mut picture_notes = std::mem::take(&mut loaded.notes);
+    let mut loaded = Loaded::of_model(&mut model, &path, &mut Loader::new(&folder, &limits));
+    let picture_notes = std::mem::take(&mut loaded.notes);
     clear(world, SceneFiles::new(folder, limits));
     let held = loaded.hand_over(world);
     let mut notes = std::mem::take(&mut model.notes);
-    notes.append(&mut picture_notes);
+    notes.append(picture_notes);
     let mut next = 0;
     spawn_model(world, model, &path, &mut || {
         next += 1;
@@ -275,7 +282,7 @@ pub fn open_empty(world: &mut World) {
     let limits = world.get_resource::<SceneFiles>();
     let limits = limits.map(|files| files.limits.clone()).unwrap_or_default();
     clear(world, SceneFiles::new(Folder::default(), limits));
-    frame(world);
+    frame(world, Path::new(""), &mut Notes::default());
     resolve(world);
 }
 
@@ -297,8 +304,8 @@ pub(super) struct Loaded {
     pub pictures: Vec<(TextureSource, PictureUse, Image)>,
     /// Every file that was read for it.
     read: BTreeSet<PathBuf>,
-    /// What is wrong with some of it, a line each.
-    pub notes: Vec<String>,
+    /// What is wrong with some of it.
+    pub notes: Notes,
 }
 
 /// Keeps assets alive until entities hold them.
@@ -315,7 +322,7 @@ impl Loaded {
         let fatal = |error: &FileError| !tolerant || matches!(error.problem, Problem::Outside);
         let mut loaded = Self::default();
         let mut loader = Loader::new(folder, limits);
-        let mut seen = std::collections::HashSet::new();
+        let mut seen = HashSet::new();
         for source in scene.mesh_sources() {
             if seen.insert(super::sources::mesh_key(source)) {
                 match loader.mesh(source) {
@@ -339,12 +346,35 @@ impl Loaded {
         Ok(loaded)
     }
 
-    /// A model's meshes, which are taken out of it, and the pictures of its materials.
-    pub fn of_model(model: &mut Model, path: &str, loader: &mut Loader) -> Result<Self, FileError> {
+    /// A model's meshes, which are taken out of it, and the pictures of its materials. One that cannot be read is
+    /// noted, and its material is left without.
+    pub fn of_model(model: &mut Model, path: &str, loader: &mut Loader) -> Self {
         let mut loaded = Self::default();
-        let materials = model.materials.iter();
-        for (source, usage) in materials.flat_map(|(_, phong)| pictures_of(phong)) {
-            loaded.load_picture(source, usage, loader)?;
+        let mut failed = HashSet::new();
+        for (_, phong) in &mut model.materials {
+            let maps = [
+                (&mut phong.diffuse_map, PictureUse::Color),
+                (&mut phong.opacity_map, PictureUse::Data),
+            ];
+            for (map, usage) in maps {
+                let Some(source) = map else { continue };
+                // One that many materials name is tried once.
+                let key = (source.clone(), usage);
+                if !failed.contains(&key)
+                    && let Err(FileError {
+                        file,
+                        place,
+                        problem,
+                    }) = loaded.load_picture(source, usage, loader)
+                {
+                    let instead = "its materials have no picture there";
+                    model.notes.add(&file, place, problem.to_string(), instead);
+                    failed.insert(key.clone());
+                }
+                if failed.contains(&key) {
+                    *map = None;
+                }
+            }
         }
         loaded.take_notes(loader);
         for (name, mesh) in std::mem::take(&mut model.meshes) {
@@ -353,14 +383,23 @@ impl Loaded {
         }
         loaded.read.clone_from(&loader.read);
         loaded.read.extend(model.files.iter().cloned());
-        Ok(loaded)
+        loaded
     }
 
     /// A picture that is used in two ways is told of once.
     fn take_notes(&mut self, loader: &mut Loader) {
-        self.notes = loader.notes.drain(..).map(|e| e.to_string()).collect();
-        self.notes.sort();
-        self.notes.dedup();
+        let mut told = BTreeSet::new();
+        for error in loader.notes.drain(..) {
+            if told.insert(error.to_string()) {
+                let instead = "what there is of it is shown";
+                let FileError {
+                    file,
+                    place,
+                    problem,
+                } = &error;
+                (self.notes).add(file, place.clone(), problem.to_string(), instead);
+            }
+        }
     }
 
     fn load_picture(

@@ -12,7 +12,8 @@ mod pipes;
 mod scenes;
 
 use crate::files::app::app;
-use bevy::prelude::World;
+use bevy::mesh::Mesh3d;
+use bevy::prelude::{Entity, With, World};
 use glassbox::io::{FileError, OpenOptions, SceneSource, open};
 use glassbox::scene::{PointLamp, SceneId};
 use std::path::Path;
@@ -53,4 +54,22 @@ pub fn says(error: &FileError, parts: &[&str]) {
     for part in parts {
         assert!(line.contains(part), "`{part}` is not in: {line}");
     }
+}
+
+/// Opens a file that can be shown in part: one of its notes, a line, says each of these. Returns how many triangles
+/// there are.
+pub fn opens_and_says(file: &Path, parts: &[&str]) -> usize {
+    let (mut app, opened) = crate::files::app::opened(file);
+    let lines = opened.notes.lines();
+    let says = |line: &&String| parts.iter().all(|part| line.contains(part));
+    assert_eq!(
+        lines.iter().filter(says).count(),
+        1,
+        "{parts:?} is not said once: {lines:#?}"
+    );
+    let world = app.world_mut();
+    let mut query = world.query_filtered::<Entity, With<Mesh3d>>();
+    let objects: Vec<_> = query.iter(world).collect();
+    let triangles = |&object: &Entity| crate::files::app::triangles(world, object).len();
+    objects.iter().map(triangles).sum()
 }

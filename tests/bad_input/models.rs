@@ -1,4 +1,4 @@
-use super::{refused, refused_with, says};
+use super::{opens_and_says, refused, refused_with, says};
 use crate::files::app::{opened, write};
 use glassbox::io::{OpenOptions, Problem};
 use std::fs;
@@ -73,185 +73,170 @@ fn an_obj_that_is_something_else() {
     says(&refused(&file), &["a.obj", "no triangles"]);
 }
 
+/// What is wrong with an OBJ whose only face cannot be shown, and the same where another face can.
+fn refused_alone_and_noted_beside_others(lines: &str, refusal: &[&str], note: &[&str]) {
+    let (_folder, file) = obj(lines);
+    says(&refused(&file), refusal);
+    let (_folder, file) = obj(&format!("f 3 2 1\n{lines}"));
+    assert_eq!(opens_and_says(&file, note), 1, "{lines}");
+}
+
 #[test]
 fn an_obj_that_ends_inside_a_face() {
-    let (_folder, file) = obj("f 1 2");
-    says(
-        &refused(&file),
-        &["model.obj:4", "ends too early", "3 corners"],
+    refused_alone_and_noted_beside_others(
+        "f 1 2",
+        &["model.obj:4", "3 corners and has 2"],
+        &["model.obj:5", "fewer than 3 corners; left out"],
     );
 }
 
 #[test]
 fn an_obj_that_ends_inside_a_vertex() {
     let (_folder, file) = obj("f 1 2 3\nv 0.5 0.");
-    says(
-        &refused(&file),
-        &["model.obj:5", "ends too early", "3 numbers and has 2"],
-    );
+    let note = ["model.obj:5", "3 numbers and has 2"];
+    assert_eq!(opens_and_says(&file, &note), 1);
 }
 
 #[test]
 fn a_face_index_out_of_range() {
-    let (_folder, file) = obj("f 1 2 3\nf 1 2 4\n");
-    says(&refused(&file), &["model.obj:5", "vertex 4", "there are 3"]);
-}
-
-#[test]
-fn a_face_index_of_zero() {
-    let (_folder, file) = obj("f 0 1 2\n");
-    says(&refused(&file), &["model.obj:4", "vertex 0"]);
-}
-
-#[test]
-fn a_negative_face_index_that_reaches_before_the_first_vertex() {
-    let (_folder, file) = obj("f -1 -2 -4\n");
-    says(&refused(&file), &["model.obj:4", "vertex -4"]);
-}
-
-#[test]
-fn a_face_index_that_no_integer_holds() {
-    let (_folder, file) = obj("f 1 2 99999999999999999999\n");
-    says(
-        &refused(&file),
-        &["model.obj:4", "vertex 99999999999999999999"],
+    refused_alone_and_noted_beside_others(
+        "f 1 2 4\n",
+        &["model.obj:4", "vertex 4", "there are 3"],
+        &["model.obj:5", "a vertex that there is not; left out"],
     );
 }
 
 #[test]
-fn a_normal_index_and_a_texture_index_out_of_range() {
-    let (_folder, file) = obj("vn 0 0 1\nf 1//1 2//1 3//2\n");
-    says(&refused(&file), &["model.obj:5", "normal 2", "there are 1"]);
-    let (_folder, file) = obj("vt 0 0\nf 1/1 2/1 3/2\n");
-    says(&refused(&file), &["model.obj:5", "texture coordinate 2"]);
+fn a_face_may_name_vertices_that_come_after_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = write(folder.path(), "a.obj", format!("f 1 2 3\n{TRIANGLE}"));
+    let (mut app, _) = opened(&file);
+    let objects = crate::files::models::objects(app.world_mut());
+    assert_eq!(objects[0].2.len(), 1);
 }
 
 #[test]
-fn an_index_that_counts_back_too_far_or_has_too_many_digits() {
-    // What a parser that computes with it takes for another one, or for none.
-    let lines = "vt 0 0\nvn 0 0 1\n";
-    for (corner, what) in [
-        ("3/-2", "texture coordinate -2"),
-        ("3//-2", "normal -2"),
-        (
-            "3/9223372036854775808",
-            "texture coordinate 9223372036854775808",
-        ),
-        ("3//+6148914691236517206", "normal +6148914691236517206"),
-        (
-            "3/-9223372036854775808",
-            "texture coordinate -9223372036854775808",
-        ),
+fn a_face_corner_that_is_no_index_counts_back_too_far_or_has_too_many_digits() {
+    for (corner, problem) in [
+        ("0", "vertex 0"),
+        ("-4", "vertex -4"),
+        ("three", "`three`"),
+        ("99999999999999999999", "99999999999999999999 is used"),
+        ("-99999999999999999999", "-99999999999999999999 is used"),
+        ("1/1/1/1", "`1/1/1/1`"),
     ] {
-        let (_folder, file) = obj(&format!("{lines}f 1 2 {corner}\n"));
-        says(&refused(&file), &["model.obj:6", what, "there are 1"]);
+        refused_alone_and_noted_beside_others(
+            &format!("f 1 2 {corner}\n"),
+            &["model.obj:4", problem],
+            &["model.obj:5", "corner", "left out"],
+        );
+    }
+}
+
+#[test]
+fn a_corner_whose_normal_or_texture_coordinate_there_is_not_is_read_without() {
+    for (corner, what) in [
+        ("3//2", "normal"),
+        ("3//-2", "normal"),
+        ("3//+6148914691236517206", "normal"),
+        ("3/2", "texture coordinate"),
+        ("3/-2", "texture coordinate"),
+        ("3/-9223372036854775808", "texture coordinate"),
+    ] {
+        let (_folder, file) = obj(&format!("vt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 {corner}\n"));
+        let note = ["model.obj:6", &format!("names a {what} that there is not")];
+        assert_eq!(opens_and_says(&file, &note), 1, "{corner}");
     }
     let (_folder, file) = obj("l 1 2//-1\nf 1 2 3\n");
-    says(&refused(&file), &["model.obj:4", "normal -1"]);
-    let (_folder, file) = obj(&format!("{lines}f 1/-1/-1 2/1/1 -1/-1/1\n"));
-    let (mut app, _) = opened(&file);
-    let world = app.world_mut();
-    let meshes = world.query::<&bevy::mesh::Mesh3d>().iter(world).count();
-    assert_eq!(meshes, 1);
-}
-
-#[test]
-fn a_face_corner_that_is_no_index() {
-    let (_folder, file) = obj("f 1 2 three\n");
-    says(&refused(&file), &["model.obj:4", "`three`"]);
+    assert_eq!(
+        opens_and_says(&file, &["model.obj:4", "lines and points"]),
+        1
+    );
 }
 
 #[test]
 fn a_vertex_that_is_not_a_number() {
-    let (_folder, file) = obj("v NaN 0 0\nf 1 2 4\n");
-    says(
-        &refused(&file),
-        &["model.obj:4", "`NaN`", "not a finite number"],
-    );
-    let (_folder, file) = obj("v 0 -inf 0\nf 1 2 4\n");
-    says(&refused(&file), &["model.obj:4", "`-inf`"]);
-    let (_folder, file) = obj("v 0 zero 0\nf 1 2 4\n");
-    says(&refused(&file), &["model.obj:4", "`zero` is not a number"]);
-}
-
-#[test]
-fn a_vertex_with_w_zero() {
-    let (_folder, file) = obj("v 0 0 0 0\nf 1 2 4\n");
-    says(&refused(&file), &["model.obj:4", "w = 0"]);
+    for (vertex, problem) in [
+        ("NaN 0 0", "`NaN` is not a finite number"),
+        ("0 -inf 0", "`-inf` is not a finite number"),
+        ("0 zero 0", "`zero` is not a number"),
+        ("0 0 0 0", "w = 0"),
+    ] {
+        refused_alone_and_noted_beside_others(
+            &format!("v {vertex}\nf 1 2 4\n"),
+            &["model.obj:4", problem],
+            &[
+                "model.obj:5",
+                "a vertex",
+                "left out with the faces that use it",
+            ],
+        );
+    }
 }
 
 #[test]
 fn a_missing_mtl() {
     let (_folder, file) = obj("mtllib gone.mtl\nf 1 2 3\n");
-    says(
-        &refused(&file),
-        &["model.obj:4", "`gone.mtl` does not exist"],
-    );
+    let note = ["model.obj:4", "no MTL file `gone.mtl`", "default"];
+    assert_eq!(opens_and_says(&file, &note), 1);
 }
 
 #[test]
 fn a_material_that_no_mtl_defines() {
     let (folder, file) = obj("mtllib a.mtl\nusemtl gold\nf 1 2 3\n");
     write(folder.path(), "a.mtl", "newmtl silver\n");
-    says(&refused(&file), &["model.obj:5", "`gold`"]);
+    let note = ["model.obj:5", "`gold`", "the default material is used"];
+    assert_eq!(opens_and_says(&file, &note), 1);
 }
 
 #[test]
-fn a_missing_texture() {
-    let (_folder, file) = mtl("newmtl a\nmap_Kd -s 1 1 1 wood.png\n");
-    says(
-        &refused(&file),
-        &["model.mtl:2", "`wood.png` does not exist"],
-    );
-}
-
-#[test]
-fn a_texture_that_is_no_picture() {
-    let (folder, file) = mtl("newmtl a\nmap_Kd wood.png\n");
+fn a_texture_that_is_missing_no_picture_or_none_that_is_read() {
+    let (folder, file) = mtl("newmtl a\nmap_Kd -s 1 1 1 wood.png\n");
+    let note = [
+        "model.mtl:2",
+        "no picture `wood.png`",
+        "its material has none",
+    ];
+    assert_eq!(opens_and_says(&file, &note), 1);
     write(folder.path(), "wood.png", "this is text");
-    says(&refused(&file), &["wood.png", "not a picture"]);
-}
-
-#[test]
-fn a_texture_that_is_called_tga_and_is_none() {
+    let note = ["wood.png", "not a picture", "have no picture there"];
+    assert_eq!(opens_and_says(&file, &note), 1);
     let (folder, file) = mtl("newmtl a\nmap_Kd wood.tga\n");
     write(folder.path(), "wood.tga", "x");
-    says(&refused(&file), &["wood.tga", "TGA"]);
-}
-
-#[test]
-fn an_mtl_color_with_too_few_numbers() {
-    let (_folder, file) = mtl("newmtl a\nKd 0.5 0.5\n");
-    says(
-        &refused(&file),
-        &["model.mtl:2", "Kd needs 3 numbers and has 2"],
+    assert_eq!(
+        opens_and_says(&file, &["wood.tga", "have no picture there"]),
+        1
     );
 }
 
 #[test]
-fn an_mtl_number_that_is_not_one() {
-    let (_folder, file) = mtl("newmtl a\nNs shiny\n");
-    says(&refused(&file), &["model.mtl:2", "`shiny` is not a number"]);
-    let (_folder, file) = mtl("newmtl a\nKd nan nan nan\n");
-    says(&refused(&file), &["model.mtl:2", "not a finite number"]);
-    let (_folder, file) = mtl("newmtl a\nd\n");
-    says(&refused(&file), &["model.mtl:2", "d has no number"]);
+fn an_mtl_number_that_is_missing_or_none() {
+    for (line, what) in [
+        ("Kd 0.5 0.5", "`Kd` without three numbers"),
+        ("Kd nan nan nan", "`Kd` without three numbers"),
+        ("Ns shiny", "`Ns` without a number"),
+        ("d", "`d` without a number"),
+        ("map_Kd", "`map_Kd` without a picture"),
+    ] {
+        let (_folder, file) = mtl(&format!("newmtl a\n{line}\n"));
+        assert_eq!(opens_and_says(&file, &["model.mtl:2", what, "left out"]), 1);
+    }
 }
 
 #[test]
 fn an_mtl_material_without_a_name() {
-    let (_folder, file) = mtl("newmtl\n");
-    says(&refused(&file), &["model.mtl:1", "has no name"]);
+    let (_folder, file) = mtl("newmtl\nKd 1 0 0\nnewmtl a\n");
+    assert_eq!(opens_and_says(&file, &["model.mtl:1", "without a name"]), 1);
 }
 
 #[test]
-fn an_mtl_outside_the_folder_is_refused_unless_it_is_allowed() {
+fn an_mtl_outside_the_folder_is_left_out_unless_it_is_allowed() {
     let folder = tempfile::tempdir().unwrap();
-    write(folder.path(), "a.mtl", "newmtl a\n");
+    write(folder.path(), "a.mtl", "newmtl a\nKd 1 0 0\n");
     let text = format!("{TRIANGLE}mtllib ../a.mtl\nusemtl a\nf 1 2 3\n");
     let file = write(folder.path(), "inside/model.obj", text);
-    let error = refused(&file);
-    says(&error, &["model.obj:4", "../a.mtl", "--allow-outside"]);
+    let note = ["model.obj:4", "../a.mtl", "--allow-outside"];
+    assert_eq!(opens_and_says(&file, &note), 1);
     let mut app = crate::files::app::app();
     let options = OpenOptions {
         allow_outside: true,
@@ -259,15 +244,15 @@ fn an_mtl_outside_the_folder_is_refused_unless_it_is_allowed() {
     };
     let source = glassbox::io::SceneSource::File(file);
     glassbox::io::open(app.world_mut(), &source, options).unwrap_or_else(|e| panic!("{e}"));
+    let objects = crate::files::models::objects(app.world_mut());
+    assert_eq!(objects[0].1.diffuse, bevy::color::LinearRgba::RED);
 }
 
 #[test]
 fn a_texture_outside_the_folder_by_an_absolute_path() {
     let (_folder, file) = mtl("newmtl a\nmap_Kd /etc/hostname.png\n");
-    says(
-        &refused(&file),
-        &["model.mtl:2", "/etc/hostname.png", "--allow-outside"],
-    );
+    let note = ["model.mtl:2", "/etc/hostname.png", "--allow-outside"];
+    assert_eq!(opens_and_says(&file, &note), 1);
 }
 
 #[cfg(unix)]
@@ -277,10 +262,8 @@ fn a_texture_outside_the_folder_over_a_symbolic_link() {
     let picture = write(outside.path(), "a.png", "x");
     let (folder, file) = mtl("newmtl a\nmap_Kd link.png\n");
     std::os::unix::fs::symlink(picture, folder.path().join("link.png")).unwrap();
-    says(
-        &refused(&file),
-        &["model.mtl:2", "link.png", "--allow-outside"],
-    );
+    let note = ["model.mtl:2", "link.png", "--allow-outside"];
+    assert_eq!(opens_and_says(&file, &note), 1);
 }
 
 #[test]

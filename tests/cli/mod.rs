@@ -1,6 +1,7 @@
 //! The program itself, run as people run it: exit codes, what is printed where, and which files
 //! are there afterwards.
 
+mod check;
 mod failures;
 mod own_files;
 mod pictures;

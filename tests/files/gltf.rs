@@ -73,7 +73,7 @@ fn document(primitive: Value, change: impl FnOnce(&mut Value)) -> (App, Vec<Stri
     glassbox::io::write_picture(&folder.path().join("a b.png"), 1, 1, &[[0.5; 3]]).unwrap();
     let file = write(folder.path(), "a.gltf", document.to_string());
     let (app, opened) = opened(&file);
-    (app, opened.notes)
+    (app, opened.notes.lines())
 }
 
 fn plain() -> Value {
@@ -268,4 +268,184 @@ fn place(world: &mut World, name: &str) -> bevy::math::Affine3A {
             None => return place,
         }
     }
+}
+
+#[test]
+fn what_was_not_read_is_told_by_its_name_and_what_was_is_not() {
+    let (_, notes) = document(plain(), |_| {});
+    let told = |notes: &[String]| {
+        let told = notes.iter().filter(|note| !note.contains("was added"));
+        told.cloned().collect::<Vec<String>>()
+    };
+    assert!(told(&notes).is_empty(), "{notes:?}");
+    let (_, notes) = document(plain(), |d| {
+        d["animations"] =
+            json!([{ "channels": [{ "sampler": 0, "target": { "path": "rotation" } }] }]);
+        d["extensionsUsed"] = json!(["KHR_materials_iridescence", "ABC_of_tomorrow"]);
+        d["materials"] = json!([{
+            "normalTexture": { "index": 0 },
+            "extensions": { "KHR_materials_iridescence": {} },
+        }]);
+        d["meshes"][0]["primitives"][0]["material"] = json!(0);
+        d["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] = json!(0);
+    });
+    let told = told(&notes);
+    for (place, what) in [
+        ("animations", "`animations`"),
+        ("materials[0].normalTexture", "`normalTexture`"),
+        (
+            "materials[0].extensions.KHR_materials_iridescence",
+            "left out",
+        ),
+        ("attributes.TANGENT", "`TANGENT`"),
+        ("extensionsUsed", "`ABC_of_tomorrow`"),
+    ] {
+        let is_told = |note: &&String| note.contains(place) && note.contains(what);
+        assert_eq!(told.iter().filter(is_told).count(), 1, "{place}: {told:#?}");
+    }
+    assert_eq!(told.len(), 5, "{told:#?}");
+}
+
+#[test]
+fn a_document_opens_without_bounds_with_a_byte_order_mark_and_with_counts_as_floats() {
+    let (mut app, _) = document(plain(), |d| {
+        for key in ["min", "max"] {
+            d["accessors"][0].as_object_mut().unwrap().remove(key);
+        }
+        d["accessors"][0]["count"] = json!(5.0);
+    });
+    assert_eq!(corners(&mut app).len(), 2);
+    let folder = tempfile::tempdir().unwrap();
+    let text = "\u{feff}{\"asset\":{\"version\":\"2.0\"},\"meshes\":[]}";
+    let file = write(folder.path(), "a.gltf", text);
+    let mut app = super::app::app();
+    let source = glassbox::io::SceneSource::File(file);
+    let result = glassbox::io::open(app.world_mut(), &source, Default::default());
+    let error = result.unwrap_err().to_string();
+    assert!(error.contains("no triangles"), "{error}");
+}
+
+#[test]
+fn morph_weights_and_skins_stand_as_the_file_starts_with_them() {
+    let primitive =
+        json!({ "attributes": { "POSITION": 0 }, "indices": 2, "targets": [{ "POSITION": 0 }] });
+    for (of_mesh, of_node, factor) in [(0.5, None, 1.5), (0.5, Some(2.0), 3.0)] {
+        let (mut app, _) = document(primitive.clone(), |d| {
+            d["meshes"][0]["weights"] = json!([of_mesh]);
+            if let Some(weight) = of_node {
+                d["nodes"][0]["weights"] = json!([weight]);
+            }
+        });
+        assert_eq!(corners(&mut app)[0][1], factor * Vec3::from(POSITIONS[1]));
+    }
+    let primitive =
+        json!({ "attributes": { "POSITION": 0, "JOINTS_0": 3, "WEIGHTS_0": 4 }, "indices": 2 });
+    let (mut app, notes) = document(primitive, |d| {
+        // All weight on the first joint: bytes of zeros, and of ones behind every fourth.
+        let bytes = [[0_u8; 20], [255, 0, 0, 0].repeat(5).try_into().unwrap()].concat();
+        let uri = format!("data:application/octet-stream;base64,{}", base64(&bytes));
+        d["buffers"]
+            .as_array_mut()
+            .unwrap()
+            .push(json!({ "byteLength": 40, "uri": uri }));
+        let views = d["bufferViews"].as_array_mut().unwrap();
+        views.push(json!({ "buffer": 1, "byteLength": 20 }));
+        views.push(json!({ "buffer": 1, "byteOffset": 20, "byteLength": 20 }));
+        let accessors = d["accessors"].as_array_mut().unwrap();
+        for (view, normalized) in [(3, false), (4, true)] {
+            accessors.push(
+                json!({ "bufferView": view, "componentType": 5121, "count": 5,
+                "type": "VEC4", "normalized": normalized }),
+            );
+        }
+        d["skins"] = json!([{ "joints": [1] }]);
+        d["nodes"] = json!([
+            { "mesh": 0, "skin": 0, "translation": [50.0, 0.0, 0.0] },
+            { "name": "bone", "translation": [0.0, 3.0, 0.0], "scale": [2.0, 2.0, 2.0] },
+        ]);
+        d["scenes"] = json!([{ "nodes": [0, 1] }]);
+    });
+    let expected = 2.0 * Vec3::from(POSITIONS[1]) + Vec3::new(0.0, 3.0, 0.0);
+    let found = corners(&mut app)[0][1];
+    assert!(found.abs_diff_eq(expected, 1e-5), "{found}: {notes:?}");
+    let world = app.world_mut();
+    let mut shown = world
+        .query_filtered::<&bevy::transform::components::Transform, bevy::prelude::With<Mesh3d>>();
+    let places: Vec<_> = shown.iter(world).map(|place| place.translation).collect();
+    assert_eq!(places, [Vec3::ZERO], "the joint places it, not the node");
+}
+
+#[test]
+fn a_mesh_that_is_instanced_is_there_as_often() {
+    let (mut app, notes) = document(plain(), |d| {
+        // The positions serve as places.
+        let instancing = json!({ "attributes": { "TRANSLATION": 0 } });
+        d["nodes"][0]["extensions"] = json!({ "EXT_mesh_gpu_instancing": instancing });
+        d["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]);
+    });
+    assert_eq!(objects(app.world_mut()).len(), POSITIONS.len(), "{notes:?}");
+    for (i, [x, y, z]) in POSITIONS.into_iter().enumerate() {
+        let place = place(app.world_mut(), &format!("node/{i}"));
+        assert_eq!(place.translation, Vec3::new(x, y, z).into());
+    }
+}
+
+#[test]
+fn materials_of_extensions_become_phong() {
+    let material = |material: Value| {
+        let (mut app, notes) = document(plain(), |d| {
+            d["materials"] = json!([material]);
+            d["meshes"][0]["primitives"][0]["material"] = json!(0);
+        });
+        (objects(app.world_mut())[0].1.clone(), notes)
+    };
+    let color = json!({ "baseColorFactor": [0.5, 0.25, 0.0, 0.6], "metallicFactor": 0.0 });
+    let (unlit, _) = material(json!({
+        "pbrMetallicRoughness": color, "extensions": { "KHR_materials_unlit": {} },
+    }));
+    assert_eq!(unlit.emission, LinearRgba::rgb(0.5, 0.25, 0.0));
+    assert_eq!(
+        (unlit.diffuse, unlit.specular),
+        (LinearRgba::BLACK, LinearRgba::BLACK)
+    );
+    for (mode, cutoff, opacity) in [
+        ("OPAQUE", 0.9, 1.0),
+        ("MASK", 0.5, 1.0),
+        ("MASK", 0.7, 0.0),
+        ("BLEND", 0.9, 0.6),
+    ] {
+        let (phong, _) = material(json!({
+            "pbrMetallicRoughness": color, "alphaMode": mode, "alphaCutoff": cutoff,
+        }));
+        assert_eq!(phong.opacity, opacity, "{mode} at {cutoff}");
+    }
+    let glass = json!({ "KHR_materials_transmission": { "transmissionFactor": 0.75 } });
+    let (glass, notes) = material(json!({ "extensions": glass }));
+    assert_eq!(glass.opacity, 0.25);
+    assert!(
+        notes.iter().any(|note| note.contains("transmission")),
+        "{notes:?}"
+    );
+    let glossy = json!({ "diffuseFactor": [0.1, 0.2, 0.3, 1.0], "specularFactor": [0.5, 0.4, 0.3],
+        "glossinessFactor": 1.0 });
+    let (glossy, _) = material(json!({
+        "extensions": { "KHR_materials_pbrSpecularGlossiness": glossy },
+    }));
+    assert_eq!(glossy.diffuse, LinearRgba::rgb(0.1, 0.2, 0.3));
+    assert_eq!(glossy.specular, LinearRgba::rgb(0.5, 0.4, 0.3));
+    let (glowing, notes) = material(json!({
+        "emissiveFactor": [1.0, 1.0, 1.0], "emissiveTexture": { "index": 0 },
+    }));
+    assert_eq!(
+        glowing.emission,
+        LinearRgba::BLACK,
+        "a factor without its picture"
+    );
+    assert!(
+        notes.iter().any(|note| note.contains("emissive")),
+        "{notes:?}"
+    );
+    let (mut app, _) = document(plain(), |_| {});
+    let none = objects(app.world_mut())[0].1.clone();
+    assert_eq!(none.diffuse, LinearRgba::WHITE, "without a material");
 }

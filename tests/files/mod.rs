@@ -2,8 +2,9 @@
 
 pub mod app;
 mod gltf;
-mod models;
+pub mod models;
 mod names;
+mod obj;
 mod pictures;
 mod round_trip;
 mod sets;

@@ -97,14 +97,13 @@ pub(in crate::editor) fn open_file(world: &mut World, path: &Path, allow_outside
         limits: files.map(|files| files.limits.clone()).unwrap_or_default(),
         // What it cannot show is said, and can be mended here.
         tolerant: true,
+        unframed: false,
     };
     match open(world, &source, options) {
         Ok(opened) => {
             finish_opening(world, opened.name.clone(), is_file.then_some(path));
             let mut notices = world.resource_mut::<Notices>();
-            for note in opened.notes {
-                notices.tell(format!("{}: {note}", opened.name));
-            }
+            notices.notes(&opened.name, opened.notes.lines());
         }
         Err(error)
             if matches!(
@@ -180,9 +179,7 @@ pub(super) fn write_to(world: &mut World, path: &Path) {
     let mut notices = world.resource_mut::<Notices>();
     let verb = if is_scene { "Saved" } else { "Exported" };
     notices.tell(format!("{verb} {}", path.display()));
-    for note in notes {
-        notices.tell(format!("{name}: {note}"));
-    }
+    notices.notes(&name, notes);
     if !is_scene {
         return;
     }

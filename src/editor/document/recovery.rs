@@ -185,6 +185,7 @@ pub(super) fn recover(world: &mut World, found: &Recovered) {
         allow_outside: true,
         tolerant: true,
         limits: limits.unwrap_or_default(),
+        unframed: false,
     };
     if let Err(error) = open(world, &source, options) {
         world.resource_mut::<Notices>().fault(error.to_string());

@@ -184,9 +184,7 @@ fn add_file(world: &mut World, file: &Path) -> Option<String> {
                 .unwrap_or(file.as_os_str())
                 .to_string_lossy();
             let mut notices = world.resource_mut::<Notices>();
-            for note in &imported.notes {
-                notices.tell(format!("{name}: {note}"));
-            }
+            notices.notes(&name, imported.notes.lines());
             select(world, root.into_iter().collect());
             Some(format!("Import {name}"))
         }

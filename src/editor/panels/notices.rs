@@ -8,6 +8,10 @@ use bevy_egui::egui::{self, Align2, Id, Label, Rect, RichText, Ui, vec2};
 
 /// How many messages are shown at most: more would hide the picture.
 const MOST: usize = 4;
+/// Lines of a message that are shown until all are asked for.
+const FIRST_LINES: usize = 5;
+/// Points that all lines of a message take at most; the rest is scrolled to.
+const MOST_HEIGHT: f32 = 260.0;
 
 /// Messages, the newest below; true where the pointer is over them.
 pub(super) fn notices_ui(context: &egui::Context, free: Rect, world: &mut World) -> bool {
@@ -24,6 +28,7 @@ pub(super) fn notices_ui(context: &egui::Context, free: Rect, world: &mut World)
     let bottom = context.viewport_rect().max - free.max;
     let earlier = all.len().saturating_sub(MOST);
     let mut closed = None;
+    let mut expanded = None;
     let area = egui::Area::new(Id::new("notices"))
         .anchor(Align2::RIGHT_BOTTOM, -bottom - vec2(12.0, 12.0))
         .order(egui::Order::Foreground)
@@ -33,8 +38,10 @@ pub(super) fn notices_ui(context: &egui::Context, free: Rect, world: &mut World)
                 closed = Some(Closed::All);
             }
             for (i, notice) in all.iter().enumerate().skip(earlier) {
-                if notice_ui(ui, notice, width) {
-                    closed = Some(Closed::One(i));
+                match notice_ui(ui, notice, width) {
+                    Some(Read::Closed) => closed = Some(Closed::One(i)),
+                    Some(Read::More) => expanded = Some(i),
+                    None => {}
                 }
             }
         });
@@ -42,6 +49,9 @@ pub(super) fn notices_ui(context: &egui::Context, free: Rect, world: &mut World)
         Some(Closed::One(i)) => notices.close(i),
         Some(Closed::All) => notices.close_all(),
         None => {}
+    }
+    if let Some(i) = expanded {
+        notices.show_all(i);
     }
     is_over(context, area.response.rect)
 }
@@ -65,8 +75,15 @@ fn earlier_ui(ui: &mut Ui, earlier: usize) -> bool {
     frame.inner
 }
 
-/// One message; true where it was closed.
-fn notice_ui(ui: &mut Ui, notice: &Notice, width: f32) -> bool {
+/// What a person wants of a message.
+enum Read {
+    Closed,
+    /// The lines that are not shown.
+    More,
+}
+
+/// One message.
+fn notice_ui(ui: &mut Ui, notice: &Notice, width: f32) -> Option<Read> {
     let color = match notice.is_fault {
         true => ui.visuals().error_fg_color,
         false => ui.visuals().text_color(),
@@ -76,16 +93,57 @@ fn notice_ui(ui: &mut Ui, notice: &Notice, width: f32) -> bool {
             ui.set_width(width);
             let text = RichText::new(&notice.text).color(color);
             let room = ui.available_width() - 30.0;
-            ui.allocate_ui(vec2(room, 0.0), |ui| {
-                ui.set_width(room);
-                ui.add(Label::new(text).wrap().selectable(true));
-            });
+            let wanted = ui
+                .allocate_ui(vec2(room, 0.0), |ui| {
+                    ui.set_width(room);
+                    ui.vertical(|ui| {
+                        ui.add(Label::new(text).wrap().selectable(true));
+                        lines_ui(ui, notice)
+                    })
+                    .inner
+                })
+                .inner;
             let close = ui.small_button("✖");
-            close.says("Closes this message").clicked()
+            let close = close.says("Closes this message").clicked();
+            close.then_some(Read::Closed).or(wanted)
         })
         .inner
     });
     frame.inner
+}
+
+/// What a message says one by one: the first few, and how many more there are.
+fn lines_ui(ui: &mut Ui, notice: &Notice) -> Option<Read> {
+    let line_ui = |ui: &mut Ui, line: &String| {
+        ui.add(
+            Label::new(RichText::new(line).small())
+                .wrap()
+                .selectable(true),
+        );
+    };
+    if notice.shows_all {
+        egui::ScrollArea::vertical()
+            .max_height(MOST_HEIGHT)
+            .show(ui, |ui| {
+                notice.lines.iter().for_each(|line| line_ui(ui, line))
+            });
+        return None;
+    }
+    let first = notice.lines.iter().take(FIRST_LINES);
+    first.for_each(|line| line_ui(ui, line));
+    let more = notice.lines.len().saturating_sub(FIRST_LINES);
+    if more == 0 {
+        return None;
+    }
+    ui.horizontal(|ui| {
+        ui.weak(format!("and {more} more"));
+        let all = ui.small_button("Show all");
+        let clicked = all
+            .says("Shows all that there is to say about this file")
+            .clicked();
+        clicked.then_some(Read::More)
+    })
+    .inner
 }
 
 /// Whether the pointer is there.

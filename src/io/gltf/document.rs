@@ -1,52 +1,105 @@
 use super::super::error::{FileError, Place, Problem};
 use super::super::folder::Folder;
+use super::super::names::{Missing, Names};
+use super::super::notes::Notes;
+use super::glb;
+use super::json::{Json, Marks};
 use super::uri::{data_of, is_data, path_of};
 use crate::io::Limits;
+use serde_json::Value;
 use std::borrow::Cow;
+use std::cell::{OnceCell, RefCell};
 use std::path::{Path, PathBuf};
 
-/// A parsed glTF file with the bytes of its buffers.
+/// Extensions that are read, those of whose parts nothing is left out included.
+const READ: [&str; 12] = [
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_specular",
+    "KHR_materials_unlit",
+    "KHR_materials_transmission",
+    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_texture_transform",
+    "KHR_texture_basisu",
+    "KHR_mesh_quantization",
+    "EXT_mesh_gpu_instancing",
+    "EXT_texture_webp",
+    "MSFT_texture_dds",
+];
+
+/// How the names of extensions begin that change how things look, not their shape: without them a model can be shown.
+const OF_LOOKS: [&str; 10] = [
+    "KHR_materials_",
+    "KHR_texture_",
+    "KHR_lights_",
+    "KHR_animation_",
+    "KHR_xmp",
+    "EXT_texture_",
+    "EXT_lights_",
+    "MSFT_texture_",
+    "MSFT_lod",
+    "ADOBE_materials_",
+];
+
+/// A parsed glTF file. The buffers that it refers to are read when they are needed.
 pub(crate) struct Document {
     pub(super) file: PathBuf,
     pub(super) folder: Folder,
     pub(super) limits: Limits,
-    pub(super) gltf: gltf::Document,
-    buffers: Vec<Vec<u8>>,
+    root: Value,
+    marks: Marks,
+    buffers: Vec<OnceCell<Result<Bytes, String>>>,
+    /// The binary part of the file.
+    blob: Option<Vec<u8>>,
+    /// What there is to say about it.
+    pub(super) notes: RefCell<Notes>,
 }
 
 impl Document {
-    /// Reads a `.gltf` or `.glb` file and the buffers that it refers to.
+    /// Reads a `.gltf` or `.glb` file.
     pub fn read(file: &Path, folder: &Folder, limits: &Limits) -> Result<Self, FileError> {
         let bytes = super::super::read_bytes(file, limits.file_bytes, &limits.memory)?;
-        check_header(&bytes)
-            .and_then(|()| limits.memory.claim(json_bytes(&bytes)))
+        let (text, blob) = glb::parts(&bytes).map_err(|problem| FileError::new(file, problem))?;
+        let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+        (limits.memory)
+            .claim(json_bytes(text))
             .map_err(|problem| FileError::new(file, problem))?;
-        let gltf::Gltf { document, blob } = gltf::Gltf::from_slice_without_validation(&bytes)
-            .map_err(|error| parse_error(file, error))?;
-        drop(bytes);
-        validate(&document).map_err(|error| parse_error(file, error))?;
+        let root: Value =
+            serde_json::from_slice(text).map_err(|error| parse_error(file, text, &error))?;
         let mut document = Self {
             file: file.to_path_buf(),
             folder: folder.clone(),
             limits: limits.clone(),
-            gltf: document,
+            root,
+            marks: Marks::default(),
             buffers: Vec::new(),
+            blob: blob.map(<[u8]>::to_vec),
+            notes: RefCell::default(),
         };
-        document.check_json()?;
-        document.read_buffers(blob)?;
+        drop(bytes);
+        document.check_version()?;
+        document.check_extensions()?;
+        let buffers = document.json().list("buffers").len();
+        document.buffers.resize_with(buffers, OnceCell::new);
         Ok(document)
     }
 
     /// This file and those that it names.
     pub fn files(&self) -> Vec<PathBuf> {
-        let json = self.gltf.as_json();
-        let buffers = json.buffers.iter().map(|buffer| buffer.uri.as_deref());
-        let images = json.images.iter().map(|image| image.uri.as_deref());
-        let uris = buffers.chain(images).flatten();
+        let lists = ["buffers", "images"].into_iter();
+        let values = lists.filter_map(|key| self.root.get(key)?.as_array());
+        let uris = values
+            .flatten()
+            .filter_map(|value| value.get("uri")?.as_str());
         let beside = uris
             .filter(|uri| !is_data(uri))
             .filter_map(|uri| self.folder.resolve(&path_of(uri)).ok());
         beside.chain([self.file.clone()]).collect()
+    }
+
+    /// All of it.
+    pub(super) fn json(&self) -> Json<'_> {
+        Json::new(&self.root, &self.marks)
     }
 
     /// An error at a part of this file.
@@ -54,221 +107,261 @@ impl Document {
         FileError::at(&self.file, Place::Part(part.into()), problem)
     }
 
+    /// Says that a part of this file was not taken as it is.
+    pub(super) fn note(&self, part: &str, what: impl AsRef<str>, instead: &'static str) {
+        let place = Place::Part(part.to_owned());
+        self.notes
+            .borrow_mut()
+            .add(&self.file, place, what, instead);
+    }
+
+    /// The same of something with a name.
+    pub(super) fn note_named(
+        &self,
+        part: &str,
+        what: impl AsRef<str>,
+        name: &str,
+        instead: &'static str,
+    ) {
+        let place = Place::Part(part.to_owned());
+        let mut notes = self.notes.borrow_mut();
+        notes.add_named(&self.file, place, what, name, instead);
+    }
+
+    /// Notes what stands in the parts that were read and was not read itself, whatever it is.
+    pub(super) fn note_unread(&self) {
+        let mut reported = Vec::new();
+        self.json().for_each_unread(&mut |path, key| {
+            reported.push(key.to_owned());
+            self.note(path, format!("`{key}`, which is not read"), "left out");
+        });
+        for name in self.extensions("extensionsUsed") {
+            let is_known = READ.contains(&name) || reported.iter().any(|key| key == name);
+            if !is_known {
+                let what = format!("the extension `{name}`, which is not read");
+                self.note("extensionsUsed", what, "left out");
+            }
+        }
+    }
+
+    fn extensions(&self, key: &str) -> impl Iterator<Item = &str> {
+        self.json().list(key).filter_map(Json::as_text)
+    }
+
+    fn check_version(&self) -> Result<(), FileError> {
+        let json = self.json();
+        let version = json.get("asset").and_then(|asset| asset.text("version"));
+        // The first version had objects where there are lists now.
+        let is_first = json.get("meshes").is_some_and(|meshes| !meshes.is_list());
+        let refuse = |text: String| Err(FileError::new(&self.file, Problem::Malformed(text)));
+        match version {
+            Some(version) if version.starts_with("2.") => Ok(()),
+            None if !is_first && json.get("meshes").is_some() => {
+                self.note("asset", "no version of glTF", "read as 2.0");
+                Ok(())
+            }
+            None if !is_first => refuse("holds no meshes; is it a glTF file?".to_owned()),
+            version => {
+                let version = version.unwrap_or("1.0");
+                refuse(format!(
+                    "is glTF {version}, and only 2.0 is read; export it again"
+                ))
+            }
+        }
+    }
+
+    fn check_extensions(&self) -> Result<(), FileError> {
+        for name in self.extensions("extensionsRequired") {
+            if READ.contains(&name) {
+                continue;
+            }
+            if OF_LOOKS.iter().any(|start| name.starts_with(start)) {
+                let what = format!("the required extension `{name}`, which is not read");
+                self.note("extensionsRequired", what, "shown without");
+                continue;
+            }
+            let problem = Problem::UnsupportedExtension(name.to_owned());
+            return Err(FileError::new(&self.file, problem));
+        }
+        Ok(())
+    }
+
     /// The bytes of a buffer view.
-    pub(super) fn view(&self, view: &gltf::buffer::View) -> Result<&[u8], Problem> {
-        let buffer = self.buffers.get(view.buffer().index());
-        let end = view.offset().checked_add(view.length());
-        buffer
-            .zip(end)
-            .and_then(|(buffer, end)| buffer.get(view.offset()..end))
-            .ok_or_else(|| {
-                Problem::Truncated(format!("buffer view {} leaves its buffer", view.index()))
-            })
+    pub(super) fn view(&self, index: usize) -> Result<View<'_>, Problem> {
+        let missing = || Problem::Malformed(format!("there is no buffer view {index}"));
+        let json = self
+            .json()
+            .element("bufferViews", index)
+            .ok_or_else(missing)?;
+        let buffer = self.buffer(json.index("buffer").ok_or_else(missing)?)?;
+        let offset = json.index("byteOffset").unwrap_or(0);
+        let length = json.index("byteLength").ok_or_else(missing)?;
+        let bytes = offset
+            .checked_add(length)
+            .and_then(|end| buffer.get(offset..end));
+        let bytes = bytes
+            .ok_or_else(|| Problem::Malformed(format!("buffer view {index} leaves its buffer")))?;
+        Ok(View {
+            bytes,
+            stride: json.index("byteStride").filter(|&stride| stride > 0),
+        })
+    }
+
+    fn buffer(&self, index: usize) -> Result<&[u8], Problem> {
+        let missing = || Problem::Malformed(format!("there is no buffer {index}"));
+        let place = self.buffers.get(index).ok_or_else(missing)?;
+        let read = place.get_or_init(|| {
+            let read = self.read_buffer(index);
+            read.map_err(|problem| format!("buffer {index}: {problem}"))
+        });
+        match read {
+            Ok(Bytes::Own(bytes)) => Ok(bytes),
+            Ok(Bytes::OfTheFile) => Ok(self.blob.as_deref().unwrap_or_default()),
+            Err(text) => Err(Problem::Malformed(text.clone())),
+        }
+    }
+
+    fn read_buffer(&self, index: usize) -> Result<Bytes, Problem> {
+        let missing = || Problem::Malformed("it is none".to_owned());
+        let json = self.json().element("buffers", index).ok_or_else(missing)?;
+        let claimed = json.index("byteLength").unwrap_or(0);
+        let bytes = match json.text("uri") {
+            None => {
+                let blob = self.blob.as_ref();
+                let there = blob.map_or(0, Vec::len);
+                let is_whole = there >= claimed;
+                return is_whole.then_some(Bytes::OfTheFile).ok_or_else(|| {
+                    Problem::Truncated(format!("{there} of {claimed} bytes are there"))
+                });
+            }
+            Some(uri) if is_data(uri) => data_of(uri)
+                .ok_or_else(|| Problem::Malformed("its data is not base64".to_owned()))?,
+            Some(uri) => {
+                let path =
+                    self.path(uri, &format!("buffer {index}"))
+                        .map_err(|(missing, path)| match missing {
+                            Missing::Outside => Problem::RefersOutside { path },
+                            Missing::Nowhere => Problem::MissingFile { path },
+                        })?;
+                let file = self.folder.resolve(&path).map_err(|error| error.problem)?;
+                super::super::read_bytes(&file, self.limits.file_bytes, &self.limits.memory)
+                    .map_err(|error| error.problem)?
+            }
+        };
+        if bytes.len() < claimed {
+            let there = bytes.len();
+            let text = format!("{there} of {claimed} bytes are there");
+            return Err(Problem::Truncated(text));
+        }
+        Ok(Bytes::Own(bytes))
+    }
+
+    /// The path of the file that a URI means, from this file's folder.
+    fn path(&self, uri: &str, part: &str) -> Result<String, (Missing, String)> {
+        let mut names = Names::new(&self.folder);
+        let decoded = path_of(uri);
+        let found = names.find("", &decoded);
+        // Some programs write names as they are.
+        let found = found.or_else(|missing| names.find("", uri).map_err(|_| missing));
+        match found {
+            Ok(found) => {
+                if found.is_guess {
+                    let what = "a file whose name is spelt otherwise:";
+                    let instead = "the one that was found is read";
+                    self.note_named(part, what, &found.path, instead);
+                }
+                Ok(found.path)
+            }
+            Err(missing) => Err((missing, decoded)),
+        }
     }
 
     /// Where a texture's picture is: a file beside this one, or bytes inside it.
-    pub(super) fn texture(&self, texture: &gltf::Texture) -> Result<Picture<'_>, FileError> {
-        let index = texture.source().index();
-        let part = || format!("image {index}");
-        // Not through `Image::source`, which takes for granted that one of the two is there.
-        let image = self.gltf.as_json().images.get(index);
-        let view = image.and_then(|image| image.buffer_view);
-        if let Some(view) = view.and_then(|view| self.gltf.views().nth(view.value())) {
-            let bytes = self.view(&view).map_err(|p| self.error(part(), p))?;
-            return Ok(Picture::Inside(Cow::Borrowed(bytes)));
+    pub(super) fn texture(&self, index: usize) -> Result<Picture<'_>, FileError> {
+        let malformed =
+            |part: String, text: &str| Err(self.error(part, Problem::Malformed(text.to_owned())));
+        let Some(texture) = self.json().element("textures", index) else {
+            return malformed(format!("texture {index}"), "there is none of that number");
+        };
+        // What several programs fall back on stands without an extension, and is preferred.
+        let of_extension = |name| texture.extension(name)?.index("source");
+        let source = texture
+            .index("source")
+            .or_else(|| of_extension("EXT_texture_webp"))
+            .or_else(|| of_extension("MSFT_texture_dds"))
+            .or_else(|| of_extension("KHR_texture_basisu"));
+        let Some((source, image)) =
+            source.and_then(|source| Some((source, self.json().element("images", source)?)))
+        else {
+            return malformed(format!("texture {index}"), "it has no picture");
+        };
+        let part = format!("image {source}");
+        if let Some(view) = image.index("bufferView") {
+            let view = self
+                .view(view)
+                .map_err(|problem| self.error(part, problem))?;
+            return Ok(Picture::Inside(Cow::Borrowed(view.bytes)));
         }
-        match image.and_then(|image| image.uri.as_deref()) {
+        match image.text("uri") {
             Some(uri) if is_data(uri) => match data_of(uri) {
                 Some(bytes) => Ok(Picture::Inside(Cow::Owned(bytes))),
-                None => {
-                    let text = "its data is not base64".to_owned();
-                    Err(self.error(part(), Problem::Malformed(text)))
+                None => malformed(part, "its data is not base64"),
+            },
+            Some(uri) => match self.path(uri, &part) {
+                Ok(path) => Ok(Picture::Beside(path)),
+                Err((Missing::Outside, path)) => {
+                    Err(self.error(part, Problem::RefersOutside { path }))
+                }
+                Err((Missing::Nowhere, path)) => {
+                    Err(self.error(part, Problem::MissingFile { path }))
                 }
             },
-            Some(uri) => Ok(Picture::Beside(path_of(uri))),
-            None => {
-                let text = "it has neither a file nor data".to_owned();
-                Err(self.error(part(), Problem::Malformed(text)))
-            }
+            None => malformed(part, "it has neither a file nor data"),
         }
     }
+}
 
-    /// What the crate's own validation leaves to whoever follows an index.
-    fn check_json(&self) -> Result<(), FileError> {
-        let json = self.gltf.as_json();
-        if !json.asset.version.starts_with("2.") {
-            let version = &json.asset.version;
-            let text = format!("is glTF {version}, and only 2.0 is read; export it again");
-            return Err(FileError::new(&self.file, Problem::Malformed(text)));
-        }
-        let nodes = json.nodes.len() as u64;
-        if nodes > self.limits.entities {
-            let problem = Problem::TooMany {
-                what: "nodes",
-                count: nodes,
-                limit: self.limits.entities,
-            };
-            return Err(FileError::new(&self.file, problem));
-        }
-        // `Camera::projection` takes for granted that the numbers of its type are there.
-        use gltf::json::camera::Type;
-        use gltf::json::validation::Checked;
-        for (index, camera) in json.cameras.iter().enumerate() {
-            let missing = match camera.type_ {
-                Checked::Valid(Type::Perspective) if camera.perspective.is_none() => "perspective",
-                Checked::Valid(Type::Orthographic) if camera.orthographic.is_none() => {
-                    "orthographic"
-                }
-                _ => continue,
-            };
-            let text = format!("its {missing} numbers are missing");
-            return Err(self.error(format!("camera {index}"), Problem::Malformed(text)));
-        }
-        Ok(())
-    }
+/// The bytes of a buffer.
+enum Bytes {
+    Own(Vec<u8>),
+    /// The binary part of the file.
+    OfTheFile,
+}
 
-    fn read_buffers(&mut self, mut blob: Option<Vec<u8>>) -> Result<(), FileError> {
-        let mut buffers = Vec::new();
-        for (index, buffer) in self.gltf.as_json().buffers.iter().enumerate() {
-            let part = || format!("buffer {index}");
-            let bytes = match buffer.uri.as_deref() {
-                None => blob.take().ok_or_else(|| {
-                    let text = "the binary part of the file".to_owned();
-                    self.error(part(), Problem::Truncated(text))
-                })?,
-                Some(uri) if is_data(uri) => data_of(uri).ok_or_else(|| {
-                    let text = "its data is not base64".to_owned();
-                    self.error(part(), Problem::Malformed(text))
-                })?,
-                Some(uri) => self.read_beside(&path_of(uri), part())?,
-            };
-            if (bytes.len() as u64) < buffer.byte_length.0 {
-                let text = format!(
-                    "{} of {} bytes are there",
-                    bytes.len(),
-                    buffer.byte_length.0
-                );
-                return Err(self.error(part(), Problem::Truncated(text)));
-            }
-            buffers.push(bytes);
-        }
-        self.buffers = buffers;
-        Ok(())
-    }
-
-    fn read_beside(&self, path: &str, part: String) -> Result<Vec<u8>, FileError> {
-        let path = path.to_owned();
-        let Ok(file) = self.folder.resolve(&path) else {
-            return Err(self.error(part, Problem::RefersOutside { path }));
-        };
-        if !file.exists() {
-            return Err(self.error(part, Problem::MissingFile { path }));
-        }
-        super::super::read_bytes(&file, self.limits.file_bytes, &self.limits.memory)
-    }
+/// A part of a buffer.
+pub(super) struct View<'a> {
+    pub bytes: &'a [u8],
+    /// From one value to the next, where that is said.
+    pub stride: Option<usize>,
 }
 
 /// Where a picture is.
 pub(super) enum Picture<'a> {
     /// A path from the file's folder.
     Beside(String),
-    /// A PNG or JPEG inside it.
+    /// A picture file inside it.
     Inside(Cow<'a, [u8]>),
 }
 
-/// The crate's validation, which follows the index of `POSITION` before it has checked it.
-fn validate(document: &gltf::Document) -> Result<(), gltf::Error> {
-    use gltf::json::Path;
-    use gltf::json::validation::{Error, Validate};
-    let json = document.as_json();
-    let mut errors = Vec::new();
-    let primitives = json.meshes.iter().flat_map(|mesh| &mesh.primitives);
-    let mut accessors = primitives.flat_map(|primitive| primitive.attributes.values());
-    if accessors.any(|accessor| json.get(*accessor).is_none()) {
-        let path = Path::new()
-            .field("meshes")
-            .field("primitives")
-            .field("attributes");
-        errors.push((path, Error::IndexOutOfBounds));
-    } else {
-        json.validate(json, Path::new, &mut |path, error| {
-            errors.push((path(), error));
-        });
+fn parse_error(file: &Path, text: &[u8], error: &serde_json::Error) -> FileError {
+    if let [0xff, 0xfe, ..] | [0xfe, 0xff, ..] | [b'{', 0, ..] | [0, b'{', ..] = text {
+        let text = "is text in UTF-16, and glTF is UTF-8; save it as that";
+        return FileError::new(file, Problem::Malformed(text.to_owned()));
     }
-    if errors.is_empty() {
-        Ok(())
-    } else {
-        Err(gltf::Error::Validation(errors))
+    if error.is_eof() {
+        let problem = Problem::Truncated("the JSON is incomplete".into());
+        return FileError::new(file, problem);
     }
-}
-
-/// A binary file's header holds the length of the whole file. `gltf` takes for granted that the header at
-/// least is part of it.
-fn check_header(bytes: &[u8]) -> Result<(), Problem> {
-    const HEADER: u32 = 12;
-    let Some((b"glTF", rest)) = bytes.split_at_checked(4) else {
-        return Ok(());
-    };
-    let length = rest.get(4..8).and_then(|bytes| bytes.try_into().ok());
-    match length.map(u32::from_le_bytes) {
-        Some(length) if length < HEADER => {
-            let text = format!("its header says that the file is {length} bytes long");
-            Err(Problem::Malformed(text))
-        }
-        _ => Ok(()),
-    }
+    let place = Place::LineColumn(error.line(), error.column());
+    let text = error.to_string();
+    let text = text.split(" at line").next().unwrap_or_default().to_owned();
+    FileError::at(file, place, Problem::Malformed(text))
 }
 
 /// What the JSON of a file becomes in memory: for each object in it the largest that there is, and its texts. Data that
 /// is written as text has no braces.
-fn json_bytes(bytes: &[u8]) -> u64 {
+fn json_bytes(text: &[u8]) -> u64 {
     const LARGEST: u64 = 1000;
-    let json = match bytes.split_at_checked(20) {
-        Some((header, rest)) if header.starts_with(b"glTF") => {
-            let length = header[12..16].iter().rev();
-            let length = length.fold(0, |sum, &byte| sum << 8 | usize::from(byte));
-            rest.get(..length).unwrap_or(rest)
-        }
-        _ => bytes,
-    };
-    let objects = json.iter().filter(|&&byte| byte == b'{').count();
-    LARGEST * objects as u64 + json.len() as u64
-}
-
-fn parse_error(file: &Path, error: gltf::Error) -> FileError {
-    use gltf::binary::Error as Glb;
-    use gltf::json::validation::Error as Invalid;
-    let problem = match error {
-        gltf::Error::Validation(errors) => match errors.into_iter().next() {
-            Some((path, Invalid::Unsupported)) => Problem::UnsupportedExtension(path.to_string()),
-            Some((path, Invalid::IndexOutOfBounds)) => Problem::Malformed(format!(
-                "{path} names something that the file does not hold"
-            )),
-            Some((path, error)) => Problem::Malformed(format!("{path}: {error}")),
-            None => Problem::Malformed("is not valid glTF".into()),
-        },
-        gltf::Error::Binary(Glb::Length {
-            length,
-            length_read,
-        }) => Problem::Truncated(format!("{length_read} of {length} bytes are there")),
-        gltf::Error::Binary(Glb::ChunkLength {
-            length,
-            length_read,
-            ..
-        }) => Problem::Truncated(format!(
-            "{length_read} of a part's {length} bytes are there"
-        )),
-        gltf::Error::Binary(Glb::Io(_)) => Problem::Truncated("the header is incomplete".into()),
-        gltf::Error::Deserialize(error) if error.is_eof() => {
-            Problem::Truncated("the JSON is incomplete".into())
-        }
-        gltf::Error::Deserialize(error) => {
-            let place = Place::LineColumn(error.line(), error.column());
-            let text = error.to_string();
-            let text = text.split(" at line").next().unwrap_or_default().to_owned();
-            return FileError::at(file, place, Problem::Malformed(text));
-        }
-        other => Problem::Malformed(other.to_string()),
-    };
-    FileError::new(file, problem)
+    let objects = text.iter().filter(|&&byte| byte == b'{').count();
+    LARGEST * objects as u64 + text.len() as u64
 }

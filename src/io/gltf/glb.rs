@@ -1,5 +1,6 @@
 //! The container: a header, the JSON, the bytes (glTF 2.0, section 4).
 
+use super::super::error::Problem;
 use serde_json::{Value, json};
 use std::io::{self, Write};
 
@@ -101,6 +102,57 @@ impl Bytes {
         out.write_all(b"BIN\0")?;
         out.write_all(&self.data)
     }
+}
+
+/// The JSON of a file and the bytes behind it. A file that is no container is JSON as a whole.
+pub(super) fn parts(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Problem> {
+    const HEADER: usize = 12;
+    let Some((b"glTF", rest)) = bytes.split_at_checked(4) else {
+        return Ok((bytes, None));
+    };
+    let number = |bytes: &[u8], at: usize| {
+        let bytes = bytes.get(at..)?.first_chunk()?;
+        Some(u32::from_le_bytes(*bytes))
+    };
+    let (Some(version), Some(length)) = (number(rest, 0), number(rest, 4)) else {
+        return Err(Problem::Truncated("the header is incomplete".into()));
+    };
+    let length = length as usize;
+    if version == 1 {
+        let text = "is glTF 1.0, and only 2.0 is read; export it again";
+        return Err(Problem::Malformed(text.into()));
+    }
+    if length < HEADER {
+        let text = format!("its header says that the file is {length} bytes long");
+        return Err(Problem::Malformed(text));
+    }
+    if length > bytes.len() {
+        let text = format!("{} of {length} bytes are there", bytes.len());
+        return Err(Problem::Truncated(text));
+    }
+    let (mut json, mut blob) = (None, None);
+    let mut rest = &bytes[HEADER..length];
+    while !rest.is_empty() {
+        let (Some(size), Some(kind)) = (number(rest, 0), rest.get(4..8)) else {
+            return Err(Problem::Truncated(
+                "the header of a part is incomplete".into(),
+            ));
+        };
+        let Some((part, after)) = rest[8..].split_at_checked(size as usize) else {
+            let there = rest.len() - 8;
+            let text = format!("{there} of a part's {size} bytes are there");
+            return Err(Problem::Truncated(text));
+        };
+        match kind {
+            b"JSON" if json.is_none() => json = Some(part),
+            b"BIN\0" if blob.is_none() => blob = Some(part),
+            // Parts that later versions add are to be passed over.
+            _ => {}
+        }
+        rest = after;
+    }
+    let json = json.ok_or_else(|| Problem::Malformed("it has no JSON part".into()))?;
+    Ok((json, blob))
 }
 
 fn pad(bytes: &mut Vec<u8>, with: u8) {

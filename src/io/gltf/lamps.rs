@@ -15,10 +15,11 @@
 //! | orthographic, `ymag` | `Projection::Orthographic`, height = 2 `ymag` |
 //! | aspect, near, far | left out: the picture's size decides, and rays have no planes |
 
+use super::json::Json;
 use crate::scene::{Cone, DirectionalLamp, PointLamp, Projection, SceneCamera};
 use bevy::color::LinearRgba;
 use serde_json::{Value, json};
-use std::f32::consts::{FRAC_PI_2, PI};
+use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 /// lm/W at 540 THz (SI, ninth edition, 2.3.1).
 pub(super) const LUMENS_PER_WATT: f32 = 683.0;
@@ -29,33 +30,34 @@ pub(super) enum Lamp {
     Directional(DirectionalLamp),
 }
 
-/// A light; `None` where its numbers make no sense.
-pub(super) fn lamp_of(light: &gltf::khr_lights_punctual::Light) -> Option<Lamp> {
-    use gltf::khr_lights_punctual::Kind;
-    let [r, g, b] = light.color();
-    let intensity = light.intensity() / LUMENS_PER_WATT;
+/// A light; `None` where it is of no kind that there is, or its numbers make no sense.
+pub(super) fn lamp_of(light: Json) -> Option<Lamp> {
+    let [r, g, b] = light.numbers("color").unwrap_or([1.0; 3]);
+    let intensity = light.number("intensity").unwrap_or(1.0) / LUMENS_PER_WATT;
     let numbers = [r, g, b, intensity];
     if !numbers.iter().all(|n| n.is_finite() && *n >= 0.0) {
         return None;
     }
     let color = LinearRgba::rgb(r, g, b);
-    let cone = match light.kind() {
-        Kind::Directional => {
+    let cone = match light.text("type")? {
+        "directional" => {
             return Some(Lamp::Directional(DirectionalLamp {
                 color,
                 intensity,
                 ..DirectionalLamp::default()
             }));
         }
-        Kind::Point => None,
-        Kind::Spot {
-            inner_cone_angle,
-            outer_cone_angle,
-        } => {
-            let outer = outer_cone_angle.clamp(0.0, FRAC_PI_2);
-            let inner = inner_cone_angle.clamp(0.0, outer);
-            (outer.is_finite() && inner.is_finite()).then_some(Cone { inner, outer })
+        "point" => None,
+        "spot" => {
+            let spot = light.get("spot");
+            let angle = |key| spot.and_then(|spot| spot.number(key));
+            let outer = angle("outerConeAngle").unwrap_or(FRAC_PI_4);
+            let outer = outer.clamp(0.0, FRAC_PI_2);
+            let inner = angle("innerConeAngle").unwrap_or(0.0);
+            let inner = inner.clamp(0.0, outer);
+            Some(Cone { inner, outer })
         }
+        _ => return None,
     };
     Some(Lamp::Point(PointLamp {
         color,
@@ -65,17 +67,24 @@ pub(super) fn lamp_of(light: &gltf::khr_lights_punctual::Light) -> Option<Lamp> 
 }
 
 /// A camera; `None` where its numbers make no sense.
-pub(super) fn camera_of(camera: &gltf::Camera) -> Option<SceneCamera> {
-    let projection = match camera.projection() {
-        gltf::camera::Projection::Perspective(p) if p.yfov() > 0.0 && p.yfov() < PI => {
-            Projection::Perspective { fov_y: p.yfov() }
+pub(super) fn camera_of(camera: Json) -> Option<SceneCamera> {
+    let kind = camera.text("type")?;
+    let numbers = camera.get(kind)?;
+    // A picture's size decides about its sides, and rays have no planes.
+    for unused in ["aspectRatio", "xmag", "znear", "zfar"] {
+        numbers.get(unused);
+    }
+    let projection = match kind {
+        "perspective" => {
+            let fov_y = numbers.number("yfov")?;
+            let is_open = fov_y > 0.0 && fov_y < PI;
+            is_open.then_some(Projection::Perspective { fov_y })?
         }
-        gltf::camera::Projection::Orthographic(o)
-            if o.ymag().is_normal() && (2.0 * o.ymag()).is_finite() =>
-        {
-            Projection::Orthographic {
-                height: 2.0 * o.ymag().abs(),
-            }
+        "orthographic" => {
+            let ymag = numbers.number("ymag")?;
+            let height = 2.0 * ymag.abs();
+            let is_open = ymag.is_normal() && height.is_finite();
+            is_open.then_some(Projection::Orthographic { height })?
         }
         _ => return None,
     };

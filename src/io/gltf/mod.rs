@@ -1,17 +1,20 @@
-//! glTF 2.0. The `gltf` crate parses and checks the JSON; what it would trust, the bytes behind
-//! accessors, is checked here before it is read.
+//! glTF 2.0. [`json`] reads the document with tolerance and knows in the end what nobody asked for; [`accessors`] the
+//! bytes behind it, with every offset checked.
 //!
 //! Nodes become entities with `ChildOf`, as deep as the file has them, so that a model stays
 //! editable. A node's only content sits on its own entity, several contents on children of it.
-//! How materials, lights and cameras are mapped: [`material`] and [`lamps`].
+//! How materials, lights and cameras are mapped: [`material`] and [`lamps`]; what deforms: [`rest`].
 
 mod accessors;
 mod document;
 mod glb;
+mod json;
 mod lamps;
 mod material;
+mod nodes;
 mod primitive;
 mod read;
+mod rest;
 mod uri;
 mod write;
 

@@ -3,81 +3,87 @@
 use super::super::budget::mesh_bytes;
 use super::super::error::Problem;
 use super::super::model::triangle_mesh;
-use super::accessors::{floats, indices};
+use super::accessors::{colors, floats, indices};
 use super::document::Document;
-use bevy::math::{Affine2, Vec2};
+use super::json::Json;
+use super::material::{TextureInfo, base_texture};
+use super::rest::Pose;
+use bevy::math::Vec2;
 use bevy::mesh::Mesh;
-use gltf::mesh::Mode;
 
-/// How scenes name a primitive. By indices, because names need not be unique.
-pub(super) fn mesh_name(mesh: &gltf::Mesh, primitive: &gltf::Primitive) -> String {
-    format!("Mesh{}/Primitive{}", mesh.index(), primitive.index())
-}
+const DRACO: &str = "KHR_draco_mesh_compression";
 
-/// A primitive's triangles; `None` for points and lines.
+const LINE_STRIP: usize = 3;
+const TRIANGLES: usize = 4;
+const TRIANGLE_STRIP: usize = 5;
+const TRIANGLE_FAN: usize = 6;
+
+/// A primitive's triangles at rest; `None` where it has none, which is noted.
 pub(super) fn read_primitive(
     document: &Document,
-    primitive: &gltf::Primitive,
+    primitive: Json,
     name: &str,
-    notes: &mut Vec<String>,
+    pose: &Pose,
 ) -> Result<Option<Mesh>, Problem> {
-    let mode = primitive.mode();
-    if !matches!(
-        mode,
-        Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
-    ) {
-        notes.push(format!("{name}: points and lines were left out"));
+    let mode = primitive.index("mode").unwrap_or(TRIANGLES);
+    if mode <= LINE_STRIP {
+        document.note(name, "points and lines", "left out");
         return Ok(None);
     }
-    let Some(accessor) = primitive.get(&gltf::Semantic::Positions) else {
-        return Err(Problem::Malformed("it has no positions".into()));
+    let is_compressed = primitive.has_extension(DRACO);
+    let attributes = primitive.get("attributes");
+    let Some(attributes) = attributes.filter(|attributes| attributes.index("POSITION").is_some())
+    else {
+        document.note(name, "a primitive without positions", "left out");
+        return Ok(None);
     };
-    let positions = floats::<3>(document, &accessor)?;
-    finite("a vertex", positions.as_flattened())?;
+    let read = triangles(document, primitive, attributes, mode, name, pose);
+    read.map_err(|problem| match is_compressed {
+        // What stands beside it might have been whole.
+        true => Problem::UnsupportedExtension(DRACO.to_owned()),
+        false => problem,
+    })
+}
+
+fn triangles(
+    document: &Document,
+    primitive: Json,
+    attributes: Json,
+    mode: usize,
+    name: &str,
+    pose: &Pose,
+) -> Result<Option<Mesh>, Problem> {
+    let missing = || Problem::Malformed("it has no positions".into());
+    let positions = attributes.index("POSITION").ok_or_else(missing)?;
+    let mut positions = floats::<3>(document, positions)?;
     let count = positions.len();
-    let normals = match primitive.get(&gltf::Semantic::Normals) {
-        Some(accessor) => floats::<3>(document, &accessor)?,
-        None => Vec::new(),
-    };
-    finite("a normal", normals.as_flattened())?;
-    let (set, transform) = uv_set(primitive);
-    let mut uvs = match primitive.get(&gltf::Semantic::TexCoords(set)) {
-        Some(accessor) => floats::<2>(document, &accessor)?,
-        None => Vec::new(),
-    };
-    finite("a texture coordinate", uvs.as_flattened())?;
-    for (what, given) in [
-        ("normals", normals.len()),
-        ("texture coordinates", uvs.len()),
-    ] {
-        if given != 0 && given != count {
-            return Err(Problem::Malformed(format!(
-                "{given} {what} for {count} vertices"
-            )));
-        }
-    }
-    if let Some(transform) = transform {
+    let mut normals: Vec<[f32; 3]> = attribute(document, attributes, "NORMAL", name, count, floats);
+    pose.apply(document, primitive, name, &mut positions, &mut normals);
+    let texture = base_texture(document, primitive.index("material"));
+    let set = texture.map_or(0, |texture| texture.set);
+    let set = format!("TEXCOORD_{set}");
+    let mut uvs: Vec<[f32; 2]> = attribute(document, attributes, &set, name, count, floats);
+    if let Some(TextureInfo {
+        transform: Some(transform),
+        ..
+    }) = texture
+    {
         for uv in &mut uvs {
             *uv = transform.transform_point2(Vec2::from(*uv)).into();
         }
     }
-    let corners = match primitive.indices() {
-        Some(accessor) => indices(document, &accessor)?,
+    let colors: Vec<[f32; 4]> = attribute(document, attributes, "COLOR_0", name, count, colors);
+    let repaired = clear(&mut normals) | clear(&mut uvs);
+    if repaired {
+        let what = "normals or texture coordinates that are not finite numbers";
+        document.note(name, what, "0 is taken for them");
+    }
+    let corners = match primitive.index("indices") {
+        Some(accessor) => indices(document, accessor)?,
         None => (0..u32::try_from(count).unwrap_or(u32::MAX)).collect(),
     };
-    if let Some(index) = corners.iter().find(|&&index| index as usize >= count) {
-        return Err(Problem::IndexOutOfRange {
-            what: "vertex",
-            index: index.to_string(),
-            count,
-        });
-    }
-    let corners = triangles_of(mode, corners);
+    let mut corners = triangles_of(mode, corners);
     let triangles = corners.len() as u64 / 3;
-    if triangles == 0 {
-        notes.push(format!("{name}: has no triangles"));
-        return Ok(None);
-    }
     if triangles > document.limits.triangles {
         return Err(Problem::TooMany {
             what: "triangles",
@@ -85,51 +91,95 @@ pub(super) fn read_primitive(
             limit: document.limits.triangles,
         });
     }
+    if triangles == 0 {
+        document.note(name, "a primitive without triangles", "left out");
+        return Ok(None);
+    }
     (document.limits.memory).claim(mesh_bytes(0, triangles))?;
-    if primitive.get(&gltf::Semantic::Colors(0)).is_some() {
-        notes.push(format!("{name}: its vertex colours were left out"));
+    if let Some(problem) = drop_broken(&mut corners, &positions) {
+        if corners.is_empty() {
+            return Err(problem);
+        }
+        document.note(name, problem.to_string(), "its triangles are left out");
+        for position in &mut positions {
+            if !position.iter().all(|value| value.is_finite()) {
+                *position = [0.0; 3];
+            }
+        }
     }
-    Ok(Some(triangle_mesh(positions, normals, uvs, corners)))
+    let mut mesh = triangle_mesh(positions, normals, uvs, corners);
+    if colors.iter().any(|&color| color != [1.0; 4]) {
+        mesh.insert_attribute(Mesh::ATTRIBUTE_COLOR, colors);
+    }
+    Ok(Some(mesh))
 }
 
-/// Which set of texture coordinates the base colour's picture uses, and how it moves them.
-fn uv_set(primitive: &gltf::Primitive) -> (u32, Option<Affine2>) {
-    let material = primitive.material();
-    let Some(info) = material.pbr_metallic_roughness().base_color_texture() else {
-        return (0, None);
+/// An attribute that the triangles can do without: what cannot be used is noted.
+fn attribute<T>(
+    document: &Document,
+    attributes: Json,
+    key: &str,
+    name: &str,
+    count: usize,
+    read: impl Fn(&Document, usize) -> Result<Vec<T>, Problem>,
+) -> Vec<T> {
+    let Some(accessor) = attributes.index(key) else {
+        return Vec::new();
     };
-    let Some(transform) = info.texture_transform() else {
-        return (info.tex_coord(), None);
-    };
-    // KHR_texture_transform turns counter-clockwise as seen in a picture whose v points down.
-    let affine = Affine2::from_scale_angle_translation(
-        transform.scale().into(),
-        -transform.rotation(),
-        transform.offset().into(),
-    );
-    (
-        transform.tex_coord().unwrap_or(info.tex_coord()),
-        Some(affine),
-    )
+    match read(document, accessor) {
+        Ok(values) if values.len() == count => return values,
+        Ok(values) => {
+            let what = format!("{} values of {key} for {count} vertices", values.len());
+            document.note(name, what, "left out");
+        }
+        Err(problem) => document.note(name, format!("{key}: {problem}"), "left out"),
+    }
+    Vec::new()
 }
 
-fn finite(what: &str, values: &[f32]) -> Result<(), Problem> {
-    match values.iter().all(|value| value.is_finite()) {
-        true => Ok(()),
-        false => Err(Problem::NotFinite { what: what.into() }),
+/// Puts 0 in the place of what is not finite; true where there was any.
+fn clear<const N: usize>(values: &mut [[f32; N]]) -> bool {
+    let mut any = false;
+    for value in values {
+        if !value.iter().all(|value| value.is_finite()) {
+            *value = [0.0; N];
+            any = true;
+        }
     }
+    any
+}
+
+/// Takes out the triangles that have no place; why the first has none.
+fn drop_broken(corners: &mut Vec<u32>, positions: &[[f32; 3]]) -> Option<Problem> {
+    let problem_of = |&corner: &u32| match positions.get(corner as usize) {
+        None => Some(Problem::IndexOutOfRange {
+            what: "vertex",
+            index: corner.to_string(),
+            count: positions.len(),
+        }),
+        Some(position) if !position.iter().all(|value| value.is_finite()) => {
+            let what = "a vertex".to_owned();
+            Some(Problem::NotFinite { what })
+        }
+        Some(_) => None,
+    };
+    let first = corners.iter().find_map(problem_of)?;
+    let whole = corners.as_chunks::<3>().0.iter();
+    let whole = whole.filter(|triangle| triangle.iter().all(|c| problem_of(c).is_none()));
+    *corners = whole.flatten().copied().collect();
+    Some(first)
 }
 
 /// Corners of separate triangles. A strip turns every second one around (glTF 2.0, 3.7.2.1).
-fn triangles_of(mode: Mode, mut corners: Vec<u32>) -> Vec<u32> {
+fn triangles_of(mode: usize, mut corners: Vec<u32>) -> Vec<u32> {
     match mode {
-        Mode::TriangleStrip => (2..corners.len())
+        TRIANGLE_STRIP => (2..corners.len())
             .flat_map(|i| match i % 2 {
                 0 => [corners[i - 2], corners[i - 1], corners[i]],
                 _ => [corners[i - 1], corners[i - 2], corners[i]],
             })
             .collect(),
-        Mode::TriangleFan => (2..corners.len())
+        TRIANGLE_FAN => (2..corners.len())
             .flat_map(|i| [corners[0], corners[i - 1], corners[i]])
             .collect(),
         _ => {

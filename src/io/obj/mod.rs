@@ -1,10 +1,14 @@
-//! Wavefront OBJ and MTL. `tobj` parses; [`lines`] watches the lines go by, so that an error knows
-//! its line, and [`blame`] finds the line of an error that shows only later.
+//! Wavefront OBJ and MTL, each line read once: [`text`] makes lines of bytes, [`statements`] and [`mtl`] say what they
+//! mean, [`parts`] makes meshes, [`phong`] materials. What cannot be used is noted, with its line, and the rest is
+//! shown.
 
-mod blame;
-mod lines;
+mod content;
 mod mtl;
+mod parts;
+mod phong;
 mod read;
+mod statements;
+mod text;
 mod write;
 mod write_mtl;
 

@@ -1,198 +1,313 @@
-//! The material file of an OBJ. tobj parses it; the lines are checked first, because it stops the
-//! program at a colour with fewer than three numbers, and because an error should name its line.
+//! What the lines of an MTL say.
 
-use super::super::error::{FileError, Place, Problem};
-use super::super::file_name::of_file;
-use super::super::folder::Folder;
+use super::super::error::{FileError, Place};
+use super::super::names::Names;
+use super::super::notes::Notes;
+use super::parts::Placement;
+use super::text::{Lines, keyword, number, text, unquoted, values};
 use crate::io::Limits;
 use crate::io::budget::ENTITY;
-use crate::scene::{Phong, TextureSource};
-use bevy::color::LinearRgba;
-use std::path::PathBuf;
+use bevy::math::Vec2;
+use std::path::{Path, PathBuf};
 
 /// An MTL file holds text of a few lines a material; more than this is something else.
 const FILE_BYTES: u64 = 1 << 26;
 
-/// The materials of an MTL file.
-pub(super) struct Library {
-    /// Where it lies.
+/// A picture of a material.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Map {
+    /// From the OBJ's folder.
+    pub path: String,
+    pub placement: Placement,
+}
+
+/// A picture that was named, found or not.
+pub(super) type NamedMap = Option<Map>;
+
+/// What stands between one `newmtl` and the next. What is not there was not said.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct MtlMaterial {
+    pub name: String,
     pub file: PathBuf,
-    /// As tobj wants them.
-    pub loaded: tobj::MTLLoadResult,
-    /// What could not be taken over.
-    pub notes: Vec<String>,
+    pub line: u64,
+    pub diffuse: Option<[f32; 3]>,
+    pub specular: Option<[f32; 3]>,
+    pub emission: Option<[f32; 3]>,
+    pub shininess: Option<f32>,
+    pub dissolve: Option<f32>,
+    /// 1 - `dissolve`.
+    pub transparency: Option<f32>,
+    /// Index of refraction.
+    pub refraction: Option<f32>,
+    pub illum: Option<u32>,
+    pub diffuse_map: Option<NamedMap>,
+    pub opacity_map: Option<NamedMap>,
+    pub specular_map: Option<NamedMap>,
+    pub emission_map: Option<NamedMap>,
 }
 
-/// Reads the MTL file that an OBJ in `folder` calls `name`, and checks each of its lines. Pictures
-/// must exist; their names start from the MTL's folder in the file and from the OBJ's in the result.
-pub(super) fn read_mtl(name: &str, folder: &Folder, limits: &Limits) -> Result<Library, FileError> {
-    let file = &folder.resolve(name)?;
+const LEFT_OUT: &str = "left out";
+const WITHOUT_PICTURE: &str = "its material has none";
+
+/// Appends the materials of the MTL file that an OBJ calls `name`, a path from its folder. What cannot be read is
+/// noted.
+pub(super) fn read_mtl(
+    file: &Path,
+    name: &str,
+    limits: &Limits,
+    names: &mut Names,
+    notes: &mut Notes,
+) -> Result<Vec<MtlMaterial>, FileError> {
     let prefix = name.rfind('/').map_or("", |slash| &name[..=slash]);
-    let limit = FILE_BYTES.min(limits.file_bytes);
-    let bytes = super::super::read_bytes(file, limit, &limits.memory)?;
-    let text = String::from_utf8_lossy(&bytes);
-    let mut checked = String::with_capacity(text.len());
-    let mut notes = Vec::new();
-    for (number, line) in text.lines().enumerate() {
-        let line = check_line(line.trim(), prefix, folder, &mut notes)
-            .map_err(|problem| FileError::at(file, Place::Line(number as u64 + 1), problem))?;
-        checked.push_str(&line);
-        checked.push('\n');
-    }
-    let materials = checked.lines().filter(|line| line.starts_with("newmtl"));
-    (limits.memory)
-        .claim(ENTITY * materials.count() as u64)
-        .map_err(|problem| FileError::new(file, problem))?;
-    Ok(Library {
-        file: file.clone(),
-        loaded: tobj::load_mtl_buf(&mut checked.as_bytes()),
+    let mut lines = Lines::open(file, FILE_BYTES.min(limits.file_bytes), limits.line_bytes)?;
+    let mut reader = Reader {
+        file,
+        prefix,
+        names,
         notes,
-    })
-}
-
-/// The line as tobj shall see it.
-fn check_line(
-    line: &str,
-    prefix: &str,
-    folder: &Folder,
-    notes: &mut Vec<String>,
-) -> Result<String, Problem> {
-    let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
-    let rest = rest.trim();
-    match word {
-        "newmtl" if rest.is_empty() => Err(Problem::Malformed("a material has no name".into())),
-        "Ka" | "Kd" | "Ks" | "Ke" => {
-            let numbers = finite_numbers(word, rest)?;
-            // One number stands for grey.
-            let rgb = match numbers[..] {
-                [r] => [r; 3],
-                [r, g, b] => [r, g, b],
-                _ => {
-                    return Err(Problem::Truncated(format!(
-                        "{word} needs 3 numbers and has {}",
-                        numbers.len()
-                    )));
-                }
-            };
-            Ok(format!("{word} {} {} {}", rgb[0], rgb[1], rgb[2]))
+        line: 0,
+        materials: Vec::new(),
+    };
+    while let Some((number, line)) = lines.next()? {
+        reader.line = number;
+        let (word, rest) = keyword(line);
+        if !word.is_empty() && word[0] != b'#' {
+            reader.statement(word, rest);
         }
-        "Ns" | "d" | "Ni" | "Tr" => {
-            // `d -halo` depends on the view; its number is taken.
-            let numbers = finite_numbers(word, rest.trim_start_matches("-halo"))?;
-            match numbers.first() {
-                Some(number) => Ok(format!("{word} {number}")),
-                None => Err(Problem::Truncated(format!("{word} has no number"))),
-            }
-        }
-        "map_Kd" | "map_d" => {
-            let path = after_options(rest, word, notes).replace('\\', "/");
-            if path.is_empty() {
-                return Err(Problem::Truncated(format!("{word} names no picture")));
-            }
-            let path = format!("{prefix}{path}");
-            let full = folder
-                .resolve(&path)
-                .map_err(|_| Problem::RefersOutside { path: path.clone() })?;
-            if !full.is_file() {
-                return Err(Problem::MissingFile { path });
-            }
-            Ok(format!("{word} {}", of_file(path)))
-        }
-        _ if word.starts_with("map_") || matches!(word, "bump" | "disp" | "decal" | "refl") => {
-            notes.push(format!("`{word}` has no place in Phong and was left out"));
-            Ok(String::new())
-        }
-        // Everything else is not read: `illum`, `Tf`, `sharpness` and what renderers added.
-        "newmtl" => Ok(line.to_owned()),
-        _ => Ok(String::new()),
     }
+    let materials = reader.materials;
+    (limits.memory)
+        .claim(ENTITY * materials.len() as u64)
+        .map_err(|problem| FileError::new(file, problem))?;
+    Ok(materials)
 }
 
-fn finite_numbers(word: &str, rest: &str) -> Result<Vec<f32>, Problem> {
-    rest.split_ascii_whitespace()
-        .map(|number| match number.parse::<f32>() {
-            Ok(value) if value.is_finite() => Ok(value),
-            Ok(_) => Err(Problem::NotFinite {
-                what: format!("{word}'s `{number}`"),
-            }),
-            Err(_) => Err(Problem::Malformed(format!(
-                "{word}'s `{number}` is not a number"
-            ))),
-        })
-        .collect()
+struct Reader<'a, 'n> {
+    file: &'a Path,
+    prefix: &'a str,
+    names: &'a mut Names<'n>,
+    notes: &'a mut Notes,
+    line: u64,
+    materials: Vec<MtlMaterial>,
 }
 
-/// The picture's name without the options before it, each with the numbers that follow it.
-fn after_options<'a>(rest: &'a str, word: &str, notes: &mut Vec<String>) -> &'a str {
-    let mut rest = rest;
-    while let Some(option) = rest.strip_prefix('-') {
-        let (option, mut after) = option
-            .split_once(char::is_whitespace)
-            .unwrap_or((option, ""));
-        let most = match option {
-            "o" | "s" | "t" => 3,
-            "mm" => 2,
-            _ => 1,
+impl Reader<'_, '_> {
+    fn statement(&mut self, word: &[u8], rest: &[u8]) {
+        let lower = word.to_ascii_lowercase();
+        if lower == b"newmtl" {
+            self.new_material(rest);
+            return;
+        }
+        let Some(mut material) = self.materials.pop() else {
+            self.note("a line before the first newmtl", LEFT_OUT);
+            return;
         };
-        for i in 0..most {
-            after = after.trim_start();
-            let (value, then) = after.split_once(char::is_whitespace).unwrap_or((after, ""));
-            // `-o`, `-s` and `-t` take one to three numbers.
-            if i > 0 && value.parse::<f32>().is_err() {
-                break;
+        self.read(&lower, word, rest, &mut material);
+        self.materials.push(material);
+    }
+
+    fn read(&mut self, word: &[u8], written: &[u8], rest: &[u8], material: &mut MtlMaterial) {
+        match word {
+            b"kd" => self.color("Kd", rest, &mut material.diffuse),
+            b"ks" => self.color("Ks", rest, &mut material.specular),
+            b"ke" => self.color("Ke", rest, &mut material.emission),
+            b"ns" => self.value("Ns", rest, &mut material.shininess),
+            b"ni" => self.value("Ni", rest, &mut material.refraction),
+            b"d" => {
+                let (first, after) = keyword(rest);
+                let is_halo = first.eq_ignore_ascii_case(b"-halo");
+                if is_halo {
+                    self.note("`d -halo`, which depends on the view", "read as `d`");
+                }
+                let rest = if is_halo { after } else { rest };
+                self.value("d", rest, &mut material.dissolve);
             }
-            after = then;
+            b"tr" => self.value("Tr", rest, &mut material.transparency),
+            b"illum" => {
+                let mut value = None;
+                self.value("illum", rest, &mut value);
+                // Negative numbers become 0, as their models are not known.
+                material.illum = value.map(|value| value as u32).or(material.illum);
+            }
+            b"map_kd" => material.diffuse_map = self.map("map_Kd", rest),
+            b"map_d" | b"map_opacity" => material.opacity_map = self.map("map_d", rest),
+            b"map_ks" => material.specular_map = self.map("map_Ks", rest),
+            b"map_ke" | b"map_emissive" => material.emission_map = self.map("map_Ke", rest),
+            b"tf" => {
+                let mut filter = None;
+                self.color("Tf", rest, &mut filter);
+                if filter.is_some_and(|filter| filter != [1.0; 3]) {
+                    self.unread(b"Tf");
+                }
+            }
+            b"ka" => {
+                let mut ambient = None;
+                self.color("Ka", rest, &mut ambient);
+                if ambient.is_some_and(|ambient| ambient != [0.0; 3]) {
+                    self.note("ambient light (Ka), which is computed here", LEFT_OUT);
+                }
+            }
+            // Of reflections that are pictures, which `refl` is noted for.
+            b"sharpness" => {}
+            _ => self.unread(written),
         }
-        notes.push(format!("{word}: the option `-{option}` was left out"));
-        rest = after.trim_start();
     }
-    rest
-}
 
-/// MTL and Phong use the same names; what is missing takes Phong's default.
-/// Numbers outside Phong's ranges are clamped, with a note.
-pub(super) fn phong_of(material: &tobj::Material, notes: &mut Vec<String>) -> Phong {
-    let default = Phong::default();
-    let color = |given: Option<[f32; 3]>, otherwise| {
-        given.map_or(otherwise, |[r, g, b]| LinearRgba::rgb(r, g, b))
-    };
-    let transparency = material.unknown_param.get("Tr");
-    let transparency = transparency.and_then(|value| value.parse::<f32>().ok());
-    let opacity = material.dissolve.or(transparency.map(|tr| 1.0 - tr));
-    let texture = |path: &Option<String>| path.clone().map(|path| TextureSource { path });
-    let exact = Phong {
-        diffuse: color(material.diffuse, default.diffuse),
-        specular: color(material.specular, default.specular),
-        shininess: material.shininess.unwrap_or(default.shininess),
-        opacity: opacity.unwrap_or(default.opacity),
-        emission: color(material.emissive, default.emission),
-        diffuse_map: texture(&material.diffuse_texture),
-        opacity_map: texture(&material.dissolve_texture),
-    };
-    let clamped = clamp(exact.clone());
-    if clamped != exact {
-        notes.push(format!(
-            "material `{}`: numbers outside Phong's ranges were clamped",
-            material.name
-        ));
+    fn new_material(&mut self, rest: &[u8]) {
+        let mut name = text(rest).into_owned();
+        if name.is_empty() {
+            self.note("a material without a name", "called `unnamed`");
+            name = "unnamed".into();
+        }
+        self.materials.push(MtlMaterial {
+            name,
+            file: self.file.to_path_buf(),
+            line: self.line,
+            ..MtlMaterial::default()
+        });
     }
-    clamped
-}
 
-fn clamp(phong: Phong) -> Phong {
-    let each = |color: LinearRgba, most: f32| {
-        LinearRgba::rgb(
-            color.red.clamp(0.0, most),
-            color.green.clamp(0.0, most),
-            color.blue.clamp(0.0, most),
-        )
-    };
-    Phong {
-        diffuse: each(phong.diffuse, 1.0),
-        specular: each(phong.specular, 1.0),
-        shininess: phong.shininess.max(1.0),
-        opacity: phong.opacity.clamp(0.0, 1.0),
-        emission: each(phong.emission, f32::MAX),
-        ..phong
+    fn note(&mut self, what: &str, instead: &'static str) {
+        self.notes
+            .add(self.file, Place::Line(self.line), what, instead);
+    }
+
+    fn unread(&mut self, word: &[u8]) {
+        const SHOWN: usize = 24;
+        let word = text(&word[..word.len().min(SHOWN)]);
+        self.note(&format!("`{word}`, which Phong has no place for"), LEFT_OUT);
+    }
+
+    /// Three numbers, or one that stands for grey.
+    fn color(&mut self, word: &str, rest: &[u8], color: &mut Option<[f32; 3]>) {
+        let numbers: Result<Vec<f32>, _> = values(rest).take(4).map(number).collect();
+        match numbers.as_deref() {
+            Ok([grey]) => *color = Some([*grey; 3]),
+            Ok([red, green, blue, ..]) => *color = Some([*red, *green, *blue]),
+            _ => self.note(&format!("`{word}` without three numbers"), LEFT_OUT),
+        }
+    }
+
+    fn value(&mut self, word: &str, rest: &[u8], value: &mut Option<f32>) {
+        match values(rest).next().map(number) {
+            Some(Ok(number)) => *value = Some(number),
+            _ => self.note(&format!("`{word}` without a number"), LEFT_OUT),
+        }
+    }
+
+    /// The picture that a `map_` names.
+    fn map(&mut self, word: &str, rest: &[u8]) -> Option<NamedMap> {
+        let mut placement = Placement::default();
+        let rest = text(rest);
+        let name = self.options(&rest, word, &mut placement);
+        if name.is_empty() {
+            self.note(&format!("`{word}` without a picture"), LEFT_OUT);
+            return None;
+        }
+        let path = self.picture(name);
+        Some(path.map(|path| Map { path, placement }))
+    }
+
+    /// The picture of this name, or of what stands before a comment.
+    fn picture(&mut self, name: &str) -> Option<String> {
+        let before_comment = name.split_once(" #").map(|(name, _)| name.trim_end());
+        let candidates = std::iter::once(name).chain(before_comment);
+        let mut missing = None;
+        for name in candidates {
+            match self.names.find(self.prefix, unquoted(name)) {
+                Ok(found) => {
+                    if found.is_guess {
+                        let place = Place::Line(self.line);
+                        let what = "a picture whose name is spelt otherwise:";
+                        let instead = "the one that was found is shown";
+                        self.notes
+                            .add_named(self.file, place, what, &found.path, instead);
+                    }
+                    return Some(found.path);
+                }
+                Err(why) => missing = missing.or(Some((why, name))),
+            }
+        }
+        if let Some((why, name)) = missing {
+            let what = why.what("picture");
+            let place = Place::Line(self.line);
+            self.notes
+                .add_named(self.file, place, what, unquoted(name), WITHOUT_PICTURE);
+        }
+        None
+    }
+
+    /// What follows a picture's options, each with its values.
+    fn options<'t>(&mut self, rest: &'t str, word: &str, placement: &mut Placement) -> &'t str {
+        let mut rest = rest;
+        while let Some(option) = rest.strip_prefix('-') {
+            let (option, mut after) = option
+                .split_once(char::is_whitespace)
+                .unwrap_or((option, ""));
+            let option = option.to_ascii_lowercase();
+            let most = match option.as_str() {
+                "o" | "s" | "t" => 3,
+                "mm" => 2,
+                "blendu" | "blendv" | "cc" | "clamp" | "texres" | "bm" | "boost" | "imfchan"
+                | "type" | "halo" => 1,
+                // It is how the name begins.
+                _ => break,
+            };
+            let mut numbers = [None; 3];
+            let mut first = "";
+            for i in 0..most {
+                after = after.trim_start();
+                let (value, then) = after.split_once(char::is_whitespace).unwrap_or((after, ""));
+                let parsed = number(value.as_bytes()).ok();
+                // `-o`, `-s` and `-t` take one to three numbers.
+                if i > 0 && parsed.is_none() {
+                    break;
+                }
+                if i == 0 {
+                    first = value;
+                }
+                numbers[i] = parsed;
+                after = then;
+            }
+            self.option(&option, first, numbers, word, placement);
+            rest = after.trim_start();
+        }
+        rest
+    }
+
+    fn option(
+        &mut self,
+        option: &str,
+        first: &str,
+        numbers: [Option<f32>; 3],
+        word: &str,
+        placement: &mut Placement,
+    ) {
+        let vector = |otherwise: f32| {
+            let [u, v, _] = numbers;
+            Vec2::new(u.unwrap_or(otherwise), v.unwrap_or(otherwise))
+        };
+        let says_nothing = match option {
+            "s" => {
+                placement.scale = vector(1.0);
+                true
+            }
+            "o" => {
+                placement.offset = vector(0.0);
+                true
+            }
+            "t" => vector(0.0) == Vec2::ZERO && numbers[2].unwrap_or(0.0) == 0.0,
+            "mm" => numbers[0] == Some(0.0) && matches!(numbers[1], None | Some(1.0)),
+            "clamp" | "cc" => first.eq_ignore_ascii_case("off"),
+            "bm" => numbers[0] == Some(1.0),
+            "boost" => numbers[0] == Some(0.0),
+            // How a picture is smoothed is a setting of the render.
+            "blendu" | "blendv" | "texres" => true,
+            _ => false,
+        };
+        if !says_nothing {
+            let what = format!("the option `-{option}` of {word}");
+            self.note(&what, LEFT_OUT);
+        }
     }
 }

@@ -1,239 +1,246 @@
 use super::super::error::{FileError, Place, Problem};
 use super::super::folder::Folder;
-use super::super::model::{Model, Node, triangle_mesh};
-use super::blame::first_fault;
-use super::lines::{Lines, Seen};
-use super::mtl::{phong_of, read_mtl};
+use super::super::model::{Model, Node};
+use super::super::names::Names;
+use super::super::notes::Notes;
+use super::content::{Content, Part};
+use super::mtl::{MtlMaterial, read_mtl};
+use super::parts::{Builder, Pictured};
+use super::phong::phong_of;
+use super::statements::read_content;
+use super::text::unquoted;
 use crate::io::Limits;
 use bevy::mesh::Mesh;
-use std::cell::RefCell;
-use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::BufReader;
-use std::path::{Path, PathBuf};
+use std::collections::{BTreeMap, HashMap};
+use std::path::Path;
 
-/// Reads an OBJ: one object for each `o` or `g` and material in it. The mesh is called like the
-/// object where that has one material, `object/material` where it has several.
+/// Reads an OBJ: one object for each `o` or `g` and material in it. The mesh is called like the object where that has
+/// one material, `object/material` where it has several. Faces that lack the texture coordinates which the others
+/// have, and whose material has a picture, are an object of their own, `… without picture`.
 ///
-/// Faces with more than three corners become fans. Normals are kept as the file gives them; where
-/// a part has none, or not for every corner, it is left without and is shaded flat.
+/// Normals are kept as the file gives them; faces without are smooth within their smoothing group, and flat where they
+/// have none.
 pub(crate) fn read_obj(file: &Path, folder: &Folder, limits: &Limits) -> Result<Model, FileError> {
-    let reader = super::super::open_to_read(file, limits.file_bytes)?;
-    let mut notes = Vec::new();
-    let mut files = vec![file.to_path_buf()];
-    let (models, materials) = parse(file, reader, folder, limits, &mut notes, &mut files)?;
     let mut model = Model {
-        notes,
-        files,
+        files: vec![file.to_path_buf()],
         ..Model::default()
     };
-    for material in &materials {
-        let phong = phong_of(material, &mut model.notes);
-        model.materials.push((material.name.clone(), phong));
+    let mut content = read_content(file, limits, &mut model.notes)?;
+    let mut names = Names::new(folder);
+    let mut libraries = Vec::new();
+    for (library, line) in &content.libraries {
+        libraries.extend(read_libraries(
+            file,
+            library,
+            *line,
+            limits,
+            &mut names,
+            &mut model.notes,
+        ));
     }
-    for (key, parts) in gather(models) {
-        let name = key.mesh_name(&materials, &model.meshes);
-        let mesh = join(parts, &name, file, &mut model.notes)?;
-        model.nodes.push(Node {
-            name: name.clone(),
-            mesh: Some(name.clone()),
-            material: key.material,
-            ..Node::default()
-        });
-        model.meshes.insert(name, mesh);
+    model
+        .files
+        .extend(libraries.iter().map(|material| material.file.clone()));
+    model.files.dedup();
+    let mut pictured = Vec::new();
+    for material in &libraries {
+        let (phong, pictures) = phong_of(material, folder, limits, &mut model.notes);
+        model.materials.push((material.name.clone(), phong));
+        pictured.push(pictures);
+    }
+    let chosen = choose_materials(file, &content, &libraries, &mut model.notes);
+    let groups = gather(std::mem::take(&mut content.parts), &chosen);
+    let objects = groups.len() as u64;
+    if objects > limits.entities {
+        let problem = Problem::TooMany {
+            what: "objects",
+            count: objects,
+            limit: limits.entities,
+        };
+        return Err(FileError::new(file, problem));
+    }
+    let several = materials_of_objects(&groups);
+    let (keys, parts): (Vec<_>, Vec<_>) = groups.into_iter().unzip();
+    let mut builder = Builder::new(file, &content, &parts, &mut model.notes);
+    for (key, part) in keys.into_iter().zip(parts) {
+        let object = &content.objects[key.object as usize];
+        let material = key.material.and_then(|index| libraries.get(index));
+        let mut name = object.clone();
+        if several[&key.object] > 1 {
+            name = format!(
+                "{object}/{}",
+                material.map_or("", |material| &material.name)
+            );
+        }
+        let pictures = key
+            .material
+            .map_or(Pictured::default(), |index| pictured[index]);
+        let meshes = builder.meshes(part, &name, pictures)?;
+        let plain = format!("{name} without picture");
+        for (name, mesh) in [(name, meshes.mesh), (plain, meshes.without_picture)] {
+            let Some(mesh) = mesh else { continue };
+            let name = free_name(name, &model.meshes);
+            model.nodes.push(Node {
+                name: name.clone(),
+                mesh: Some(name.clone()),
+                material: key.material,
+                ..Node::default()
+            });
+            model.meshes.insert(name, mesh);
+        }
     }
     if model.meshes.is_empty() {
-        return Err(FileError::new(file, Problem::NoTriangles));
+        let nothing = || FileError::new(file, Problem::NoTriangles);
+        return Err(content.fault.unwrap_or_else(nothing));
     }
     Ok(model)
 }
 
-type Parsed = (Vec<tobj::Model>, Vec<tobj::Material>);
-
-fn parse(
+/// The materials of what stands after `mtllib`: one name with spaces in it, or several.
+fn read_libraries(
     file: &Path,
-    reader: BufReader<File>,
-    folder: &Folder,
+    library: &str,
+    line: u64,
     limits: &Limits,
-    notes: &mut Vec<String>,
-    files: &mut Vec<PathBuf>,
-) -> Result<Parsed, FileError> {
-    let seen = RefCell::new(Seen::default());
-    let mut lines = Lines::new(reader, file, limits, &seen);
-    let library_notes = RefCell::new(Vec::new());
-    let libraries = RefCell::new(Vec::new());
-    let loaded = tobj::load_obj_buf(&mut lines, &tobj::GPU_LOAD_OPTIONS, |path| {
-        let name = path.to_string_lossy().replace('\\', "/");
-        let library = read_mtl(&name, folder, limits);
-        let mut seen = seen.borrow_mut();
-        match library {
-            Ok(library) => {
-                library_notes.borrow_mut().extend(library.notes);
-                libraries.borrow_mut().push(library.file);
-                if let Ok((_, names)) = &library.loaded {
-                    seen.materials.extend(names.keys().cloned());
-                }
-                library.loaded
+    names: &mut Names,
+    notes: &mut Notes,
+) -> Vec<MtlMaterial> {
+    const WITHOUT: &str = "materials are the default one";
+    let mut materials = Vec::new();
+    let place = || Place::Line(line);
+    let whole = [unquoted(library)];
+    let several: Vec<&str> = library.split_whitespace().map(unquoted).collect();
+    let is_one = several.len() < 2 || names.find("", whole[0]).is_ok();
+    for name in if is_one { &whole[..] } else { &several[..] } {
+        let found = match names.find("", name) {
+            Ok(found) => found,
+            Err(missing) => {
+                notes.add_named(file, place(), missing.what("MTL file"), name, WITHOUT);
+                continue;
             }
-            Err(error) => {
-                let place = Place::Line(seen.line);
-                let error = match error.problem {
-                    Problem::NotFound => {
-                        FileError::at(file, place, Problem::MissingFile { path: name })
-                    }
-                    Problem::Outside => {
-                        FileError::at(file, place, Problem::RefersOutside { path: name })
-                    }
-                    _ => error,
-                };
-                seen.error.get_or_insert(error);
-                Err(tobj::LoadError::OpenFileFailed)
+        };
+        if found.is_guess {
+            let what = "an MTL file whose name is spelt otherwise:";
+            notes.add_named(
+                file,
+                place(),
+                what,
+                &found.path,
+                "the one that was found is read",
+            );
+        }
+        let read = names
+            .file(&found.path)
+            .and_then(|file| read_mtl(&file, &found.path, limits, names, notes));
+        match read {
+            Ok(read) => materials.extend(read),
+            Err(error) => notes.add(&error.file, error.place, error.problem.to_string(), WITHOUT),
+        }
+    }
+    materials
+}
+
+/// Which material of the libraries each name after `usemtl` means.
+fn choose_materials(
+    file: &Path,
+    content: &Content,
+    libraries: &[MtlMaterial],
+    notes: &mut Notes,
+) -> Vec<Option<usize>> {
+    let mut exact: HashMap<&str, usize> = HashMap::new();
+    let mut alike: HashMap<String, usize> = HashMap::new();
+    for (index, material) in libraries.iter().enumerate() {
+        alike.insert(material.name.to_lowercase(), index);
+        if exact.insert(&material.name, index).is_some() {
+            let place = Place::Line(material.line);
+            let what = "several materials of the name";
+            notes.add_named(
+                &material.file,
+                place,
+                what,
+                &material.name,
+                "the last is used",
+            );
+        }
+    }
+    let find = |(name, line): &(String, u64)| {
+        let before_comment = name.split_once(" #").map(|(name, _)| name.trim_end());
+        for name in [Some(name.as_str()), before_comment].into_iter().flatten() {
+            if let Some(&index) = exact.get(name).or_else(|| exact.get(unquoted(name))) {
+                return Some(index);
             }
         }
-    });
-    let seen = seen.into_inner();
-    if let Some(error) = seen.error {
-        return Err(error);
-    }
-    let generic = |error: tobj::LoadError| {
-        first_fault(file).unwrap_or_else(|| {
-            FileError::at(
-                file,
-                Place::Line(seen.line),
-                Problem::Malformed(error.to_string()),
-            )
-        })
-    };
-    let (models, materials) = loaded.map_err(generic)?;
-    let materials = materials.map_err(generic)?;
-    notes.append(&mut library_notes.into_inner());
-    files.append(&mut libraries.into_inner());
-    if !seen.undefined.is_empty() {
-        let names: Vec<_> = seen.undefined.into_iter().collect();
-        notes.push(format!(
-            "no mtllib defines {}: the default material is used",
-            names.join(", ")
-        ));
-    }
-    Ok((models, materials))
-}
-
-/// What makes an object: its name and its material.
-#[derive(PartialEq, Eq, PartialOrd, Ord, Clone)]
-struct Key {
-    object: String,
-    material: Option<usize>,
-    several: bool,
-}
-
-impl Key {
-    fn mesh_name(&self, materials: &[tobj::Material], taken: &BTreeMap<String, Mesh>) -> String {
-        let material = self.material.and_then(|index| materials.get(index));
-        let material = material.map_or("", |material| &material.name);
-        let name = if self.several {
-            format!("{}/{material}", self.object)
-        } else {
-            self.object.clone()
+        let place = Place::Line(*line);
+        let found = alike.get(&name.to_lowercase()).copied();
+        let (what, instead) = match found {
+            Some(_) => (
+                "another case of letters in the material",
+                "the one that was found is used",
+            ),
+            None if content.libraries.is_empty() => (
+                "no mtllib, and so no material",
+                "the default material is used",
+            ),
+            None => (
+                "no MTL file has the material",
+                "the default material is used",
+            ),
         };
-        let numbered = (2_u32..).map(|n| format!("{name}#{n}"));
-        std::iter::once(name.clone())
-            .chain(numbered)
-            .find(|name| !taken.contains_key(name))
-            .unwrap_or(name)
-    }
+        notes.add_named(file, place, what, name, instead);
+        found
+    };
+    content.materials.iter().map(find).collect()
 }
 
-/// Parts of the same object and material together, in the order in which they first appear.
-fn gather(models: Vec<tobj::Model>) -> Vec<(Key, Vec<tobj::Mesh>)> {
-    let mut places: BTreeMap<(String, Option<usize>), usize> = BTreeMap::new();
-    let mut materials_of: BTreeMap<String, usize> = BTreeMap::new();
-    let mut out: Vec<(Key, Vec<tobj::Mesh>)> = Vec::new();
-    for model in models {
-        if model.mesh.indices.is_empty() {
+/// What makes an object: its name, and its material.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+struct Key {
+    object: u32,
+    material: Option<usize>,
+}
+
+/// Faces of the same object and material together, in the order in which they first appear.
+fn gather(parts: Vec<Part>, chosen: &[Option<usize>]) -> Vec<(Key, Part)> {
+    let mut places: HashMap<Key, usize> = HashMap::new();
+    let mut out: Vec<(Key, Part)> = Vec::new();
+    for part in parts {
+        if part.faces.is_empty() {
             continue;
         }
-        let material = model.mesh.material_id;
-        let place = *places
-            .entry((model.name.clone(), material))
-            .or_insert_with(|| {
-                *materials_of.entry(model.name.clone()).or_default() += 1;
-                let key = Key {
-                    object: model.name,
-                    material,
-                    several: false,
-                };
-                out.push((key, Vec::new()));
-                out.len() - 1
-            });
-        out[place].1.push(model.mesh);
-    }
-    for (key, _) in &mut out {
-        key.several = materials_of
-            .get(&key.object)
-            .is_some_and(|&count| count > 1);
+        let material = part.material.and_then(|name| chosen[name as usize]);
+        let key = Key {
+            object: part.object,
+            material,
+        };
+        match places.get(&key) {
+            Some(&place) => {
+                let (_, before) = &mut out[place];
+                before.faces.extend_from_slice(&part.faces);
+                before.corners.extend_from_slice(&part.corners);
+            }
+            None => {
+                places.insert(key, out.len());
+                out.push((key, part));
+            }
+        }
     }
     out
 }
 
-/// Joins the parts of a mesh. Each part's arrays are freed as soon as they are taken over.
-fn join(
-    parts: Vec<tobj::Mesh>,
-    name: &str,
-    file: &Path,
-    notes: &mut Vec<String>,
-) -> Result<Mesh, FileError> {
-    let total = |length: fn(&tobj::Mesh) -> usize| parts.iter().map(length).sum::<usize>();
-    let vertices = total(|part| part.positions.len() / 3);
-    if u32::try_from(vertices).is_err() {
-        let problem = Problem::TooMany {
-            what: "vertices in one object",
-            count: vertices as u64,
-            limit: u64::from(u32::MAX),
-        };
-        return Err(FileError::at(file, Place::Part(name.into()), problem));
+fn materials_of_objects(groups: &[(Key, Part)]) -> HashMap<u32, u32> {
+    let mut counts = HashMap::new();
+    for (key, _) in groups {
+        *counts.entry(key.object).or_default() += 1;
     }
-    // tobj leaves out what a corner does not have, which shifts all that follow.
-    let mut whole = |what: &str, given: usize, width: usize| {
-        if given != 0 && given != vertices * width {
-            notes.push(format!(
-                "`{name}`: only some corners have {what}, so none is used"
-            ));
-        }
-        given != 0 && given == vertices * width
-    };
-    let with_normals = whole("normals", total(|part| part.normals.len()), 3);
-    let with_uvs = whole("texture coordinates", total(|part| part.texcoords.len()), 2);
-    let mut positions: Vec<[f32; 3]> = Vec::with_capacity(vertices);
-    let mut normals = Vec::with_capacity(if with_normals { vertices } else { 0 });
-    let mut uvs: Vec<[f32; 2]> = Vec::with_capacity(if with_uvs { vertices } else { 0 });
-    let mut indices: Vec<u32> = Vec::new();
-    indices.reserve_exact(total(|part| part.indices.len()));
-    for part in parts {
-        // Fits: the sum of all parts was checked.
-        let first = positions.len() as u32;
-        positions.extend_from_slice(part.positions.as_chunks().0);
-        if with_normals {
-            normals.extend_from_slice(part.normals.as_chunks().0);
-        }
-        if with_uvs {
-            let pairs = part.texcoords.as_chunks().0.iter();
-            uvs.extend(pairs.map(|&[u, v]: &[f32; 2]| [u, 1.0 - v]));
-        }
-        indices.extend(part.indices.iter().map(|index| first + index));
+    counts
+}
+
+/// The name, or with a number where another mesh has it.
+fn free_name(name: String, taken: &BTreeMap<String, Mesh>) -> String {
+    if !taken.contains_key(&name) {
+        return name;
     }
-    let finite = |values: &[f32]| values.iter().all(|value| value.is_finite());
-    let flat: [(&str, &[f32]); 3] = [
-        ("a vertex", positions.as_flattened()),
-        ("a normal", normals.as_flattened()),
-        ("a texture coordinate", uvs.as_flattened()),
-    ];
-    for (what, values) in flat {
-        if !finite(values) {
-            return Err(first_fault(file).unwrap_or_else(|| {
-                let problem = Problem::NotFinite { what: what.into() };
-                FileError::at(file, Place::Part(name.into()), problem)
-            }));
-        }
-    }
-    Ok(triangle_mesh(positions, normals, uvs, indices))
+    let mut numbered = (2_u32..).map(|number| format!("{name}#{number}"));
+    let free = numbered.find(|name| !taken.contains_key(name));
+    free.unwrap_or(name)
 }

@@ -1,0 +1,182 @@
+//! `glassbox check`: whether files can be shown, and what of them cannot.
+
+use super::Failure;
+use super::output::say;
+use crate::app::headless_app;
+use crate::io::{FileNote, LoadProblems, OpenOptions, SceneSource, open};
+use crate::scene::{
+    DirectionalLamp, ParallelogramLamp, Phong, PointLamp, SceneCamera, SegmentLamp,
+};
+use bevy::asset::Assets;
+use bevy::ecs::component::Component;
+use bevy::ecs::query::With;
+use bevy::ecs::world::World;
+use bevy::mesh::{Mesh, Mesh3d};
+use clap::Args;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+#[derive(Args)]
+pub(super) struct Check {
+    /// Scene files (.scn.ron, .obj, .gltf, .glb) or names of built-in scenes
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// Print all that is known as JSON
+    #[arg(long)]
+    json: bool,
+    /// End with code 1 where there is anything to note, too
+    #[arg(long)]
+    strict: bool,
+    /// Let the files refer to others outside their own folder
+    #[arg(long)]
+    allow_outside: bool,
+}
+
+/// What a file holds.
+#[derive(Serialize)]
+struct Checked {
+    file: String,
+    /// Why it cannot be shown.
+    error: Option<String>,
+    objects: usize,
+    triangles: usize,
+    materials: usize,
+    lights: usize,
+    cameras: usize,
+    notes: Vec<Noted>,
+}
+
+/// What was not taken as the file has it.
+#[derive(Serialize)]
+struct Noted {
+    file: String,
+    place: String,
+    what: String,
+    names: Vec<String>,
+    instead: String,
+    count: u64,
+    #[serde(skip)]
+    line: String,
+}
+
+pub(super) fn run(args: Check) -> Result<(), Failure> {
+    let mut app = headless_app();
+    let mut all = Vec::new();
+    for file in &args.files {
+        let checked = check(app.world_mut(), file, args.allow_outside);
+        if !args.json {
+            print(&checked)?;
+        }
+        all.push(checked);
+    }
+    if args.json {
+        let text = serde_json::to_string_pretty(&all);
+        say(text.map_err(|error| Failure::System(error.to_string()))?)?;
+    }
+    let refused = all.iter().filter(|checked| checked.error.is_some()).count();
+    let noted = all
+        .iter()
+        .filter(|checked| !checked.notes.is_empty())
+        .count();
+    let count = all.len();
+    match (refused, noted) {
+        (0, 0) => Ok(()),
+        (0, noted) if args.strict => Err(Failure::Scene(format!(
+            "{noted} of {count} files cannot be shown as they are"
+        ))),
+        (0, _) => Ok(()),
+        (refused, _) => Err(Failure::Scene(format!(
+            "{refused} of {count} files cannot be shown"
+        ))),
+    }
+}
+
+fn check(world: &mut World, file: &Path, allow_outside: bool) -> Checked {
+    let options = OpenOptions {
+        allow_outside,
+        unframed: true,
+        ..OpenOptions::default()
+    };
+    let opened = open(world, &SceneSource::named(file), options);
+    let mut checked = Checked {
+        file: file.display().to_string(),
+        error: None,
+        objects: 0,
+        triangles: 0,
+        materials: 0,
+        lights: 0,
+        cameras: 0,
+        notes: Vec::new(),
+    };
+    match opened {
+        Err(error) => checked.error = Some(error.to_string()),
+        Ok(opened) => {
+            let meshes: Vec<_> = world.query::<&Mesh3d>().iter(world).cloned().collect();
+            checked.objects = meshes.len();
+            checked.triangles = meshes.iter().map(|mesh| triangles(world, mesh)).sum();
+            let mut materials = world.query_filtered::<&Phong, bevy::ecs::query::Without<Mesh3d>>();
+            checked.materials = materials.iter(world).count();
+            checked.lights = count::<PointLamp>(world)
+                + count::<DirectionalLamp>(world)
+                + count::<SegmentLamp>(world)
+                + count::<ParallelogramLamp>(world);
+            checked.cameras = count::<SceneCamera>(world);
+            checked.notes = opened.notes.iter().map(noted).collect();
+            let problems = &world.resource::<LoadProblems>().problems;
+            checked.notes.extend(problems.iter().map(|problem| Noted {
+                file: problem.error.file.display().to_string(),
+                place: problem.error.place.to_string(),
+                what: problem.error.problem.to_string(),
+                names: Vec::new(),
+                instead: "left out".to_owned(),
+                count: 1,
+                line: problem.error.to_string(),
+            }));
+        }
+    }
+    checked
+}
+
+fn noted(note: &FileNote) -> Noted {
+    Noted {
+        file: note.file.display().to_string(),
+        place: note.place.to_string(),
+        what: note.what.clone(),
+        names: note.names.clone(),
+        instead: note.instead.to_owned(),
+        count: note.count,
+        line: note.to_string(),
+    }
+}
+
+fn count<T: Component>(world: &mut World) -> usize {
+    world.query_filtered::<(), With<T>>().iter(world).count()
+}
+
+fn triangles(world: &World, object: &Mesh3d) -> usize {
+    let meshes = world.resource::<Assets<Mesh>>();
+    let mesh = meshes.get(&object.0);
+    let corners = mesh.map(|mesh| mesh.indices().map_or(mesh.count_vertices(), |i| i.len()));
+    corners.unwrap_or(0) / 3
+}
+
+fn print(checked: &Checked) -> Result<(), Failure> {
+    use super::output::one_line;
+    let file = &checked.file;
+    if let Some(error) = &checked.error {
+        return say(one_line(&format!("{file}: cannot be shown: {error}")));
+    }
+    let notes = match checked.notes.len() {
+        0 => "nothing to note".to_owned(),
+        1 => "1 note".to_owned(),
+        count => format!("{count} notes"),
+    };
+    say(one_line(&format!(
+        "{file}: {} objects, {} triangles, {} materials, {} lights, {} cameras; {notes}",
+        checked.objects, checked.triangles, checked.materials, checked.lights, checked.cameras,
+    )))?;
+    for note in &checked.notes {
+        say(format_args!("  {}", one_line(&note.line)))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,205 @@
+//! Meshes that deform, as they are at rest: morph targets with the weights that the file starts with, skins with their
+//! joints where its nodes are. Both are built once; animations are left out.
+
+use super::super::error::Problem;
+use super::accessors::{floats, joints};
+use super::document::Document;
+use super::json::Json;
+use bevy::math::{Affine3A, Mat4, Quat, Vec3};
+
+/// How a mesh stands.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Pose {
+    /// Of the morph targets.
+    pub weights: Vec<f32>,
+    /// From the mesh's space to the world's, for each joint of its skin.
+    pub joints: Vec<Affine3A>,
+}
+
+impl Pose {
+    /// Moves vertices to where they are at rest. What cannot be used is noted.
+    pub fn apply(
+        &self,
+        document: &Document,
+        primitive: Json,
+        name: &str,
+        positions: &mut [[f32; 3]],
+        normals: &mut [[f32; 3]],
+    ) {
+        for (target, &weight) in primitive.list("targets").zip(&self.weights) {
+            if weight == 0.0 {
+                continue;
+            }
+            morph(document, target, "POSITION", name, weight, positions);
+            morph(document, target, "NORMAL", name, weight, normals);
+        }
+        if !self.joints.is_empty()
+            && let Err(problem) = self.skin(document, primitive, positions, normals)
+        {
+            document.note(name, format!("its skin: {problem}"), "shown without");
+        }
+    }
+
+    fn skin(
+        &self,
+        document: &Document,
+        primitive: Json,
+        positions: &mut [[f32; 3]],
+        normals: &mut [[f32; 3]],
+    ) -> Result<(), Problem> {
+        let missing = || Problem::Malformed("it has no joints".to_owned());
+        let attributes = primitive.get("attributes").ok_or_else(missing)?;
+        let count = positions.len();
+        let mut sums = vec![(Mat4::ZERO, 0.0_f32); count];
+        for set in 0.. {
+            let joints_of = attributes.index(&format!("JOINTS_{set}"));
+            let weights_of = attributes.index(&format!("WEIGHTS_{set}"));
+            let (Some(joints_of), Some(weights_of)) = (joints_of, weights_of) else {
+                break;
+            };
+            let joints = joints(document, joints_of)?;
+            let weights = floats::<4>(document, weights_of)?;
+            if joints.len() != count || weights.len() != count {
+                let text = "it has not as many joints and weights as vertices";
+                return Err(Problem::Malformed(text.to_owned()));
+            }
+            for ((sum, joints), weights) in sums.iter_mut().zip(joints).zip(weights) {
+                for (joint, weight) in joints.into_iter().zip(weights) {
+                    let matrix = self.joints.get(joint as usize);
+                    if let Some(&matrix) = matrix.filter(|_| weight > 0.0 && weight.is_finite()) {
+                        sum.0 += Mat4::from(matrix) * weight;
+                        sum.1 += weight;
+                    }
+                }
+            }
+        }
+        if sums.iter().all(|(_, weight)| *weight == 0.0) {
+            return Err(missing());
+        }
+        for (place, (matrix, weight)) in positions.iter_mut().zip(&sums) {
+            if *weight > 0.0 {
+                // Weights that do not add up to 1 would scale the mesh.
+                let matrix = *matrix * weight.recip();
+                *place = matrix.transform_point3((*place).into()).to_array();
+            }
+        }
+        for (normal, (matrix, weight)) in normals.iter_mut().zip(&sums) {
+            if *weight > 0.0 {
+                let turned = matrix.transform_vector3((*normal).into());
+                *normal = turned.normalize_or_zero().to_array();
+            }
+        }
+        Ok(())
+    }
+}
+
+fn morph(
+    document: &Document,
+    target: Json,
+    key: &str,
+    name: &str,
+    weight: f32,
+    values: &mut [[f32; 3]],
+) {
+    let Some(accessor) = target.index(key).filter(|_| !values.is_empty()) else {
+        return;
+    };
+    match floats::<3>(document, accessor) {
+        Ok(moves) if moves.len() == values.len() => {
+            for (value, by) in values.iter_mut().zip(moves) {
+                *value = (Vec3::from(*value) + weight * Vec3::from(by)).to_array();
+            }
+        }
+        Ok(_) => document.note(
+            name,
+            format!("a morph target's {key} of another length"),
+            "left out",
+        ),
+        Err(problem) => document.note(name, format!("a morph target: {problem}"), "left out"),
+    }
+}
+
+/// The nodes of a file and which stands below which.
+pub(super) struct Nodes<'a> {
+    document: &'a Document,
+    parents: Vec<Option<usize>>,
+}
+
+impl<'a> Nodes<'a> {
+    pub fn new(document: &'a Document) -> Self {
+        let json = document.json();
+        let count = json.list("nodes").len();
+        let mut parents = vec![None; count];
+        for (index, node) in json.list("nodes").enumerate() {
+            for child in node.list("children").filter_map(Json::whole) {
+                if let Some(parent) = parents.get_mut(child)
+                    && parent.is_none()
+                    && child != index
+                {
+                    *parent = Some(index);
+                }
+            }
+        }
+        Self { document, parents }
+    }
+
+    pub fn len(&self) -> usize {
+        self.parents.len()
+    }
+
+    pub fn is_root(&self, node: usize) -> bool {
+        self.parents.get(node).is_some_and(Option::is_none)
+    }
+
+    /// From a node's space to the world's. Above the limit of depth nothing is looked at: there are circles.
+    fn world_from(&self, node: usize) -> Affine3A {
+        let mut place = Affine3A::IDENTITY;
+        let mut at = Some(node);
+        for _ in 0..=self.document.limits.depth {
+            let Some(node) = at else { break };
+            if let Some(json) = self.document.json().element("nodes", node) {
+                place = parent_from(json) * place;
+            }
+            at = self.parents.get(node).copied().flatten();
+        }
+        place
+    }
+
+    /// Where a skin's joints take its mesh at rest.
+    pub fn joints(&self, skin: usize) -> Result<Vec<Affine3A>, Problem> {
+        let missing = || Problem::Malformed(format!("there is no skin {skin}"));
+        let json = self.document.json().element("skins", skin);
+        let json = json.ok_or_else(missing)?;
+        // Where a skin's own root is says nothing about where the joints are.
+        json.get("skeleton");
+        let bound = match json.index("inverseBindMatrices") {
+            Some(accessor) => floats::<16>(self.document, accessor)?,
+            None => Vec::new(),
+        };
+        let joints = json.list("joints").enumerate().map(|(index, joint)| {
+            let world_from_joint = joint.whole().map(|joint| self.world_from(joint));
+            let joint_from_mesh = bound.get(index).map_or(Affine3A::IDENTITY, |matrix| {
+                Affine3A::from_mat4(Mat4::from_cols_array(matrix))
+            });
+            world_from_joint.unwrap_or_default() * joint_from_mesh
+        });
+        Ok(joints.collect())
+    }
+}
+
+/// From a node's space to that of the node above.
+fn parent_from(node: Json) -> Affine3A {
+    match node.numbers::<16>("matrix") {
+        Some(matrix) => Affine3A::from_mat4(Mat4::from_cols_array(&matrix)),
+        None => {
+            let translation = node.numbers("translation").unwrap_or([0.0; 3]);
+            let rotation = node.numbers("rotation").unwrap_or([0.0, 0.0, 0.0, 1.0]);
+            let scale = node.numbers("scale").unwrap_or([1.0; 3]);
+            Affine3A::from_scale_rotation_translation(
+                scale.into(),
+                Quat::from_array(rotation).normalize(),
+                translation.into(),
+            )
+        }
+    }
+}

@@ -1,0 +1,407 @@
+//! The statements of an OBJ: one line, one of them.
+
+use super::super::error::{FileError, Place, Problem};
+use super::super::notes::Notes;
+use super::content::{BEYOND, Content, Corner, Face, LEFT_OUT, NONE, Part, out_of_range};
+use super::text::{Lines, keyword, number, text, values};
+use crate::io::Limits;
+use crate::io::budget::Growing;
+use std::collections::HashMap;
+use std::path::Path;
+
+/// The name of faces before any `o` or `g`, and after one without a name.
+const UNNAMED: &str = "unnamed_object";
+
+/// Reads a file's lines. Whatever one of them holds that cannot be used is noted, and the rest is read.
+pub(super) fn read_content(
+    file: &Path,
+    limits: &Limits,
+    notes: &mut Notes,
+) -> Result<Content, FileError> {
+    let mut lines = Lines::open(file, limits.file_bytes, limits.line_bytes)?;
+    let mut reader = Reader {
+        file,
+        limits,
+        notes,
+        content: Content::default(),
+        line: 0,
+        object: 0,
+        material: None,
+        group: 0,
+        part: None,
+        triangles: 0,
+        numbers: HashMap::new(),
+        places: HashMap::new(),
+        memory: Growing::of(&limits.memory),
+    };
+    reader.object = reader.object_named(UNNAMED);
+    while let Some((number, line)) = lines.next()? {
+        reader.line = number;
+        reader.read(line)?;
+        reader.claim()?;
+    }
+    let mut content = reader.content;
+    content.finish(file, notes);
+    Ok(content)
+}
+
+struct Reader<'a> {
+    file: &'a Path,
+    limits: &'a Limits,
+    notes: &'a mut Notes,
+    content: Content,
+    line: u64,
+    object: u32,
+    material: Option<u32>,
+    group: u32,
+    /// Where the next face goes, once that is known.
+    part: Option<usize>,
+    triangles: u64,
+    /// Objects and materials by their names.
+    numbers: HashMap<(Kind, String), u32>,
+    /// Parts by their object and material.
+    places: HashMap<(u32, Option<u32>), usize>,
+    memory: Growing<'a>,
+}
+
+#[derive(PartialEq, Eq, Hash)]
+enum Kind {
+    Object,
+    Material,
+}
+
+impl Reader<'_> {
+    /// Speaks for the memory of what there is so far.
+    fn claim(&mut self) -> Result<(), FileError> {
+        let Content {
+            positions,
+            uvs,
+            normals,
+            parts,
+            ..
+        } = &self.content;
+        let vertices = positions.len().max(uvs.len()).max(normals.len()) as u64;
+        (self.memory)
+            .reach(vertices, self.triangles, parts.len() as u64)
+            .map_err(|problem| FileError::at(self.file, Place::Line(self.line), problem))
+    }
+
+    fn read(&mut self, line: &[u8]) -> Result<(), FileError> {
+        let (word, rest) = keyword(line);
+        match word {
+            b"v" => return self.vertex(rest),
+            b"vt" => self.texture_coordinate(rest),
+            b"vn" => self.normal(rest),
+            b"f" | b"fo" => return self.face(rest),
+            b"" => {}
+            _ if word[0] == b'#' => {}
+            _ => return self.statement(word, rest),
+        }
+        Ok(())
+    }
+
+    /// Everything that is not most of a file.
+    fn statement(&mut self, word: &[u8], rest: &[u8]) -> Result<(), FileError> {
+        let lower = word.to_ascii_lowercase();
+        match lower.as_slice() {
+            b"v" | b"vt" | b"vn" | b"f" => {
+                let line = [&lower[..], b" ", rest].concat();
+                return self.read(&line);
+            }
+            b"o" | b"g" => {
+                let name = text(rest);
+                let name = if name.is_empty() { UNNAMED } else { &name };
+                self.object = self.object_named(name);
+                self.part = None;
+            }
+            b"usemtl" => {
+                let name = text(rest).into_owned();
+                self.material = (!name.is_empty()).then(|| self.material_named(name));
+                self.part = None;
+            }
+            b"mtllib" => {
+                let libraries = &mut self.content.libraries;
+                let name = text(rest);
+                if !libraries.iter().any(|(known, _)| *known == name) {
+                    libraries.push((name.into_owned(), self.line));
+                }
+            }
+            b"s" => self.smoothing(rest),
+            b"l" | b"p" => self.note("lines and points", LEFT_OUT),
+            b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"mg" => {
+                self.note(
+                    "what other programs shall show instead of the faces",
+                    LEFT_OUT,
+                );
+            }
+            b"shadow_obj" | b"trace_obj" | b"maplib" | b"usemap" | b"call" | b"csh" => {
+                self.unread(word, "about files of another kind");
+            }
+            b"cstype" | b"deg" | b"bmat" | b"step" | b"curv" | b"curv2" | b"surf" | b"parm"
+            | b"trim" | b"hole" | b"scrv" | b"sp" | b"end" | b"con" | b"vp" | b"ctech"
+            | b"stech" => {
+                self.note("curves and free-form surfaces", LEFT_OUT);
+            }
+            _ => self.unread(word, "no keyword of OBJ"),
+        }
+        Ok(())
+    }
+
+    fn note(&mut self, what: &str, instead: &'static str) {
+        let place = Place::Line(self.line);
+        self.notes.add(self.file, place, what, instead);
+    }
+
+    fn unread(&mut self, word: &[u8], why: &str) {
+        const SHOWN: usize = 24;
+        let word = text(&word[..word.len().min(SHOWN)]);
+        self.note(&format!("`{word}`, which is {why}"), LEFT_OUT);
+    }
+
+    /// Something that cannot be used, and what is done without it.
+    fn fault(&mut self, what: &str, problem: Problem, instead: &'static str) {
+        self.note(what, instead);
+        let place = Place::Line(self.line);
+        self.content
+            .fault
+            .get_or_insert_with(|| FileError::at(self.file, place, problem));
+    }
+
+    fn too_many(&self, what: &'static str, count: u64, limit: u64) -> FileError {
+        let problem = Problem::TooMany { what, count, limit };
+        FileError::at(self.file, Place::Line(self.line), problem)
+    }
+
+    fn object_named(&mut self, name: &str) -> u32 {
+        let objects = &mut self.content.objects;
+        let key = (Kind::Object, name.to_owned());
+        *self.numbers.entry(key).or_insert_with(|| {
+            objects.push(name.to_owned());
+            objects.len() as u32 - 1
+        })
+    }
+
+    fn material_named(&mut self, name: String) -> u32 {
+        let (materials, line) = (&mut self.content.materials, self.line);
+        let key = (Kind::Material, name.clone());
+        *self.numbers.entry(key).or_insert_with(|| {
+            materials.push((name, line));
+            materials.len() as u32 - 1
+        })
+    }
+
+    fn smoothing(&mut self, rest: &[u8]) {
+        let value = values(rest).next().unwrap_or_default();
+        self.group = match value.to_ascii_lowercase().as_slice() {
+            b"off" | b"" => 0,
+            b"on" => 1,
+            digits => match text(digits).parse() {
+                Ok(group) => group,
+                Err(_) => {
+                    self.note("a smoothing group that is no number", "shaded flat");
+                    0
+                }
+            },
+        };
+    }
+
+    /// Up to `N` numbers, and how many there were. What is no number is a fault.
+    fn numbers<const N: usize>(
+        &mut self,
+        what: &'static str,
+        least: usize,
+        rest: &[u8],
+        instead: &'static str,
+    ) -> Option<([f32; N], usize)> {
+        let mut numbers = [0.0; N];
+        let mut count = 0;
+        for word in values(rest) {
+            if count < N {
+                match number(word) {
+                    Ok(value) => numbers[count] = value,
+                    Err(problem) if count < least => {
+                        let what = format!("{what} that is no finite number");
+                        self.fault(&what, problem, instead);
+                        return None;
+                    }
+                    Err(_) => {
+                        self.note("words after the numbers", LEFT_OUT);
+                        return Some((numbers, count));
+                    }
+                }
+            }
+            count += 1;
+        }
+        if count < least {
+            let given = format!("{what} needs {least} numbers and has {count}");
+            self.fault(&given, Problem::Malformed(given.clone()), instead);
+            return None;
+        }
+        Some((numbers, count))
+    }
+
+    fn vertex(&mut self, rest: &[u8]) -> Result<(), FileError> {
+        const WITHOUT: &str = "left out with the faces that use it";
+        let place = self.content.positions.len();
+        let vertices = place as u64 + 1;
+        if vertices > self.limits.vertices.min(BEYOND.into()) {
+            return Err(self.too_many("vertices", vertices, self.limits.vertices));
+        }
+        self.content.positions.push([f32::NAN; 3]);
+        let numbers = self.numbers::<8>("a vertex", 3, rest, WITHOUT);
+        let mut color = None;
+        if let Some(([x, y, z, r, g, b, a, _], count)) = numbers {
+            let mut position = [x, y, z];
+            match count {
+                3 => {}
+                4 if r == 0.0 => {
+                    let problem = Problem::Malformed("a vertex has w = 0".into());
+                    self.fault("a vertex whose w is 0", problem, WITHOUT);
+                    position = [f32::NAN; 3];
+                }
+                4 => position = position.map(|value| value / r),
+                6 => color = Some([r, g, b]),
+                7 => {
+                    // Either a colour with alpha follows, or w and a colour; w is 1 then.
+                    self.note("a vertex of 7 numbers", "read as x y z r g b");
+                    color = Some(if r == 1.0 { [g, b, a] } else { [r, g, b] });
+                }
+                _ => self.note(
+                    &format!("a vertex of {count} numbers"),
+                    "the first three are read",
+                ),
+            }
+            self.content.positions[place] = position;
+        }
+        match color {
+            Some(color) => {
+                self.content.colors.resize(place, [1.0; 3]);
+                self.content.colors.push(color);
+            }
+            None if !self.content.colors.is_empty() => self.content.colors.push([1.0; 3]),
+            None => {}
+        }
+        Ok(())
+    }
+
+    fn texture_coordinate(&mut self, rest: &[u8]) {
+        const WITHOUT: &str = "the faces that use it have no picture";
+        let numbers = self.numbers::<2>("a texture coordinate", 1, rest, WITHOUT);
+        if let Some((_, 1)) = numbers {
+            self.note("a texture coordinate of one number", "the second is 0");
+        }
+        let uv = numbers.map_or([f32::NAN; 2], |(uv, _)| uv);
+        self.content.uvs.push(uv);
+    }
+
+    fn normal(&mut self, rest: &[u8]) {
+        const WITHOUT: &str = "the corners that use it take the face's own";
+        let numbers = self.numbers::<3>("a normal", 3, rest, WITHOUT);
+        let normal = numbers.map_or([f32::NAN; 3], |(normal, _)| normal);
+        self.content.normals.push(normal);
+    }
+
+    fn face(&mut self, rest: &[u8]) -> Result<(), FileError> {
+        let count = values(rest).count() as u64;
+        if count < 3 {
+            let text = format!("a face needs at least 3 corners and has {count}");
+            self.fault(
+                "a face with fewer than 3 corners",
+                Problem::Malformed(text),
+                LEFT_OUT,
+            );
+            return Ok(());
+        }
+        self.triangles += count - 2;
+        if self.triangles > self.limits.triangles {
+            return Err(self.too_many("triangles", self.triangles, self.limits.triangles));
+        }
+        let part = self.part();
+        let start = self.content.parts[part].corners.len();
+        for word in values(rest) {
+            match self.corner(word) {
+                Ok(corner) => self.content.parts[part].corners.push(corner),
+                Err(problem) => {
+                    self.fault("a face whose corner is no index", problem, LEFT_OUT);
+                    self.content.parts[part].corners.truncate(start);
+                    return Ok(());
+                }
+            }
+        }
+        let face = Face {
+            corners: count as u32,
+            group: self.group,
+            line: u32::try_from(self.line).unwrap_or(u32::MAX),
+        };
+        self.content.parts[part].faces.push(face);
+        Ok(())
+    }
+
+    fn part(&mut self) -> usize {
+        if let Some(part) = self.part {
+            return part;
+        }
+        let parts = &mut self.content.parts;
+        let (object, material) = (self.object, self.material);
+        let part = *self.places.entry((object, material)).or_insert_with(|| {
+            parts.push(Part {
+                object,
+                material,
+                ..Part::default()
+            });
+            parts.len() - 1
+        });
+        self.part = Some(part);
+        part
+    }
+
+    /// The indices of a corner. Those beyond what there is so far may come later, and are looked at in the end.
+    fn corner(&self, word: &[u8]) -> Result<Corner, Problem> {
+        let counts = [
+            self.content.positions.len(),
+            self.content.uvs.len(),
+            self.content.normals.len(),
+        ];
+        let mut corner = [NONE; 3];
+        for (kind, digits) in word.split(|&byte| byte == b'/').enumerate() {
+            let malformed = || {
+                let word = text(word);
+                Problem::Malformed(format!("the corner `{word}` of a face is not an index"))
+            };
+            if kind >= corner.len() {
+                return Err(malformed());
+            }
+            if digits.is_empty() && kind > 0 {
+                continue;
+            }
+            let digits = std::str::from_utf8(digits).map_err(|_| malformed())?;
+            let index = match digits.parse::<i64>() {
+                Ok(index) => index,
+                Err(error) => match error.kind() {
+                    std::num::IntErrorKind::PosOverflow => i64::MAX,
+                    std::num::IntErrorKind::NegOverflow => i64::MIN,
+                    // Some programs write them as they write every number.
+                    _ => match digits.parse::<f64>() {
+                        Ok(index) if index.fract() == 0.0 => index as i64,
+                        _ => return Err(malformed()),
+                    },
+                },
+            };
+            let place = match index {
+                1.. => u32::try_from(index - 1).ok(),
+                0 => None,
+                _ => {
+                    let back = usize::try_from(index.unsigned_abs()).ok();
+                    let place = back.and_then(|back| counts[kind].checked_sub(back));
+                    place.and_then(|place| u32::try_from(place).ok())
+                }
+            };
+            corner[kind] = match place {
+                Some(place) => place.min(BEYOND),
+                None if kind == 0 => return Err(out_of_range(kind, digits, counts[kind])),
+                None => BEYOND,
+            };
+        }
+        Ok(corner)
+    }
+}

@@ -1,0 +1,241 @@
+//! The lines of a text file as old and new programs write them.
+
+use super::super::error::{FileError, Place, Problem};
+use std::borrow::Cow;
+use std::io::{BufRead, Cursor, Read};
+use std::path::{Path, PathBuf};
+
+/// Hands out a file's lines one at a time: ended by LF, CR LF or CR alone, joined where they end in `\`, without a
+/// byte order mark, from UTF-8 or UTF-16.
+pub(super) struct Lines {
+    reader: Box<dyn BufRead>,
+    file: PathBuf,
+    /// Bytes of one line, with those that it is continued on.
+    limit: usize,
+    line: Vec<u8>,
+    /// The line that was read last, counted from 1.
+    number: u64,
+}
+
+impl Lines {
+    /// Opens a file of at most `file_bytes`.
+    pub fn open(file: &Path, file_bytes: u64, limit: usize) -> Result<Self, FileError> {
+        let reading = |error: std::io::Error| FileError::reading(file, &error);
+        let mut reader = super::super::open_to_read(file, file_bytes)?;
+        let start = reader.fill_buf().map_err(reading)?;
+        let (mark, wide) = encoding(start);
+        reader.consume(mark);
+        let reader: Box<dyn BufRead> = match wide {
+            None => Box::new(reader),
+            Some(unit) => {
+                let mut bytes = Vec::new();
+                let mut reader = reader.take(file_bytes);
+                reader.read_to_end(&mut bytes).map_err(reading)?;
+                let units = bytes.as_chunks::<2>().0.iter().map(|&pair| unit(pair));
+                let text: String = char::decode_utf16(units)
+                    .map(|character| character.unwrap_or(char::REPLACEMENT_CHARACTER))
+                    .collect();
+                Box::new(Cursor::new(text.into_bytes()))
+            }
+        };
+        Ok(Self {
+            reader,
+            file: file.to_path_buf(),
+            limit,
+            line: Vec::new(),
+            number: 0,
+        })
+    }
+
+    /// The next line and its number, that of the last where several were joined; `None` at the end.
+    pub fn next(&mut self) -> Result<Option<(u64, &[u8])>, FileError> {
+        self.line.clear();
+        let mut any = false;
+        while self.read_line()? {
+            any = true;
+            self.number += 1;
+            let text = self.line.trim_ascii_end();
+            // A comment may end in the name of a folder.
+            if text.last() != Some(&b'\\') || has_comment(text) {
+                break;
+            }
+            let end = text.len() - 1;
+            self.line.truncate(end);
+            self.line.push(b' ');
+        }
+        Ok(any.then_some((self.number, self.line.as_slice())))
+    }
+
+    /// Appends a line without its end; false at the end of the file.
+    fn read_line(&mut self) -> Result<bool, FileError> {
+        let mut any = false;
+        loop {
+            let piece = self.reader.fill_buf();
+            let piece = piece.map_err(|error| FileError::reading(&self.file, &error))?;
+            if piece.is_empty() {
+                return Ok(any);
+            }
+            any = true;
+            let end = piece.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
+            let length = end.unwrap_or(piece.len());
+            if self.line.len() + length >= self.limit {
+                let problem = Problem::TooMany {
+                    what: "or more bytes in one line",
+                    count: self.limit as u64,
+                    limit: self.limit as u64,
+                };
+                let place = Place::Line(self.number + 1);
+                return Err(FileError::at(&self.file, place, problem));
+            }
+            self.line.extend_from_slice(&piece[..length]);
+            let Some(end) = end else {
+                self.reader.consume(length);
+                continue;
+            };
+            let is_return = piece[end] == b'\r';
+            self.reader.consume(end + 1);
+            if is_return {
+                let then = self.reader.fill_buf();
+                let then = then.map_err(|error| FileError::reading(&self.file, &error))?;
+                let is_pair = then.first() == Some(&b'\n');
+                self.reader.consume(usize::from(is_pair));
+            }
+            return Ok(true);
+        }
+    }
+}
+
+/// Makes a number of two bytes of UTF-16.
+type Unit = fn([u8; 2]) -> u16;
+
+/// How many bytes of a byte order mark there are, and how UTF-16 is to be read where it is that.
+fn encoding(start: &[u8]) -> (usize, Option<Unit>) {
+    match start {
+        [0xef, 0xbb, 0xbf, ..] => (3, None),
+        [0xff, 0xfe, ..] => (2, Some(u16::from_le_bytes)),
+        [0xfe, 0xff, ..] => (2, Some(u16::from_be_bytes)),
+        // Without a mark: no text has a zero in it.
+        &[a, 0, b, 0, ..] if a != 0 && b != 0 => (0, Some(u16::from_le_bytes)),
+        &[0, a, 0, b, ..] if a != 0 && b != 0 => (0, Some(u16::from_be_bytes)),
+        _ => (0, None),
+    }
+}
+
+fn has_comment(line: &[u8]) -> bool {
+    words(line).any(|word| word.first() == Some(&b'#'))
+}
+
+/// The words of a line, without spaces and tabs.
+pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> + Clone {
+    line.split(u8::is_ascii_whitespace)
+        .filter(|word| !word.is_empty())
+}
+
+/// The words before a comment.
+pub(super) fn values(line: &[u8]) -> impl Iterator<Item = &[u8]> + Clone {
+    words(line).take_while(|word| word.first() != Some(&b'#'))
+}
+
+/// The first word, and what follows it without the spaces around.
+pub(super) fn keyword(line: &[u8]) -> (&[u8], &[u8]) {
+    let line = line.trim_ascii();
+    let end = line.iter().position(u8::is_ascii_whitespace);
+    let (word, rest) = line.split_at(end.unwrap_or(line.len()));
+    (word, rest.trim_ascii())
+}
+
+/// Bytes as text. What is no UTF-8 is taken as Latin-1, which old exporters wrote.
+pub(super) fn text(bytes: &[u8]) -> Cow<'_, str> {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => Cow::Borrowed(text),
+        Err(_) => bytes.iter().map(|&byte| char::from(byte)).collect(),
+    }
+}
+
+/// Why a word is no number that can be used.
+pub(super) fn number(word: &[u8]) -> Result<f32, Problem> {
+    let parsed = std::str::from_utf8(word)
+        .ok()
+        .and_then(|word| word.parse::<f32>().ok());
+    match parsed {
+        Some(value) if value.is_finite() => Ok(value),
+        Some(_) => Err(Problem::NotFinite {
+            what: format!("`{}`", text(word)),
+        }),
+        None => Err(Problem::Malformed(format!(
+            "`{}` is not a number",
+            text(word)
+        ))),
+    }
+}
+
+/// A name without the quotes around it.
+pub(super) fn unquoted(name: &str) -> &str {
+    let inner = name
+        .strip_prefix('"')
+        .and_then(|name| name.strip_suffix('"'));
+    inner.map_or(name, str::trim)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lines(bytes: &[u8]) -> Vec<(u64, String)> {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.obj");
+        std::fs::write(&file, bytes).unwrap();
+        let mut lines = Lines::open(&file, 1 << 20, 1 << 10).unwrap();
+        let mut all = Vec::new();
+        while let Some((number, line)) = lines.next().unwrap() {
+            all.push((number, text(line).into_owned()));
+        }
+        all
+    }
+
+    fn numbered(texts: &[(u64, &str)]) -> Vec<(u64, String)> {
+        texts.iter().map(|&(n, text)| (n, text.into())).collect()
+    }
+
+    #[test]
+    fn lines_end_as_every_system_ends_them() {
+        let expected = numbered(&[(1, "v 1"), (2, ""), (3, "f 2")]);
+        for end in ["\n", "\r\n", "\r"] {
+            let text = ["v 1", "", "f 2", ""].join(end);
+            assert_eq!(lines(text.as_bytes()), expected, "{end:?}");
+            assert_eq!(lines(text.trim_end().as_bytes()), expected, "{end:?}");
+        }
+    }
+
+    #[test]
+    fn a_line_goes_on_after_a_backslash_unless_that_ends_a_comment() {
+        assert_eq!(
+            lines(b"f 1 \\\n 2 3\n# C:\\\\\nv 1 # D:\\\nv 2\\"),
+            numbered(&[
+                (2, "f 1   2 3"),
+                (3, "# C:\\\\"),
+                (4, "v 1 # D:\\"),
+                (5, "v 2 ")
+            ])
+        );
+    }
+
+    #[test]
+    fn text_is_found_in_utf_8_utf_16_and_latin_1() {
+        let expected = numbered(&[(1, "newmtl ä"), (2, "Kd 1")]);
+        let source = "newmtl ä\nKd 1";
+        let little: Vec<u8> = source.encode_utf16().flat_map(u16::to_le_bytes).collect();
+        let big: Vec<u8> = source.encode_utf16().flat_map(u16::to_be_bytes).collect();
+        for bytes in [
+            source.as_bytes().to_vec(),
+            [&[0xef, 0xbb, 0xbf], source.as_bytes()].concat(),
+            [&[0xff, 0xfe], &little[..]].concat(),
+            [&[0xfe, 0xff], &big[..]].concat(),
+            little,
+            big,
+            b"newmtl \xe4\nKd 1".to_vec(),
+        ] {
+            assert_eq!(lines(&bytes), expected, "{bytes:?}");
+        }
+    }
+}

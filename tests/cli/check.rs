@@ -1,0 +1,102 @@
+//! `glassbox check`, and what a file's notes do to the exit code.
+
+use super::{files, glassbox, succeeds, texts};
+use std::fs;
+
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+#[test]
+fn files_are_told_apart_by_what_cannot_be_shown_of_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("whole.obj"), TRIANGLE).unwrap();
+    fs::write(
+        at.join("part.obj"),
+        format!("mtllib gone.mtl\n{TRIANGLE}l 1 2\n"),
+    )
+    .unwrap();
+    fs::write(at.join("none.obj"), "v 0 0 0\n").unwrap();
+    let before = files(at);
+    let out = succeeds(at, &["check", "whole.obj", "part.obj", "cornell-box"]);
+    let lines: Vec<&str> = out.lines().collect();
+    assert!(
+        lines[0].starts_with("whole.obj: 1 objects, 1 triangles"),
+        "{out}"
+    );
+    assert!(lines[0].ends_with("nothing to note"), "{out}");
+    assert!(lines[1].ends_with("2 notes"), "{out}");
+    for (line, parts) in [
+        (lines[2], ["part.obj:6", "lines and points"]),
+        (lines[3], ["part.obj:1", "gone.mtl"]),
+    ] {
+        assert!(parts.iter().all(|part| line.contains(part)), "{out}");
+    }
+    assert!(lines[4].starts_with("cornell-box: "), "{out}");
+    for (arguments, code, says) in [
+        (
+            &["check", "none.obj", "whole.obj"][..],
+            1,
+            "1 of 2 files cannot be shown",
+        ),
+        (&["check", "--strict", "part.obj"][..], 1, "1 of 1 files"),
+        (&["check", "--strict", "whole.obj"][..], 0, ""),
+        (&["check"][..], 2, "<FILE>"),
+    ] {
+        let output = glassbox(at, arguments);
+        let (out, err) = texts(&output);
+        assert_eq!(
+            output.status.code(),
+            Some(code),
+            "{arguments:?}: {out}{err}"
+        );
+        assert!(err.contains(says), "{arguments:?}: {err}");
+    }
+    assert_eq!(files(at), before, "check writes nothing");
+}
+
+#[test]
+fn json_says_the_same_of_every_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(
+        at.join("part.obj"),
+        format!("usemtl a\n{TRIANGLE}l 1 2\nl 2 3\n"),
+    )
+    .unwrap();
+    let output = glassbox(at, &["check", "--json", "part.obj", "gone.glb"]);
+    assert_eq!(output.status.code(), Some(1));
+    let all: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(all[0]["triangles"], 1);
+    assert_eq!(all[0]["error"], serde_json::Value::Null);
+    let lines = &all[0]["notes"][0];
+    assert_eq!(lines["count"], 2, "{all}");
+    assert_eq!(lines["place"], ":6", "{all}");
+    let error = all[1]["error"].as_str().unwrap();
+    assert!(
+        error.contains("gone.glb") && error.contains("no such file"),
+        "{error}"
+    );
+}
+
+#[test]
+fn a_value_may_start_with_a_minus() {
+    let folder = tempfile::tempdir().unwrap();
+    let common = [
+        "inspect",
+        "triangle",
+        "--size",
+        "8x8",
+        "--spp",
+        "1",
+        "--picture",
+        "a.png",
+    ];
+    let eye = ["--eye", "-6,1,0", "--target", "-0.5,0,0"];
+    succeeds(folder.path(), &[&common[..], &eye].concat());
+    let view = [
+        "render", "triangle", "--size", "8x8", "--spp", "1", "-o", "b.png",
+    ];
+    let range = ["--view", "depth", "--range", "-1..5"];
+    succeeds(folder.path(), &[&view[..], &range].concat());
+    assert_eq!(files(folder.path()), ["a.png", "b.png"]);
+}
