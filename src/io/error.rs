@@ -14,6 +14,13 @@ pub struct FileError {
     pub problem: Problem,
 }
 
+impl Problem {
+    /// More memory would be needed than a scene may take: nothing is opened in part for that.
+    pub(crate) fn is_of_memory(&self) -> bool {
+        matches!(self, Self::OutOfMemory { .. })
+    }
+}
+
 impl FileError {
     /// A problem with a file as a whole.
     pub fn new(file: impl Into<PathBuf>, problem: Problem) -> Self {

@@ -45,7 +45,7 @@ pub fn import(
     let folder = Folder::of(file, scene_folder.allow_outside);
     let mut model = read_model(file, &folder, &limits)?;
     let path = scene_folder.name_of(file);
-    let mut loaded = Loaded::of_model(&mut model, &path, &mut Loader::new(&folder, &limits));
+    let mut loaded = Loaded::of_model(&mut model, &path, &mut Loader::new(&folder, &limits))?;
     let rebase = Rebase::between(folder, scene_folder);
     let mut notes = std::mem::take(&mut model.notes);
     notes.append(std::mem::take(&mut loaded.notes));

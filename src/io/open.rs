@@ -174,7 +174,7 @@ fn open_model(
 ) -> Result<Notes, FileError> {
     let path = file.file_name().map_or_else(String::new, encoded);
     let mut model = model;
-    let mut loaded = Loaded::of_model(&mut model, &path, &mut Loader::new(&folder, &limits));
+    let mut loaded = Loaded::of_model(&mut model, &path, &mut Loader::new(&folder, &limits))?;
     let picture_notes = std::mem::take(&mut loaded.notes);
     clear(world, SceneFiles::new(folder, limits));
     let held = loaded.hand_over(world);
@@ -348,7 +348,7 @@ impl Loaded {
 
     /// A model's meshes, which are taken out of it, and the pictures of its materials. One that cannot be read is
     /// noted, and its material is left without.
-    pub fn of_model(model: &mut Model, path: &str, loader: &mut Loader) -> Self {
+    pub fn of_model(model: &mut Model, path: &str, loader: &mut Loader) -> Result<Self, FileError> {
         let mut loaded = Self::default();
         let mut failed = HashSet::new();
         for (_, phong) in &mut model.materials {
@@ -361,12 +361,16 @@ impl Loaded {
                 // One that many materials name is tried once.
                 let key = (source.clone(), usage);
                 if !failed.contains(&key)
-                    && let Err(FileError {
+                    && let Err(error) = loaded.load_picture(source, usage, loader)
+                {
+                    if error.problem.is_of_memory() {
+                        return Err(error);
+                    }
+                    let FileError {
                         file,
                         place,
                         problem,
-                    }) = loaded.load_picture(source, usage, loader)
-                {
+                    } = error;
                     let instead = "its materials have no picture there";
                     model.notes.add(&file, place, problem.to_string(), instead);
                     failed.insert(key.clone());
@@ -383,7 +387,7 @@ impl Loaded {
         }
         loaded.read.clone_from(&loader.read);
         loaded.read.extend(model.files.iter().cloned());
-        loaded
+        Ok(loaded)
     }
 
     /// A picture that is used in two ways is told of once.

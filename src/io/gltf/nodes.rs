@@ -210,8 +210,11 @@ impl Reader<'_> {
                     Ok(None) => continue,
                     Err(problem) => {
                         document.note(&name, problem.to_string(), "left out");
-                        let error = || document.error(name, problem);
-                        self.fault.get_or_insert_with(error);
+                        let is_of_memory = problem.is_of_memory();
+                        let error = document.error(name, problem);
+                        if is_of_memory || self.fault.is_none() {
+                            self.fault = Some(error);
+                        }
                         continue;
                     }
                 }

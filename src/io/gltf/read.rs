@@ -34,7 +34,10 @@ pub(crate) fn read_gltf(file: &Path, folder: &Folder, limits: &Limits) -> Result
         };
         model.materials.push((name, phong));
     }
-    let fault = read_nodes(&document, &mut model)?;
+    let mut fault = read_nodes(&document, &mut model)?;
+    if let Some(fault) = fault.take_if(|fault| fault.problem.is_of_memory()) {
+        return Err(fault);
+    }
     if model.meshes.is_empty() {
         let nothing = || FileError::new(file, Problem::NoTriangles);
         return Err(fault.unwrap_or_else(nothing));

@@ -104,7 +104,7 @@ fn read_libraries(
     limits: &Limits,
     names: &mut Names,
     notes: &mut Notes,
-) -> Vec<MtlMaterial> {
+) -> Result<Vec<MtlMaterial>, FileError> {
     const WITHOUT: &str = "materials are the default one";
     let mut materials = Vec::new();
     let place = || Place::Line(line);
@@ -134,10 +134,11 @@ fn read_libraries(
             .and_then(|file| read_mtl(&file, &found.path, limits, names, notes));
         match read {
             Ok(read) => materials.extend(read),
+            Err(error) if error.problem.is_of_memory() => return Err(error),
             Err(error) => notes.add(&error.file, error.place, error.problem.to_string(), WITHOUT),
         }
     }
-    materials
+    Ok(materials)
 }
 
 /// Which material of the libraries each name after `usemtl` means.
