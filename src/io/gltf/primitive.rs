@@ -109,6 +109,7 @@ fn triangles(
     }
     let mut mesh = triangle_mesh(positions, normals, uvs, corners);
     if colors.iter().any(|&color| color != [1.0; 4]) {
+        document.note(name, "vertex colours", "kept, and not traced");
         mesh.insert_attribute(Mesh::ATTRIBUTE_COLOR, colors);
     }
     Ok(Some(mesh))

@@ -36,7 +36,7 @@ pub(crate) fn read_obj(file: &Path, folder: &Folder, limits: &Limits) -> Result<
             limits,
             &mut names,
             &mut model.notes,
-        ));
+        )?);
     }
     model
         .files
