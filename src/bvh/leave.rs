@@ -170,7 +170,7 @@ impl Place {
             }
         });
         let way = ways.fold(0.0, f64::max);
-        let last = !(way < 1.0);
+        let last = way >= 1.0 || way.is_nan();
         let way = way.min(1.0);
         let weights = self.weights.map(|w| w + way * (1.0 / 3.0 - w));
         ((0..3).map(|i| weights[i] * self.corners[i]).sum(), last)

@@ -61,6 +61,9 @@ type Chain<'w, 's> = Query<
     ),
 >;
 
+/// What moves by itself, or may be carried along.
+type Carried = Or<(With<Motion>, With<ChildOf>)>;
+
 /// Adds up the motions again where one changed, appeared or went, and where what is above one, or the
 /// space that it is in, became another.
 pub(super) fn sync_motions(
@@ -70,7 +73,7 @@ pub(super) fn sync_motions(
     mut no_transform: RemovedComponents<GlobalTransform>,
     mut switched: Switched,
     movers: Query<Option<&ChildOf>, With<Motion>>,
-    below: Query<Entity, Or<(With<Motion>, With<ChildOf>)>>,
+    below: Query<Entity, Carried>,
     chain: Chain,
     settings: Res<RenderSettings>,
     mut was_on: Local<bool>,

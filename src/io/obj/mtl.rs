@@ -255,7 +255,7 @@ impl Reader<'_, '_> {
             };
             let mut numbers = [None; 3];
             let mut first = "";
-            for i in 0..most {
+            for (i, slot) in numbers.iter_mut().take(most).enumerate() {
                 after = after.trim_start();
                 let (value, then) = after.split_once(char::is_whitespace).unwrap_or((after, ""));
                 let parsed = number(value.as_bytes()).ok();
@@ -266,7 +266,7 @@ impl Reader<'_, '_> {
                 if i == 0 {
                     first = value;
                 }
-                numbers[i] = parsed;
+                *slot = parsed;
                 after = then;
             }
             self.option(&option, first, numbers, word, placement);
