@@ -132,7 +132,7 @@ impl Texture {
         })
     }
 
-    /// Opacity at `uv`, as [`Self::texel_opacity`] has it.
+    /// Opacity at `uv`: alpha times the brightest colour channel, filtered.
     pub fn opacity(&self, uv: Vec2, footprint: f32, filter: TextureFilter) -> f32 {
         let opacity = self.across_levels(footprint, filter, |level| {
             level.filtered(uv, filter, |x, y| Vec3::splat(level.texel_opacity(x, y)))
