@@ -59,7 +59,7 @@ impl MeshTree {
         });
         blocks.shrink_to_fit();
         Self {
-            wedges: Wedges::of(&triangles),
+            wedges: Wedges::of(&triangles, &numbers),
             triangles,
             tree,
             leaves,

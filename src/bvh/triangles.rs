@@ -110,6 +110,12 @@ impl Triangles {
         self.indices[triangle as usize].map(|index| self.positions[index as usize])
     }
 
+    /// One of them. Panics when either is no number of one.
+    #[inline]
+    pub(crate) fn corner(&self, triangle: u32, corner: usize) -> Vec3 {
+        self.positions[self.indices[triangle as usize][corner] as usize]
+    }
+
     /// Whether the triangle is in the tree.
     pub(crate) fn is_traced(&self, triangle: u32) -> bool {
         matches!(self.fate(triangle), Fate::Traced)

@@ -26,20 +26,25 @@ pub(super) struct Wedges {
 }
 
 impl Wedges {
-    /// Of the triangles of a mesh. Corners at the same place are the same corner, whatever their index.
-    pub(super) fn of(triangles: &Triangles) -> Self {
-        let corners = Corners::of(triangles);
-        let exponents: Box<[u8]> = (0..triangles.len() as u32)
-            .into_par_iter()
-            .map(|triangle| corners.narrowest(triangle))
+    /// Of those triangles of a mesh that are traced. Corners at the same place are the same corner, whatever their index.
+    pub(super) fn of(triangles: &Triangles, traced: &[u32]) -> Self {
+        let corners = Corners::of(triangles, traced);
+        let found: Vec<u8> = traced
+            .par_iter()
+            .with_min_len(1024)
+            .map(|&triangle| corners.narrowest(triangle))
             .collect();
-        let narrowest = exponents.iter().copied().max().unwrap_or(0);
+        let narrowest = found.iter().copied().max().unwrap_or(0);
+        let mut exponents = Box::default();
+        if narrowest > 0 {
+            let mut all = vec![0; triangles.len()];
+            for (&triangle, exponent) in traced.iter().zip(found) {
+                all[triangle as usize] = exponent;
+            }
+            exponents = all.into_boxed_slice();
+        }
         Self {
-            exponents: if narrowest > 0 {
-                exponents
-            } else {
-                Box::default()
-            },
+            exponents,
             narrowest,
         }
     }
@@ -64,86 +69,101 @@ impl Wedges {
 /// Which triangles meet in which corner.
 struct Corners<'a> {
     triangles: &'a Triangles,
-    /// For each position the first one, in some order, that is at the same place.
-    same: Vec<u32>,
-    /// Of each position that is the first at its place: where its triangles begin in `around`. One more at the end.
+    /// The corners of each triangle, by place: positions at the same place have one number.
+    places: Vec<[u32; 3]>,
+    /// Of each place: where its triangles begin in `around`. One more at the end.
     first: Vec<u32>,
-    /// Traced triangles, corner by corner.
-    around: Vec<u32>,
+    /// Traced triangles and which of their corners it is, place by place.
+    around: Vec<(u32, u8)>,
 }
 
 impl<'a> Corners<'a> {
-    fn of(triangles: &'a Triangles) -> Self {
+    fn of(triangles: &'a Triangles, traced: &[u32]) -> Self {
         let same = same_places(triangles.positions());
-        let traced: Vec<u32> = (0..triangles.len() as u32)
-            .into_par_iter()
-            .filter(|&triangle| triangles.is_traced(triangle))
+        let places: Vec<[u32; 3]> = (triangles.indices().iter())
+            .map(|corners| corners.map(|index| same[index as usize]))
             .collect();
-        let places = |triangle: u32| {
-            triangles.indices()[triangle as usize].map(|index| same[index as usize] as usize)
-        };
         let mut first = vec![0_u32; same.len() + 1];
-        for &triangle in &traced {
-            for place in places(triangle) {
-                first[place + 1] += 1;
+        for &triangle in traced {
+            for place in places[triangle as usize] {
+                first[place as usize + 1] += 1;
             }
         }
         for place in 0..same.len() {
             first[place + 1] += first[place];
         }
         let mut next = first.clone();
-        let mut around = vec![0; 3 * traced.len()];
-        for &triangle in &traced {
-            for place in places(triangle) {
-                around[next[place] as usize] = triangle;
-                next[place] += 1;
+        let mut around = vec![(0, 0); 3 * traced.len()];
+        for &triangle in traced {
+            for (corner, place) in (0..).zip(places[triangle as usize]) {
+                let next = &mut next[place as usize];
+                around[*next as usize] = (triangle, corner);
+                *next += 1;
             }
         }
         Self {
             triangles,
-            same,
+            places,
             first,
             around,
         }
     }
 
-    fn places(&self, triangle: u32) -> [u32; 3] {
-        self.triangles.indices()[triangle as usize].map(|index| self.same[index as usize])
-    }
-
-    fn around(&self, place: u32) -> &[u32] {
+    fn around(&self, place: u32) -> &[(u32, u8)] {
         let [from, to] = [0, 1].map(|i| self.first[place as usize + i] as usize);
         &self.around[from..to]
     }
 
     /// The exponent of a triangle's narrowest wedge.
     fn narrowest(&self, triangle: u32) -> u8 {
-        let mut sine = 1.0_f64;
-        let places = self.places(triangle);
-        let Some(own) = Sector::all(self.triangles.corners(triangle)) else {
+        let places = self.places[triangle as usize];
+        let points = self.triangles.corners(triangle);
+        let [a, b, c] = points.map(|point| point.as_dvec3());
+        let Some(normal) = (b - a).cross(c - a).try_normalize() else {
             return 0;
         };
-        for (corner, sector) in own.iter().enumerate() {
-            let around = self.around(places[corner]);
+        let normal = normal.as_vec3();
+        let mut sine = 1.0_f64;
+        for corner in 0..3 {
+            let [here, left, right] = [0, 1, 2].map(|i| places[(corner + i) % 3]);
+            let around = self.around(here);
             if around.len() > MOST_AROUND {
                 return NARROWEST;
             }
-            for &other in around.iter().filter(|&&other| other != triangle) {
-                let (theirs, points) = (self.places(other), self.triangles.corners(other));
-                let Some(at) = theirs.iter().position(|&place| place == places[corner]) else {
+            let from = points[corner];
+            let [to_left, to_right] = [1, 2].map(|i| points[(corner + i) % 3] - from);
+            let sector = Sector {
+                normal,
+                inwards: [normal.cross(to_left), to_right.cross(normal)],
+            };
+            for &(other, at) in around {
+                if other == triangle {
                     continue;
-                };
-                let others = [(at + 1) % 3, (at + 2) % 3];
-                let shared = others.map(|i| places.contains(&theirs[i]));
-                let directions = others.map(|i| points[i] - points[at]);
-                let angle = match shared {
+                }
+                let theirs = self.places[other as usize];
+                let others = [1, 2].map(|i| (usize::from(at) + i) % 3);
+                let [one, two] = others.map(|i| theirs[i]);
+                let direction = |i: usize| self.triangles.corner(other, others[i]) - from;
+                let is_shared = |place| place == left || place == right;
+                let (shared, third) = match (is_shared(one), is_shared(two)) {
+                    (false, false) => {
+                        sine = sine.min(sector.above([direction(0), direction(1)]));
+                        continue;
+                    }
+                    (true, false) => (one, 1),
+                    (false, true) => (two, 0),
                     // The same triangle once more is no wedge.
-                    [true, true] => continue,
-                    [true, false] => sector.across_edge(directions[0], directions[1]),
-                    [false, true] => sector.across_edge(directions[1], directions[0]),
-                    [false, false] => sector.above(directions),
+                    (true, true) => continue,
                 };
-                sine = sine.min(angle);
+                // Each edge at one of its ends.
+                if shared < here {
+                    continue;
+                }
+                let edge = usize::from(shared == right);
+                if sector.inwards[edge].dot(direction(third)) > 0.0 {
+                    let along = [to_left, to_right][edge];
+                    sine = sine.min(sector.across_edge(edge, along, direction(third)));
+                }
             }
         }
         // A right angle that is off by its rounding is no narrow wedge.
@@ -156,58 +176,48 @@ impl<'a> Corners<'a> {
 struct Sector {
     /// Unit normal.
     normal: Vec3,
-    /// In the plane, from either edge inwards. Unit vectors.
+    /// In the plane, from either edge inwards, as long as the edge.
     inwards: [Vec3; 2],
 }
 
 impl Sector {
-    /// Of the three corners; `None` where f32 knows no normal.
-    fn all(corners: [Vec3; 3]) -> Option<[Self; 3]> {
-        let [a, b, c] = corners.map(|corner| corner.as_dvec3());
-        let normal = (b - a).cross(c - a).try_normalize()?;
-        let inwards = [(a, b), (b, c), (c, a)].map(|(from, to)| normal.cross(to - from));
-        let [ab, bc, ca] = inwards.map(|n| n.normalize_or_zero().as_vec3());
-        let normal = normal.as_vec3();
-        Some([[ca, ab], [ab, bc], [bc, ca]].map(|inwards| Self { normal, inwards }))
-    }
-
-    /// Sine of the angle to a triangle beyond an edge along `edge`, whose third corner is along `third`; 1 where it is a
-    /// right angle or more.
-    fn across_edge(&self, edge: Vec3, third: Vec3) -> f64 {
-        let edge = edge.as_dvec3().normalize_or_zero();
+    /// Sine of the angle to a triangle beyond the edge `along`, whose third corner, along `third`, stands over this one.
+    #[cold]
+    fn across_edge(&self, edge: usize, along: Vec3, third: Vec3) -> f64 {
+        let along = along.as_dvec3().normalize_or_zero();
         let third = third.as_dvec3();
-        let across = (third - third.dot(edge) * edge).normalize_or_zero();
-        // The edge is one of the two: that which has nothing of it along its own normal.
-        let [one, other] = self.inwards.map(|inwards| inwards.as_dvec3());
-        let inwards = if one.dot(edge).abs() < other.dot(edge).abs() {
-            one
-        } else {
-            other
-        };
-        if inwards.dot(across) <= 0.0 {
-            1.0
-        } else {
-            inwards.cross(across).length()
-        }
+        let across = (third - third.dot(along) * along).normalize_or_zero();
+        let inwards = self.inwards[edge].as_dvec3().normalize_or_zero();
+        inwards.cross(across).length()
     }
 
     /// Sine of the least angle at which a triangle with edges along `directions`, that has no more than this corner in
     /// common, stands over this one; 1 where it does not.
     fn above(&self, directions: [Vec3; 2]) -> f64 {
-        let inside = |direction: Vec3| {
-            // What stands on an edge is that edge's neighbour's business.
-            let slack = 1e-6 * direction.length();
-            self.inwards.map(|inwards| inwards.dot(direction) - slack)
-        };
-        let [p, q] = directions.map(inside);
+        let [p, q] = directions.map(|direction| self.inwards.map(|n| n.dot(direction)));
         // Most lie beyond one of the two edges.
         if (p[0] <= 0.0 && q[0] <= 0.0) || (p[1] <= 0.0 && q[1] <= 0.0) {
             return 1.0;
         }
+        self.least_height(directions)
+    }
+
+    #[cold]
+    fn least_height(&self, directions: [Vec3; 2]) -> f64 {
+        let inside = |direction: Vec3| {
+            // What stands on an edge is that edge's neighbour's business.
+            let slack = |inwards: &Vec3| 1e-6 * direction.length() * inwards.length();
+            self.inwards
+                .map(|inwards| inwards.dot(direction) - slack(&inwards))
+        };
+        let [p, q] = directions.map(inside);
         // The part of its outer edge that lies over the sector.
         let (mut from, mut to) = (0.0_f64, 1.0_f64);
         for (p, q) in p.into_iter().zip(q) {
             let (p, q) = (f64::from(p), f64::from(q));
+            if p <= 0.0 && q <= 0.0 {
+                return 1.0;
+            }
             if p < 0.0 {
                 from = from.max(p / (p - q));
             } else if q < 0.0 {
@@ -255,6 +265,11 @@ mod tests {
     use super::*;
     use crate::bvh::hard_cases::meshes::{cube, mesh, soup, sphere};
 
+    fn of(triangles: &Triangles) -> Wedges {
+        let traced = (0..triangles.len() as u32).filter(|&t| triangles.is_traced(t));
+        Wedges::of(triangles, &traced.collect::<Vec<_>>())
+    }
+
     fn wedge(angle: f32) -> Triangles {
         // Two triangles over the x axis.
         let (sin, cos) = angle.sin_cos();
@@ -265,7 +280,7 @@ mod tests {
     #[test]
     fn a_wedge_is_as_narrow_as_the_angle_between_its_triangles() {
         for angle in [2.5_f32, 1.6, 1.0, 0.3, 0.05, 1e-3] {
-            let wedges = Wedges::of(&wedge(angle));
+            let wedges = of(&wedge(angle));
             let expected = if angle > std::f32::consts::FRAC_PI_2 {
                 1.0
             } else {
@@ -289,7 +304,7 @@ mod tests {
         let over = |height: f32| {
             let far = [Vec3::new(1.0, -1.0, height), Vec3::new(1.0, 1.0, height)];
             let floor = [Vec3::new(2.0, -2.0, 0.0), Vec3::new(2.0, 2.0, 0.0)];
-            Wedges::of(&soup([floor, far].map(|[a, b]| [Vec3::ZERO, a, b])))
+            of(&soup([floor, far].map(|[a, b]| [Vec3::ZERO, a, b])))
         };
         assert_eq!(over(0.1).narrowest(), 16.0);
         assert_eq!(over(-0.1).narrowest(), 16.0, "and under it");
@@ -297,13 +312,13 @@ mod tests {
         let beside = [Vec3::new(-1.0, -1.0, 0.01), Vec3::new(-1.0, 1.0, 0.01)];
         let floor = [Vec3::new(2.0, -2.0, 0.0), Vec3::new(2.0, 2.0, 0.0)];
         let both = [floor, beside].map(|[a, b]| [Vec3::ZERO, a, b]);
-        assert_eq!(Wedges::of(&soup(both)).narrowest(), 1.0);
+        assert_eq!(of(&soup(both)).narrowest(), 1.0);
     }
 
     #[test]
     fn boxes_and_spheres_have_none_and_pay_no_memory() {
         for mesh in [cube(), sphere(3)] {
-            let wedges = Wedges::of(&mesh);
+            let wedges = of(&mesh);
             assert_eq!((wedges.narrowest(), wedges.bytes()), (1.0, 0));
         }
     }
@@ -315,7 +330,7 @@ mod tests {
             vec![[0, 1, 2], [1, 0, 3]],
         );
         let apart: Vec<[Vec3; 3]> = (0..2).map(|i| shared.corners(i)).collect();
-        let (shared, apart) = (Wedges::of(&shared), Wedges::of(&soup(apart)));
+        let (shared, apart) = (of(&shared), of(&soup(apart)));
         assert!(shared.narrowest() > 8.0, "{shared:?}");
         assert_eq!(shared.exponents, apart.exponents);
     }
@@ -324,16 +339,16 @@ mod tests {
     fn a_corner_of_very_many_triangles_takes_no_longer_and_counts_as_narrow() {
         let hub = |i: u32| Vec3::new(1.0, i as f32 * 1e-3, 0.5);
         let fan = soup((0..50_000).map(|i| [Vec3::ZERO, hub(i), hub(i + 1)]));
-        assert_eq!(Wedges::of(&fan).narrowest(), 4096.0);
+        assert_eq!(of(&fan).narrowest(), 4096.0);
         // So does the same triangle, many times over.
         let heap = soup((0..50_000).map(|_| [Vec3::ZERO, Vec3::X, Vec3::Y]));
-        assert_eq!(Wedges::of(&heap).narrowest(), 4096.0);
+        assert_eq!(of(&heap).narrowest(), 4096.0);
     }
 
     #[test]
     fn triangles_that_are_points_or_lines_or_not_finite_are_nobodys_neighbours() {
         let nan = Vec3::splat(f32::NAN);
-        let wedges = Wedges::of(&soup([
+        let wedges = of(&soup([
             [Vec3::ZERO, Vec3::X, Vec3::Y],
             [Vec3::ZERO, Vec3::X, Vec3::X * 2.0],
             [Vec3::ZERO, Vec3::X, nan],

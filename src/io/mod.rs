@@ -50,8 +50,10 @@ mod scene_file;
 pub mod shapes;
 mod sources;
 
+#[cfg(feature = "editor")]
+pub(crate) use budget::beside;
+pub(crate) use budget::film_bytes;
 pub use budget::{Budget, Size, check_film};
-pub(crate) use budget::{beside, film_bytes};
 pub use error::{FileError, Place, Problem};
 pub use folder::Folder;
 pub use identity::check_outputs;

@@ -119,6 +119,11 @@ impl Texture {
     /// The largest value of each channel, linear RGB.
     pub(super) fn brightest(&self) -> Vec3 {
         *self.brightest.get_or_init(|| {
+            // An environment's, and large.
+            if let Texels::Linear32(texels) = &self.texels {
+                let texels = texels.iter().copied().map(Vec3::from);
+                return texels.fold(Vec3::ZERO, Vec3::max);
+            }
             let rows = (0..self.height).flat_map(|y| (0..self.width).map(move |x| (x, y)));
             rows.fold(Vec3::ZERO, |most, (x, y)| most.max(self.texel(x, y, false)))
         })
