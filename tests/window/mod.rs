@@ -92,8 +92,15 @@ impl Display {
 
     /// The program on this display, with settings of its own.
     pub fn command(&self, folder: &Path) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_glassbox"));
+        self.command_in(folder, &[])
+    }
+
+    /// The same, started by another program, which gets its arguments.
+    pub fn command_in(&self, folder: &Path, by: &[&str]) -> Command {
+        let words = [by, &[env!("CARGO_BIN_EXE_glassbox")]].concat();
+        let mut command = Command::new(words[0]);
         command
+            .args(&words[1..])
             .current_dir(folder)
             .env("DISPLAY", &self.name)
             .env_remove("WAYLAND_DISPLAY")

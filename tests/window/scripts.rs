@@ -90,7 +90,8 @@ fn ctrl_c_in_the_terminal_keeps_unsaved_work_and_a_script_that_quits_leaves_none
 
     let script = folder.join("script.ron");
     std::fs::write(&script, format!("[{edit}, Screenshot(\"done.png\")]")).unwrap();
-    let mut command = display.command(folder);
+    // What runs in the background of a shell has it ignored, and hands that on.
+    let mut command = display.command_in(folder, &["env", "--default-signal=INT"]);
     command.args(["cornell-box", "--script"]).arg(&script);
     let mut editor = command.spawn().unwrap();
     let start = std::time::Instant::now();
@@ -102,6 +103,17 @@ fn ctrl_c_in_the_terminal_keeps_unsaved_work_and_a_script_that_quits_leaves_none
         .args(["-INT", &editor.id().to_string()])
         .status();
     assert!(killed.unwrap().success());
-    assert_eq!(editor.wait().unwrap().code(), Some(130));
+    let start = std::time::Instant::now();
+    let status = loop {
+        if let Some(status) = editor.try_wait().unwrap() {
+            break status;
+        }
+        if start.elapsed() > std::time::Duration::from_secs(60) {
+            let _ = editor.kill();
+            panic!("Ctrl+C did not end the editor");
+        }
+        std::thread::sleep(std::time::Duration::from_millis(100));
+    };
+    assert_eq!(status.code(), Some(130));
     assert_eq!(copies(), 1, "Ctrl+C is nobody's consent");
 }
