@@ -265,13 +265,24 @@ impl Engine {
         if self.mode.samples.start > 0 || self.samples() < 2.0 {
             return None;
         }
-        ErrorEstimate::of(&self.moves(), self.unmet.hidden(&self.subject, 1))
+        let moves = self.moves();
+        let measured = ErrorEstimate::of(&moves, 0.0)?;
+        if measured.relative_mse > 0.0 {
+            return Some(measured);
+        }
+        // Samples that all agree say no more than what none of them has met.
+        ErrorEstimate::of(&moves, self.unmet.hidden(&self.subject, 1))
     }
 
     /// The squared error that unmet features may leave in a pixel, per reach of a sample, if they lie in all
-    /// alike.
+    /// alike; 0 where samples differ anywhere, and so say more themselves.
     pub fn hidden_in_a_pixel(&self) -> f64 {
-        self.unmet.hidden(&self.subject, 1) / self.pixels().max(1.0)
+        match self.error() {
+            Some(error) if error.is_bound => {
+                self.unmet.hidden(&self.subject, 1) / self.pixels().max(1.0)
+            }
+            _ => 0.0,
+        }
     }
 
     /// How the errors of the whole picture decline.

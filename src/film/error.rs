@@ -12,8 +12,8 @@
 //! for three things that no move shows:
 //!
 //! - What no sample has found: a bright spot that one sample in a thousand meets is missing at 16 samples.
-//!   What such spots may hide at most is known ([`unmet`](super::unmet)), and no smaller error is told: where
-//!   the pixels moved less, or not at all, that bound is told, and said to be one.
+//!   What such spots may hide at most is known ([`unmet`](super::unmet)): where no pixel moved at all, that
+//!   bound is told, and said to be one. (Where some did, it would be many times the error of ordinary pictures.)
 //! - A lamp so close that few of its points give nearly all of its light. There the tracer knows what
 //!   the light has to be, and so the error itself ([`Workspace::deviations`](crate::trace::Workspace)): it is
 //!   told where it is more than what the moves say.
@@ -48,7 +48,7 @@ pub struct ErrorEstimate {
     /// and the value are averaged over the channels.
     pub relative_mse: f64,
     /// Whether that is what features may hide, at most, that no sample has met: the samples themselves
-    /// differ by less, or not at all.
+    /// say less, or nothing.
     pub is_bound: bool,
 }
 

@@ -26,7 +26,7 @@ impl Engine {
         let judged = start == 0 && *level >= u64::from(LEAST_SAMPLES);
         let mut hidden = 0.0;
         if goal > 0.0 && judged {
-            hidden = self.unmet.hidden(&self.subject, OFTEN);
+            hidden = self.unmet.hidden_by_emitters(&self.subject, OFTEN);
             let estimate = ErrorEstimate::of(&self.moves(), hidden).unwrap_or_default();
             if estimate.relative() <= goal {
                 return Err(Ending::Error);

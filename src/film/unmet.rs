@@ -12,6 +12,9 @@
 //! no sample was. Of others, full white is reckoned with, so that of features which reflect a lamp more brightly
 //! nothing is foreseen before a sample has met them and the picture moves.
 //!
+//! The bound is told where samples do not differ at all; and a render that stops by its error waits for what
+//! shines by itself.
+//!
 //! A scene in which nothing is random, an even background alone, is no exception: what its samples say is all
 //! that a picture knows.
 
@@ -77,10 +80,15 @@ impl Unmet {
     /// What the largest [`Reach`] of a sample is multiplied by for the sum over all pixels of the squared error
     /// that features may leave which fewer than `times` samples have met.
     pub fn hidden(&self, subject: &Subject, times: u64) -> f64 {
+        MISSED * self.brightness(subject, times).max(WHITE)
+    }
+
+    /// The same of what shines by itself alone: what a render that stops by its error waits for.
+    pub fn hidden_by_emitters(&self, subject: &Subject, times: u64) -> f64 {
         MISSED * self.brightness(subject, times)
     }
 
-    /// How bright features may be that fewer samples have met, in the film's unit.
+    /// How bright emitters are at most that fewer samples have met, in the film's unit.
     fn brightness(&self, subject: &Subject, times: u64) -> f64 {
         let found = self.emitters.get_or_init(|| {
             let found = emitters(&subject.world, &subject.camera, &subject.settings);
@@ -96,7 +104,7 @@ impl Unmet {
             octaves.map(|met| met.load(Ordering::Relaxed)).sum()
         };
         let unmet = found.iter().filter(|(octave, _)| met(*octave) < times);
-        unmet.fold(WHITE, |most, (_, brightness)| most.max(*brightness))
+        unmet.fold(0.0, |most, (_, brightness)| most.max(*brightness))
     }
 }
 

@@ -122,7 +122,7 @@ fn a_picture_outside_the_folder_missing_or_nowhere_leaves_the_material_without()
         ),
         (
             json!({ "bufferView": 1 }),
-            ["a.gltf#texture0", "not a picture"],
+            ["a.gltf#texture0", "which is not read"],
         ),
         (json!({ "bufferView": 7 }), ["image 0", "buffer view 7"]),
     ] {

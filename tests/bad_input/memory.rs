@@ -140,7 +140,7 @@ fn a_gltf_is_counted_by_its_accessors_and_again_for_each_mesh_that_reads_the_sam
            \"bufferViews\": [{{\"buffer\": 0, \"byteLength\": 360000}}], \
            \"accessors\": [{{\"bufferView\": 0, \"componentType\": 5126, \"count\": 30000, \
              \"type\": \"VEC3\", \"min\": [0,0,0], \"max\": [0,0,0]}}], \
-           \"meshes\": [{{\"primitives\": [{}]}}]}}",
+           \"nodes\": [{{\"mesh\": 0}}], \"meshes\": [{{\"primitives\": [{}]}}]}}",
         primitive.trim_end_matches(',')
     );
     let file = write(folder.path(), "a.gltf", json);

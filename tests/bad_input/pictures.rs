@@ -138,7 +138,9 @@ fn an_empty_picture() {
 
 #[test]
 fn half_a_jpeg_is_shown_and_said_to_be_half() {
-    let picture = image::RgbImage::from_fn(64, 64, |x, y| image::Rgb([x as u8, y as u8, 90]));
+    let picture = image::RgbImage::from_fn(256, 256, |x, y| {
+        image::Rgb([(7 * x) as u8, (13 * y) as u8, (x * y) as u8])
+    });
     let mut bytes = std::io::Cursor::new(Vec::new());
     picture
         .write_to(&mut bytes, image::ImageFormat::Jpeg)

@@ -3,7 +3,7 @@
 use crate::cli::texts;
 use crate::files::app::write;
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Output};
 
 /// A pipe that nobody writes into.
 fn pipe(folder: &Path, name: &str) {
@@ -11,9 +11,9 @@ fn pipe(folder: &Path, name: &str) {
     assert!(made.unwrap().success(), "mkfifo failed");
 }
 
-/// Runs the program, which is ended after a while, and expects one line that names the pipe.
-fn refuses(folder: &Path, arguments: &[&str], name: &str) {
-    let output = Command::new("timeout")
+/// Runs the program, which is ended after a while.
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new("timeout")
         .arg("60")
         .arg(env!("CARGO_BIN_EXE_glassbox"))
         .args(arguments)
@@ -21,7 +21,12 @@ fn refuses(folder: &Path, arguments: &[&str], name: &str) {
         .env("WAYLAND_DISPLAY", "")
         .current_dir(folder)
         .output()
-        .unwrap();
+        .unwrap()
+}
+
+/// Expects one line that names the pipe.
+fn refuses(folder: &Path, arguments: &[&str], name: &str) {
+    let output = run(folder, arguments);
     let (_, err) = texts(&output);
     assert_eq!(output.status.code(), Some(1), "{arguments:?}: {err}");
     assert_eq!(err.lines().count(), 1, "{err}");
@@ -56,10 +61,20 @@ fn no_reader_waits_for_a_pipe() {
         "b.obj",
         "mtllib b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
     );
-    render("b.obj", "b.mtl");
-    let gltf = "{\"asset\": {\"version\": \"2.0\"}, \"buffers\": [{\"uri\": \"b.bin\", \"byteLength\": 9}]}";
+    // What a model names and is no file is not there.
+    let output = run(folder, &["render", "b.obj", "-o", "o.png", "--size", "8x8"]);
+    let (_, err) = texts(&output);
+    assert_eq!(output.status.code(), Some(0), "{err}");
+    assert!(err.contains("b.mtl"), "{err}");
+    let gltf = "{\"asset\": {\"version\": \"2.0\"}, \"buffers\": [{\"uri\": \"b.bin\", \"byteLength\": 36}], \
+        \"bufferViews\": [{\"buffer\": 0, \"byteLength\": 36}], \"nodes\": [{\"mesh\": 0}], \"accessors\": \
+        [{\"bufferView\": 0, \"componentType\": 5126, \"count\": 3, \"type\": \"VEC3\"}], \
+        \"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}]}";
     write(folder, "b.gltf", gltf);
-    render("b.gltf", "b.bin");
+    let output = run(folder, &["render", "b.gltf", "-o", "o.png"]);
+    let (_, err) = texts(&output);
+    assert_eq!(output.status.code(), Some(1), "{err}");
+    assert!(err.contains("b.bin"), "{err}");
     let phong = "\"glassbox::scene::Phong\": (diffuse_map: Some((path: \"b.png\")))";
     let text = format!(
         "(resources: {{\"glassbox::io::FileVersion\": (1)}}, entities: {{1: (components: {{{phong}}})}})"

@@ -241,7 +241,7 @@ fn vertices_may_have_more_numbers_than_three() {
         "v 0 0 0 1 0 0\nv 2 0 0 1 0 0\nv 0 2 0\nv 0 0 2 1\nv 0 0 0 1 0.5 0 1\nvt 0\nf 1 2 3\n";
     let (mut app, told) = obj(vertices);
     assert_eq!(area(&mut app), 2.0);
-    assert_eq!(told.len(), 2, "{told:?}");
+    assert_eq!(told.len(), 3, "{told:?}");
     let Some(VertexAttributeValues::Float32x4(colors)) = attribute(&mut app, Mesh::ATTRIBUTE_COLOR)
     else {
         panic!("no colours");

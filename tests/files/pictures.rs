@@ -170,7 +170,8 @@ fn what_light_cannot_have_is_noted_once_for_each_picture_whatever_it_is_used_for
         _ => Rgb([0.5; 3]),
     });
     picture.save(path.join("a.exr")).unwrap();
-    let text = "map_Kd a.exr\nnewmtl b\nmap_Kd a.exr\nmap_d a.exr";
+    picture.save(path.join("b.exr")).unwrap();
+    let text = "map_Kd a.exr\nnewmtl b\nmap_Kd a.exr\nmap_d b.exr";
     let file = square(path, text);
     let more = "usemtl b\nf 1/1 2/2 3/3\n";
     std::fs::write(&file, std::fs::read_to_string(&file).unwrap() + more).unwrap();
