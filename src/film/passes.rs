@@ -26,8 +26,14 @@ impl Engine {
         let judged = start == 0 && *level >= u64::from(LEAST_SAMPLES);
         let mut hidden = 0.0;
         if goal > 0.0 && judged {
-            hidden = self.unmet.hidden_by_emitters(&self.subject, OFTEN);
-            let estimate = ErrorEstimate::of(&self.moves(), hidden).unwrap_or_default();
+            let moves = self.moves();
+            let measured = ErrorEstimate::of(&moves, 0.0).unwrap_or_default();
+            hidden = if measured.relative_mse > 0.0 {
+                self.unmet.hidden_by_emitters(&self.subject, OFTEN)
+            } else {
+                self.unmet.hidden(&self.subject, OFTEN)
+            };
+            let estimate = ErrorEstimate::of(&moves, hidden).unwrap_or_default();
             if estimate.relative() <= goal {
                 return Err(Ending::Error);
             }

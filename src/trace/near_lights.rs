@@ -21,11 +21,11 @@ use glam::{DVec3, Vec3};
 use std::f32::consts::FRAC_1_PI;
 use std::ops::Range;
 
-/// A lamp is close where the squared relative error of one point exceeds one: a parallelogram of more area
-/// than this times the squared distance,
-const NEAR_AREA: f32 = 9.0;
+/// A lamp is close where the squared relative error of one point is seven or ten: a parallelogram of more area
+/// than this times the squared distance (farther away, samples tell their error well enough themselves),
+const NEAR_AREA: f32 = 64.0;
 /// and a segment of more length than this times the distance.
-const NEAR_LENGTH: f32 = 3.5;
+const NEAR_LENGTH: f32 = 35.0;
 
 /// A ball outside of which a lamp is not close.
 #[derive(Clone, Copy, Debug)]
@@ -184,12 +184,13 @@ impl Reach {
     }
 }
 
-/// What leaves towards the viewer of an irradiance by a light of that colour; `None` where it is nothing.
-/// The highlight counts as if the lamp filled all of its lobe.
+/// What leaves towards the viewer of an irradiance by a light of that colour; `None` where it is nothing, and
+/// where there is a highlight, whose light is not known in closed form.
 fn expected(surface: &Surface, color: Vec3, irradiance: f64) -> Option<Vec3> {
     let part = FRAC_1_PI * irradiance as f32;
-    let value = color * (surface.diffuse + surface.specular) * part;
-    (part > 0.0 && value.is_finite()).then_some(value)
+    let value = color * surface.diffuse * part;
+    let is_matt = surface.specular == Vec3::ZERO;
+    (is_matt && part > 0.0 && value.is_finite()).then_some(value)
 }
 
 /// Irradiance of a surface with this unit normal by a segment of intensity 1 W/(sr·m), its ends given
