@@ -95,8 +95,17 @@ pub(crate) fn decoded(path: &str) -> Option<PathBuf> {
 }
 
 fn decoded_name(part: &str) -> Option<OsString> {
-    let mut bytes = Vec::with_capacity(part.len());
-    let mut rest = part.as_bytes();
+    let bytes = unescaped(part);
+    if bytes.contains(&0) {
+        return None;
+    }
+    of_bytes(bytes)
+}
+
+/// The bytes of a text in which `%` and two hexadecimal digits stand for one; what is no escape stays.
+pub(crate) fn unescaped(text: &str) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(text.len());
+    let mut rest = text.as_bytes();
     while let Some((&first, after)) = rest.split_first() {
         match hex(after).filter(|_| first == b'%') {
             Some(byte) => {
@@ -109,10 +118,7 @@ fn decoded_name(part: &str) -> Option<OsString> {
             }
         }
     }
-    if bytes.contains(&0) {
-        return None;
-    }
-    of_bytes(bytes)
+    bytes
 }
 
 #[cfg(unix)]

@@ -1,5 +1,7 @@
 //! The two kinds of URI that glTF uses: a relative path with `%` escapes, and data in base64.
 
+use crate::io::file_name::unescaped;
+
 /// The bytes of a `data:` URI in base64; `None` where it is not one, or is damaged.
 pub(super) fn data_of(uri: &str) -> Option<Vec<u8>> {
     let (head, text) = uri.strip_prefix("data:")?.split_once(',')?;
@@ -36,26 +38,7 @@ fn digit(character: u8) -> Option<u8> {
 /// The path that a URI stands for, as scenes say it: `%20` becomes a space, and so on. What is no escape stays,
 /// and escapes that are no text too.
 pub(super) fn path_of(uri: &str) -> String {
-    let mut bytes = Vec::with_capacity(uri.len());
-    let mut rest = uri.as_bytes();
-    while let Some((&first, after)) = rest.split_first() {
-        let escaped = (first == b'%')
-            .then(|| after.get(..2))
-            .flatten()
-            .and_then(|hex| std::str::from_utf8(hex).ok())
-            .and_then(|hex| u8::from_str_radix(hex, 16).ok());
-        match escaped {
-            Some(byte) => {
-                bytes.push(byte);
-                rest = &after[2..];
-            }
-            None => {
-                bytes.push(first);
-                rest = after;
-            }
-        }
-    }
-    String::from_utf8(bytes).unwrap_or_else(|_| uri.to_owned())
+    String::from_utf8(unescaped(uri)).unwrap_or_else(|_| uri.to_owned())
 }
 
 /// Whether a URI is data.
