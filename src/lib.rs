@@ -30,6 +30,7 @@ pub mod cli;
 pub mod editor;
 pub mod film;
 pub mod inspect;
+mod instruction_sets;
 pub mod io;
 pub mod report;
 pub mod scene;

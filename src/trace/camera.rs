@@ -6,9 +6,8 @@
 //! at distance d makes a circle of diameter `2a·|d-f|/d` on the focus plane.
 
 use super::disc::concentric;
-use super::sampler::{Purpose, Sampler};
 use crate::bvh::Ray;
-use crate::scene::{PixelSampling, Projection};
+use crate::scene::Projection;
 use glam::{Quat, UVec2, Vec2, Vec3};
 
 /// A camera with everything that rays need, in world space.
@@ -157,32 +156,14 @@ pub struct ImagePlane<'a> {
 }
 
 impl ImagePlane<'_> {
-    /// The ray of sample `index` of `pixel`, (0, 0) at the top left, at shutter time `time`. Its
-    /// direction has unit length.
-    pub fn sample_ray(
-        &self,
-        pixel: UVec2,
-        index: u64,
-        sampler: Sampler,
-        sampling: PixelSampling,
-        time: f32,
-    ) -> Ray {
-        let needs_numbers = sampling == PixelSampling::Area || self.camera.has_lens();
-        let [x, y, u, v] = if needs_numbers {
-            sampler.block(index, Purpose::Camera, 0)
-        } else {
-            [0.0; 4]
-        };
-        let place = match sampling {
-            PixelSampling::Area => Vec2::new(x, y),
-            PixelSampling::Center => Vec2::splat(0.5),
-            PixelSampling::Corner => Vec2::new(0.0, 1.0),
-        };
-        self.ray(pixel.as_vec2() + place, [u, v], time)
+    /// The same of another camera with the same projection.
+    pub(super) fn of_camera<'a>(&self, camera: &'a Camera) -> ImagePlane<'a> {
+        ImagePlane { camera, ..*self }
     }
 
     /// The ray through `place` in pixels, (0, 0) at the picture's top left corner, from the lens
     /// point that the numbers `lens` in [0, 1)² choose.
+    #[inline(always)]
     pub fn ray(&self, place: Vec2, lens: [f32; 2], time: f32) -> Ray {
         let Self { camera, size, .. } = self;
         let ndc = Vec2::new(2.0 * place.x / size.x - 1.0, 1.0 - 2.0 * place.y / size.y);
@@ -273,17 +254,6 @@ mod tests {
             behind.project(behind.position - behind.forward, SIZE, 0.0),
             None
         );
-    }
-
-    #[test]
-    fn the_corner_of_a_pixel_is_its_lower_left_one() {
-        let camera = camera(Optics::default());
-        let sampler = Sampler::new(0, 0, 0, crate::scene::Sequence::Sobol);
-        let pixel = UVec2::new(10, 20);
-        let plane = camera.image_plane(SIZE);
-        let corner = plane.sample_ray(pixel, 0, sampler, PixelSampling::Corner, 0.0);
-        let expected = camera.ray(Vec2::new(10.0, 21.0), SIZE, [0.0; 2], 0.0);
-        assert_eq!(corner.direction, expected.direction);
     }
 
     #[test]

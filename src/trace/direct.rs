@@ -1,11 +1,15 @@
-//! Direct light: shadow rays to points of the lights, gathered for a whole batch, then traced.
+//! Direct light, one light after another: points of it for all vertices of a batch, shadow rays there, and what arrives.
 
-use super::lights::{LightPoint, sample_count};
-use super::radiance::{Batch, Path, Shadow, Workspace};
-use super::recorder::{LightKind, Recorder};
+use super::lights::{
+    DirectionalLight, LightPoint, ParallelogramLight, PointLight, SegmentLight, sample_count,
+};
+use super::near_lights::NearLights;
+use super::numbers::{Asking, Pairs};
+use super::radiance::{Batch, Vertex};
+use super::recorder::{Adding, LightKind, LitPoint, Recorder};
 use super::sampler::Purpose;
 use super::shading::reflected;
-use super::{Lights, Surface};
+use super::{Lights, SampleId, Surface};
 use crate::bvh::{Aggregate, Hit, Ray};
 use crate::scene::{Lighting, RenderSettings};
 use glam::Vec3;
@@ -17,185 +21,247 @@ const SHORT_OF_THE_LIGHT: f32 = 1.0 - 64.0 * f32::EPSILON;
 /// The middle of a light, in the numbers that choose its points.
 const MIDDLE: [f32; 2] = [0.5, 0.5];
 
+/// The arrays of one light's points, and of the shadow rays to them.
+#[derive(Default)]
+pub(super) struct ShadowRays {
+    /// Which numbers choose the points, and those numbers.
+    asking: Asking,
+    places: Pairs,
+    /// Points of lights so far at this bounce, those that nothing comes from included: what tells them apart.
+    points: u32,
+    rays: Vec<Ray>,
+    /// What each ray adds to which sample, if the light arrives, and the number of its point.
+    shadows: Vec<Shadow>,
+    occluded: Vec<bool>,
+}
+
+/// What a shadow ray adds to which sample, if the light arrives.
+#[derive(Clone, Copy)]
+pub(super) struct Shadow {
+    pub sample: u32,
+    pub value: Vec3,
+    /// The number of the light's point.
+    point: u32,
+}
+
+/// A light of any kind, with its place in the array of its kind.
+#[derive(Clone, Copy)]
+enum Lamp<'a> {
+    Point(&'a PointLight),
+    Directional(&'a DirectionalLight),
+    Segment(usize, &'a SegmentLight),
+    Parallelogram(usize, &'a ParallelogramLight),
+}
+
+impl Lamp<'_> {
+    fn kind(self) -> LightKind {
+        match self {
+            Self::Point(_) => LightKind::Point,
+            Self::Directional(_) => LightKind::Directional,
+            Self::Segment(..) => LightKind::Segment,
+            Self::Parallelogram(..) => LightKind::Parallelogram,
+        }
+    }
+
+    fn id(self) -> u64 {
+        match self {
+            Self::Point(light) => light.id,
+            Self::Directional(light) => light.id,
+            Self::Segment(_, light) => light.id,
+            Self::Parallelogram(_, light) => light.id,
+        }
+    }
+
+    /// Shadow rays at a first hit, and what they are counted per (m, m² or sr); `None` of a light without extent.
+    fn samples(self) -> Option<(u32, f32)> {
+        match self {
+            Self::Point(_) => None,
+            Self::Directional(light) => {
+                (light.disc.is_some()).then(|| (light.samples, light.solid_angle()))
+            }
+            Self::Segment(_, light) => {
+                Some((light.samples, (light.ends[1] - light.ends[0]).length()))
+            }
+            Self::Parallelogram(_, light) => Some((light.samples, light.area_normal().length())),
+        }
+    }
+
+    /// The point that the numbers choose, as `from` sees it in the frame that moves with the light.
+    #[inline(always)]
+    fn point(self, from: Vec3, u: [f32; 2], lighting: Lighting) -> Option<LightPoint> {
+        match self {
+            Self::Point(light) => light.point(from, lighting),
+            Self::Directional(light) => Some(light.point(u, lighting)),
+            Self::Segment(_, light) => light.point(from, u[0], lighting),
+            Self::Parallelogram(_, light) => light.point(from, u, lighting),
+        }
+    }
+
+    /// The point that stands for the whole light where there are no soft shadows.
+    fn middle(self, from: Vec3, lighting: Lighting) -> Option<LightPoint> {
+        match self {
+            Self::Directional(light) => Some(light.middle()),
+            _ => self.point(from, MIDDLE, lighting),
+        }
+    }
+
+    /// What the points have to add on average, where the light is close by and that is known.
+    fn expected(self, near: &NearLights, surface: &Surface, from: Vec3) -> Option<Vec3> {
+        match self {
+            Self::Point(_) | Self::Directional(_) => None,
+            Self::Segment(i, light) => near.segment(i, light, surface, from),
+            Self::Parallelogram(i, light) => near.parallelogram(i, light, surface, from),
+        }
+    }
+}
+
 impl<R: Recorder> Batch<'_, R> {
-    /// Adds a shadow ray for every light point that can add something; `weight` is the path's
-    /// throughput times the surface's opacity.
-    pub(super) fn gather_direct_light(
+    /// Adds what arrives at the vertices from the lights.
+    pub(super) fn add_direct_light(
         &mut self,
-        path: &Path,
-        surface: &Surface,
-        weight: Vec3,
-        workspace: &mut Workspace,
+        vertices: &[Vertex],
+        shadow_rays: &mut ShadowRays,
+        near: &mut NearLights,
     ) {
+        shadow_rays.points = 0;
+        let lights = &*self.world.lights;
+        let points = lights.points.iter().map(Lamp::Point);
+        let directionals = lights.directionals.iter().map(Lamp::Directional);
+        let segments = lights.segments.iter().enumerate();
+        let parallelograms = lights.parallelograms.iter().enumerate();
+        let lamps = (points.chain(directionals))
+            .chain(segments.map(|(i, light)| Lamp::Segment(i, light)))
+            .chain(parallelograms.map(|(i, light)| Lamp::Parallelogram(i, light)));
+        for lamp in lamps {
+            self.gather(lamp, vertices, shadow_rays, near);
+            self.add_arriving_light(shadow_rays);
+            near.compare(&shadow_rays.shadows, &shadow_rays.occluded);
+        }
+    }
+
+    /// Points of a light for every vertex, and a shadow ray to each that can add something: `samples` of them at a first
+    /// hit, stratified together over all samples of the pixel; one at later hits, and its middle where there are no soft
+    /// shadows.
+    fn gather(
+        &mut self,
+        lamp: Lamp,
+        vertices: &[Vertex],
+        shadow_rays: &mut ShadowRays,
+        near: &mut NearLights,
+    ) {
+        shadow_rays.rays.clear();
+        shadow_rays.shadows.clear();
         let world = self.world;
         let lights = &*world.lights;
         let lighting = self.settings.lighting;
-        let weight = match lighting {
-            Lighting::Physical => weight,
-            Lighting::Classic => weight / lights.count().max(1) as f32,
+        let features = &self.settings.features;
+        let samples = lamp.samples().filter(|_| features.soft_shadows);
+        let at_first_hits = samples
+            .map(|(samples, size)| sample_count(samples, size, features.scale_light_samples));
+        let count_at = |vertex: &Vertex| match at_first_hits {
+            Some(count) if vertex.path.first => count,
+            _ => 1,
         };
-        if weight == Vec3::ZERO {
-            return;
+        if samples.is_some() {
+            shadow_rays.ask(vertices, count_at, self.samples, self.pixels);
+            (shadow_rays.places).draw(
+                &shadow_rays.asking,
+                Purpose::Light(lamp.id()),
+                self.settings,
+            );
         }
-        let seen_from = |id| lights.in_rest_frame(id, surface.point.position, path.time);
-        for light in &lights.points {
-            self.recorder.light(LightKind::Point, light.id);
-            let point = light.point(seen_from(light.id), lighting);
-            self.gather_point(path, surface, point, weight, workspace);
-        }
-        for light in &lights.directionals {
-            self.recorder.light(LightKind::Directional, light.id);
-            if light.disc.is_none() || !self.settings.features.soft_shadows {
-                self.gather_point(path, surface, Some(light.middle()), weight, workspace);
+        let mut asked = 0;
+        for vertex in vertices {
+            let surface = &vertex.surface;
+            let weight = vertex.weight(lights, lighting);
+            let count = count_at(vertex);
+            if weight == Vec3::ZERO {
+                asked += count as usize;
                 continue;
             }
-            let count = (light.samples, light.solid_angle());
-            self.gather_area(path, surface, light.id, count, weight, workspace, |u| {
-                Some(light.point(u, lighting))
-            });
-        }
-        for (i, light) in lights.segments.iter().enumerate() {
-            self.recorder.light(LightKind::Segment, light.id);
-            let size = (light.ends[1] - light.ends[0]).length();
-            let count = (light.samples, size);
-            let at = seen_from(light.id);
-            let first = workspace.shadows.len();
-            self.gather_area(path, surface, light.id, count, weight, workspace, |u| {
-                light.point(at, u[0], lighting)
-            });
-            if let Some(expected) = workspace.near_lights.segment(i, light, surface, at) {
-                self.gather_near(path, count, weight * expected, first, workspace);
+            let from = lights.in_rest_frame(lamp.id(), surface.point.position, vertex.ray.time);
+            let first = shadow_rays.rays.len();
+            for _ in 0..count {
+                let (place, point) = if samples.is_some() {
+                    let place = shadow_rays.places.get(asked);
+                    (place, lamp.point(from, place, lighting))
+                } else {
+                    (MIDDLE, lamp.middle(from, lighting))
+                };
+                asked += 1;
+                let number = shadow_rays.points;
+                shadow_rays.points += 1;
+                let Some(point) = point else { continue };
+                self.recorder.light_sample(
+                    number,
+                    &LitPoint {
+                        path: vertex.number,
+                        kind: lamp.kind(),
+                        id: lamp.id(),
+                        place,
+                        count: samples.map(|_| count),
+                        surface,
+                        point,
+                    },
+                );
+                let value = weight / count as f32 * reflected(surface, &point, lighting);
+                if value == Vec3::ZERO {
+                    continue;
+                }
+                if !features.shadows {
+                    self.add(vertex.path.sample, Adding::Light(number), value);
+                    continue;
+                }
+                let ray = shadow_ray(&world.aggregate, surface, &point, vertex.ray.time);
+                self.recorder.shadow_ray(number, &ray);
+                shadow_rays.rays.push(ray);
+                shadow_rays.shadows.push(Shadow {
+                    sample: vertex.path.sample,
+                    value,
+                    point: number,
+                });
+            }
+            if samples.is_some_and(|(samples, _)| samples > 0)
+                && features.shadows
+                && let Some(expected) = lamp.expected(near, surface, from)
+            {
+                let shadows = first..shadow_rays.shadows.len();
+                near.found(vertex.path.sample, count, weight * expected, shadows);
             }
         }
-        for (i, light) in lights.parallelograms.iter().enumerate() {
-            self.recorder.light(LightKind::Parallelogram, light.id);
-            let count = (light.samples, light.area_normal().length());
-            let at = seen_from(light.id);
-            let first = workspace.shadows.len();
-            self.gather_area(path, surface, light.id, count, weight, workspace, |u| {
-                light.point(at, u, lighting)
-            });
-            if let Some(expected) = workspace.near_lights.parallelogram(i, light, surface, at) {
-                self.gather_near(path, count, weight * expected, first, workspace);
-            }
-        }
     }
 
-    /// Several points of one light: `samples` of them at the first hit, stratified together over
-    /// all samples of the pixel; one at later hits, and its middle where there are no soft shadows.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "a light's numbers, a path's and the arrays"
-    )]
-    fn gather_area(
-        &mut self,
-        path: &Path,
-        surface: &Surface,
-        id: u64,
-        (samples, size): (u32, f32),
-        weight: Vec3,
-        workspace: &mut Workspace,
-        point: impl Fn([f32; 2]) -> Option<LightPoint>,
-    ) {
-        let features = &self.settings.features;
-        if !features.soft_shadows {
-            self.gather_point(path, surface, point(MIDDLE), weight, workspace);
-            return;
-        }
-        let count = if path.first {
-            sample_count(samples, size, features.scale_light_samples)
-        } else {
-            1
-        };
-        let (sampler, index) = self.sampler(path.sample);
-        let weight = weight / count as f32;
-        for i in 0..u64::from(count) {
-            let index = index * u64::from(count) + i;
-            let [u, v, ..] = sampler.block(index, Purpose::Light(id), path.name);
-            self.recorder.light_place([u, v], count);
-            self.gather_point(path, surface, point([u, v]), weight, workspace);
-        }
-    }
-
-    /// The light points whose shadow rays begin with the `first` are those of a lamp close by.
-    fn gather_near(
-        &self,
-        path: &Path,
-        (samples, size): (u32, f32),
-        expected: Vec3,
-        first: usize,
-        workspace: &mut Workspace,
-    ) {
-        let features = &self.settings.features;
-        if samples == 0 || !features.shadows {
-            return;
-        }
-        let points = if path.first {
-            sample_count(samples, size, features.scale_light_samples)
-        } else {
-            1
-        };
-        let shadows = first..workspace.shadows.len();
-        (workspace.near_lights).found(path.sample, points, expected, shadows);
-    }
-
-    fn gather_point(
-        &mut self,
-        path: &Path,
-        surface: &Surface,
-        point: Option<LightPoint>,
-        weight: Vec3,
-        workspace: &mut Workspace,
-    ) {
-        let Some(point) = point else { return };
-        let value = weight * reflected(surface, &point, self.settings.lighting);
-        self.recorder.light_sample(surface, &point);
-        if value == Vec3::ZERO {
-            return;
-        }
-        if !self.settings.features.shadows {
-            self.add(path.sample, value);
-            return;
-        }
-        workspace.shadows.push(Shadow {
-            sample: path.sample,
-            value,
-        });
-        let ray = shadow_ray(&self.world.aggregate, surface, &point, path.time);
-        self.recorder.shadow_ray(&ray);
-        workspace.shadow_rays.push(ray);
-    }
-
-    /// Traces all shadow rays of the batch and adds what arrives.
-    pub(super) fn add_arriving_light(&mut self, workspace: &mut Workspace) {
-        self.counts.shadow += workspace.shadow_rays.len() as u64;
+    /// Traces the shadow rays and adds what arrives.
+    fn add_arriving_light(&mut self, shadow_rays: &mut ShadowRays) {
+        let ShadowRays {
+            rays,
+            shadows,
+            occluded,
+            ..
+        } = shadow_rays;
+        self.counts.shadow += rays.len() as u64;
         if self.settings.features.transparency && self.world.needs.transparency {
-            workspace.occluded.clear();
-            for (shadow, ray) in workspace.shadows.iter().zip(&workspace.shadow_rays) {
-                self.recorder.next_shadow();
-                let transmittance = self.transmittance(ray);
-                self.recorder.arrived(transmittance);
+            occluded.clear();
+            for (shadow, ray) in shadows.iter().zip(rays) {
+                let transmittance = self.transmittance(ray, shadow.point);
+                self.recorder.arrived(shadow.point, transmittance);
                 let value = shadow.value * transmittance;
-                workspace.occluded.push(value == Vec3::ZERO);
-                self.add(shadow.sample, value);
+                occluded.push(value == Vec3::ZERO);
+                self.add(shadow.sample, Adding::Light(shadow.point), value);
             }
-            workspace.compare_near_lights();
             return;
         }
-        let aggregate = &self.world.aggregate;
-        aggregate.occlusions(&workspace.shadow_rays, &mut workspace.occluded);
-        for (shadow, occluded) in workspace.shadows.iter().zip(&workspace.occluded) {
-            self.recorder.next_shadow();
-            if !occluded {
-                self.recorder.arrived(Vec3::ONE);
-                self.add(shadow.sample, shadow.value);
+        self.world.aggregate.occlusions(rays, occluded);
+        for (shadow, occluded) in shadows.iter().zip(occluded) {
+            if !*occluded {
+                self.recorder.arrived(shadow.point, Vec3::ONE);
+                self.add(shadow.sample, Adding::Light(shadow.point), shadow.value);
             }
         }
-        workspace.compare_near_lights();
     }
 
     /// What a shadow ray lets through: the product of `(1-d) · lerp(1, kd, d)` over its crossings.
-    fn transmittance(&mut self, ray: &Ray) -> Vec3 {
+    fn transmittance(&mut self, ray: &Ray, point: u32) -> Vec3 {
         let mut transmittance = Vec3::ONE;
         let mut after: Option<Hit> = None;
         loop {
@@ -207,13 +273,46 @@ impl<R: Recorder> Batch<'_, R> {
             let Some(hit) = hit else { return transmittance };
             // The finest level: a shadow ray's own width is not known.
             let surface = Surface::at(self.world, self.settings, ray, 0.0, &hit);
-            self.recorder.crossed(&hit, &surface);
+            self.recorder.crossed(point, &hit, &surface);
             let d = surface.opacity;
             transmittance *= (1.0 - d) * Vec3::ONE.lerp(surface.diffuse, d);
             if transmittance == Vec3::ZERO {
                 return Vec3::ZERO;
             }
             after = Some(hit);
+        }
+    }
+}
+
+impl Vertex {
+    /// What a light's reflected radiance is multiplied by: the path's throughput times the surface's opacity, shared by
+    /// all lights where the lighting is Classic.
+    fn weight(&self, lights: &Lights, lighting: Lighting) -> Vec3 {
+        let opaque = self.path.throughput * self.surface.opacity;
+        match lighting {
+            Lighting::Physical => opaque,
+            Lighting::Classic => opaque / lights.count().max(1) as f32,
+        }
+    }
+}
+
+impl ShadowRays {
+    /// Every vertex asks for so many points: their numbers go on from sample to sample of the pixel.
+    fn ask(
+        &mut self,
+        vertices: &[Vertex],
+        count_at: impl Fn(&Vertex) -> u32,
+        samples: &[SampleId],
+        pixels: &[u32],
+    ) {
+        self.asking.clear();
+        for vertex in vertices {
+            let sample = vertex.path.sample as usize;
+            let count = u64::from(count_at(vertex));
+            let first = samples[sample].index * count;
+            for index in first..first + count {
+                self.asking.push(pixels[sample], vertex.path.name, index);
+            }
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What camera rays meet first, and what finding it cost: no shading, no further ray.
 
-use super::radiance::sample_ray;
+use super::camera_rays::CameraRays;
 use super::{Camera, Cone, SampleId, Surface, World};
 use crate::bvh::{Counters, Ray};
 use crate::scene::{PixelSampling, RenderSettings, SceneId};
@@ -52,9 +52,10 @@ pub fn first_hits(
     assert_eq!(samples.len(), hits.len(), "one hit for each sample");
     let cone = Cone::of_pixel(camera, settings.size);
     let plane = camera.image_plane(settings.size);
-    for (hit, &sample) in hits.iter_mut().zip(samples) {
-        let ray = sample_ray(world, &plane, settings, sample);
-        *hit = first_hit(world, settings, cone, &ray);
+    let mut rays = Vec::new();
+    CameraRays::default().of(world, &plane, settings, samples, &mut rays);
+    for (hit, ray) in hits.iter_mut().zip(&rays) {
+        *hit = first_hit(world, settings, cone, ray);
     }
 }
 

@@ -23,6 +23,7 @@
 //! distance in each coordinate: light and what is out of focus shift by that much, what is in focus stays sharp.
 
 pub mod camera;
+mod camera_rays;
 mod cut_out;
 mod digest;
 mod direct;
@@ -36,6 +37,7 @@ mod material;
 mod mipmap;
 mod near_lights;
 mod needs;
+mod numbers;
 mod probe;
 mod radiance;
 mod ray_tree;
@@ -43,12 +45,14 @@ mod recorder;
 mod sampler;
 mod scatter;
 pub mod shading;
+mod sobol;
 mod spot_cone;
 pub mod srgb;
 mod sun_disc;
 mod surface;
 mod texels;
 mod texture;
+mod vectors;
 mod world;
 
 pub use camera::{Camera, ImagePlane, Optics};

@@ -14,7 +14,7 @@
 //!
 //! The value of a sample does not depend on any of this.
 
-use super::radiance::Shadow;
+use super::direct::Shadow;
 use super::{Lights, ParallelogramLight, SegmentLight, Surface};
 use crate::scene::{Lighting, RenderSettings};
 use glam::{DVec3, Vec3};

@@ -4,9 +4,9 @@ use super::radiance::{Path, radiance_with};
 use super::ray_tree::{
     Crossing, LightSample, ProbedSample, RayEnd, RayHit, RayKind, RayTree, TracedRay,
 };
-use super::recorder::{LightKind, Recorder, Way};
+use super::recorder::{Adding, LitPoint, Recorder, Way};
 use super::shading::{cosines, reflected};
-use super::{Camera, LightPoint, SampleId, Surface, Workspace, World, samples_per_pixel};
+use super::{Camera, SampleId, Surface, Workspace, World, samples_per_pixel};
 use crate::bvh::{Counters, Hit, Ray};
 use crate::scene::{Lighting, RenderSettings};
 use glam::{UVec2, Vec3};
@@ -103,20 +103,10 @@ struct Recording<'a> {
     rays: Vec<TracedRay>,
     order: Vec<u32>,
     sample: u32,
-    /// Rays of this bounce's paths, of the next one's, and of this bounce's shadow rays.
+    /// Rays of this bounce's paths, of the next one's, and of this bounce's points of lights.
     paths: Vec<u32>,
     next: Vec<u32>,
-    shadows: Vec<u32>,
-    next_path: usize,
-    next_shadow: usize,
-    /// The path that is being shaded.
-    path: u32,
-    /// Whatever adds something next.
-    adding: u32,
-    light: (LightKind, u64),
-    place: [f32; 2],
-    /// Light samples that share the light; 0 where it is taken for a point.
-    count: u32,
+    points: Vec<u32>,
 }
 
 impl<'a> Recording<'a> {
@@ -129,14 +119,7 @@ impl<'a> Recording<'a> {
             sample: 0,
             paths: Vec::new(),
             next: Vec::new(),
-            shadows: Vec::new(),
-            next_path: 0,
-            next_shadow: 0,
-            path: 0,
-            adding: 0,
-            light: (LightKind::Point, 0),
-            place: [0.5; 2],
-            count: 0,
+            points: Vec::new(),
         }
     }
 
@@ -144,13 +127,11 @@ impl<'a> Recording<'a> {
         self.sample = sample;
         self.paths.clear();
         self.next.clear();
-        self.shadows.clear();
-        (self.next_path, self.next_shadow) = (0, 0);
+        self.points.clear();
     }
 
-    /// A ray that leaves the surface that is being shaded, or the camera.
-    fn push(&mut self, ray: &Ray, kind: RayKind, from_camera: bool) -> u32 {
-        let parent = (!from_camera).then_some(self.path);
+    /// A ray that leaves the surface which the `parent` met, or the camera.
+    fn push(&mut self, ray: &Ray, kind: RayKind, parent: Option<u32>) -> u32 {
         let before = parent.map(|parent| &self.rays[parent as usize]);
         let ray = TracedRay {
             sample: self.sample,
@@ -180,6 +161,19 @@ impl<'a> Recording<'a> {
         };
         self.rays.push(ray);
         self.rays.len() as u32 - 1
+    }
+
+    /// The ray of a path of this bounce, or to a point of a light.
+    fn number_of(&self, which: Adding) -> u32 {
+        match which {
+            Adding::Path(path) => self.paths[path as usize],
+            Adding::Light(point) => self.points[point as usize],
+        }
+    }
+
+    fn ray_of(&mut self, which: Adding) -> &mut TracedRay {
+        let number = self.number_of(which);
+        &mut self.rays[number as usize]
     }
 
     /// What is written down of a hit.
@@ -237,88 +231,76 @@ impl<'a> Recording<'a> {
 }
 
 impl Recorder for Recording<'_> {
-    fn camera_ray(&mut self, path: &Path) {
-        let ray = self.push(&ray_of(path), RayKind::Camera, true);
+    fn camera_ray(&mut self, ray: &Ray) {
+        let ray = self.push(ray, RayKind::Camera, None);
         self.paths.push(ray);
     }
 
     fn next_bounce(&mut self) {
         std::mem::swap(&mut self.paths, &mut self.next);
         self.next.clear();
-        self.shadows.clear();
-        (self.next_path, self.next_shadow) = (0, 0);
+        self.points.clear();
     }
 
-    fn next_path(&mut self) {
-        self.path = self.paths[self.next_path];
-        self.adding = self.path;
-        self.next_path += 1;
+    fn met_background(&mut self, path: u32, radiance: Vec3) {
+        self.ray_of(Adding::Path(path)).radiance = radiance;
     }
 
-    fn met_background(&mut self, radiance: Vec3) {
-        self.rays[self.path as usize].radiance = radiance;
-    }
-
-    fn met_light(&mut self, id: u64, t: f32, radiance: Vec3) {
-        let ray = &mut self.rays[self.path as usize];
+    fn met_light(&mut self, path: u32, id: u64, t: f32, radiance: Vec3) {
+        let ray = self.ray_of(Adding::Path(path));
         ray.end = RayEnd::Light;
         ray.t = t;
         ray.radiance = radiance;
         ray.met_light = Some(id);
     }
 
-    fn met_surface(&mut self, hit: &Hit, surface: &Surface) {
+    fn met_surface(&mut self, path: u32, hit: &Hit, surface: &Surface) {
         let hit = self.hit(hit, surface);
-        let ray = &mut self.rays[self.path as usize];
+        let ray = self.ray_of(Adding::Path(path));
         ray.end = RayEnd::Surface;
         ray.t = hit.t;
         ray.hit = Some(hit);
     }
 
-    fn shines(&mut self, radiance: Vec3) {
-        self.rays[self.path as usize].radiance = radiance;
+    fn shines(&mut self, path: u32, radiance: Vec3) {
+        self.ray_of(Adding::Path(path)).radiance = radiance;
     }
 
-    fn light(&mut self, kind: LightKind, id: u64) {
-        self.light = (kind, id);
-        self.place = [0.5; 2];
-        self.count = 0;
-    }
-
-    fn light_place(&mut self, place: [f32; 2], count: u32) {
-        self.place = place;
-        self.count = count;
-    }
-
-    fn light_sample(&mut self, surface: &Surface, point: &LightPoint) {
-        let kind = match self.count {
-            0 => RayKind::Shadow,
-            _ => RayKind::LightSample,
+    fn light_sample(&mut self, point: u32, lit: &LitPoint) {
+        let LitPoint {
+            surface,
+            point: of_light,
+            ..
+        } = *lit;
+        let kind = match lit.count {
+            None => RayKind::Shadow,
+            Some(_) => RayKind::LightSample,
         };
+        let parent = self.paths[lit.path as usize];
         let ray = Ray {
             origin: surface.point.position,
-            direction: point.direction,
-            t_max: point.distance,
-            time: self.rays[self.path as usize].time,
+            direction: of_light.direction,
+            t_max: of_light.distance,
+            time: self.rays[parent as usize].time,
         };
-        let index = self.push(&ray, kind, false);
+        let index = self.push(&ray, kind, Some(parent));
         let lighting = self.settings.lighting;
         let lights = match lighting {
             Lighting::Physical => 1,
             Lighting::Classic => self.world.lights.count().max(1),
         };
-        let count = self.count.max(1);
-        let [n_dot_l, r_dot_v] = cosines(surface, point.direction);
+        let count = lit.count.unwrap_or(1);
+        let [n_dot_l, r_dot_v] = cosines(surface, of_light.direction);
         let light = LightSample {
-            kind: self.light.0,
-            id: self.light.1,
-            place: self.place,
-            direction: point.direction,
-            distance: point.distance,
-            arriving: point.arriving,
+            kind: lit.kind,
+            id: lit.id,
+            place: lit.place,
+            direction: of_light.direction,
+            distance: of_light.distance,
+            arriving: of_light.arriving,
             n_dot_l,
             r_dot_v,
-            reflected: reflected(surface, point, lighting),
+            reflected: reflected(surface, &of_light, lighting),
         };
         let ray = &mut self.rays[index as usize];
         ray.light = Some(light);
@@ -326,29 +308,31 @@ impl Recorder for Recording<'_> {
         ray.count = count;
         ray.weight = Vec3::splat(surface.opacity / lights as f32 / count as f32);
         ray.transmittance = Vec3::ZERO;
-        self.adding = index;
+        // Those of which nothing comes have a number, too.
+        self.points.resize(point as usize, u32::MAX);
+        self.points.push(index);
     }
 
-    fn shadow_ray(&mut self, shadow: &Ray) {
-        let ray = &mut self.rays[self.adding as usize];
+    fn shadow_ray(&mut self, point: u32, shadow: &Ray) {
+        let ray = self.ray_of(Adding::Light(point));
         ray.origin = shadow.origin;
         ray.direction = shadow.direction;
         ray.t_max = shadow.t_max;
         ray.t = shadow.t_max;
         ray.end = RayEnd::Blocked;
-        self.shadows.push(self.adding);
     }
 
-    fn continued(&mut self, next: &Path, way: Way, count: u32, weight: f32) {
+    fn continued(&mut self, path: u32, ray: &Ray, next: &Path, way: Way, count: u32, weight: f32) {
         let kind = match way {
             Way::Mirror => RayKind::Mirror,
             Way::Gloss => RayKind::Gloss,
             Way::Straight => RayKind::Transmission,
             Way::Translucent => RayKind::Translucency,
         };
-        let index = self.push(&ray_of(next), kind, false);
+        let parent = self.paths[path as usize];
+        let index = self.push(ray, kind, Some(parent));
         let share = weight / count as f32;
-        let surface = self.rays[self.path as usize].hit;
+        let surface = self.rays[parent as usize].hit;
         let ray = &mut self.rays[index as usize];
         ray.count = count;
         ray.chance = 1.0 / weight;
@@ -362,14 +346,9 @@ impl Recorder for Recording<'_> {
         self.next.push(index);
     }
 
-    fn next_shadow(&mut self) {
-        self.adding = self.shadows[self.next_shadow];
-        self.next_shadow += 1;
-    }
-
-    fn crossed(&mut self, hit: &Hit, surface: &Surface) {
+    fn crossed(&mut self, point: u32, hit: &Hit, surface: &Surface) {
         let object = self.world.objects[hit.instance as usize].id;
-        self.rays[self.adding as usize].crossings.push(Crossing {
+        self.ray_of(Adding::Light(point)).crossings.push(Crossing {
             object,
             triangle: hit.triangle,
             t: hit.t,
@@ -378,8 +357,8 @@ impl Recorder for Recording<'_> {
         });
     }
 
-    fn arrived(&mut self, transmittance: Vec3) {
-        let ray = &mut self.rays[self.adding as usize];
+    fn arrived(&mut self, point: u32, transmittance: Vec3) {
+        let ray = self.ray_of(Adding::Light(point));
         ray.transmittance = transmittance;
         if transmittance != Vec3::ZERO {
             ray.end = RayEnd::Arrived;
@@ -389,8 +368,9 @@ impl Recorder for Recording<'_> {
             .map_or(Vec3::ZERO, |light| light.arriving * transmittance);
     }
 
-    fn added(&mut self, value: Vec3) {
-        let ray = &mut self.rays[self.adding as usize];
+    fn added(&mut self, by: Adding, value: Vec3) {
+        let number = self.number_of(by);
+        let ray = &mut self.rays[number as usize];
         if ray.end == RayEnd::Unlit {
             // Only what is not shadowed adds something without having been traced.
             ray.end = RayEnd::Unshadowed;
@@ -398,15 +378,6 @@ impl Recorder for Recording<'_> {
             ray.radiance = ray.light.map_or(Vec3::ZERO, |light| light.arriving);
         }
         ray.added += value;
-        self.order.push(self.adding);
-    }
-}
-
-fn ray_of(path: &Path) -> Ray {
-    Ray {
-        origin: path.origin,
-        direction: path.direction,
-        t_max: f32::INFINITY,
-        time: path.time,
+        self.order.push(number);
     }
 }

@@ -1,9 +1,20 @@
-//! The value of samples: a batch at a time, bounce by bounce.
+//! The value of samples: a batch at a time, bounce by bounce, stage by stage.
+//!
+//! ```text
+//! camera     samples  -> rays                         camera_rays
+//! nearest    rays     -> hits                         here
+//! vertices   hits     -> vertices, and what shines    here
+//! lights     vertices -> shadow rays, of one light    direct
+//!            what arrives -> values
+//! continue   vertices -> the next bounce's rays       scatter
+//! ```
 
+use super::camera_rays::CameraRays;
+use super::direct::ShadowRays;
 use super::near_lights::NearLights;
-use super::recorder::Recorder;
-use super::sampler::{Purpose, Sampler};
-use super::{Camera, Cone, ImagePlane, Surface, World};
+use super::recorder::{Adding, Recorder};
+use super::sampler::Sampler;
+use super::{Camera, Cone, Surface, World};
 use crate::bvh::{Hit, Ray};
 use crate::scene::{Lighting, RenderSettings};
 use glam::{UVec2, Vec3};
@@ -15,35 +26,6 @@ pub struct SampleId {
     pub pixel: UVec2,
     /// Counts the pixel's samples from 0.
     pub index: u64,
-}
-
-impl SampleId {
-    /// The random numbers of the sample's pixel.
-    pub(super) fn sampler(self, settings: &RenderSettings) -> Sampler {
-        let UVec2 { x, y } = self.pixel;
-        Sampler::new(x, y, settings.seed, settings.sequence).on_grid(settings.jitter)
-    }
-}
-
-/// The camera's ray of a sample: through its place in the pixel, from its place on the lens, at its
-/// shutter time where anything moves.
-pub(super) fn sample_ray(
-    world: &World,
-    plane: &ImagePlane,
-    settings: &RenderSettings,
-    sample: SampleId,
-) -> Ray {
-    let camera = plane.camera;
-    let SampleId { pixel, index } = sample;
-    let sampler = sample.sampler(settings);
-    let moves = settings.features.motion
-        && (camera.optics.velocity != Vec3::ZERO || world.needs.motion_samples > 0);
-    let time = if moves {
-        camera.time(sampler.block(index, Purpose::Time, 0)[0])
-    } else {
-        0.0
-    };
-    plane.sample_ray(pixel, index, sampler, settings.pixel, time)
 }
 
 /// Rays traced, by what they were for.
@@ -76,14 +58,15 @@ impl std::ops::AddAssign for RayCounts {
 /// have grown to their size. One per thread.
 #[derive(Default)]
 pub struct Workspace {
-    paths: Vec<Path>,
-    pub(super) next: Vec<Path>,
-    rays: Vec<Ray>,
+    camera_rays: CameraRays,
+    /// Of this bounce, and of the next one.
+    paths: Paths,
+    next: Paths,
     hits: Vec<Option<Hit>>,
-    pub(super) shadows: Vec<Shadow>,
-    pub(super) shadow_rays: Vec<Ray>,
-    pub(super) occluded: Vec<bool>,
-    pub(super) near_lights: NearLights,
+    behind: Behind,
+    vertices: Vec<Vertex>,
+    shadow_rays: ShadowRays,
+    near_lights: NearLights,
 }
 
 impl Workspace {
@@ -93,22 +76,48 @@ impl Workspace {
     pub fn deviations(&self) -> &[(u32, Vec3)] {
         self.near_lights.deviations()
     }
+}
 
-    /// Once it is known what is occluded.
-    pub(super) fn compare_near_lights(&mut self) {
-        self.near_lights.compare(&self.shadows, &self.occluded);
+/// Paths on their way: the next ray of each, and what is known of it besides.
+#[derive(Default)]
+pub(super) struct Paths {
+    pub rays: Vec<Ray>,
+    /// One for each ray; none where all of them leave the camera, and so have [`Path::from_camera`].
+    states: Vec<Path>,
+    /// Those that go straight on behind a hit of the same ray, in order.
+    straight: Vec<u32>,
+}
+
+impl Paths {
+    fn clear(&mut self) {
+        self.rays.clear();
+        self.states.clear();
+        self.straight.clear();
+    }
+
+    pub fn push(&mut self, ray: Ray, path: Path) {
+        if path.after.is_some() {
+            self.straight.push(self.rays.len() as u32);
+        }
+        self.rays.push(ray);
+        self.states.push(path);
+    }
+
+    fn get(&self, i: usize, cone: Cone) -> Path {
+        if self.states.is_empty() {
+            Path::from_camera(i as u32, cone)
+        } else {
+            self.states[i]
+        }
     }
 }
 
-/// A path on its way: its next ray, and what that ray's radiance will be multiplied by.
+/// What is known of a path besides its next ray.
 #[derive(Clone, Copy)]
 pub(super) struct Path {
-    pub origin: Vec3,
-    pub direction: Vec3,
+    /// What the ray's radiance will be multiplied by.
     pub throughput: Vec3,
     pub cone: Cone,
-    /// In the shutter's interval.
-    pub time: f32,
     /// Index into the batch.
     pub sample: u32,
     /// Names this path among those of its sample, for its random numbers: 0 from the camera on.
@@ -123,11 +132,37 @@ pub(super) struct Path {
     pub after: Option<Hit>,
 }
 
-/// What a shadow ray adds to which sample, if the light arrives.
-#[derive(Clone, Copy)]
-pub(super) struct Shadow {
-    pub sample: u32,
-    pub value: Vec3,
+impl Path {
+    fn from_camera(sample: u32, cone: Cone) -> Self {
+        Self {
+            throughput: Vec3::ONE,
+            cone,
+            sample,
+            name: 0,
+            bounces: 0,
+            scatterings: 0,
+            first: true,
+            after: None,
+        }
+    }
+}
+
+/// A hit that is shaded.
+pub(super) struct Vertex {
+    /// Number of the path in this bounce.
+    pub number: u32,
+    pub path: Path,
+    pub ray: Ray,
+    pub hit: Hit,
+    pub surface: Surface,
+}
+
+/// Rays that go on behind a hit are asked one by one, all others together: their numbers, the rays and what they hit.
+#[derive(Default)]
+struct Behind {
+    others: Vec<u32>,
+    rays: Vec<Ray>,
+    hits: Vec<Option<Hit>>,
 }
 
 /// A visible light that lies in a surface wins against it within this fraction of the distance:
@@ -164,32 +199,56 @@ pub(super) fn radiance_with<R: Recorder>(
 ) -> RayCounts {
     assert_eq!(samples.len(), values.len(), "one value for each sample");
     values.fill(Vec3::ZERO);
-    workspace.near_lights.begin(&world.lights, settings);
+    let Workspace {
+        camera_rays,
+        paths,
+        next,
+        hits,
+        behind,
+        vertices,
+        shadow_rays,
+        near_lights,
+    } = workspace;
+    near_lights.begin(&world.lights, settings);
+    let cone = Cone::of_pixel(camera, settings.size);
+    paths.clear();
+    let plane = camera.image_plane(settings.size);
+    camera_rays.of(world, &plane, settings, samples, &mut paths.rays);
     let mut batch = Batch {
         world,
         settings,
         samples,
+        pixels: camera_rays.asking().pixels(),
         values,
         counts: RayCounts::default(),
         recorder,
     };
-    batch.start(camera, workspace);
-    while !workspace.paths.is_empty() {
-        batch.trace(workspace);
-        batch.shade(workspace);
-        batch.add_arriving_light(workspace);
-        std::mem::swap(&mut workspace.paths, &mut workspace.next);
+    batch.counts.camera += samples.len() as u64;
+    for ray in &paths.rays {
+        batch.recorder.camera_ray(ray);
+    }
+    while !paths.rays.is_empty() {
+        batch.find_nearest(paths, hits, behind);
+        next.clear();
+        batch.find_vertices(paths, cone, hits, vertices, next);
+        if settings.features.shading {
+            batch.add_direct_light(vertices, shadow_rays, near_lights);
+        }
+        batch.continue_paths(vertices, next);
+        std::mem::swap(paths, next);
         batch.recorder.next_bounce();
     }
     batch.counts
 }
 
-/// What the steps of a batch share.
+/// What the stages of a batch share.
 pub(super) struct Batch<'a, R> {
     pub world: &'a World,
     pub settings: &'a RenderSettings,
-    samples: &'a [SampleId],
-    pub values: &'a mut [Vec3],
+    pub samples: &'a [SampleId],
+    /// Of each sample what its pixel's random numbers come from.
+    pub pixels: &'a [u32],
+    values: &'a mut [Vec3],
     pub counts: RayCounts,
     pub recorder: &'a mut R,
 }
@@ -197,119 +256,120 @@ pub(super) struct Batch<'a, R> {
 impl<R: Recorder> Batch<'_, R> {
     /// The random numbers of a sample of the batch, and its index in its pixel.
     pub(super) fn sampler(&self, sample: u32) -> (Sampler, u64) {
-        let sample = self.samples[sample as usize];
-        (sample.sampler(self.settings), sample.index)
-    }
-
-    /// One path per sample, at the camera.
-    fn start(&mut self, camera: &Camera, workspace: &mut Workspace) {
-        workspace.paths.clear();
-        let cone = Cone::of_pixel(camera, self.settings.size);
-        let plane = camera.image_plane(self.settings.size);
-        for (i, &sample) in self.samples.iter().enumerate() {
-            let ray = sample_ray(self.world, &plane, self.settings, sample);
-            let path = Path {
-                origin: ray.origin,
-                direction: ray.direction,
-                throughput: Vec3::ONE,
-                cone,
-                time: ray.time,
-                sample: i as u32,
-                name: 0,
-                bounces: 0,
-                scatterings: 0,
-                first: true,
-                after: None,
-            };
-            self.recorder.camera_ray(&path);
-            workspace.paths.push(path);
-        }
-        self.counts.camera += self.samples.len() as u64;
+        let RenderSettings {
+            sequence, jitter, ..
+        } = *self.settings;
+        let pixel = self.pixels[sample as usize];
+        let index = self.samples[sample as usize].index;
+        (Sampler::of_pixel(pixel, sequence, jitter), index)
     }
 
     /// What every path's ray hits.
-    fn trace(&self, workspace: &mut Workspace) {
+    fn find_nearest(&self, paths: &Paths, hits: &mut Vec<Option<Hit>>, behind: &mut Behind) {
         let aggregate = &self.world.aggregate;
-        workspace.rays.clear();
-        workspace
-            .rays
-            .extend(workspace.paths.iter().map(|path| Ray {
-                origin: path.origin,
-                direction: path.direction,
-                t_max: f32::INFINITY,
-                time: path.time,
-            }));
-        if workspace.paths.iter().all(|path| path.after.is_none()) {
-            aggregate.closest_hits(&workspace.rays, &mut workspace.hits);
+        if paths.straight.is_empty() {
+            aggregate.closest_hits(&paths.rays, hits);
             return;
         }
-        workspace.hits.clear();
-        for (path, ray) in workspace.paths.iter().zip(&workspace.rays) {
-            workspace.hits.push(match &path.after {
-                Some(after) => aggregate.next_crossing(ray, after),
-                None => aggregate.closest_hit(ray),
-            });
+        let is_straight = |i: usize| paths.states[i].after.is_some();
+        let others = (0..paths.rays.len()).filter(|&i| !is_straight(i));
+        behind.others.clear();
+        behind.others.extend(others.map(|i| i as u32));
+        behind.rays.clear();
+        behind
+            .rays
+            .extend(behind.others.iter().map(|&i| paths.rays[i as usize]));
+        aggregate.closest_hits(&behind.rays, &mut behind.hits);
+        hits.clear();
+        hits.resize(paths.rays.len(), None);
+        for (&i, hit) in behind.others.iter().zip(&behind.hits) {
+            hits[i as usize] = *hit;
+        }
+        for &i in &paths.straight {
+            let i = i as usize;
+            let after = &paths.states[i].after;
+            hits[i] = after.and_then(|after| aggregate.next_crossing(&paths.rays[i], &after));
         }
     }
 
-    /// Turns every hit into what it adds by itself, shadow rays, and the paths of the next bounce.
-    fn shade(&mut self, workspace: &mut Workspace) {
-        workspace.next.clear();
-        workspace.shadows.clear();
-        workspace.shadow_rays.clear();
-        // Taken out, so that the paths can be read while the rest is written; no array is lost.
-        let paths = std::mem::take(&mut workspace.paths);
-        let hits = std::mem::take(&mut workspace.hits);
-        let rays = std::mem::take(&mut workspace.rays);
-        for ((path, ray), hit) in paths.iter().zip(&rays).zip(&hits) {
-            self.recorder.next_path();
-            if let Some(light) = self.visible_light(path, hit.as_ref()) {
-                self.add(path.sample, path.throughput * light);
-            } else if let Some(hit) = hit {
-                let width = path.cone.width_at(hit.t);
-                let surface = Surface::at(self.world, self.settings, ray, width, hit);
-                self.recorder.met_surface(hit, &surface);
-                if surface.opacity == 0.0 {
-                    self.pass(path, hit, workspace);
-                } else {
-                    self.shade_surface(path, hit, &surface, workspace);
-                }
-            } else {
-                let background = self.background(path.direction);
-                self.recorder.met_background(background);
-                self.add(path.sample, path.throughput * background);
-            }
-        }
-        workspace.paths = paths;
-        workspace.hits = hits;
-        workspace.rays = rays;
-    }
-
-    fn shade_surface(
+    /// Turns every hit into a vertex, and adds what shines by itself: surfaces, visible lights and the background. Paths
+    /// that meet what is not there go on.
+    fn find_vertices(
         &mut self,
-        path: &Path,
-        hit: &Hit,
-        surface: &Surface,
-        workspace: &mut Workspace,
+        paths: &Paths,
+        cone: Cone,
+        hits: &[Option<Hit>],
+        vertices: &mut Vec<Vertex>,
+        next: &mut Paths,
     ) {
-        let opaque = path.throughput * surface.opacity;
-        if self.settings.features.shading {
-            if self.settings.lighting == Lighting::Physical {
-                self.recorder.shines(surface.opacity * surface.emission);
-                self.add(path.sample, opaque * surface.emission);
+        vertices.clear();
+        // Classic lights are nowhere to be seen, as in simple Phong ray tracers.
+        let lights_are_visible =
+            self.world.needs.visible_lights && self.settings.lighting == Lighting::Physical;
+        for (i, (ray, hit)) in paths.rays.iter().zip(hits).enumerate() {
+            let number = i as u32;
+            if hit.is_none() && !lights_are_visible && paths.states.is_empty() {
+                // Most rays of most pictures.
+                let background = self.background(ray.direction);
+                self.recorder.met_background(number, background);
+                self.add(number, Adding::Path(number), background);
+                continue;
             }
-            self.gather_direct_light(path, surface, opaque, workspace);
-            self.continue_paths(path, hit, surface, workspace);
-        } else {
-            self.recorder.shines(surface.opacity * surface.diffuse);
-            self.add(path.sample, opaque * surface.diffuse);
-            self.transmit(path, hit, surface, 1.0, workspace);
+            let path = paths.get(i, cone);
+            if lights_are_visible
+                && let Some((id, t, light)) = self.visible_light(&path, ray, hit.as_ref())
+            {
+                self.recorder.met_light(number, id, t, light);
+                self.add(path.sample, Adding::Path(number), path.throughput * light);
+                continue;
+            }
+            let Some(hit) = *hit else {
+                let background = self.background(ray.direction);
+                self.recorder.met_background(number, background);
+                let value = path.throughput * background;
+                self.add(path.sample, Adding::Path(number), value);
+                continue;
+            };
+            let width = path.cone.width_at(hit.t);
+            let surface = Surface::at(self.world, self.settings, ray, width, &hit);
+            self.recorder.met_surface(number, &hit, &surface);
+            let vertex = Vertex {
+                number,
+                path,
+                ray: *ray,
+                hit,
+                surface,
+            };
+            if vertex.surface.opacity == 0.0 {
+                self.pass(&vertex, next);
+                continue;
+            }
+            self.add_emission(&vertex);
+            vertices.push(vertex);
         }
     }
 
-    pub(super) fn add(&mut self, sample: u32, value: Vec3) {
+    /// What a surface sends back by itself: its emission, or kd where shading is off.
+    fn add_emission(&mut self, vertex: &Vertex) {
+        let Vertex {
+            number,
+            path,
+            surface,
+            ..
+        } = vertex;
+        let radiance = match (self.settings.features.shading, self.settings.lighting) {
+            (false, _) => surface.diffuse,
+            (true, Lighting::Physical) => surface.emission,
+            (true, Lighting::Classic) => return,
+        };
+        self.recorder.shines(*number, surface.opacity * radiance);
+        let value = path.throughput * surface.opacity * radiance;
+        self.add(path.sample, Adding::Path(*number), value);
+    }
+
+    pub(super) fn add(&mut self, sample: u32, by: Adding, value: Vec3) {
         self.values[sample as usize] += value;
-        self.recorder.added(value);
+        self.recorder.added(by, value);
     }
 
     fn background(&self, direction: Vec3) -> Vec3 {
@@ -320,28 +380,22 @@ impl<R: Recorder> Batch<'_, R> {
         }
     }
 
-    /// Radiance of the nearest visible light that the path's ray meets before its hit.
-    fn visible_light(&mut self, path: &Path, hit: Option<&Hit>) -> Option<Vec3> {
-        // Classic lights are nowhere to be seen, as in simple Phong ray tracers.
-        if !self.world.needs.visible_lights || self.settings.lighting == Lighting::Classic {
-            return None;
-        }
+    /// The nearest visible light that a path's ray meets before its hit: its id, where, and its radiance.
+    fn visible_light(&self, path: &Path, ray: &Ray, hit: Option<&Hit>) -> Option<(u64, f32, Vec3)> {
         let behind = path.after.map_or(0.0, |hit| hit.t);
         let mut nearest = hit.map_or(f32::INFINITY, |hit| hit.t * LIGHT_BEFORE_SURFACE);
         let mut met = None;
         let lights = &self.world.lights;
         for light in lights.parallelograms.iter().filter(|l| l.visible) {
-            let origin = lights.in_rest_frame(light.id, path.origin, path.time);
-            if let Some((t, value)) = light.meet(origin, path.direction)
+            let origin = lights.in_rest_frame(light.id, ray.origin, ray.time);
+            if let Some((t, radiance)) = light.meet(origin, ray.direction)
                 && t > behind
                 && t < nearest
             {
                 nearest = t;
-                met = Some((light.id, value));
+                met = Some((light.id, t, radiance));
             }
         }
-        let (id, radiance) = met?;
-        self.recorder.met_light(id, nearest, radiance);
-        Some(radiance)
+        met
     }
 }

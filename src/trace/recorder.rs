@@ -26,59 +26,79 @@ pub(super) enum Way {
     Translucent,
 }
 
-/// Told of every ray and of everything that is added to a sample. Every method has an empty body, so
-/// that a batch without a recorder is the same code as one that knows none.
+/// Whatever adds a value to a sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Adding {
+    /// The path with this number of the bounce.
+    Path(u32),
+    /// The light's point with this number of the bounce.
+    Light(u32),
+}
+
+/// A point of a light, as a surface sees it.
+pub(super) struct LitPoint<'a> {
+    /// Number of the path that met the surface.
+    pub path: u32,
+    pub kind: LightKind,
+    pub id: u64,
+    /// Where on the light, in [0, 1]².
+    pub place: [f32; 2],
+    /// How many such points share the light; `None` where it is taken for a single point.
+    pub count: Option<u32>,
+    pub surface: &'a Surface,
+    pub point: LightPoint,
+}
+
+/// Told of every ray and of everything that is added to a sample. Paths have their numbers in the bounce, in the order in
+/// which they were continued; points of lights have theirs. Every method has an empty body, so that a batch without a
+/// recorder is the same code as one that knows none.
 pub(super) trait Recorder {
-    /// A path starts at the camera.
+    /// The next path starts at the camera.
     #[inline(always)]
-    fn camera_ray(&mut self, _path: &Path) {}
+    fn camera_ray(&mut self, _ray: &Ray) {}
     /// The paths that were continued are traced next.
     #[inline(always)]
     fn next_bounce(&mut self) {}
-    /// The next path of this bounce is being shaded.
+    /// A path met nothing.
     #[inline(always)]
-    fn next_path(&mut self) {}
-    /// It met nothing.
-    #[inline(always)]
-    fn met_background(&mut self, _radiance: Vec3) {}
+    fn met_background(&mut self, _path: u32, _radiance: Vec3) {}
     /// It met a visible light at `t`.
     #[inline(always)]
-    fn met_light(&mut self, _id: u64, _t: f32, _radiance: Vec3) {}
+    fn met_light(&mut self, _path: u32, _id: u64, _t: f32, _radiance: Vec3) {}
     /// It met a surface.
     #[inline(always)]
-    fn met_surface(&mut self, _hit: &Hit, _surface: &Surface) {}
+    fn met_surface(&mut self, _path: u32, _hit: &Hit, _surface: &Surface) {}
     /// Radiance that the surface sends back by itself: its emission, or kd where shading is off.
     #[inline(always)]
-    fn shines(&mut self, _radiance: Vec3) {}
-    /// The following light samples are of this light, of its middle.
+    fn shines(&mut self, _path: u32, _radiance: Vec3) {}
+    /// A point of a light that may shine on a surface.
     #[inline(always)]
-    fn light(&mut self, _kind: LightKind, _id: u64) {}
-    /// The following light sample is of this place of the light, one of `count`.
+    fn light_sample(&mut self, _point: u32, _lit: &LitPoint) {}
+    /// It gets a shadow ray.
     #[inline(always)]
-    fn light_place(&mut self, _place: [f32; 2], _count: u32) {}
-    /// A point of a light, as the surface sees it.
-    #[inline(always)]
-    fn light_sample(&mut self, _surface: &Surface, _point: &LightPoint) {}
-    /// The light sample gets a shadow ray.
-    #[inline(always)]
-    fn shadow_ray(&mut self, _ray: &Ray) {}
-    /// The path goes on as `next`, one of `count` that share what arrives; `weight` is one over the
-    /// probability with which this way was taken.
-    #[inline(always)]
-    fn continued(&mut self, _next: &Path, _way: Way, _count: u32, _weight: f32) {}
-    /// The next shadow ray of this bounce is being traced.
-    #[inline(always)]
-    fn next_shadow(&mut self) {}
+    fn shadow_ray(&mut self, _point: u32, _ray: &Ray) {}
     /// The shadow ray crosses a surface that may let light through.
     #[inline(always)]
-    fn crossed(&mut self, _hit: &Hit, _surface: &Surface) {}
+    fn crossed(&mut self, _point: u32, _hit: &Hit, _surface: &Surface) {}
     /// That part of the light arrives. Not called where a shadow ray is blocked outright.
     #[inline(always)]
-    fn arrived(&mut self, _transmittance: Vec3) {}
-    /// A value was added to a sample: by the path that is being shaded, by its last light sample, or
-    /// by the shadow ray that is being traced.
+    fn arrived(&mut self, _point: u32, _transmittance: Vec3) {}
+    /// The path goes on as `next` along `ray`, one of `count` that share what arrives; `weight` is one over the
+    /// probability with which this way was taken.
     #[inline(always)]
-    fn added(&mut self, _value: Vec3) {}
+    fn continued(
+        &mut self,
+        _path: u32,
+        _ray: &Ray,
+        _next: &Path,
+        _way: Way,
+        _count: u32,
+        _weight: f32,
+    ) {
+    }
+    /// A value was added to a sample.
+    #[inline(always)]
+    fn added(&mut self, _by: Adding, _value: Vec3) {}
 }
 
 impl Recorder for () {}

@@ -1,3 +1,4 @@
+use super::sobol::LENGTH_BITS;
 use crate::scene::Sequence;
 use sobol_burley::sample_4d;
 
@@ -33,7 +34,7 @@ pub enum Purpose {
 }
 
 impl Purpose {
-    fn key(self) -> u32 {
+    pub(super) fn key(self) -> u32 {
         match self {
             Self::Camera => 1,
             Self::Time => 2,
@@ -45,25 +46,25 @@ impl Purpose {
     }
 }
 
-/// The sequence is 2^16 points long; a longer run goes on with another scrambling.
-const LENGTH_BITS: u32 = 16;
-
 impl Sampler {
     /// The numbers of pixel (x, y) under `seed`.
     pub fn new(x: u32, y: u32, seed: u32, sequence: Sequence) -> Self {
+        Self::of_pixel(pixel_seed(seed, x, y), sequence, 1)
+    }
+
+    /// The numbers of the pixel with that [`pixel_seed`], those of [`Sequence::Jittered`] in the cells of a grid of
+    /// `side` × `side`.
+    pub(super) fn of_pixel(seed: u32, sequence: Sequence, side: u32) -> Self {
         Self {
-            seed: mix(mix(mix(0x9e37_79b9, seed), x), y),
+            seed,
             sequence,
-            side: 1,
+            side: side.clamp(1, 1 << 12),
         }
     }
 
     /// The same numbers, those of [`Sequence::Jittered`] in the cells of a grid of `side` × `side`.
     pub fn on_grid(self, side: u32) -> Self {
-        Self {
-            side: side.clamp(1, 1 << 12),
-            ..self
-        }
+        Self::of_pixel(self.seed, self.sequence, side)
     }
 
     /// Four numbers in [0, 1): point `index` of the block for `purpose` on the path `path`
@@ -81,6 +82,12 @@ impl Sampler {
         }
         sample_4d((index & ((1 << LENGTH_BITS) - 1)) as u32, 0, seed)
     }
+}
+
+/// What all numbers of pixel (x, y) come from, under the picture's `seed`.
+#[inline(always)]
+pub(super) fn pixel_seed(seed: u32, x: u32, y: u32) -> u32 {
+    mix(mix(mix(0x9e37_79b9, seed), x), y)
 }
 
 /// Random numbers.
@@ -126,6 +133,7 @@ fn shuffled(mut i: u32, count: u32, seed: u32) -> u32 {
 
 /// Mixes `value` into `state`: one round of MurmurHash3's finaliser (Appleby, public domain), whose
 /// every output bit depends on every input bit.
+#[inline(always)]
 pub(super) fn mix(state: u32, value: u32) -> u32 {
     let mut h = state
         ^ value

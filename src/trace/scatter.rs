@@ -1,11 +1,10 @@
 //! How paths go on: mirrors, glossy reflections, transparency and translucency.
 
-use super::Surface;
 use super::disc::offset_direction;
-use super::radiance::{Batch, Path, Workspace};
+use super::radiance::{Batch, Path, Paths, Vertex};
 use super::recorder::{Recorder, Way};
 use super::sampler::{Purpose, mix};
-use crate::bvh::Hit;
+use crate::bvh::Ray;
 use glam::Vec3;
 
 /// A path that both reflects and transmits goes on as two while its largest throughput exceeds
@@ -17,64 +16,58 @@ const SPLIT_ABOVE: f32 = 0.125;
 const MAX_SCATTERINGS: u32 = 256;
 
 impl<R: Recorder> Batch<'_, R> {
-    /// Adds the paths that leave a hit: what it reflects and what it lets through.
-    pub(super) fn continue_paths(
-        &mut self,
-        path: &Path,
-        hit: &Hit,
-        surface: &Surface,
-        workspace: &mut Workspace,
-    ) {
+    /// Adds the paths that leave the vertices: what each reflects and what it lets through.
+    pub(super) fn continue_paths(&mut self, vertices: &[Vertex], next: &mut Paths) {
         let settings = self.settings;
-        let mirrors = settings.features.mirrors && path.bounces < settings.max_depth;
-        let reflects = if mirrors {
-            (path.throughput * surface.opacity * surface.specular).max_element()
-        } else {
-            0.0
-        };
-        let transmits = (path.throughput * (1.0 - surface.opacity)).max_element();
-        if reflects > 0.0 && transmits > 0.0 && path.throughput.max_element() <= SPLIT_ABOVE {
-            let (sampler, index) = self.sampler(path.sample);
-            let u = sampler.block(index, Purpose::Branch, path.name)[0];
-            let share = reflects / (reflects + transmits);
-            if u < share {
-                self.reflect(path, hit, surface, 1.0 / share, workspace);
-            } else {
-                self.transmit(path, hit, surface, 1.0 / (1.0 - share), workspace);
+        for vertex in vertices {
+            if !settings.features.shading {
+                self.transmit(vertex, 1.0, next);
+                continue;
             }
-            return;
+            let Vertex { path, surface, .. } = vertex;
+            let mirrors = settings.features.mirrors && path.bounces < settings.max_depth;
+            let reflects = if mirrors {
+                (path.throughput * surface.opacity * surface.specular).max_element()
+            } else {
+                0.0
+            };
+            let transmits = (path.throughput * (1.0 - surface.opacity)).max_element();
+            if reflects > 0.0 && transmits > 0.0 && path.throughput.max_element() <= SPLIT_ABOVE {
+                let (sampler, index) = self.sampler(path.sample);
+                let u = sampler.block(index, Purpose::Branch, path.name)[0];
+                let share = reflects / (reflects + transmits);
+                if u < share {
+                    self.reflect(vertex, 1.0 / share, next);
+                } else {
+                    self.transmit(vertex, 1.0 / (1.0 - share), next);
+                }
+                continue;
+            }
+            if reflects > 0.0 {
+                self.reflect(vertex, 1.0, next);
+            }
+            self.transmit(vertex, 1.0, next);
         }
-        if reflects > 0.0 {
-            self.reflect(path, hit, surface, 1.0, workspace);
-        }
-        self.transmit(path, hit, surface, 1.0, workspace);
     }
 
     /// The same path goes on behind a surface that is not there: it is no first hit, scatters nothing and names no path,
     /// so that the picture is the one without it, bit for bit.
-    pub(super) fn pass(&mut self, path: &Path, hit: &Hit, workspace: &mut Workspace) {
-        let next = Path {
-            after: Some(*hit),
-            ..*path
+    pub(super) fn pass(&mut self, vertex: &Vertex, next: &mut Paths) {
+        let path = Path {
+            after: Some(vertex.hit),
+            ..vertex.path
         };
-        self.recorder.continued(&next, Way::Straight, 1, 1.0);
-        workspace.next.push(next);
+        self.go_on(vertex, vertex.ray, path, Way::Straight, 1, 1.0, next);
         self.counts.transmission += 1;
     }
 
-    fn reflect(
-        &mut self,
-        path: &Path,
-        hit: &Hit,
-        surface: &Surface,
-        weight: f32,
-        workspace: &mut Workspace,
-    ) {
+    fn reflect(&mut self, vertex: &Vertex, weight: f32, next: &mut Paths) {
+        let Vertex {
+            path, surface, hit, ..
+        } = vertex;
         let throughput = path.throughput * surface.specular * (surface.opacity * weight);
-        let origin = self
-            .world
-            .aggregate
-            .leave(&surface.point, surface.geometric_normal);
+        let aggregate = &self.world.aggregate;
+        let origin = aggregate.leave(&surface.point, surface.geometric_normal);
         let mirrored = surface.mirrored();
         let glossy = self.settings.features.glossy;
         let count = if glossy && path.first {
@@ -91,13 +84,10 @@ impl<R: Recorder> Batch<'_, R> {
             } else {
                 mirrored
             };
-            let next = Path {
-                origin,
-                direction,
+            let spread = if glossy { 1.0 / surface.shininess } else { 0.0 };
+            let path = Path {
                 throughput: throughput / count as f32,
-                cone: path
-                    .cone
-                    .reflected(hit.t, if glossy { 1.0 / surface.shininess } else { 0.0 }),
+                cone: path.cone.reflected(hit.t, spread),
                 name: child(path.name, 1, i),
                 bounces: path.bounces + 1,
                 first: false,
@@ -105,21 +95,17 @@ impl<R: Recorder> Batch<'_, R> {
                 ..*path
             };
             let way = if glossy { Way::Gloss } else { Way::Mirror };
-            self.recorder.continued(&next, way, count, weight);
-            workspace.next.push(next);
+            let ray = spawned(origin, direction, vertex.ray.time);
+            self.go_on(vertex, ray, path, way, count, weight, next);
         }
         self.counts.mirror += u64::from(count);
     }
 
     /// Adds the path through the surface, if it lets anything through; `weight` corrects for chance.
-    pub(super) fn transmit(
-        &mut self,
-        path: &Path,
-        hit: &Hit,
-        surface: &Surface,
-        weight: f32,
-        workspace: &mut Workspace,
-    ) {
+    fn transmit(&mut self, vertex: &Vertex, weight: f32, next: &mut Paths) {
+        let Vertex {
+            path, surface, hit, ..
+        } = vertex;
         let throughput = path.throughput * ((1.0 - surface.opacity) * weight);
         if throughput == Vec3::ZERO {
             return;
@@ -127,15 +113,14 @@ impl<R: Recorder> Batch<'_, R> {
         if !self.settings.features.translucency {
             // The same ray, from behind its hit: nothing is spawned, so no layer is met twice or
             // missed, however thin.
-            let next = Path {
+            let path = Path {
                 throughput,
                 name: child(path.name, 2, 0),
                 first: false,
                 after: Some(*hit),
                 ..*path
             };
-            self.recorder.continued(&next, Way::Straight, 1, weight);
-            workspace.next.push(next);
+            self.go_on(vertex, vertex.ray, path, Way::Straight, 1, weight, next);
             self.counts.transmission += 1;
             return;
         }
@@ -154,9 +139,7 @@ impl<R: Recorder> Batch<'_, R> {
             let u = self.numbers(path, Purpose::Translucency, count, i);
             let radius = 1.0 / surface.shininess;
             let direction = offset_direction(straight, far_side, radius, u).unwrap_or(straight);
-            let next = Path {
-                origin,
-                direction,
+            let path = Path {
                 throughput: throughput / count as f32,
                 cone: path.cone.reflected(hit.t, 1.0 / surface.shininess),
                 name: child(path.name, 2, i),
@@ -165,11 +148,28 @@ impl<R: Recorder> Batch<'_, R> {
                 after: None,
                 ..*path
             };
-            self.recorder
-                .continued(&next, Way::Translucent, count, weight);
-            workspace.next.push(next);
+            let ray = spawned(origin, direction, vertex.ray.time);
+            self.go_on(vertex, ray, path, Way::Translucent, count, weight, next);
         }
         self.counts.transmission += u64::from(count);
+    }
+
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "where from, what, and how it is counted"
+    )]
+    fn go_on(
+        &mut self,
+        from: &Vertex,
+        ray: Ray,
+        path: Path,
+        way: Way,
+        count: u32,
+        weight: f32,
+        next: &mut Paths,
+    ) {
+        (self.recorder).continued(from.number, &ray, &path, way, count, weight);
+        next.push(ray, path);
     }
 
     /// Two numbers for ray `i` of `count` at this hit, stratified over all samples of the pixel.
@@ -178,6 +178,16 @@ impl<R: Recorder> Batch<'_, R> {
         let index = index * u64::from(count) + u64::from(i);
         let [u, v, ..] = sampler.block(index, purpose, path.name);
         [u, v]
+    }
+}
+
+/// A ray that starts at a surface.
+fn spawned(origin: Vec3, direction: Vec3, time: f32) -> Ray {
+    Ray {
+        origin,
+        direction,
+        t_max: f32::INFINITY,
+        time,
     }
 }
 
