@@ -5,6 +5,7 @@ use std::slice;
 
 use super::{
     Aggregate,
+    order::Order,
     ray::{Hit, Ray},
     safe_ray::SafeRay,
 };
@@ -24,6 +25,12 @@ impl Aggregate {
         self.ask_closest(rays, hits);
     }
 
+    /// The nearest hit of every ray, in their order, which is told. `hits` is cleared first. The order only matters for
+    /// the time that it takes.
+    pub fn closest_hits_in(&self, _order: Order, rays: &[Ray], hits: &mut Vec<Option<Hit>>) {
+        self.closest_hits(rays, hits);
+    }
+
     /// Whether anything is hit in `0 < t < t_max`.
     pub fn occluded(&self, ray: &Ray) -> bool {
         let mut occluded = false;
@@ -36,6 +43,12 @@ impl Aggregate {
         occluded.clear();
         occluded.resize(rays.len(), false);
         self.ask_any(rays, occluded);
+    }
+
+    /// Whether each ray is occluded, in their order, which is told. `occluded` is cleared first. The order only matters
+    /// for the time that it takes.
+    pub fn occlusions_in(&self, _order: Order, rays: &[Ray], occluded: &mut Vec<bool>) {
+        self.occlusions(rays, occluded);
     }
 
     /// The next hit behind `after`, a hit of the same ray: the ray goes straight on through what it met, and meets every
