@@ -1,10 +1,13 @@
 //! How the wide trees of an aggregate hang together, and the questions that are compiled for each way apart: what a
 //! scene does not have costs nothing, not even the registers.
 
+use std::marker::PhantomData;
+
 #[cfg(test)]
 use super::wide::Portable;
 use super::{
     aggregate::{Aggregate, Places},
+    goal::{Any, Goal, Nearest},
     mesh_tree::{MeshTree, ObjectRay},
     queries::Best,
     ray::{Hit, Ray},
@@ -22,7 +25,7 @@ pub(super) trait Arrangement: Copy {
 
     /// Hands the hits on the ray whose `t` is not beyond the limit to `at(hit, limit)`, which returns the new limit, or
     /// [`STOP`]. `t` is the [`SafeRay`]'s. The order is that of [`walk`].
-    fn each_hit<E: Eight, const NEAREST_FIRST: bool>(
+    fn each_hit<E: Eight, G: Goal>(
         self,
         ray: &SafeRay,
         stack: &mut [u64],
@@ -60,16 +63,12 @@ impl Aggregate {
 
     /// Sets those of `occluded`, all false before, whose rays hit anything.
     pub(super) fn ask_any(&self, rays: &[Ray], occluded: &mut [bool]) {
-        arranged!(self, of => answer(Any { of, rays, occluded }));
+        arranged!(self, of => answer(AnyOf { of, rays, occluded }));
     }
 
     /// [`Arrangement::each_hit`].
-    pub(super) fn ask_every<const NEAREST_FIRST: bool>(
-        &self,
-        ray: &SafeRay,
-        at: impl FnMut(Hit, f32) -> f32,
-    ) {
-        arranged!(self, of => answer(Every::<_, _, NEAREST_FIRST> { of, ray, at }));
+    pub(super) fn ask_every<G: Goal>(&self, ray: &SafeRay, at: impl FnMut(Hit, f32) -> f32) {
+        arranged!(self, of => answer(Every::<_, _, G> { of, ray, at, goal: PhantomData }));
     }
 }
 
@@ -81,7 +80,7 @@ impl Aggregate {
         let (hits, occluded) = (all_hits.as_mut_slice(), all_occluded.as_mut_slice());
         arranged!(self, of => {
             Closest { of, rays, hits }.ask::<Portable>();
-            Any { of, rays, occluded }.ask::<Portable>();
+            AnyOf { of, rays, occluded }.ask::<Portable>();
         });
         (all_hits, all_occluded)
     }
@@ -119,7 +118,7 @@ impl<Of: Arrangement> Query for Closest<'_, Of> {
             if let Some(ray) = SafeRay::new(ray) {
                 let mut best = Best::NONE;
                 let offer = |hit, limit| best.offer(hit, limit);
-                self.of.each_hit::<E, true>(&ray, stack, offer);
+                self.of.each_hit::<E, Nearest>(&ray, stack, offer);
                 *closest = best.found(&ray);
             }
         }
@@ -127,13 +126,13 @@ impl<Of: Arrangement> Query for Closest<'_, Of> {
 }
 
 /// Whether each ray hits anything.
-struct Any<'a, Of> {
+struct AnyOf<'a, Of> {
     of: Of,
     rays: &'a [Ray],
     occluded: &'a mut [bool],
 }
 
-impl<Of: Arrangement> Query for Any<'_, Of> {
+impl<Of: Arrangement> Query for AnyOf<'_, Of> {
     type Answer = ();
 
     #[inline(always)]
@@ -141,7 +140,7 @@ impl<Of: Arrangement> Query for Any<'_, Of> {
         stack_for!(self.of, stack);
         for (ray, occluded) in self.rays.iter().zip(self.occluded) {
             if let Some(ray) = SafeRay::new(ray) {
-                self.of.each_hit::<E, false>(&ray, stack, |_, _| {
+                self.of.each_hit::<E, Any>(&ray, stack, |_, _| {
                     *occluded = true;
                     STOP
                 });
@@ -151,14 +150,16 @@ impl<Of: Arrangement> Query for Any<'_, Of> {
 }
 
 /// Every hit of one ray up to a limit that may shrink.
-struct Every<'a, Of, At, const NEAREST_FIRST: bool> {
+struct Every<'a, Of, At, G> {
     of: Of,
     ray: &'a SafeRay,
     at: At,
+    goal: PhantomData<G>,
 }
 
-impl<Of, At, const NEAREST_FIRST: bool> Query for Every<'_, Of, At, NEAREST_FIRST>
+impl<Of, At, G> Query for Every<'_, Of, At, G>
 where
+    G: Goal,
     Of: Arrangement,
     At: FnMut(Hit, f32) -> f32,
 {
@@ -167,7 +168,7 @@ where
     #[inline(always)]
     fn ask<E: Eight>(self) {
         stack_for!(self.of, stack);
-        (self.of).each_hit::<E, NEAREST_FIRST>(self.ray, stack, self.at);
+        (self.of).each_hit::<E, G>(self.ray, stack, self.at);
     }
 }
 
@@ -205,7 +206,7 @@ impl Arrangement for OneMesh<'_> {
     }
 
     #[inline(always)]
-    fn each_hit<E: Eight, const NEAREST_FIRST: bool>(
+    fn each_hit<E: Eight, G: Goal>(
         self,
         ray: &SafeRay,
         stack: &mut [u64],
@@ -213,7 +214,7 @@ impl Arrangement for OneMesh<'_> {
     ) {
         let at = |triangle, crossing, limit| offer(ray, (0, triangle), crossing, limit, &mut at);
         let span = (ray.start, ray.end);
-        (self.0).walk_wide::<E, NEAREST_FIRST>(&ray.world, stack, span, at);
+        (self.0).walk_wide::<E, G>(&ray.world, stack, span, at);
     }
 }
 
@@ -228,21 +229,22 @@ impl Arrangement for TwoLevels<'_> {
     }
 
     #[inline(always)]
-    fn each_hit<E: Eight, const NEAREST_FIRST: bool>(
+    fn each_hit<E: Eight, G: Goal>(
         self,
         ray: &SafeRay,
         stack: &mut [u64],
         at: impl FnMut(Hit, f32) -> f32,
     ) {
         let Self(scene, places) = self;
-        let mut leaves = InstanceLeaves::<_, NEAREST_FIRST> {
+        let mut leaves = InstanceLeaves::<_, G> {
             scene,
             places,
             ray,
             at,
+            goal: PhantomData,
         };
         let top = WideRay::new(&scene.top_slab(&ray.world), ray.start);
-        walk::<E, NEAREST_FIRST>(&scene.wide, stack, &top, ray.end, &mut leaves);
+        walk::<E, G>(&scene.wide, stack, &top, ray.end, &mut leaves);
     }
 }
 
@@ -257,21 +259,22 @@ impl Arrangement for OneLevel<'_> {
     }
 
     #[inline(always)]
-    fn each_hit<E: Eight, const NEAREST_FIRST: bool>(
+    fn each_hit<E: Eight, G: Goal>(
         self,
         ray: &SafeRay,
         stack: &mut [u64],
         at: impl FnMut(Hit, f32) -> f32,
     ) {
         let scene = self.0;
-        let mut leaves = FlatLeaves {
+        let mut leaves = FlatLeaves::<_, G> {
             scene,
             ray,
             last: None,
             at,
+            goal: PhantomData,
         };
         let top = WideRay::new(&scene.top_slab(&ray.world), ray.start);
-        walk::<E, NEAREST_FIRST>(&scene.wide, stack, &top, ray.end, &mut leaves);
+        walk::<E, G>(&scene.wide, stack, &top, ray.end, &mut leaves);
     }
 }
 
@@ -306,16 +309,15 @@ impl Aggregate {
 }
 
 /// Two levels: a leaf of the top tree is an instance, or several where they could not be told apart.
-struct InstanceLeaves<'a, At, const NEAREST_FIRST: bool> {
+struct InstanceLeaves<'a, At, G> {
+    goal: PhantomData<G>,
     scene: &'a Aggregate,
     places: &'a [u32],
     ray: &'a SafeRay,
     at: At,
 }
 
-impl<E: Eight, At: FnMut(Hit, f32) -> f32, const NEAREST_FIRST: bool> Leaves<E>
-    for InstanceLeaves<'_, At, NEAREST_FIRST>
-{
+impl<E: Eight, At: FnMut(Hit, f32) -> f32, G: Goal> Leaves<E> for InstanceLeaves<'_, At, G> {
     #[inline(always)]
     fn visit(&mut self, leaf: u32, mut limit: f32, stack: &mut [u64]) -> f32 {
         let ray = self.ray;
@@ -329,7 +331,7 @@ impl<E: Eight, At: FnMut(Hit, f32) -> f32, const NEAREST_FIRST: bool> Leaves<E>
             };
             let mesh = &instance.mesh;
             let span = (ray.start, limit);
-            limit = mesh.walk_wide::<E, NEAREST_FIRST>(&object, stack, span, at);
+            limit = mesh.walk_wide::<E, G>(&object, stack, span, at);
             if limit == STOP {
                 break;
             }
@@ -339,14 +341,15 @@ impl<E: Eight, At: FnMut(Hit, f32) -> f32, const NEAREST_FIRST: bool> Leaves<E>
 }
 
 /// One level: a leaf of the tree is blocks of triangles, each of one instance.
-struct FlatLeaves<'a, At> {
+struct FlatLeaves<'a, At, G> {
+    goal: PhantomData<G>,
     scene: &'a Aggregate,
     ray: &'a SafeRay,
     last: Option<(u32, Option<(ObjectRay, Shear)>)>,
     at: At,
 }
 
-impl<E: Eight, At: FnMut(Hit, f32) -> f32> Leaves<E> for FlatLeaves<'_, At> {
+impl<E: Eight, At: FnMut(Hit, f32) -> f32, G: Goal> Leaves<E> for FlatLeaves<'_, At, G> {
     #[inline(always)]
     fn visit(&mut self, leaf: u32, mut limit: f32, _: &mut [u64]) -> f32 {
         let (scene, ray) = (self.scene, self.ray);
@@ -355,10 +358,11 @@ impl<E: Eight, At: FnMut(Hit, f32) -> f32> Leaves<E> for FlatLeaves<'_, At> {
             let Some((object, shear)) = scene.object_ray(ray, number, &mut self.last) else {
                 continue;
             };
+            let reach = scene.instances()[number as usize].mesh.reach();
             let mut at = |triangle, crossing, limit| {
                 offer(ray, (number, triangle), crossing, limit, &mut self.at)
             };
-            limit = scene.blocks[block].cross::<E>(shear, &object.slab, limit, &mut at);
+            limit = scene.blocks[block].cross::<E, G>(shear, &object.slab, reach, limit, &mut at);
             if limit == STOP {
                 break;
             }

@@ -42,6 +42,7 @@ mod build;
 mod crossing;
 mod depth;
 mod epo;
+mod goal;
 pub(crate) mod hard_cases;
 mod instance;
 mod layout;

@@ -5,6 +5,7 @@ use std::slice;
 
 use super::{
     Aggregate,
+    goal::{All, Nearest},
     order::Order,
     ray::{Hit, Ray},
     safe_ray::SafeRay,
@@ -56,7 +57,7 @@ impl Aggregate {
     pub fn closest_hit_after(&self, ray: &Ray, after: &Hit) -> Option<Hit> {
         let (ray, after) = SafeRay::from_hit(ray, after)?;
         let mut best = Best::NONE;
-        self.ask_every::<true>(&ray, |hit, limit| {
+        self.ask_every::<Nearest>(&ray, |hit, limit| {
             if after.beats(&hit) {
                 best.offer(hit, limit)
             } else {
@@ -73,7 +74,7 @@ impl Aggregate {
         let Some(ray) = SafeRay::new(ray) else {
             return;
         };
-        self.ask_every::<false>(&ray, |hit, limit| {
+        self.ask_every::<All>(&ray, |hit, limit| {
             hits.push(ray.scaled(hit));
             limit
         });

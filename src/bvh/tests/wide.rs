@@ -12,6 +12,7 @@ use super::{
 };
 use crate::bvh::{
     BuildOptions, Builder, Levels, MAX_DEPTH, MeshTree, Ray, Triangles,
+    goal::{All, Nearest},
     slab::SlabRay,
     wide::{FEW, LEAF, Leaves, MANY, Portable, TriangleBlock, WideRay, WideTree, walk},
 };
@@ -197,8 +198,8 @@ fn a_tree_as_deep_as_any_is_walked_to_its_last_leaf_within_its_stack() {
         let mut visits = Visits(vec![0; leaves as usize]);
         let end = f32::INFINITY;
         let mut stack = vec![0; wide.most_pending() + 8];
-        walk::<Portable, true>(&wide, &mut stack, &ray, end, &mut visits);
-        walk::<Portable, false>(&wide, &mut stack, &ray, end, &mut visits);
+        walk::<Portable, Nearest>(&wide, &mut stack, &ray, end, &mut visits);
+        walk::<Portable, All>(&wide, &mut stack, &ray, end, &mut visits);
         let expected = vec![2; leaves as usize];
         assert_eq!(visits.0, expected, "leaves were visited so often");
     }

@@ -6,7 +6,7 @@ use super::{
     Eight, WideTree,
     node::{LEAF, WideNode},
 };
-use crate::bvh::{MAX_DEPTH, slab::SlabRay, traverse::STOP};
+use crate::bvh::{MAX_DEPTH, goal::Goal, slab::SlabRay, traverse::STOP};
 
 /// A node's children are written in a window of eight.
 const WINDOW: usize = 8;
@@ -103,13 +103,13 @@ pub(crate) trait Leaves<E> {
     }
 }
 
-/// Walks a tree along the ray and visits each leaf it reaches: with `NEAREST_FIRST` in the order in which it enters
+/// Walks a tree along the ray and visits each leaf it reaches: with [`Goal::NEAREST_FIRST`] in the order in which it enters
 /// nodes, and else in no particular order, since sorting costs more than a ray saves that wants any hit. What is entered
 /// exactly at the limit is still walked, since ties are decided by number. Returns the last limit.
 ///
 /// The stack holds the tree's [`WideTree::most_pending`] and [`WINDOW`] more, and what the leaves need.
 #[inline(always)]
-pub(crate) fn walk<E: Eight, const NEAREST_FIRST: bool>(
+pub(crate) fn walk<E: Eight, G: Goal>(
     tree: &WideTree,
     stack: &mut [u64],
     ray: &WideRay<E>,
@@ -141,7 +141,7 @@ pub(crate) fn walk<E: Eight, const NEAREST_FIRST: bool>(
                     next = node.child(first);
                     continue;
                 }
-                if NEAREST_FIRST {
+                if G::NEAREST_FIRST {
                     let entries = entries.to_array();
                     let second = hits.trailing_zeros();
                     hits &= hits - 1;
@@ -190,7 +190,7 @@ pub(crate) fn walk<E: Eight, const NEAREST_FIRST: bool>(
             }
             pending -= 1;
             let waiting = stack[pending];
-            if !NEAREST_FIRST || f32::from_bits((waiting >> 32) as u32) <= limit {
+            if !G::NEAREST_FIRST || f32::from_bits((waiting >> 32) as u32) <= limit {
                 next = waiting as u32;
                 break;
             }
