@@ -15,7 +15,7 @@ use super::{
     slab::SlabRay,
     traverse::STOP,
     triangle::{Crossing, Shear},
-    wide::{Eight, FEW, Leaves, MANY, Query, WideRay, answer, few_hold, walk},
+    wide::{Eight, FEW, InstructionSet, Leaves, MANY, Query, WideRay, answer, few_hold, walk},
 };
 
 /// What rays walk: one of the ways in which an aggregate is arranged.
@@ -112,13 +112,13 @@ impl<Of: Arrangement> Query for Closest<'_, Of> {
     type Answer = ();
 
     #[inline(always)]
-    fn ask<E: Eight>(self) {
+    fn ask<S: InstructionSet>(self) {
         stack_for!(self.of, stack);
         for (ray, closest) in self.rays.iter().zip(self.hits) {
             if let Some(ray) = SafeRay::new(ray) {
                 let mut best = Best::NONE;
                 let offer = |hit, limit| best.offer(hit, limit);
-                self.of.each_hit::<E, Nearest>(&ray, stack, offer);
+                self.of.each_hit::<S::Eight, Nearest>(&ray, stack, offer);
                 *closest = best.found(&ray);
             }
         }
@@ -136,11 +136,11 @@ impl<Of: Arrangement> Query for AnyOf<'_, Of> {
     type Answer = ();
 
     #[inline(always)]
-    fn ask<E: Eight>(self) {
+    fn ask<S: InstructionSet>(self) {
         stack_for!(self.of, stack);
         for (ray, occluded) in self.rays.iter().zip(self.occluded) {
             if let Some(ray) = SafeRay::new(ray) {
-                self.of.each_hit::<E, Any>(&ray, stack, |_, _| {
+                self.of.each_hit::<S::Eight, Any>(&ray, stack, |_, _| {
                     *occluded = true;
                     STOP
                 });
@@ -166,9 +166,9 @@ where
     type Answer = ();
 
     #[inline(always)]
-    fn ask<E: Eight>(self) {
+    fn ask<S: InstructionSet>(self) {
         stack_for!(self.of, stack);
-        (self.of).each_hit::<E, G>(self.ray, stack, self.at);
+        (self.of).each_hit::<S::Eight, G>(self.ray, stack, self.at);
     }
 }
 

@@ -120,7 +120,6 @@ impl TriangleBlock {
         }
         limit
     }
-
 }
 
 /// The edge functions, and which triangles they say the line of the ray crosses. The operations are those of
