@@ -31,6 +31,7 @@ use super::{
     mesh_tree::{MeshTree, ObjectRay},
     slab::{PAD, SMALLEST_DIRECTION},
     triangles::REACH,
+    wide::{Lanes, PacketRays, largest_of},
 };
 
 /// Half an ulp of 1, the u of the derivation above.
@@ -283,6 +284,42 @@ impl Instance {
         ((SMALLEST_DIRECTION..=1.0 / SMALLEST_DIRECTION).contains(&size)
             && origin.abs().max_element() < f32::MAX)
             .then(|| ObjectRay::new(origin, direction, size))
+    }
+
+    /// [`Self::to_object_ray`] of a packet, and which of its rays are in range there.
+    #[inline(always)]
+    pub(crate) fn to_object_packet<L: Lanes>(
+        &self,
+        world: &PacketRays<L>,
+        time: L,
+    ) -> (PacketRays<L>, u32) {
+        let splat = |v: Vec3A| v.to_array().map(L::splat);
+        let [x, y, z] = [
+            self.object_from_world.x_axis,
+            self.object_from_world.y_axis,
+            self.object_from_world.z_axis,
+        ]
+        .map(splat);
+        let turned = |v: [L; 3]| {
+            [0, 1, 2].map(|i: usize| {
+                let of_two = x[i].mul(v[0]).add(y[i].mul(v[1]));
+                of_two.add(z[i].mul(v[2]))
+            })
+        };
+        let (translation, velocity) = (splat(self.translation), splat(self.velocity));
+        let from = [0, 1, 2].map(|i: usize| {
+            let stands = translation[i].add(velocity[i].mul(time));
+            world.origin[i].sub(stands)
+        });
+        let (origin, direction) = (turned(from), turned(world.direction));
+        let size = largest_of(direction.map(L::abs));
+        let far = largest_of(origin.map(L::abs));
+        let in_range = L::and(
+            L::splat(SMALLEST_DIRECTION).le(size),
+            size.le(L::splat(1.0 / SMALLEST_DIRECTION)),
+        );
+        let in_range = L::bits(L::and(in_range, far.lt(L::splat(f32::MAX))));
+        (PacketRays::new(origin, direction, size), in_range)
     }
 }
 

@@ -9,17 +9,26 @@ use super::{
     aggregate::{Aggregate, Places},
     goal::{Any, Goal, Nearest},
     mesh_tree::{MeshTree, ObjectRay},
+    order::Order,
     queries::Best,
     ray::{Hit, Ray},
-    safe_ray::SafeRay,
+    safe_ray::{ORDINARY, SafeRay},
     slab::SlabRay,
     traverse::STOP,
     triangle::{Crossing, Shear},
-    wide::{Eight, FEW, InstructionSet, Leaves, MANY, Query, WideRay, answer, few_hold, walk},
+    triangles::REACH,
+    wide::{
+        Answers, Eight, FEW, Found, InstructionSet, Lanes, Leaves, MANY, PacketLeaves, PacketRays,
+        Query, View, Ways, WideRay, answer, few_hold, lanes_of, largest_of, walk, walk_from,
+        walk_packet,
+    },
 };
 
 /// What rays walk: one of the ways in which an aggregate is arranged.
 pub(super) trait Arrangement: Copy {
+    /// Whether packets walk it.
+    const HAS_PACKETS: bool;
+
     /// Entries of a stack that a walk needs.
     fn most_pending(self) -> usize;
 
@@ -30,6 +39,14 @@ pub(super) trait Arrangement: Copy {
         ray: &SafeRay,
         stack: &mut [u64],
         at: impl FnMut(Hit, f32) -> f32,
+    );
+
+    /// Walks with a packet of rays, where there are such.
+    fn packet<S: InstructionSet, G: Goal>(
+        self,
+        packet: &Packet<S>,
+        found: &mut Found<S::Packet>,
+        stack: &mut [u64],
     );
 }
 
@@ -57,13 +74,13 @@ macro_rules! arranged {
 
 impl Aggregate {
     /// Puts the nearest hit of each ray into its place in `hits`, where there is `None` before.
-    pub(super) fn ask_closest(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
-        arranged!(self, of => answer(Closest { of, rays, hits }));
+    pub(super) fn ask_closest(&self, order: Order, rays: &[Ray], hits: &mut [Option<Hit>]) {
+        arranged!(self, of => answer(Closest { of, order, rays, hits }));
     }
 
     /// Sets those of `occluded`, all false before, whose rays hit anything.
-    pub(super) fn ask_any(&self, rays: &[Ray], occluded: &mut [bool]) {
-        arranged!(self, of => answer(AnyOf { of, rays, occluded }));
+    pub(super) fn ask_any(&self, order: Order, rays: &[Ray], occluded: &mut [bool]) {
+        arranged!(self, of => answer(AnyOf { of, order, rays, occluded }));
     }
 
     /// [`Arrangement::each_hit`].
@@ -75,12 +92,12 @@ impl Aggregate {
 #[cfg(test)]
 impl Aggregate {
     /// What [`Aggregate::closest_hits`] and [`Aggregate::occlusions`] find on a machine without vector instructions.
-    pub(super) fn ask_portably(&self, rays: &[Ray]) -> (Vec<Option<Hit>>, Vec<bool>) {
+    pub(super) fn ask_portably(&self, order: Order, rays: &[Ray]) -> (Vec<Option<Hit>>, Vec<bool>) {
         let (mut all_hits, mut all_occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
         let (hits, occluded) = (all_hits.as_mut_slice(), all_occluded.as_mut_slice());
         arranged!(self, of => {
-            Closest { of, rays, hits }.ask::<Portable>();
-            AnyOf { of, rays, occluded }.ask::<Portable>();
+            Closest { of, order, rays, hits }.ask::<Portable>();
+            AnyOf { of, order, rays, occluded }.ask::<Portable>();
         });
         (all_hits, all_occluded)
     }
@@ -104,6 +121,7 @@ macro_rules! stack_for {
 /// The nearest hit of each ray.
 struct Closest<'a, Of> {
     of: Of,
+    order: Order,
     rays: &'a [Ray],
     hits: &'a mut [Option<Hit>],
 }
@@ -114,6 +132,14 @@ impl<Of: Arrangement> Query for Closest<'_, Of> {
     #[inline(always)]
     fn ask<S: InstructionSet>(self) {
         stack_for!(self.of, stack);
+        if Of::HAS_PACKETS && self.order != Order::None {
+            let most = S::Packet::COUNT;
+            for (rays, hits) in self.rays.chunks(most).zip(self.hits.chunks_mut(most)) {
+                let mut answers = Answers::Closest(hits);
+                trace_packet::<_, S, Nearest>(self.of, rays, &mut answers, stack);
+            }
+            return;
+        }
         for (ray, closest) in self.rays.iter().zip(self.hits) {
             if let Some(ray) = SafeRay::new(ray) {
                 let mut best = Best::NONE;
@@ -128,6 +154,7 @@ impl<Of: Arrangement> Query for Closest<'_, Of> {
 /// Whether each ray hits anything.
 struct AnyOf<'a, Of> {
     of: Of,
+    order: Order,
     rays: &'a [Ray],
     occluded: &'a mut [bool],
 }
@@ -138,6 +165,15 @@ impl<Of: Arrangement> Query for AnyOf<'_, Of> {
     #[inline(always)]
     fn ask<S: InstructionSet>(self) {
         stack_for!(self.of, stack);
+        if Of::HAS_PACKETS && self.order != Order::None {
+            let most = S::Packet::COUNT;
+            let rays = self.rays.chunks(most);
+            for (rays, occluded) in rays.zip(self.occluded.chunks_mut(most)) {
+                let mut answers = Answers::Any(occluded);
+                trace_packet::<_, S, Any>(self.of, rays, &mut answers, stack);
+            }
+            return;
+        }
         for (ray, occluded) in self.rays.iter().zip(self.occluded) {
             if let Some(ray) = SafeRay::new(ray) {
                 self.of.each_hit::<S::Eight, Any>(&ray, stack, |_, _| {
@@ -145,6 +181,82 @@ impl<Of: Arrangement> Query for AnyOf<'_, Of> {
                     STOP
                 });
             }
+        }
+    }
+}
+
+/// Rays of a batch as a packet, a lane each.
+pub(super) struct Packet<'a, S: InstructionSet> {
+    rays: &'a [Ray],
+    world: PacketRays<S::Packet>,
+    time: S::Packet,
+    end: S::Packet,
+    /// Which rays can be traced together.
+    lanes: u32,
+}
+
+impl<'a, S: InstructionSet> Packet<'a, S> {
+    /// At most as many rays as there are lanes; what [`SafeRay::new`] does with one, where it needs no scale.
+    #[inline(always)]
+    fn new(rays: &'a [Ray]) -> Self {
+        let zero = S::Packet::splat(0.0);
+        let mut columns = [zero.to_array(); 8];
+        for (lane, ray) in rays.iter().enumerate() {
+            let (from, along) = (ray.origin, ray.direction);
+            let numbers = [
+                from.x, from.y, from.z, along.x, along.y, along.z, ray.t_max, ray.time,
+            ];
+            for (column, number) in columns.iter_mut().zip(numbers) {
+                column.as_mut()[lane] = number;
+            }
+        }
+        let [ox, oy, oz, dx, dy, dz, end, time] = columns.map(|column| S::Packet::load(&column));
+        // -0.0 becomes +0.0, so that both mean the same.
+        let origin = [ox, oy, oz].map(|o| o.add(zero));
+        let direction = [dx, dy, dz].map(|d| d.add(zero));
+        let size = direction.map(S::Packet::abs);
+        let longest = largest_of(size);
+        let no_more = |x: S::Packet, than: f32| S::Packet::bits(x.le(S::Packet::splat(than)));
+        let mut lanes = (1 << rays.len()) - 1;
+        for axis in 0..3 {
+            lanes &= no_more(size[axis], 1.0 / ORDINARY) & no_more(origin[axis].abs(), REACH);
+        }
+        lanes &= S::Packet::bits(S::Packet::splat(ORDINARY).le(longest));
+        lanes &= S::Packet::bits(zero.lt(end));
+        lanes &= S::Packet::bits(zero.le(time)) & no_more(time, 1.0);
+        Self {
+            rays,
+            world: PacketRays::new(origin, direction, longest),
+            time,
+            end,
+            lanes,
+        }
+    }
+}
+
+/// Answers a question of at most as many rays as there are lanes.
+#[inline(always)]
+fn trace_packet<Of: Arrangement, S: InstructionSet, G: Goal>(
+    of: Of,
+    rays: &[Ray],
+    answers: &mut Answers,
+    stack: &mut [u64],
+) {
+    let packet = Packet::<S>::new(rays);
+    let mut found = Found::nothing(packet.end, packet.lanes);
+    of.packet::<S, G>(&packet, &mut found, stack);
+    found.write(answers);
+    let all = (1 << rays.len()) - 1;
+    for lane in lanes_of(all & !packet.lanes) {
+        // A miss, or of a size out of the ordinary.
+        if let Some(ray) = SafeRay::new(&rays[lane]) {
+            let mut best = Best::NONE;
+            let offer = |hit, limit| {
+                let new = best.offer(hit, limit);
+                if G::ANY { STOP } else { new }
+            };
+            of.each_hit::<S::Eight, G>(&ray, stack, offer);
+            answers.set(lane, best.found(&ray));
         }
     }
 }
@@ -200,6 +312,8 @@ fn offer(
 pub(super) struct OneMesh<'a>(pub(super) &'a MeshTree);
 
 impl Arrangement for OneMesh<'_> {
+    const HAS_PACKETS: bool = true;
+
     #[inline(always)]
     fn most_pending(self) -> usize {
         self.0.most_pending()
@@ -216,6 +330,20 @@ impl Arrangement for OneMesh<'_> {
         let span = (ray.start, ray.end);
         (self.0).walk_wide::<E, G>(&ray.world, stack, span, at);
     }
+
+    #[inline(always)]
+    fn packet<S: InstructionSet, G: Goal>(
+        self,
+        packet: &Packet<S>,
+        found: &mut Found<S::Packet>,
+        stack: &mut [u64],
+    ) {
+        let ways = Ways::of(&packet.world);
+        let mut left = packet.lanes;
+        while let Some(group) = ways.next_group(&mut left) {
+            (self.0).walk_packet::<S, G>(&packet.world, &group, 0, found, stack);
+        }
+    }
 }
 
 /// A tree over instances, and one for each mesh.
@@ -223,6 +351,8 @@ impl Arrangement for OneMesh<'_> {
 pub(super) struct TwoLevels<'a>(&'a Aggregate, &'a [u32]);
 
 impl Arrangement for TwoLevels<'_> {
+    const HAS_PACKETS: bool = true;
+
     #[inline(always)]
     fn most_pending(self) -> usize {
         self.0.most_pending
@@ -246,6 +376,29 @@ impl Arrangement for TwoLevels<'_> {
         let top = WideRay::new(&scene.top_slab(&ray.world), ray.start);
         walk::<E, G>(&scene.wide, stack, &top, ray.end, &mut leaves);
     }
+
+    #[inline(always)]
+    fn packet<S: InstructionSet, G: Goal>(
+        self,
+        packet: &Packet<S>,
+        found: &mut Found<S::Packet>,
+        stack: &mut [u64],
+    ) {
+        let Self(scene, places) = self;
+        let rays = packet.world.with_pad(scene.ray_pad);
+        let ways = Ways::of(&rays);
+        let mut left = packet.lanes;
+        while let Some(group) = ways.next_group(&mut left) {
+            let view = View::<S>::new(&rays, &group);
+            let mut leaves = PacketOfInstances::<S, G> {
+                scene,
+                places,
+                packet,
+                goal: PhantomData,
+            };
+            walk_packet::<S, G>(&scene.wide, stack, &view, group.lanes, found, &mut leaves);
+        }
+    }
 }
 
 /// One tree over all triangles.
@@ -253,6 +406,8 @@ impl Arrangement for TwoLevels<'_> {
 pub(super) struct OneLevel<'a>(&'a Aggregate);
 
 impl Arrangement for OneLevel<'_> {
+    const HAS_PACKETS: bool = false;
+
     #[inline(always)]
     fn most_pending(self) -> usize {
         self.0.most_pending
@@ -275,6 +430,15 @@ impl Arrangement for OneLevel<'_> {
         };
         let top = WideRay::new(&scene.top_slab(&ray.world), ray.start);
         walk::<E, G>(&scene.wide, stack, &top, ray.end, &mut leaves);
+    }
+
+    #[inline(always)]
+    fn packet<S: InstructionSet, G: Goal>(
+        self,
+        _: &Packet<S>,
+        _: &mut Found<S::Packet>,
+        _: &mut [u64],
+    ) {
     }
 }
 
@@ -337,6 +501,56 @@ impl<E: Eight, At: FnMut(Hit, f32) -> f32, G: Goal> Leaves<E> for InstanceLeaves
             }
         }
         limit
+    }
+}
+
+/// Two levels, with a packet's rays.
+struct PacketOfInstances<'a, S: InstructionSet, G> {
+    scene: &'a Aggregate,
+    places: &'a [u32],
+    packet: &'a Packet<'a, S>,
+    goal: PhantomData<G>,
+}
+
+impl<S: InstructionSet, G: Goal> PacketLeaves<S> for PacketOfInstances<'_, S, G> {
+    #[inline(always)]
+    fn visit(&mut self, leaf: u32, lanes: u32, found: &mut Found<S::Packet>, stack: &mut [u64]) {
+        let packet = self.packet;
+        for &number in &self.places[self.scene.wide_leaves[leaf as usize].clone()] {
+            let instance = &self.scene.instances()[number as usize];
+            let (rays, in_range) = if instance.is_identity() {
+                (packet.world, lanes)
+            } else {
+                instance.to_object_packet(&packet.world, packet.time)
+            };
+            let ways = Ways::of(&rays);
+            let mut left = lanes & in_range;
+            while let Some(group) = ways.next_group(&mut left) {
+                (instance.mesh).walk_packet::<S, G>(&rays, &group, number, found, stack);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn alone(&mut self, child: u32, lanes: u32, found: &mut Found<S::Packet>, stack: &mut [u64]) {
+        let (scene, places) = (self.scene, self.places);
+        for lane in lanes_of(lanes) {
+            let Some(ray) = &SafeRay::new(&self.packet.rays[lane]) else {
+                continue;
+            };
+            let mut alone = found.alone(lane);
+            let limit = alone.limit;
+            let mut leaves = InstanceLeaves::<_, G> {
+                scene,
+                places,
+                ray,
+                at: |hit, limit| alone.offer::<G>(hit, limit),
+                goal: PhantomData,
+            };
+            let top = WideRay::new(&scene.top_slab(&ray.world), 0.0);
+            walk_from::<S::Eight, G>(&scene.wide, child, stack, &top, limit, &mut leaves);
+            found.rejoin::<G>(alone);
+        }
     }
 }
 

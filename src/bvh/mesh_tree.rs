@@ -12,6 +12,7 @@ use super::{
     build_tree,
     goal::Goal,
     options::BuildOptions,
+    ray::Hit,
     slab::{SlabRay, triangle_box},
     stats::TreeStats,
     traverse::{STOP, Stack, walk},
@@ -19,7 +20,10 @@ use super::{
     triangles::Triangles,
     visitor::{TreeRef, Visitor},
     wedges::Wedges,
-    wide::{self, Eight, Leaves, TriangleBlock, WideBox, WideRay, WideStats, WideTree},
+    wide::{
+        self, Eight, Found, Group, InstructionSet, Leaves, PacketLeaves, PacketRays, TriangleBlock,
+        View, WideBox, WideRay, WideStats, WideTree, lanes_of,
+    },
 };
 
 /// A mesh's triangles, the tree over them, and their corners again in the order of the tree's leaves. And the same in
@@ -188,6 +192,27 @@ impl MeshTree {
         wide::walk::<E, G>(&self.wide, stack, &wide_ray, limit, &mut leaves)
     }
 
+    /// Walks the tree with a group of a packet's rays in object space.
+    #[inline(always)]
+    pub(crate) fn walk_packet<S: InstructionSet, G: Goal>(
+        &self,
+        rays: &PacketRays<S::Packet>,
+        group: &Group,
+        instance: u32,
+        found: &mut Found<S::Packet>,
+        stack: &mut [u64],
+    ) {
+        let view = View::<S>::new(rays, group);
+        let mut leaves = PacketOfMesh::<S, G> {
+            mesh: self,
+            rays,
+            view: &view,
+            instance,
+            goal: PhantomData,
+        };
+        wide::walk_packet::<S, G>(&self.wide, stack, &view, group.lanes, found, &mut leaves);
+    }
+
     /// Walks the tree along a ray in object space, from the first `t` of the span to the second, the limit. `at(triangle
     /// number, crossing, limit)` returns the new one.
     #[inline(always)]
@@ -273,6 +298,57 @@ impl<E: Eight, At: FnMut(u32, Crossing, f32) -> f32, G: Goal> Leaves<E> for Mesh
     fn rest(&self, block: u32) -> Option<u32> {
         let continues = self.blocks[block as usize].continues();
         continues.then_some(block + 1)
+    }
+}
+
+/// A mesh's wide tree, with a group of a packet's rays.
+struct PacketOfMesh<'a, S: InstructionSet, G> {
+    mesh: &'a MeshTree,
+    rays: &'a PacketRays<S::Packet>,
+    view: &'a View<S>,
+    instance: u32,
+    goal: PhantomData<G>,
+}
+
+impl<S: InstructionSet, G: Goal> PacketLeaves<S> for PacketOfMesh<'_, S, G> {
+    #[inline(always)]
+    fn visit(&mut self, leaf: u32, lanes: u32, found: &mut Found<S::Packet>, _: &mut [u64]) {
+        for block in &self.mesh.blocks[leaf as usize..] {
+            block.cross_packet::<S, G>(self.view, lanes, self.instance, found);
+            if !block.continues() {
+                break;
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn alone(&mut self, child: u32, lanes: u32, found: &mut Found<S::Packet>, stack: &mut [u64]) {
+        let mesh = self.mesh;
+        for lane in lanes_of(lanes) {
+            let ray = self.rays.ray(lane);
+            let mut alone = found.alone(lane);
+            let limit = alone.limit;
+            let mut leaves = MeshLeaves::<_, G> {
+                blocks: &mesh.blocks,
+                reach: mesh.reach,
+                ray: &ray,
+                shear: None,
+                at: |triangle, Crossing { t, u, v }, limit| {
+                    let hit = Hit {
+                        t,
+                        instance: self.instance,
+                        triangle,
+                        u,
+                        v,
+                    };
+                    alone.offer::<G>(hit, limit)
+                },
+                goal: PhantomData,
+            };
+            let wide_ray = WideRay::new(&ray.slab, 0.0);
+            wide::walk_from::<S::Eight, G>(&mesh.wide, child, stack, &wide_ray, limit, &mut leaves);
+            found.rejoin::<G>(alone);
+        }
     }
 }
 

@@ -11,7 +11,7 @@ use super::{
     trees::chain,
 };
 use crate::bvh::{
-    BuildOptions, Builder, Levels, MAX_DEPTH, MeshTree, Ray, Triangles,
+    BuildOptions, Builder, Levels, MAX_DEPTH, MeshTree, Order, Ray, Triangles,
     goal::{All, Nearest},
     slab::SlabRay,
     wide::{FEW, LEAF, Leaves, MANY, Portable, TriangleBlock, WideRay, WideTree, walk},
@@ -55,7 +55,7 @@ fn every_instruction_set_finds_the_same_bits() {
             let (mut hits, mut occluded) = (Vec::new(), Vec::new());
             scene.closest_hits(&rays, &mut hits);
             scene.occlusions(&rays, &mut occluded);
-            let (portable_hits, portably_occluded) = scene.ask_portably(&rays);
+            let (portable_hits, portably_occluded) = scene.ask_portably(Order::None, &rays);
             let found = hits.iter().flatten().count();
             assert!(found > 20_000, "{levels:?}: only {found} hits");
             for (i, ray) in rays.iter().enumerate() {

@@ -12,6 +12,8 @@ use crate::bvh::{
 
 /// Set in the last lane's number where the next block belongs to the same leaf. Triangles are numbered in 31 bits.
 const CONTINUES: u32 = 1 << 31;
+/// Set in the number of every other lane without a triangle.
+const EMPTY: u32 = 1 << 31;
 
 /// 320 bytes, five cache lines: up to eight triangles, a lane each, their coordinates axis by axis and corner by
 /// corner.
@@ -43,8 +45,9 @@ impl TriangleBlock {
     fn new(triangles: &[LeafTriangle]) -> Self {
         let mut block = Self {
             axes: [[[0.0; 8]; 3]; 3],
-            numbers: [0; 8],
+            numbers: [EMPTY; 8],
         };
+        block.numbers[Self::CAPACITY - 1] = 0;
         for (lane, triangle) in triangles.iter().enumerate() {
             for (corner, position) in triangle.corners().iter().enumerate() {
                 for axis in 0..3 {
@@ -62,9 +65,21 @@ impl TriangleBlock {
         self.numbers[7] & CONTINUES != 0
     }
 
+    /// Whether this lane, and so all that follow, is known to hold no triangle; of the last lane it is not known.
+    #[inline(always)]
+    pub(super) fn is_empty(&self, lane: usize) -> bool {
+        lane < Self::CAPACITY - 1 && self.numbers[lane] & EMPTY != 0
+    }
+
+    /// One coordinate of the triangles, corner by corner.
+    #[inline(always)]
+    pub(super) fn axis(&self, axis: usize) -> &[[f32; 8]; 3] {
+        &self.axes[axis]
+    }
+
     /// The number of a triangle in its mesh.
     #[inline(always)]
-    fn number(&self, lane: usize) -> u32 {
+    pub(super) fn number(&self, lane: usize) -> u32 {
         self.numbers[lane] & !CONTINUES
     }
 
@@ -75,8 +90,9 @@ impl TriangleBlock {
         lanes.filter(|([a, b, c], _)| a != b || b != c)
     }
 
+    /// A triangle's corners.
     #[inline(always)]
-    fn corners(&self, lane: usize) -> [Vec3; 3] {
+    pub(super) fn corners(&self, lane: usize) -> [Vec3; 3] {
         let [x, y, z] = &self.axes;
         [
             Vec3::new(x[0][lane], y[0][lane], z[0][lane]),

@@ -23,6 +23,7 @@ mod block;
 mod collapse;
 mod lanes;
 mod node;
+mod packet;
 mod portable;
 mod tree;
 mod walk;
@@ -31,8 +32,12 @@ pub(crate) use block::TriangleBlock;
 pub(crate) use lanes::{Eight, InstructionSet, Lanes, Query, answer};
 #[cfg(test)]
 pub(crate) use node::LEAF;
+pub(crate) use packet::{
+    Answers, FEW_RAYS, Found, Group, PacketLeaves, PacketRays, View, Ways, lanes_of, largest_of,
+    walk_packet,
+};
 #[cfg(test)]
 pub(crate) use portable::Portable;
 pub(crate) use tree::WideTree;
 pub use tree::{WideBox, WideStats};
-pub(crate) use walk::{FEW, Leaves, MANY, WideRay, few_hold, walk};
+pub(crate) use walk::{FEW, Leaves, MANY, WideRay, few_hold, walk, walk_from};

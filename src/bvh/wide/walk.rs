@@ -9,7 +9,7 @@ use super::{
 use crate::bvh::{MAX_DEPTH, goal::Goal, slab::SlabRay, traverse::STOP};
 
 /// A node's children are written in a window of eight.
-const WINDOW: usize = 8;
+pub(super) const WINDOW: usize = 8;
 /// Entries of a stack that ordinary meshes of a million triangles get by with: they need 40 to 60.
 pub(crate) const FEW: usize = 64;
 /// Entries that every tree gets by with: two levels of trees no deeper than [`MAX_DEPTH`], seven a node.
@@ -113,12 +113,25 @@ pub(crate) fn walk<E: Eight, G: Goal>(
     tree: &WideTree,
     stack: &mut [u64],
     ray: &WideRay<E>,
+    limit: f32,
+    leaves: &mut impl Leaves<E>,
+) -> f32 {
+    match tree.root {
+        Some(root) => walk_from::<E, G>(tree, root, stack, ray, limit, leaves),
+        None => limit,
+    }
+}
+
+/// [`walk`] from a node or, marked by [`LEAF`], a leaf on.
+#[inline(always)]
+pub(crate) fn walk_from<E: Eight, G: Goal>(
+    tree: &WideTree,
+    mut next: u32,
+    stack: &mut [u64],
+    ray: &WideRay<E>,
     mut limit: f32,
     leaves: &mut impl Leaves<E>,
 ) -> f32 {
-    let Some(mut next) = tree.root else {
-        return limit;
-    };
     let mut pending = 0;
     loop {
         if next & LEAF != 0 {
