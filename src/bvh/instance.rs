@@ -31,7 +31,7 @@ use super::{
     mesh_tree::{MeshTree, ObjectRay},
     slab::{PAD, SMALLEST_DIRECTION},
     triangles::REACH,
-    wide::{Lanes, PacketRays, largest_of},
+    wide::{Lanes, PacketRays, by_axis, largest_size},
 };
 
 /// Half an ulp of 1, the u of the derivation above.
@@ -293,27 +293,16 @@ impl Instance {
         world: &PacketRays<L>,
         time: L,
     ) -> (PacketRays<L>, u32) {
-        let splat = |v: Vec3A| v.to_array().map(L::splat);
-        let [x, y, z] = [
-            self.object_from_world.x_axis,
-            self.object_from_world.y_axis,
-            self.object_from_world.z_axis,
-        ]
-        .map(splat);
-        let turned = |v: [L; 3]| {
-            [0, 1, 2].map(|i: usize| {
-                let of_two = x[i].mul(v[0]).add(y[i].mul(v[1]));
-                of_two.add(z[i].mul(v[2]))
-            })
-        };
-        let (translation, velocity) = (splat(self.translation), splat(self.velocity));
-        let from = [0, 1, 2].map(|i: usize| {
-            let stands = translation[i].add(velocity[i].mul(time));
-            world.origin[i].sub(stands)
+        let stands = by_axis!(|i| {
+            let way = L::splat(self.velocity[i]).mul(time);
+            L::splat(self.translation[i]).add(way)
         });
-        let (origin, direction) = (turned(from), turned(world.direction));
-        let size = largest_of(direction.map(L::abs));
-        let far = largest_of(origin.map(L::abs));
+        let from = by_axis!(|i| world.origin[i].sub(stands[i]));
+        let matrix = &self.object_from_world;
+        let origin = by_axis!(|row| turned(matrix, row, &from));
+        let direction = by_axis!(|row| turned(matrix, row, &world.direction));
+        let size = largest_size(&direction);
+        let far = largest_size(&origin);
         let in_range = L::and(
             L::splat(SMALLEST_DIRECTION).le(size),
             size.le(L::splat(1.0 / SMALLEST_DIRECTION)),
@@ -321,6 +310,15 @@ impl Instance {
         let in_range = L::bits(L::and(in_range, far.lt(L::splat(f32::MAX))));
         (PacketRays::new(origin, direction, size), in_range)
     }
+}
+
+/// A row of a matrix times vectors.
+#[inline(always)]
+fn turned<L: Lanes>(matrix: &Mat3A, row: usize, [x, y, z]: &[L; 3]) -> L {
+    let x = L::splat(matrix.x_axis[row]).mul(*x);
+    let y = L::splat(matrix.y_axis[row]).mul(*y);
+    let z = L::splat(matrix.z_axis[row]).mul(*z);
+    x.add(y).add(z)
 }
 
 fn columns(matrix: &Mat3A) -> DMat3 {

@@ -19,8 +19,8 @@ use super::{
     triangles::REACH,
     wide::{
         Answers, Eight, FEW, Found, InstructionSet, Lanes, Leaves, MANY, PacketLeaves, PacketRays,
-        Query, View, Ways, WideRay, answer, few_hold, lanes_of, largest_of, walk, walk_from,
-        walk_packet,
+        Query, View, Ways, WideRay, answer, by_axis, few_hold, lanes_of, largest_size, walk,
+        walk_from, walk_packet,
     },
 };
 
@@ -210,20 +210,23 @@ impl<'a, S: InstructionSet> Packet<'a, S> {
                 column.as_mut()[lane] = number;
             }
         }
-        let [ox, oy, oz, dx, dy, dz, end, time] = columns.map(|column| S::Packet::load(&column));
+        let [_, _, _, _, _, _, end, time] = &columns;
+        let (end, time) = (S::Packet::load(end), S::Packet::load(time));
         // -0.0 becomes +0.0, so that both mean the same.
-        let origin = [ox, oy, oz].map(|o| o.add(zero));
-        let direction = [dx, dy, dz].map(|d| d.add(zero));
-        let size = direction.map(S::Packet::abs);
-        let longest = largest_of(size);
-        let no_more = |x: S::Packet, than: f32| S::Packet::bits(x.le(S::Packet::splat(than)));
+        let origin = by_axis!(|i| S::Packet::load(&columns[i]).add(zero));
+        let direction = by_axis!(|i| S::Packet::load(&columns[3 + i]).add(zero));
+        let longest = largest_size(&direction);
+        let ordinary = S::Packet::splat(1.0 / ORDINARY);
+        let reach = S::Packet::splat(REACH);
         let mut lanes = (1 << rays.len()) - 1;
         for axis in 0..3 {
-            lanes &= no_more(size[axis], 1.0 / ORDINARY) & no_more(origin[axis].abs(), REACH);
+            lanes &= S::Packet::bits(direction[axis].abs().le(ordinary));
+            lanes &= S::Packet::bits(origin[axis].abs().le(reach));
         }
         lanes &= S::Packet::bits(S::Packet::splat(ORDINARY).le(longest));
         lanes &= S::Packet::bits(zero.lt(end));
-        lanes &= S::Packet::bits(zero.le(time)) & no_more(time, 1.0);
+        lanes &= S::Packet::bits(zero.le(time));
+        lanes &= S::Packet::bits(time.le(S::Packet::splat(1.0)));
         Self {
             rays,
             world: PacketRays::new(origin, direction, longest),

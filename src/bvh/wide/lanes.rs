@@ -72,6 +72,28 @@ pub(crate) trait Lanes: Copy {
     fn div_f64(a: Self::Doubles, b: Self::Doubles) -> Self::Doubles;
 }
 
+/// An array of what `$of` is for the axes 0, 1 and 2. In place of a closure: that would not become part of the function
+/// that is compiled for an instruction set, and only an `#[inline(always)]` function does.
+macro_rules! by_axis {
+    (|$axis:ident| $of:expr) => {
+        [
+            {
+                let $axis = 0;
+                $of
+            },
+            {
+                let $axis = 1;
+                $of
+            },
+            {
+                let $axis = 2;
+                $of
+            },
+        ]
+    };
+}
+pub(crate) use by_axis;
+
 /// Eight lanes: a node's children, or a block's triangles, against one ray.
 pub(crate) trait Eight: Lanes<Array = [f32; 8]> {}
 

@@ -29,11 +29,11 @@ mod tree;
 mod walk;
 
 pub(crate) use block::TriangleBlock;
-pub(crate) use lanes::{Eight, InstructionSet, Lanes, Query, answer};
+pub(crate) use lanes::{Eight, InstructionSet, Lanes, Query, answer, by_axis};
 #[cfg(test)]
 pub(crate) use node::LEAF;
 pub(crate) use packet::{
-    Answers, FEW_RAYS, Found, Group, PacketLeaves, PacketRays, View, Ways, lanes_of, largest_of,
+    Answers, FEW_RAYS, Found, Group, PacketLeaves, PacketRays, View, Ways, lanes_of, largest_size,
     walk_packet,
 };
 #[cfg(test)]

@@ -6,7 +6,7 @@ use super::{Found, View, found::lanes_of};
 use crate::bvh::{
     goal::Goal,
     slab::triangle_box,
-    wide::{InstructionSet, Lanes, TriangleBlock},
+    wide::{InstructionSet, Lanes, TriangleBlock, by_axis},
 };
 
 impl TriangleBlock {
@@ -47,17 +47,10 @@ impl TriangleBlock {
         view: &View<S>,
     ) -> (u32, [S::Packet; 3]) {
         let frame = &view.frame;
-        let [x, y, z] = frame.axes.map(|axis| self.axis(axis));
-        let corner = |i: usize| {
-            let splat = |of: &[[f32; 8]; 3]| S::Packet::splat(of[i][triangle % 8]);
-            let depth = splat(z).sub(frame.from[2]);
-            [
-                (splat(x).sub(frame.from[0])).sub(depth.mul(frame.slope[0])),
-                (splat(y).sub(frame.from[1])).sub(depth.mul(frame.slope[1])),
-            ]
-        };
-        let edge = |p: [S::Packet; 2], q: [S::Packet; 2]| p[0].mul(q[1]).sub(p[1].mul(q[0]));
-        let [a, b, c] = [corner(0), corner(1), corner(2)];
+        let [x, y, z] = frame.axes;
+        let [x, y, z] = [self.axis(x), self.axis(y), self.axis(z)];
+        let triangle = triangle % 8;
+        let [a, b, c] = by_axis!(|i| frame.corner(x[i][triangle], y[i][triangle], z[i][triangle]));
         let [u, v, w] = [edge(c, b), edge(a, c), edge(b, a)];
         let det = u.add(v).add(w);
         let zero = S::Packet::splat(0.0);
@@ -82,20 +75,16 @@ impl TriangleBlock {
         let corners = self.corners(triangle % 8);
         let bounds = triangle_box(corners.map(Into::into));
         let (min, max) = (bounds.min.to_array(), bounds.max.to_array());
-        let crossed = |axis: usize, face: f32, origin: &[S::Packet; 3]| {
-            (S::Packet::splat(face).sub(origin[axis])).mul(view.inverse[axis])
-        };
-        let faces = |axis: usize| {
-            if view.backwards[axis] {
-                (max[axis], min[axis])
-            } else {
-                (min[axis], max[axis])
-            }
-        };
-        let entry = |axis: usize| crossed(axis, faces(axis).0, &view.near_origin);
-        let exit = |axis: usize| crossed(axis, faces(axis).1, &view.far_origin);
-        let entry = entry(0).max(entry(1)).max(entry(2));
-        let exit = exit(0).min(exit(1)).min(exit(2));
+        let [x, y, z] = by_axis!(|axis| {
+            let face = if view.backwards[axis] { max } else { min };
+            view.near(axis, face[axis])
+        });
+        let entry = x.max(y).max(z);
+        let [x, y, z] = by_axis!(|axis| {
+            let face = if view.backwards[axis] { min } else { max };
+            view.far(axis, face[axis])
+        });
+        let exit = x.min(y).min(z);
         let (zero, limit) = (S::Packet::splat(0.0), found.limit);
         let ahead = S::Packet::and(zero.lt(exit), entry.le(exit.min(limit)));
         let mut within = passed & S::Packet::bits(ahead);
@@ -130,9 +119,7 @@ impl TriangleBlock {
         let mask = S::Packet::mask(won);
         found.hit |= won;
         found.limit = S::Packet::select(mask, t, found.limit);
-        for (kept, edge) in found.edges.iter_mut().zip(edges) {
-            *kept = S::Packet::select(mask, edge, *kept);
-        }
+        found.edges = by_axis!(|i| S::Packet::select(mask, edges[i], found.edges[i]));
         let number = S::Packet::splat(f32::from_bits(number));
         let instance = S::Packet::splat(f32::from_bits(instance));
         found.triangle = S::Packet::select(mask, number, found.triangle);
@@ -144,26 +131,29 @@ impl TriangleBlock {
 /// `t` where the rays' lines meet a triangle's plane: [`super::super::super::triangle`]'s, in lanes.
 #[inline(always)]
 fn plane<S: InstructionSet>(view: &View<S>, corner: DVec3, normal: DVec3) -> S::Packet {
-    let normal = normal.to_array().map(S::Packet::splat_f64);
-    let corner = corner.to_array().map(S::Packet::splat_f64);
-    let dot =
-        |axis: usize, with: <S::Packet as Lanes>::Doubles| S::Packet::mul_f64(normal[axis], with);
-    let away = |axis: usize| {
-        dot(
-            axis,
-            S::Packet::sub_f64(corner[axis], view.frame.origin[axis]),
-        )
-    };
-    let along = |axis: usize| dot(axis, view.frame.direction[axis]);
-    let height = S::Packet::add_f64(S::Packet::add_f64(away(0), away(1)), away(2));
-    let rate = S::Packet::add_f64(S::Packet::add_f64(along(0), along(1)), along(2));
+    let (corner, normal) = (corner.to_array(), normal.to_array());
+    let normal = by_axis!(|axis| S::Packet::splat_f64(normal[axis]));
+    let [x, y, z] = by_axis!(|axis| {
+        let corner = S::Packet::splat_f64(corner[axis]);
+        let away = S::Packet::sub_f64(corner, view.frame.origin[axis]);
+        S::Packet::mul_f64(normal[axis], away)
+    });
+    let height = S::Packet::add_f64(S::Packet::add_f64(x, y), z);
+    let [x, y, z] = by_axis!(|axis| S::Packet::mul_f64(normal[axis], view.frame.direction[axis]));
+    let rate = S::Packet::add_f64(S::Packet::add_f64(x, y), z);
     S::Packet::narrow(S::Packet::div_f64(height, rate))
 }
 
+/// The edge function of the edge between two corners. Not fused: see [`super::super::super::triangle`].
+#[inline(always)]
+fn edge<L: Lanes>(p: [L; 2], q: [L; 2]) -> L {
+    p[0].mul(q[1]).sub(p[1].mul(q[0]))
+}
+
 /// Those of the rays that hit this triangle as far away as another, and this is the one to take.
-#[cold]
+#[inline(always)]
 fn wins_ties<L: Lanes>(found: &Found<L>, tied: u32, this: (u32, u32)) -> u32 {
-    let [instance, triangle] = [found.instance, found.triangle].map(L::to_array);
+    let (instance, triangle) = (found.instance.to_array(), found.triangle.to_array());
     lanes_of(tied)
         .filter(|&lane| {
             let other = (

@@ -4,14 +4,37 @@ use crate::bvh::{goal::Goal, queries::Best, ray::Hit, traverse::STOP, wide::Lane
 
 /// The lanes whose bits are set.
 #[inline(always)]
-pub(crate) fn lanes_of(mut bits: u32) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        (bits != 0).then(|| {
-            let lane = bits.trailing_zeros() as usize;
-            bits &= bits - 1;
-            lane
-        })
-    })
+pub(crate) fn lanes_of(bits: u32) -> LanesOf {
+    LanesOf(bits)
+}
+
+/// [`lanes_of`].
+pub(crate) struct LanesOf(u32);
+
+impl Iterator for LanesOf {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        if self.0 == 0 {
+            return None;
+        }
+        let lane = self.0.trailing_zeros() as usize;
+        self.0 &= self.0 - 1;
+        Some(lane)
+    }
+}
+
+/// One lane.
+#[inline(always)]
+fn number<L: Lanes>(lanes: L, lane: usize) -> f32 {
+    lanes.to_array().as_ref()[lane]
+}
+
+/// Puts a number into the lanes that the mask names.
+#[inline(always)]
+fn put<L: Lanes>(lanes: &mut L, mask: L::Mask, x: f32) {
+    *lanes = L::select(mask, L::splat(x), *lanes);
 }
 
 /// The nearest hits of a packet's rays, or which of them have any.
@@ -88,19 +111,18 @@ impl<L: Lanes> Found<L> {
     /// One of the rays, to go on alone.
     #[inline(always)]
     pub(crate) fn alone(&self, lane: usize) -> Alone {
-        let of = |column: L| column.to_array().as_ref()[lane];
-        let limit = of(self.limit);
+        let limit = number(self.limit, lane);
         let hit = Hit {
             t: limit,
-            instance: of(self.instance).to_bits(),
-            triangle: of(self.triangle).to_bits(),
+            instance: number(self.instance, lane).to_bits(),
+            triangle: number(self.triangle, lane).to_bits(),
             u: 0.0,
             v: 0.0,
         };
         let is_hit = self.hit >> lane & 1 == 1;
         Alone {
             lane,
-            end: of(self.end),
+            end: number(self.end, lane),
             limit,
             best: if is_hit { Best::of(hit) } else { Best::NONE },
             is_new: false,
@@ -119,13 +141,12 @@ impl<L: Lanes> Found<L> {
         }
         let Best(hit) = alone.best;
         let mask = L::mask(bit);
-        let put = |column: &mut L, x: f32| *column = L::select(mask, L::splat(x), *column);
-        put(&mut self.limit, hit.t);
-        put(&mut self.edges[0], hit.u);
-        put(&mut self.edges[1], hit.v);
-        put(&mut self.edges[2], 1.0);
-        put(&mut self.triangle, f32::from_bits(hit.triangle));
-        put(&mut self.instance, f32::from_bits(hit.instance));
+        put(&mut self.limit, mask, hit.t);
+        put(&mut self.edges[0], mask, hit.u);
+        put(&mut self.edges[1], mask, hit.v);
+        put(&mut self.edges[2], mask, 1.0);
+        put(&mut self.triangle, mask, f32::from_bits(hit.triangle));
+        put(&mut self.instance, mask, f32::from_bits(hit.instance));
         self.hit |= bit;
         self.look_ahead();
     }
@@ -134,12 +155,17 @@ impl<L: Lanes> Found<L> {
     #[inline(always)]
     pub(crate) fn write(&self, answers: &mut Answers<'_>) {
         match answers {
-            Answers::Any(any) => lanes_of(self.hit).for_each(|lane| any[lane] = true),
+            Answers::Any(any) => {
+                for lane in lanes_of(self.hit) {
+                    any[lane] = true;
+                }
+            }
             Answers::Closest(closest) if self.hit != 0 => {
                 let inverse = L::splat(1.0).div(self.edges[2]);
-                let [u, v] = [self.edges[0].mul(inverse), self.edges[1].mul(inverse)];
-                let [t, u, v] = [self.limit, u, v].map(L::to_array);
-                let [triangle, instance] = [self.triangle, self.instance].map(L::to_array);
+                let u = self.edges[0].mul(inverse).to_array();
+                let v = self.edges[1].mul(inverse).to_array();
+                let t = self.limit.to_array();
+                let (triangle, instance) = (self.triangle.to_array(), self.instance.to_array());
                 for lane in lanes_of(self.hit) {
                     closest[lane] = Some(Hit {
                         t: t.as_ref()[lane],

@@ -5,7 +5,7 @@ use glam::Vec3A;
 use crate::bvh::{
     mesh_tree::ObjectRay,
     slab::{PAD, SlabRay},
-    wide::Lanes,
+    wide::{Lanes, by_axis},
 };
 
 /// What the tests need of rays in one space, as [`ObjectRay`] has it of one.
@@ -19,10 +19,17 @@ pub(crate) struct PacketRays<L> {
     pub(super) inverse: [L; 3],
 }
 
-/// The largest of three.
+/// The largest of three numbers, without their signs.
 #[inline(always)]
-pub(crate) fn largest_of<L: Lanes>([x, y, z]: [L; 3]) -> L {
-    x.max(y).max(z)
+pub(crate) fn largest_size<L: Lanes>([x, y, z]: &[L; 3]) -> L {
+    x.abs().max(y.abs()).max(z.abs())
+}
+
+/// A vector of one lane.
+#[inline(always)]
+fn vector<L: Lanes>([x, y, z]: &[L; 3], lane: usize) -> Vec3A {
+    let (x, y, z) = (x.to_array(), y.to_array(), z.to_array());
+    Vec3A::new(x.as_ref()[lane], y.as_ref()[lane], z.as_ref()[lane])
 }
 
 impl<L: Lanes> PacketRays<L> {
@@ -30,13 +37,16 @@ impl<L: Lanes> PacketRays<L> {
     #[inline(always)]
     pub(crate) fn new(origin: [L; 3], direction: [L; 3], longest: L) -> Self {
         let least = longest.mul(L::splat(1.0 / (1u64 << 32) as f32));
-        let raised = direction.map(|d| d.abs().max(least).copysign(d));
+        let one = L::splat(1.0);
         let rays = Self {
             origin,
             direction,
             above: origin,
             below: origin,
-            inverse: raised.map(|d| L::splat(1.0).div(d)),
+            inverse: by_axis!(|i| {
+                let raised = direction[i].abs().max(least).copysign(direction[i]);
+                one.div(raised)
+            }),
         };
         rays.with_pad(PAD)
     }
@@ -44,10 +54,10 @@ impl<L: Lanes> PacketRays<L> {
     /// The same rays with another slack around their origins, relative to their size.
     #[inline(always)]
     pub(crate) fn with_pad(self, pad: f32) -> Self {
-        let pad = largest_of(self.origin.map(L::abs)).mul(L::splat(pad));
+        let pad = largest_size(&self.origin).mul(L::splat(pad));
         Self {
-            above: self.origin.map(|o| o.add(pad)),
-            below: self.origin.map(|o| o.sub(pad)),
+            above: by_axis!(|i| self.origin[i].add(pad)),
+            below: by_axis!(|i| self.origin[i].sub(pad)),
             ..self
         }
     }
@@ -62,17 +72,13 @@ impl<L: Lanes> PacketRays<L> {
     /// One of the rays.
     #[inline(always)]
     pub(crate) fn ray(&self, lane: usize) -> ObjectRay {
-        let of = |columns: &[L; 3]| {
-            let [x, y, z] = columns.map(|column| column.to_array().as_ref()[lane]);
-            Vec3A::new(x, y, z)
-        };
         ObjectRay {
-            origin: of(&self.origin),
-            direction: of(&self.direction),
+            origin: vector(&self.origin, lane),
+            direction: vector(&self.direction, lane),
             slab: SlabRay {
-                above: of(&self.above),
-                below: of(&self.below),
-                inverse: of(&self.inverse),
+                above: vector(&self.above, lane),
+                below: vector(&self.below, lane),
+                inverse: vector(&self.inverse, lane),
             },
         }
     }
@@ -99,14 +105,15 @@ pub(crate) struct Ways {
 impl Ways {
     #[inline(always)]
     pub(crate) fn of<L: Lanes>(rays: &PacketRays<L>) -> Self {
-        let [x, y, z] = rays.direction.map(L::abs);
+        let [x, y, z] = &rays.direction;
+        let (x, y, z) = (x.abs(), y.abs(), z.abs());
         // As `Shear::new` chooses.
         let in_plane = x.le(y);
         let most = L::select(in_plane, y, x);
         let in_plane = L::bits(in_plane);
         let not_along_z = L::bits(z.lt(most));
         Self {
-            backwards: (rays.inverse).map(|inverse| L::bits(inverse.lt(L::splat(0.0)))),
+            backwards: by_axis!(|i| L::bits(rays.inverse[i].lt(L::splat(0.0)))),
             along: [not_along_z & in_plane, !not_along_z],
         }
     }

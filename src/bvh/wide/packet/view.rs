@@ -1,7 +1,7 @@
 //! A group of rays as the boxes and triangles of a tree see it.
 
 use super::{Group, PacketRays};
-use crate::bvh::wide::{Eight, InstructionSet, Lanes, node::WideNode};
+use crate::bvh::wide::{Eight, InstructionSet, Lanes, by_axis, node::WideNode};
 
 /// What the tests need of a group of rays in a tree's space.
 pub(crate) struct View<S: InstructionSet> {
@@ -40,12 +40,6 @@ impl<S: InstructionSet> View<S> {
     #[inline(always)]
     pub(crate) fn new(rays: &PacketRays<S::Packet>, group: &Group) -> Self {
         let mask = S::Packet::mask(group.lanes);
-        let smallest = |column: S::Packet| {
-            S::Packet::select(mask, column, S::Packet::splat(f32::INFINITY)).smallest()
-        };
-        let largest = |column: S::Packet| {
-            S::Packet::select(mask, column, S::Packet::splat(f32::NEG_INFINITY)).largest()
-        };
         let backwards = group.backwards;
         let (mut near_origin, mut far_origin) = (rays.origin, rays.origin);
         let nothing = S::Eight::splat(0.0);
@@ -60,20 +54,20 @@ impl<S: InstructionSet> View<S> {
             let (near, far) = if backwards[axis] {
                 near_origin[axis] = below;
                 far_origin[axis] = above;
-                (smallest(below), largest(above))
+                (smallest(mask, below), largest(mask, above))
             } else {
                 near_origin[axis] = above;
                 far_origin[axis] = below;
-                (largest(above), smallest(below))
+                (largest(mask, above), smallest(mask, below))
             };
             let inverse = rays.inverse[axis];
             bounds.near_origin[axis] = S::Eight::splat(near);
             bounds.far_origin[axis] = S::Eight::splat(far);
-            bounds.least_inverse[axis] = S::Eight::splat(smallest(inverse));
-            bounds.most_inverse[axis] = S::Eight::splat(largest(inverse));
+            bounds.least_inverse[axis] = S::Eight::splat(smallest(mask, inverse));
+            bounds.most_inverse[axis] = S::Eight::splat(largest(mask, inverse));
         }
         Self {
-            near: [0, 1, 2].map(|axis| 2 * axis | usize::from(backwards[axis])),
+            near: by_axis!(|axis| 2 * axis | usize::from(backwards[axis])),
             near_origin,
             far_origin,
             inverse: rays.inverse,
@@ -87,60 +81,81 @@ impl<S: InstructionSet> View<S> {
     #[inline(always)]
     pub(super) fn span(&self, node: &WideNode, limit: f32) -> (u32, S::Eight) {
         let bounds = &self.bounds;
-        let crossed = |axis: usize, row: usize, origin: &[S::Eight; 3]| {
-            let way = S::Eight::load(node.row(row)).sub(origin[axis]);
-            (
-                way.mul(bounds.least_inverse[axis]),
-                way.mul(bounds.most_inverse[axis]),
-            )
-        };
-        let entry = |axis: usize| {
-            let (a, b) = crossed(axis, self.near[axis], &bounds.near_origin);
-            a.min(b)
-        };
-        let exit = |axis: usize| {
-            let (a, b) = crossed(axis, self.near[axis] ^ 1, &bounds.far_origin);
-            a.max(b)
-        };
+        let [x, y, z] = by_axis!(|axis| {
+            let face = S::Eight::load(node.row(self.near[axis]));
+            let way = face.sub(bounds.near_origin[axis]);
+            way.mul(bounds.least_inverse[axis])
+                .min(way.mul(bounds.most_inverse[axis]))
+        });
         // Zero last, so that no entry is -0.0.
-        let entries = entry(0)
-            .max(entry(1))
-            .max(entry(2))
-            .max(S::Eight::splat(0.0));
-        let exits = exit(0)
-            .min(exit(1))
-            .min(exit(2))
-            .min(S::Eight::splat(limit));
+        let entries = x.max(y).max(z).max(S::Eight::splat(0.0));
+        let [x, y, z] = by_axis!(|axis| {
+            let face = S::Eight::load(node.row(self.near[axis] ^ 1));
+            let way = face.sub(bounds.far_origin[axis]);
+            way.mul(bounds.least_inverse[axis])
+                .max(way.mul(bounds.most_inverse[axis]))
+        });
+        let exits = x.min(y).min(z).min(S::Eight::splat(limit));
         (S::Eight::bits(entries.le(exits)), entries)
     }
 
     /// Which rays enter a child, no later than at their limits.
     #[inline(always)]
     pub(super) fn enter(&self, node: &WideNode, child: u32, limit: S::Packet) -> u32 {
-        let crossed = |axis: usize, row: usize, origin: &[S::Packet; 3]| {
-            let face = node.row(row)[child as usize % 8];
-            (S::Packet::splat(face).sub(origin[axis])).mul(self.inverse[axis])
-        };
-        let entry = |axis: usize| crossed(axis, self.near[axis], &self.near_origin);
-        let exit = |axis: usize| crossed(axis, self.near[axis] ^ 1, &self.far_origin);
-        let zero = S::Packet::splat(0.0);
-        let entries = entry(0).max(entry(1)).max(entry(2)).max(zero);
-        let exits = exit(0).min(exit(1)).min(exit(2)).min(limit);
-        S::Packet::bits(entries.le(exits))
+        let child = child as usize % 8;
+        let [x, y, z] = by_axis!(|axis| self.near(axis, node.row(self.near[axis])[child]));
+        let entry = x.max(y).max(z).max(S::Packet::splat(0.0));
+        let [x, y, z] = by_axis!(|axis| self.far(axis, node.row(self.near[axis] ^ 1)[child]));
+        let exit = x.min(y).min(z).min(limit);
+        S::Packet::bits(entry.le(exit))
     }
+
+    /// Where the rays meet a face of a box that they meet first of two.
+    #[inline(always)]
+    pub(super) fn near(&self, axis: usize, face: f32) -> S::Packet {
+        (S::Packet::splat(face).sub(self.near_origin[axis])).mul(self.inverse[axis])
+    }
+
+    /// Where the rays meet a face of a box that they meet last of two.
+    #[inline(always)]
+    pub(super) fn far(&self, axis: usize, face: f32) -> S::Packet {
+        (S::Packet::splat(face).sub(self.far_origin[axis])).mul(self.inverse[axis])
+    }
+}
+
+/// The smallest of the lanes that the mask names.
+#[inline(always)]
+fn smallest<L: Lanes>(mask: L::Mask, lanes: L) -> f32 {
+    L::select(mask, lanes, L::splat(f32::INFINITY)).smallest()
+}
+
+/// The largest of the lanes that the mask names.
+#[inline(always)]
+fn largest<L: Lanes>(mask: L::Mask, lanes: L) -> f32 {
+    L::select(mask, lanes, L::splat(f32::NEG_INFINITY)).largest()
 }
 
 impl<L: Lanes> Frame<L> {
     #[inline(always)]
     fn new(rays: &PacketRays<L>, z: usize) -> Self {
         let axes = [[1, 2, 0], [2, 0, 1], [0, 1, 2]][z % 3];
-        let along = axes.map(|axis: usize| rays.direction[axis]);
+        let along = by_axis!(|i| rays.direction[axes[i]]);
         Self {
             axes,
-            from: axes.map(|axis| rays.origin[axis]),
+            from: by_axis!(|i| rays.origin[axes[i]]),
             slope: [along[0].div(along[2]), along[1].div(along[2])],
-            origin: rays.origin.map(L::widen),
-            direction: rays.direction.map(L::widen),
+            origin: by_axis!(|i| rays.origin[i].widen()),
+            direction: by_axis!(|i| rays.direction[i].widen()),
         }
+    }
+
+    /// x and y of a corner in the rays' frames.
+    #[inline(always)]
+    pub(super) fn corner(&self, x: f32, y: f32, z: f32) -> [L; 2] {
+        let depth = L::splat(z).sub(self.from[2]);
+        [
+            (L::splat(x).sub(self.from[0])).sub(depth.mul(self.slope[0])),
+            (L::splat(y).sub(self.from[1])).sub(depth.mul(self.slope[1])),
+        ]
     }
 }
