@@ -31,6 +31,7 @@ use super::{
     mesh_tree::{MeshTree, ObjectRay},
     slab::{PAD, SMALLEST_DIRECTION},
     triangles::REACH,
+    wide::{Lanes, PacketRays, by_axis, largest_size},
 };
 
 /// Half an ulp of 1, the u of the derivation above.
@@ -284,6 +285,40 @@ impl Instance {
             && origin.abs().max_element() < f32::MAX)
             .then(|| ObjectRay::new(origin, direction, size))
     }
+
+    /// [`Self::to_object_ray`] of a packet, and which of its rays are in range there.
+    #[inline(always)]
+    pub(crate) fn to_object_packet<L: Lanes>(
+        &self,
+        world: &PacketRays<L>,
+        time: L,
+    ) -> (PacketRays<L>, u32) {
+        let stands = by_axis!(|i| {
+            let way = L::splat(self.velocity[i]).mul(time);
+            L::splat(self.translation[i]).add(way)
+        });
+        let from = by_axis!(|i| world.origin[i].sub(stands[i]));
+        let matrix = &self.object_from_world;
+        let origin = by_axis!(|row| turned(matrix, row, &from));
+        let direction = by_axis!(|row| turned(matrix, row, &world.direction));
+        let size = largest_size(&direction);
+        let far = largest_size(&origin);
+        let in_range = L::and(
+            L::splat(SMALLEST_DIRECTION).le(size),
+            size.le(L::splat(1.0 / SMALLEST_DIRECTION)),
+        );
+        let in_range = L::bits(L::and(in_range, far.lt(L::splat(f32::MAX))));
+        (PacketRays::new(origin, direction, size), in_range)
+    }
+}
+
+/// A row of a matrix times vectors.
+#[inline(always)]
+fn turned<L: Lanes>(matrix: &Mat3A, row: usize, [x, y, z]: &[L; 3]) -> L {
+    let x = L::splat(matrix.x_axis[row]).mul(*x);
+    let y = L::splat(matrix.y_axis[row]).mul(*y);
+    let z = L::splat(matrix.z_axis[row]).mul(*z);
+    x.add(y).add(z)
 }
 
 fn columns(matrix: &Mat3A) -> DMat3 {

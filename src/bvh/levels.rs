@@ -1,32 +1,52 @@
 //! How the wide trees of an aggregate hang together, and the questions that are compiled for each way apart: what a
 //! scene does not have costs nothing, not even the registers.
 
+use std::marker::PhantomData;
+
 #[cfg(test)]
 use super::wide::Portable;
 use super::{
     aggregate::{Aggregate, Places},
+    goal::{Any, Goal, Nearest},
     mesh_tree::{MeshTree, ObjectRay},
+    order::Order,
     queries::Best,
     ray::{Hit, Ray},
-    safe_ray::SafeRay,
+    safe_ray::{ORDINARY, SafeRay},
     slab::SlabRay,
     traverse::STOP,
     triangle::{Crossing, Shear},
-    wide::{Eight, FEW, Leaves, MANY, Query, WideRay, answer, few_hold, walk},
+    triangles::REACH,
+    wide::{
+        Answers, Eight, FEW, Found, InstructionSet, Lanes, Leaves, MANY, PacketLeaves, PacketRays,
+        Query, View, Ways, WideRay, answer, by_axis, few_hold, lanes_of, largest_size, walk,
+        walk_from, walk_packet,
+    },
 };
 
 /// What rays walk: one of the ways in which an aggregate is arranged.
 pub(super) trait Arrangement: Copy {
+    /// Whether packets walk it.
+    const HAS_PACKETS: bool;
+
     /// Entries of a stack that a walk needs.
     fn most_pending(self) -> usize;
 
     /// Hands the hits on the ray whose `t` is not beyond the limit to `at(hit, limit)`, which returns the new limit, or
     /// [`STOP`]. `t` is the [`SafeRay`]'s. The order is that of [`walk`].
-    fn each_hit<E: Eight, const NEAREST_FIRST: bool>(
+    fn each_hit<E: Eight, G: Goal>(
         self,
         ray: &SafeRay,
         stack: &mut [u64],
         at: impl FnMut(Hit, f32) -> f32,
+    );
+
+    /// Walks with a packet of rays, where there are such.
+    fn packet<S: InstructionSet, G: Goal>(
+        self,
+        packet: &Packet<S>,
+        found: &mut Found<S::Packet>,
+        stack: &mut [u64],
     );
 }
 
@@ -54,34 +74,30 @@ macro_rules! arranged {
 
 impl Aggregate {
     /// Puts the nearest hit of each ray into its place in `hits`, where there is `None` before.
-    pub(super) fn ask_closest(&self, rays: &[Ray], hits: &mut [Option<Hit>]) {
-        arranged!(self, of => answer(Closest { of, rays, hits }));
+    pub(super) fn ask_closest(&self, order: Order, rays: &[Ray], hits: &mut [Option<Hit>]) {
+        arranged!(self, of => answer(Closest { of, order, rays, hits }));
     }
 
     /// Sets those of `occluded`, all false before, whose rays hit anything.
-    pub(super) fn ask_any(&self, rays: &[Ray], occluded: &mut [bool]) {
-        arranged!(self, of => answer(Any { of, rays, occluded }));
+    pub(super) fn ask_any(&self, order: Order, rays: &[Ray], occluded: &mut [bool]) {
+        arranged!(self, of => answer(AnyOf { of, order, rays, occluded }));
     }
 
     /// [`Arrangement::each_hit`].
-    pub(super) fn ask_every<const NEAREST_FIRST: bool>(
-        &self,
-        ray: &SafeRay,
-        at: impl FnMut(Hit, f32) -> f32,
-    ) {
-        arranged!(self, of => answer(Every::<_, _, NEAREST_FIRST> { of, ray, at }));
+    pub(super) fn ask_every<G: Goal>(&self, ray: &SafeRay, at: impl FnMut(Hit, f32) -> f32) {
+        arranged!(self, of => answer(Every::<_, _, G> { of, ray, at, goal: PhantomData }));
     }
 }
 
 #[cfg(test)]
 impl Aggregate {
     /// What [`Aggregate::closest_hits`] and [`Aggregate::occlusions`] find on a machine without vector instructions.
-    pub(super) fn ask_portably(&self, rays: &[Ray]) -> (Vec<Option<Hit>>, Vec<bool>) {
+    pub(super) fn ask_portably(&self, order: Order, rays: &[Ray]) -> (Vec<Option<Hit>>, Vec<bool>) {
         let (mut all_hits, mut all_occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
         let (hits, occluded) = (all_hits.as_mut_slice(), all_occluded.as_mut_slice());
         arranged!(self, of => {
-            Closest { of, rays, hits }.ask::<Portable>();
-            Any { of, rays, occluded }.ask::<Portable>();
+            Closest { of, order, rays, hits }.ask::<Portable>();
+            AnyOf { of, order, rays, occluded }.ask::<Portable>();
         });
         (all_hits, all_occluded)
     }
@@ -105,6 +121,7 @@ macro_rules! stack_for {
 /// The nearest hit of each ray.
 struct Closest<'a, Of> {
     of: Of,
+    order: Order,
     rays: &'a [Ray],
     hits: &'a mut [Option<Hit>],
 }
@@ -113,13 +130,21 @@ impl<Of: Arrangement> Query for Closest<'_, Of> {
     type Answer = ();
 
     #[inline(always)]
-    fn ask<E: Eight>(self) {
+    fn ask<S: InstructionSet>(self) {
         stack_for!(self.of, stack);
+        if Of::HAS_PACKETS && self.order != Order::None {
+            let most = S::Packet::COUNT;
+            for (rays, hits) in self.rays.chunks(most).zip(self.hits.chunks_mut(most)) {
+                let mut answers = Answers::Closest(hits);
+                trace_packet::<_, S, Nearest>(self.of, rays, &mut answers, stack);
+            }
+            return;
+        }
         for (ray, closest) in self.rays.iter().zip(self.hits) {
             if let Some(ray) = SafeRay::new(ray) {
                 let mut best = Best::NONE;
                 let offer = |hit, limit| best.offer(hit, limit);
-                self.of.each_hit::<E, true>(&ray, stack, offer);
+                self.of.each_hit::<S::Eight, Nearest>(&ray, stack, offer);
                 *closest = best.found(&ray);
             }
         }
@@ -127,21 +152,31 @@ impl<Of: Arrangement> Query for Closest<'_, Of> {
 }
 
 /// Whether each ray hits anything.
-struct Any<'a, Of> {
+struct AnyOf<'a, Of> {
     of: Of,
+    order: Order,
     rays: &'a [Ray],
     occluded: &'a mut [bool],
 }
 
-impl<Of: Arrangement> Query for Any<'_, Of> {
+impl<Of: Arrangement> Query for AnyOf<'_, Of> {
     type Answer = ();
 
     #[inline(always)]
-    fn ask<E: Eight>(self) {
+    fn ask<S: InstructionSet>(self) {
         stack_for!(self.of, stack);
+        if Of::HAS_PACKETS && self.order != Order::None {
+            let most = S::Packet::COUNT;
+            let rays = self.rays.chunks(most);
+            for (rays, occluded) in rays.zip(self.occluded.chunks_mut(most)) {
+                let mut answers = Answers::Any(occluded);
+                trace_packet::<_, S, Any>(self.of, rays, &mut answers, stack);
+            }
+            return;
+        }
         for (ray, occluded) in self.rays.iter().zip(self.occluded) {
             if let Some(ray) = SafeRay::new(ray) {
-                self.of.each_hit::<E, false>(&ray, stack, |_, _| {
+                self.of.each_hit::<S::Eight, Any>(&ray, stack, |_, _| {
                     *occluded = true;
                     STOP
                 });
@@ -150,24 +185,105 @@ impl<Of: Arrangement> Query for Any<'_, Of> {
     }
 }
 
+/// Rays of a batch as a packet, a lane each.
+pub(super) struct Packet<'a, S: InstructionSet> {
+    rays: &'a [Ray],
+    world: PacketRays<S::Packet>,
+    time: S::Packet,
+    end: S::Packet,
+    /// Which rays can be traced together.
+    lanes: u32,
+}
+
+impl<'a, S: InstructionSet> Packet<'a, S> {
+    /// At most as many rays as there are lanes; what [`SafeRay::new`] does with one, where it needs no scale.
+    #[inline(always)]
+    fn new(rays: &'a [Ray]) -> Self {
+        let zero = S::Packet::splat(0.0);
+        let mut columns = [zero.to_array(); 8];
+        for (lane, ray) in rays.iter().enumerate() {
+            let (from, along) = (ray.origin, ray.direction);
+            let numbers = [
+                from.x, from.y, from.z, along.x, along.y, along.z, ray.t_max, ray.time,
+            ];
+            for (column, number) in columns.iter_mut().zip(numbers) {
+                column.as_mut()[lane] = number;
+            }
+        }
+        let [_, _, _, _, _, _, end, time] = &columns;
+        let (end, time) = (S::Packet::load(end), S::Packet::load(time));
+        // -0.0 becomes +0.0, so that both mean the same.
+        let origin = by_axis!(|i| S::Packet::load(&columns[i]).add(zero));
+        let direction = by_axis!(|i| S::Packet::load(&columns[3 + i]).add(zero));
+        let longest = largest_size(&direction);
+        let ordinary = S::Packet::splat(1.0 / ORDINARY);
+        let reach = S::Packet::splat(REACH);
+        let mut lanes = (1 << rays.len()) - 1;
+        for axis in 0..3 {
+            lanes &= S::Packet::bits(direction[axis].abs().le(ordinary));
+            lanes &= S::Packet::bits(origin[axis].abs().le(reach));
+        }
+        lanes &= S::Packet::bits(S::Packet::splat(ORDINARY).le(longest));
+        lanes &= S::Packet::bits(zero.lt(end));
+        lanes &= S::Packet::bits(zero.le(time));
+        lanes &= S::Packet::bits(time.le(S::Packet::splat(1.0)));
+        Self {
+            rays,
+            world: PacketRays::new(origin, direction, longest),
+            time,
+            end,
+            lanes,
+        }
+    }
+}
+
+/// Answers a question of at most as many rays as there are lanes.
+#[inline(always)]
+fn trace_packet<Of: Arrangement, S: InstructionSet, G: Goal>(
+    of: Of,
+    rays: &[Ray],
+    answers: &mut Answers,
+    stack: &mut [u64],
+) {
+    let packet = Packet::<S>::new(rays);
+    let mut found = Found::nothing(packet.end, packet.lanes);
+    of.packet::<S, G>(&packet, &mut found, stack);
+    found.write(answers);
+    let all = (1 << rays.len()) - 1;
+    for lane in lanes_of(all & !packet.lanes) {
+        // A miss, or of a size out of the ordinary.
+        if let Some(ray) = SafeRay::new(&rays[lane]) {
+            let mut best = Best::NONE;
+            let offer = |hit, limit| {
+                let new = best.offer(hit, limit);
+                if G::ANY { STOP } else { new }
+            };
+            of.each_hit::<S::Eight, G>(&ray, stack, offer);
+            answers.set(lane, best.found(&ray));
+        }
+    }
+}
+
 /// Every hit of one ray up to a limit that may shrink.
-struct Every<'a, Of, At, const NEAREST_FIRST: bool> {
+struct Every<'a, Of, At, G> {
     of: Of,
     ray: &'a SafeRay,
     at: At,
+    goal: PhantomData<G>,
 }
 
-impl<Of, At, const NEAREST_FIRST: bool> Query for Every<'_, Of, At, NEAREST_FIRST>
+impl<Of, At, G> Query for Every<'_, Of, At, G>
 where
+    G: Goal,
     Of: Arrangement,
     At: FnMut(Hit, f32) -> f32,
 {
     type Answer = ();
 
     #[inline(always)]
-    fn ask<E: Eight>(self) {
+    fn ask<S: InstructionSet>(self) {
         stack_for!(self.of, stack);
-        (self.of).each_hit::<E, NEAREST_FIRST>(self.ray, stack, self.at);
+        (self.of).each_hit::<S::Eight, G>(self.ray, stack, self.at);
     }
 }
 
@@ -199,13 +315,15 @@ fn offer(
 pub(super) struct OneMesh<'a>(pub(super) &'a MeshTree);
 
 impl Arrangement for OneMesh<'_> {
+    const HAS_PACKETS: bool = true;
+
     #[inline(always)]
     fn most_pending(self) -> usize {
         self.0.most_pending()
     }
 
     #[inline(always)]
-    fn each_hit<E: Eight, const NEAREST_FIRST: bool>(
+    fn each_hit<E: Eight, G: Goal>(
         self,
         ray: &SafeRay,
         stack: &mut [u64],
@@ -213,7 +331,21 @@ impl Arrangement for OneMesh<'_> {
     ) {
         let at = |triangle, crossing, limit| offer(ray, (0, triangle), crossing, limit, &mut at);
         let span = (ray.start, ray.end);
-        (self.0).walk_wide::<E, NEAREST_FIRST>(&ray.world, stack, span, at);
+        (self.0).walk_wide::<E, G>(&ray.world, stack, span, at);
+    }
+
+    #[inline(always)]
+    fn packet<S: InstructionSet, G: Goal>(
+        self,
+        packet: &Packet<S>,
+        found: &mut Found<S::Packet>,
+        stack: &mut [u64],
+    ) {
+        let ways = Ways::of(&packet.world);
+        let mut left = packet.lanes;
+        while let Some(group) = ways.next_group(&mut left) {
+            (self.0).walk_packet::<S, G>(&packet.world, &group, 0, found, stack);
+        }
     }
 }
 
@@ -222,27 +354,53 @@ impl Arrangement for OneMesh<'_> {
 pub(super) struct TwoLevels<'a>(&'a Aggregate, &'a [u32]);
 
 impl Arrangement for TwoLevels<'_> {
+    const HAS_PACKETS: bool = true;
+
     #[inline(always)]
     fn most_pending(self) -> usize {
         self.0.most_pending
     }
 
     #[inline(always)]
-    fn each_hit<E: Eight, const NEAREST_FIRST: bool>(
+    fn each_hit<E: Eight, G: Goal>(
         self,
         ray: &SafeRay,
         stack: &mut [u64],
         at: impl FnMut(Hit, f32) -> f32,
     ) {
         let Self(scene, places) = self;
-        let mut leaves = InstanceLeaves::<_, NEAREST_FIRST> {
+        let mut leaves = InstanceLeaves::<_, G> {
             scene,
             places,
             ray,
             at,
+            goal: PhantomData,
         };
         let top = WideRay::new(&scene.top_slab(&ray.world), ray.start);
-        walk::<E, NEAREST_FIRST>(&scene.wide, stack, &top, ray.end, &mut leaves);
+        walk::<E, G>(&scene.wide, stack, &top, ray.end, &mut leaves);
+    }
+
+    #[inline(always)]
+    fn packet<S: InstructionSet, G: Goal>(
+        self,
+        packet: &Packet<S>,
+        found: &mut Found<S::Packet>,
+        stack: &mut [u64],
+    ) {
+        let Self(scene, places) = self;
+        let rays = packet.world.with_pad(scene.ray_pad);
+        let ways = Ways::of(&rays);
+        let mut left = packet.lanes;
+        while let Some(group) = ways.next_group(&mut left) {
+            let view = View::<S>::new(&rays, &group);
+            let mut leaves = PacketOfInstances::<S, G> {
+                scene,
+                places,
+                packet,
+                goal: PhantomData,
+            };
+            walk_packet::<S, G>(&scene.wide, stack, &view, group.lanes, found, &mut leaves);
+        }
     }
 }
 
@@ -251,27 +409,39 @@ impl Arrangement for TwoLevels<'_> {
 pub(super) struct OneLevel<'a>(&'a Aggregate);
 
 impl Arrangement for OneLevel<'_> {
+    const HAS_PACKETS: bool = false;
+
     #[inline(always)]
     fn most_pending(self) -> usize {
         self.0.most_pending
     }
 
     #[inline(always)]
-    fn each_hit<E: Eight, const NEAREST_FIRST: bool>(
+    fn each_hit<E: Eight, G: Goal>(
         self,
         ray: &SafeRay,
         stack: &mut [u64],
         at: impl FnMut(Hit, f32) -> f32,
     ) {
         let scene = self.0;
-        let mut leaves = FlatLeaves {
+        let mut leaves = FlatLeaves::<_, G> {
             scene,
             ray,
             last: None,
             at,
+            goal: PhantomData,
         };
         let top = WideRay::new(&scene.top_slab(&ray.world), ray.start);
-        walk::<E, NEAREST_FIRST>(&scene.wide, stack, &top, ray.end, &mut leaves);
+        walk::<E, G>(&scene.wide, stack, &top, ray.end, &mut leaves);
+    }
+
+    #[inline(always)]
+    fn packet<S: InstructionSet, G: Goal>(
+        self,
+        _: &Packet<S>,
+        _: &mut Found<S::Packet>,
+        _: &mut [u64],
+    ) {
     }
 }
 
@@ -306,16 +476,15 @@ impl Aggregate {
 }
 
 /// Two levels: a leaf of the top tree is an instance, or several where they could not be told apart.
-struct InstanceLeaves<'a, At, const NEAREST_FIRST: bool> {
+struct InstanceLeaves<'a, At, G> {
+    goal: PhantomData<G>,
     scene: &'a Aggregate,
     places: &'a [u32],
     ray: &'a SafeRay,
     at: At,
 }
 
-impl<E: Eight, At: FnMut(Hit, f32) -> f32, const NEAREST_FIRST: bool> Leaves<E>
-    for InstanceLeaves<'_, At, NEAREST_FIRST>
-{
+impl<E: Eight, At: FnMut(Hit, f32) -> f32, G: Goal> Leaves<E> for InstanceLeaves<'_, At, G> {
     #[inline(always)]
     fn visit(&mut self, leaf: u32, mut limit: f32, stack: &mut [u64]) -> f32 {
         let ray = self.ray;
@@ -329,7 +498,7 @@ impl<E: Eight, At: FnMut(Hit, f32) -> f32, const NEAREST_FIRST: bool> Leaves<E>
             };
             let mesh = &instance.mesh;
             let span = (ray.start, limit);
-            limit = mesh.walk_wide::<E, NEAREST_FIRST>(&object, stack, span, at);
+            limit = mesh.walk_wide::<E, G>(&object, stack, span, at);
             if limit == STOP {
                 break;
             }
@@ -338,15 +507,66 @@ impl<E: Eight, At: FnMut(Hit, f32) -> f32, const NEAREST_FIRST: bool> Leaves<E>
     }
 }
 
+/// Two levels, with a packet's rays.
+struct PacketOfInstances<'a, S: InstructionSet, G> {
+    scene: &'a Aggregate,
+    places: &'a [u32],
+    packet: &'a Packet<'a, S>,
+    goal: PhantomData<G>,
+}
+
+impl<S: InstructionSet, G: Goal> PacketLeaves<S> for PacketOfInstances<'_, S, G> {
+    #[inline(always)]
+    fn visit(&mut self, leaf: u32, lanes: u32, found: &mut Found<S::Packet>, stack: &mut [u64]) {
+        let packet = self.packet;
+        for &number in &self.places[self.scene.wide_leaves[leaf as usize].clone()] {
+            let instance = &self.scene.instances()[number as usize];
+            let (rays, in_range) = if instance.is_identity() {
+                (packet.world, lanes)
+            } else {
+                instance.to_object_packet(&packet.world, packet.time)
+            };
+            let ways = Ways::of(&rays);
+            let mut left = lanes & in_range;
+            while let Some(group) = ways.next_group(&mut left) {
+                (instance.mesh).walk_packet::<S, G>(&rays, &group, number, found, stack);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn alone(&mut self, child: u32, lanes: u32, found: &mut Found<S::Packet>, stack: &mut [u64]) {
+        let (scene, places) = (self.scene, self.places);
+        for lane in lanes_of(lanes) {
+            let Some(ray) = &SafeRay::new(&self.packet.rays[lane]) else {
+                continue;
+            };
+            let mut alone = found.alone(lane);
+            let limit = alone.limit;
+            let mut leaves = InstanceLeaves::<_, G> {
+                scene,
+                places,
+                ray,
+                at: |hit, limit| alone.offer::<G>(hit, limit),
+                goal: PhantomData,
+            };
+            let top = WideRay::new(&scene.top_slab(&ray.world), 0.0);
+            walk_from::<S::Eight, G>(&scene.wide, child, stack, &top, limit, &mut leaves);
+            found.rejoin::<G>(alone);
+        }
+    }
+}
+
 /// One level: a leaf of the tree is blocks of triangles, each of one instance.
-struct FlatLeaves<'a, At> {
+struct FlatLeaves<'a, At, G> {
+    goal: PhantomData<G>,
     scene: &'a Aggregate,
     ray: &'a SafeRay,
     last: Option<(u32, Option<(ObjectRay, Shear)>)>,
     at: At,
 }
 
-impl<E: Eight, At: FnMut(Hit, f32) -> f32> Leaves<E> for FlatLeaves<'_, At> {
+impl<E: Eight, At: FnMut(Hit, f32) -> f32, G: Goal> Leaves<E> for FlatLeaves<'_, At, G> {
     #[inline(always)]
     fn visit(&mut self, leaf: u32, mut limit: f32, _: &mut [u64]) -> f32 {
         let (scene, ray) = (self.scene, self.ray);
@@ -355,10 +575,11 @@ impl<E: Eight, At: FnMut(Hit, f32) -> f32> Leaves<E> for FlatLeaves<'_, At> {
             let Some((object, shear)) = scene.object_ray(ray, number, &mut self.last) else {
                 continue;
             };
+            let reach = scene.instances()[number as usize].mesh.reach();
             let mut at = |triangle, crossing, limit| {
                 offer(ray, (number, triangle), crossing, limit, &mut self.at)
             };
-            limit = scene.blocks[block].cross::<E>(shear, &object.slab, limit, &mut at);
+            limit = scene.blocks[block].cross::<E, G>(shear, &object.slab, reach, limit, &mut at);
             if limit == STOP {
                 break;
             }

@@ -1,13 +1,18 @@
 //! One mesh and its tree: built once, shared by every instance.
 
-use std::time::{Duration, Instant};
+use std::{
+    marker::PhantomData,
+    time::{Duration, Instant},
+};
 
 use glam::Vec3A;
 use obvhs::{aabb::Aabb, bvh2::Bvh2};
 
 use super::{
     build_tree,
+    goal::Goal,
     options::BuildOptions,
+    ray::Hit,
     slab::{SlabRay, triangle_box},
     stats::TreeStats,
     traverse::{STOP, Stack, walk},
@@ -15,7 +20,10 @@ use super::{
     triangles::Triangles,
     visitor::{TreeRef, Visitor},
     wedges::Wedges,
-    wide::{self, Eight, Leaves, TriangleBlock, WideBox, WideRay, WideStats, WideTree},
+    wide::{
+        self, Eight, Found, Group, InstructionSet, Leaves, PacketLeaves, PacketRays, TriangleBlock,
+        View, WideBox, WideRay, WideStats, WideTree, lanes_of,
+    },
 };
 
 /// A mesh's triangles, the tree over them, and their corners again in the order of the tree's leaves. And the same in
@@ -28,6 +36,8 @@ pub struct MeshTree {
     wide: WideTree,
     blocks: Vec<TriangleBlock>,
     wedges: Wedges,
+    /// The largest coordinate of a traced triangle, without its sign.
+    reach: f32,
     build_time: Duration,
 }
 
@@ -58,7 +68,12 @@ impl MeshTree {
             first
         });
         blocks.shrink_to_fit();
+        let reach = tree.nodes.first().map_or(Vec3A::ZERO, |root| {
+            let bounds = root.aabb();
+            bounds.min.abs().max(bounds.max.abs())
+        });
         Self {
+            reach: reach.max_element(),
             wedges: Wedges::of(&triangles, &numbers),
             triangles,
             tree,
@@ -93,6 +108,11 @@ impl MeshTree {
     /// The box around all traced triangles (a few units in the last place wider), or `None` when there is none.
     pub fn bounds(&self) -> Option<Aabb> {
         self.tree.nodes.first().map(|root| *root.aabb())
+    }
+
+    /// The largest coordinate of its tree's box, without its sign.
+    pub(super) fn reach(&self) -> f32 {
+        self.reach
     }
 
     /// How narrow the wedges are that its triangles make with each other.
@@ -153,21 +173,44 @@ impl MeshTree {
     /// Walks the tree along a ray in object space, from the first `t` of the span to the second, the limit, unwatched:
     /// [`walk`](wide::walk). `at(triangle number, crossing, limit)` returns the new limit, or [`STOP`].
     #[inline(always)]
-    pub(crate) fn walk_wide<E: Eight, const NEAREST_FIRST: bool>(
+    pub(crate) fn walk_wide<E: Eight, G: Goal>(
         &self,
         ray: &ObjectRay,
         stack: &mut [u64],
         (start, limit): (f32, f32),
         at: impl FnMut(u32, Crossing, f32) -> f32,
     ) -> f32 {
-        let mut leaves = MeshLeaves {
+        let mut leaves = MeshLeaves::<_, G> {
             blocks: &self.blocks,
+            reach: self.reach,
             ray,
             shear: None,
             at,
+            goal: PhantomData,
         };
         let wide_ray = WideRay::new(&ray.slab, start);
-        wide::walk::<E, NEAREST_FIRST>(&self.wide, stack, &wide_ray, limit, &mut leaves)
+        wide::walk::<E, G>(&self.wide, stack, &wide_ray, limit, &mut leaves)
+    }
+
+    /// Walks the tree with a group of a packet's rays in object space.
+    #[inline(always)]
+    pub(crate) fn walk_packet<S: InstructionSet, G: Goal>(
+        &self,
+        rays: &PacketRays<S::Packet>,
+        group: &Group,
+        instance: u32,
+        found: &mut Found<S::Packet>,
+        stack: &mut [u64],
+    ) {
+        let view = View::<S>::new(rays, group);
+        let mut leaves = PacketOfMesh::<S, G> {
+            mesh: self,
+            rays,
+            view: &view,
+            instance,
+            goal: PhantomData,
+        };
+        wide::walk_packet::<S, G>(&self.wide, stack, &view, group.lanes, found, &mut leaves);
     }
 
     /// Walks the tree along a ray in object space, from the first `t` of the span to the second, the limit. `at(triangle
@@ -230,15 +273,17 @@ impl MeshTree {
 }
 
 /// The blocks of a mesh's wide tree, with a ray.
-struct MeshLeaves<'a, At> {
+struct MeshLeaves<'a, At, G> {
     blocks: &'a [TriangleBlock],
+    reach: f32,
     ray: &'a ObjectRay,
     /// Made at the first leaf: many rays meet none.
     shear: Option<Shear>,
     at: At,
+    goal: PhantomData<G>,
 }
 
-impl<E: Eight, At: FnMut(u32, Crossing, f32) -> f32> Leaves<E> for MeshLeaves<'_, At> {
+impl<E: Eight, At: FnMut(u32, Crossing, f32) -> f32, G: Goal> Leaves<E> for MeshLeaves<'_, At, G> {
     #[inline(always)]
     fn visit(&mut self, block: u32, limit: f32, _: &mut [u64]) -> f32 {
         let ray = self.ray;
@@ -246,13 +291,64 @@ impl<E: Eight, At: FnMut(u32, Crossing, f32) -> f32> Leaves<E> for MeshLeaves<'_
             Some(shear) => shear,
             none => none.insert(Shear::new(ray.origin, ray.direction)),
         };
-        self.blocks[block as usize].cross::<E>(shear, &ray.slab, limit, &mut self.at)
+        self.blocks[block as usize].cross::<E, G>(shear, &ray.slab, self.reach, limit, &mut self.at)
     }
 
     #[inline(always)]
     fn rest(&self, block: u32) -> Option<u32> {
         let continues = self.blocks[block as usize].continues();
         continues.then_some(block + 1)
+    }
+}
+
+/// A mesh's wide tree, with a group of a packet's rays.
+struct PacketOfMesh<'a, S: InstructionSet, G> {
+    mesh: &'a MeshTree,
+    rays: &'a PacketRays<S::Packet>,
+    view: &'a View<S>,
+    instance: u32,
+    goal: PhantomData<G>,
+}
+
+impl<S: InstructionSet, G: Goal> PacketLeaves<S> for PacketOfMesh<'_, S, G> {
+    #[inline(always)]
+    fn visit(&mut self, leaf: u32, lanes: u32, found: &mut Found<S::Packet>, _: &mut [u64]) {
+        for block in &self.mesh.blocks[leaf as usize..] {
+            block.cross_packet::<S, G>(self.view, lanes, self.instance, found);
+            if !block.continues() {
+                break;
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn alone(&mut self, child: u32, lanes: u32, found: &mut Found<S::Packet>, stack: &mut [u64]) {
+        let mesh = self.mesh;
+        for lane in lanes_of(lanes) {
+            let ray = self.rays.ray(lane);
+            let mut alone = found.alone(lane);
+            let limit = alone.limit;
+            let mut leaves = MeshLeaves::<_, G> {
+                blocks: &mesh.blocks,
+                reach: mesh.reach,
+                ray: &ray,
+                shear: None,
+                at: |triangle, Crossing { t, u, v }, limit| {
+                    let hit = Hit {
+                        t,
+                        instance: self.instance,
+                        triangle,
+                        u,
+                        v,
+                    };
+                    alone.offer::<G>(hit, limit)
+                },
+                goal: PhantomData,
+            };
+            let wide_ray = WideRay::new(&ray.slab, 0.0);
+            wide::walk_from::<S::Eight, G>(&mesh.wide, child, stack, &wide_ray, limit, &mut leaves);
+            found.rejoin::<G>(alone);
+        }
     }
 }
 

@@ -5,6 +5,8 @@ use std::slice;
 
 use super::{
     Aggregate,
+    goal::{All, Nearest},
+    order::Order,
     ray::{Hit, Ray},
     safe_ray::SafeRay,
 };
@@ -13,29 +15,49 @@ impl Aggregate {
     /// The nearest hit; equal `t` by the smaller (instance, triangle).
     pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
         let mut closest = None;
-        self.ask_closest(slice::from_ref(ray), slice::from_mut(&mut closest));
+        self.ask_closest(
+            Order::None,
+            slice::from_ref(ray),
+            slice::from_mut(&mut closest),
+        );
         closest
     }
 
     /// The nearest hit of every ray, in their order. `hits` is cleared first. Faster than one call a ray.
     pub fn closest_hits(&self, rays: &[Ray], hits: &mut Vec<Option<Hit>>) {
+        self.closest_hits_in(Order::None, rays, hits);
+    }
+
+    /// The nearest hit of every ray, in their order, which is told. `hits` is cleared first. The order only matters for
+    /// the time that it takes.
+    pub fn closest_hits_in(&self, order: Order, rays: &[Ray], hits: &mut Vec<Option<Hit>>) {
         hits.clear();
         hits.resize(rays.len(), None);
-        self.ask_closest(rays, hits);
+        self.ask_closest(order, rays, hits);
     }
 
     /// Whether anything is hit in `0 < t < t_max`.
     pub fn occluded(&self, ray: &Ray) -> bool {
         let mut occluded = false;
-        self.ask_any(slice::from_ref(ray), slice::from_mut(&mut occluded));
+        self.ask_any(
+            Order::None,
+            slice::from_ref(ray),
+            slice::from_mut(&mut occluded),
+        );
         occluded
     }
 
     /// Whether each ray is occluded, in their order. `occluded` is cleared first. Faster than one call a ray.
     pub fn occlusions(&self, rays: &[Ray], occluded: &mut Vec<bool>) {
+        self.occlusions_in(Order::None, rays, occluded);
+    }
+
+    /// Whether each ray is occluded, in their order, which is told. `occluded` is cleared first. The order only matters
+    /// for the time that it takes.
+    pub fn occlusions_in(&self, order: Order, rays: &[Ray], occluded: &mut Vec<bool>) {
         occluded.clear();
         occluded.resize(rays.len(), false);
-        self.ask_any(rays, occluded);
+        self.ask_any(order, rays, occluded);
     }
 
     /// The next hit behind `after`, a hit of the same ray: the ray goes straight on through what it met, and meets every
@@ -43,7 +65,7 @@ impl Aggregate {
     pub fn closest_hit_after(&self, ray: &Ray, after: &Hit) -> Option<Hit> {
         let (ray, after) = SafeRay::from_hit(ray, after)?;
         let mut best = Best::NONE;
-        self.ask_every::<true>(&ray, |hit, limit| {
+        self.ask_every::<Nearest>(&ray, |hit, limit| {
             if after.beats(&hit) {
                 best.offer(hit, limit)
             } else {
@@ -60,7 +82,7 @@ impl Aggregate {
         let Some(ray) = SafeRay::new(ray) else {
             return;
         };
-        self.ask_every::<false>(&ray, |hit, limit| {
+        self.ask_every::<All>(&ray, |hit, limit| {
             hits.push(ray.scaled(hit));
             limit
         });
@@ -71,7 +93,7 @@ impl Aggregate {
 }
 
 /// The nearest hit so far, in a [`SafeRay`]'s `t`.
-pub(super) struct Best(Hit);
+pub(super) struct Best(pub(super) Hit);
 
 impl Best {
     /// None yet: what any hit beats.
@@ -82,6 +104,12 @@ impl Best {
         u: 0.0,
         v: 0.0,
     });
+
+    /// That hit.
+    #[inline(always)]
+    pub(super) fn of(hit: Hit) -> Self {
+        Self(hit)
+    }
 
     /// Takes a hit if it is nearer, and returns the `t` beyond which nothing matters any more.
     #[inline(always)]
@@ -95,6 +123,7 @@ impl Best {
     }
 
     /// Whether this is the hit.
+    #[inline(always)]
     pub(super) fn is(&self, hit: &Hit) -> bool {
         (self.0.instance, self.0.triangle) == (hit.instance, hit.triangle)
     }

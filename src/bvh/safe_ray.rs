@@ -24,7 +24,7 @@ pub(crate) struct SafeRay {
 }
 
 /// Directions this long, or as much longer than 1, stay in range through every instance's transform.
-const ORDINARY: f32 = SMALLEST_DIRECTION * (1u64 << 30) as f32;
+pub(super) const ORDINARY: f32 = SMALLEST_DIRECTION * (1u64 << 30) as f32;
 
 impl SafeRay {
     /// `None` is a miss: something is not finite, the origin is beyond [`REACH`], the direction is zero, the ray ends

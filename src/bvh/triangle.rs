@@ -27,7 +27,10 @@
 
 use glam::{Vec3, Vec3A, Vec3Swizzles};
 
-use super::slab::{SlabRay, triangle_box};
+use super::{
+    goal::{Goal, Nearest},
+    slab::{SlabRay, triangle_box},
+};
 
 /// A triangle as a leaf holds it: 40 bytes, its coordinates axis by axis.
 #[derive(Clone, Copy, Debug)]
@@ -75,6 +78,10 @@ pub(crate) struct Shear {
     pub(crate) from: [f32; 3],
     /// The shear of x and of y by z.
     pub(crate) slope: [f32; 2],
+    /// The direction along z.
+    along: f32,
+    /// The origin's largest coordinate, without its sign.
+    size: f32,
 }
 
 /// The axes after each axis.
@@ -98,7 +105,25 @@ impl Shear {
             axes,
             from: [from[x], from[y], from[z]],
             slope: [along[x] / along[z], along[y] / along[z]],
+            along: along[z],
+            size: origin.abs().max_element(),
         }
+    }
+
+    /// Between which depths, the z of the frame, something of a triangle lies that [`accept`] finds in
+    /// `0 < t <= limit`. `reach` is no less than any coordinate of the triangle.
+    ///
+    /// `t` lies within the triangle's box, and so between its faces across z. Those are off by the pads, 12u of the
+    /// triangle's and of the origin's coordinates ([`super::slab`]), and by five roundings, of which two are relative to
+    /// the same coordinates and three to `t`: less than 16u of either. What is too small to have relative roundings is
+    /// kept.
+    #[inline(always)]
+    pub(crate) fn depths(&self, reach: f32, limit: f32) -> (f32, f32) {
+        const SLACK: f32 = 8.0 * f32::EPSILON;
+        let slack = (reach + self.size) * SLACK + f32::MIN_POSITIVE;
+        let end = limit * self.along * (1.0 + SLACK);
+        let (first, last) = if end < 0.0 { (end, 0.0) } else { (0.0, end) };
+        (first - slack, last + slack)
     }
 }
 
@@ -135,12 +160,13 @@ pub(crate) fn cross(
     if !(det != 0.0 && det.is_finite()) {
         return None;
     }
-    accept(shear, slab, triangle.corners(), edges, limit)
+    accept::<Nearest>(shear, slab, triangle.corners(), edges, limit)
 }
 
 /// The rest of [`cross`], for a triangle whose edge functions do not differ in sign and have a finite sum, not zero.
+/// With [`Goal::ANY`] only that there is a crossing is right, and the crossing is not, where the triangle's box tells already.
 #[inline(always)]
-pub(crate) fn accept(
+pub(crate) fn accept<G: Goal>(
     shear: &Shear,
     slab: &SlabRay,
     corners: [Vec3; 3],
@@ -152,10 +178,18 @@ pub(crate) fn accept(
         corners[1].into(),
         corners[2].into(),
     ]));
+    if !((entry <= exit) & (exit > 0.0) & (entry <= limit)) {
+        return None;
+    }
+    if G::ANY && (entry > 0.0) & (exit < limit) {
+        return Some(Crossing {
+            t: exit,
+            u: 0.0,
+            v: 0.0,
+        });
+    }
     let t = clamp(plane(shear, corners), entry, exit);
-    // One branch for all: which of them fails nobody can foresee, that none does is rare or usual.
-    let ahead = (entry <= exit) & (exit > 0.0) & (t > 0.0) & (t <= limit);
-    ahead.then(|| {
+    ((t > 0.0) & (t <= limit)).then(|| {
         let inverse = 1.0 / (u + v + w);
         Crossing {
             t,

@@ -11,7 +11,8 @@ use super::{
     trees::chain,
 };
 use crate::bvh::{
-    BuildOptions, Builder, Levels, MAX_DEPTH, MeshTree, Ray, Triangles,
+    BuildOptions, Builder, Levels, MAX_DEPTH, MeshTree, Order, Ray, Triangles,
+    goal::{All, Nearest},
     slab::SlabRay,
     wide::{FEW, LEAF, Leaves, MANY, Portable, TriangleBlock, WideRay, WideTree, walk},
 };
@@ -54,7 +55,7 @@ fn every_instruction_set_finds_the_same_bits() {
             let (mut hits, mut occluded) = (Vec::new(), Vec::new());
             scene.closest_hits(&rays, &mut hits);
             scene.occlusions(&rays, &mut occluded);
-            let (portable_hits, portably_occluded) = scene.ask_portably(&rays);
+            let (portable_hits, portably_occluded) = scene.ask_portably(Order::None, &rays);
             let found = hits.iter().flatten().count();
             assert!(found > 20_000, "{levels:?}: only {found} hits");
             for (i, ray) in rays.iter().enumerate() {
@@ -197,8 +198,8 @@ fn a_tree_as_deep_as_any_is_walked_to_its_last_leaf_within_its_stack() {
         let mut visits = Visits(vec![0; leaves as usize]);
         let end = f32::INFINITY;
         let mut stack = vec![0; wide.most_pending() + 8];
-        walk::<Portable, true>(&wide, &mut stack, &ray, end, &mut visits);
-        walk::<Portable, false>(&wide, &mut stack, &ray, end, &mut visits);
+        walk::<Portable, Nearest>(&wide, &mut stack, &ray, end, &mut visits);
+        walk::<Portable, All>(&wide, &mut stack, &ray, end, &mut visits);
         let expected = vec![2; leaves as usize];
         assert_eq!(visits.0, expected, "leaves were visited so often");
     }

@@ -3,17 +3,18 @@
 //! The type is private to this file: only [`answer`] names it, and that is only called where [`is_available`] said yes.
 //! So wherever its operations run, the machine has them.
 
-use std::arch::x86_64::{
-    __m256, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_ps, _mm256_and_ps, _mm256_andnot_ps, _mm256_cmp_ps,
-    _mm256_loadu_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps, _mm256_mul_ps,
-    _mm256_set1_ps, _mm256_storeu_ps, _mm256_sub_ps,
-};
+use std::arch::x86_64::*;
 
-use super::{Eight, Query};
+use super::{InstructionSet, Lanes, Query};
 
 /// Eight numbers in a register.
 #[derive(Clone, Copy)]
 struct Avx2(__m256);
+
+impl InstructionSet for Avx2 {
+    type Eight = Self;
+    type Packet = Self;
+}
 
 /// Whether this machine has what [`answer`] is compiled for. The standard library asks the processor once.
 #[inline(always)]
@@ -39,14 +40,48 @@ fn compiled<Q: Query>(query: Q) -> Q::Answer {
     query.ask::<Avx2>()
 }
 
-impl Eight for Avx2 {
-    type Mask = __m256;
+/// A method that is one instruction or a few, all of registers.
+macro_rules! method {
+    ($($name:ident($($argument:ident $(: $kind:ty)?),*) -> $answer:ty = $body:expr;)*) => {$(
+        #[inline(always)]
+        fn $name($($argument $(: $kind)?),*) -> $answer {
+            // SAFETY: the machine has the instructions, by the privacy of this type (see the module); they touch no
+            // memory.
+            unsafe { $body }
+        }
+    )*};
+}
 
-    #[inline(always)]
-    fn splat(x: f32) -> Self {
-        // SAFETY: AVX is there, by the privacy of this type (see the module).
-        Self(unsafe { _mm256_set1_ps(x) })
-    }
+/// A method of a number and another.
+macro_rules! of_two {
+    ($($name:ident = $instruction:ident;)*) => {$(
+        #[inline(always)]
+        fn $name(self, other: Self) -> Self {
+            // SAFETY: the machine has the instruction, by the privacy of this type (see the module); it touches no
+            // memory.
+            Self(unsafe { $instruction(self.0, other.0) })
+        }
+    )*};
+}
+
+/// The lower half and the upper half.
+macro_rules! halves {
+    ($($name:ident = $instruction:ident;)*) => {$(
+        #[inline(always)]
+        fn $name(a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
+            // SAFETY: the machine has the instruction, by the privacy of this type (see the module); it touches no
+            // memory.
+            unsafe { [$instruction(a[0], b[0]), $instruction(a[1], b[1])] }
+        }
+    )*};
+}
+
+impl Lanes for Avx2 {
+    type Array = [f32; 8];
+    type Mask = __m256;
+    type Doubles = [__m256d; 2];
+
+    const COUNT: usize = 8;
 
     #[inline(always)]
     fn load(from: &[f32; 8]) -> Self {
@@ -62,34 +97,39 @@ impl Eight for Avx2 {
         array
     }
 
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        // SAFETY: AVX is there, by the privacy of this type.
-        Self(unsafe { _mm256_add_ps(self.0, other.0) })
+    of_two! {
+        add = _mm256_add_ps;
+        sub = _mm256_sub_ps;
+        mul = _mm256_mul_ps;
+        div = _mm256_div_ps;
+        min = _mm256_min_ps;
+        max = _mm256_max_ps;
     }
 
     #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        // SAFETY: AVX is there, by the privacy of this type.
-        Self(unsafe { _mm256_sub_ps(self.0, other.0) })
+    fn smallest(self) -> f32 {
+        // SAFETY: AVX is there, by the privacy of this type; no memory is touched.
+        unsafe {
+            let four = _mm_min_ps(
+                _mm256_castps256_ps128(self.0),
+                _mm256_extractf128_ps::<1>(self.0),
+            );
+            let two = _mm_min_ps(four, _mm_movehl_ps(four, four));
+            _mm_cvtss_f32(_mm_min_ss(two, _mm_movehdup_ps(two)))
+        }
     }
 
     #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        // SAFETY: AVX is there, by the privacy of this type.
-        Self(unsafe { _mm256_mul_ps(self.0, other.0) })
-    }
-
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        // SAFETY: AVX is there, by the privacy of this type.
-        Self(unsafe { _mm256_min_ps(self.0, other.0) })
-    }
-
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        // SAFETY: AVX is there, by the privacy of this type.
-        Self(unsafe { _mm256_max_ps(self.0, other.0) })
+    fn largest(self) -> f32 {
+        // SAFETY: AVX is there, by the privacy of this type; no memory is touched.
+        unsafe {
+            let four = _mm_max_ps(
+                _mm256_castps256_ps128(self.0),
+                _mm256_extractf128_ps::<1>(self.0),
+            );
+            let two = _mm_max_ps(four, _mm_movehl_ps(four, four));
+            _mm_cvtss_f32(_mm_max_ss(two, _mm_movehdup_ps(two)))
+        }
     }
 
     #[inline(always)]
@@ -99,32 +139,44 @@ impl Eight for Avx2 {
     }
 
     #[inline(always)]
-    fn lt(self, other: Self) -> __m256 {
+    fn copysign(self, sign: Self) -> Self {
         // SAFETY: AVX is there, by the privacy of this type.
-        unsafe { _mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0) }
+        let sign = unsafe { _mm256_and_ps(_mm256_set1_ps(-0.0), sign.0) };
+        // SAFETY: as above.
+        Self(unsafe { _mm256_or_ps(sign, self.abs().0) })
+    }
+
+    method! {
+        splat(x: f32) -> Self = Self(_mm256_set1_ps(x));
+        lt(self, other: Self) -> __m256 = _mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0);
+        le(self, other: Self) -> __m256 = _mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0);
+        and(a: __m256, b: __m256) -> __m256 = _mm256_and_ps(a, b);
+        and_not(not: __m256, b: __m256) -> __m256 = _mm256_andnot_ps(not, b);
+        bits(mask: __m256) -> u32 = _mm256_movemask_ps(mask) as u32;
+        select(mask: __m256, yes: Self, no: Self) -> Self = Self(_mm256_blendv_ps(no.0, yes.0, mask));
+        splat_f64(x: f64) -> [__m256d; 2] = [_mm256_set1_pd(x); 2];
+        widen(self) -> [__m256d; 2] = [
+            _mm256_cvtps_pd(_mm256_castps256_ps128(self.0)),
+            _mm256_cvtps_pd(_mm256_extractf128_ps::<1>(self.0)),
+        ];
+        narrow(x: [__m256d; 2]) -> Self =
+            Self(_mm256_set_m128(_mm256_cvtpd_ps(x[1]), _mm256_cvtpd_ps(x[0])));
+    }
+
+    halves! {
+        add_f64 = _mm256_add_pd;
+        sub_f64 = _mm256_sub_pd;
+        mul_f64 = _mm256_mul_pd;
+        div_f64 = _mm256_div_pd;
     }
 
     #[inline(always)]
-    fn le(self, other: Self) -> __m256 {
-        // SAFETY: AVX is there, by the privacy of this type.
-        unsafe { _mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0) }
-    }
-
-    #[inline(always)]
-    fn and(a: __m256, b: __m256) -> __m256 {
-        // SAFETY: AVX is there, by the privacy of this type.
-        unsafe { _mm256_and_ps(a, b) }
-    }
-
-    #[inline(always)]
-    fn and_not(not: __m256, b: __m256) -> __m256 {
-        // SAFETY: AVX is there, by the privacy of this type.
-        unsafe { _mm256_andnot_ps(not, b) }
-    }
-
-    #[inline(always)]
-    fn bits(mask: __m256) -> u32 {
-        // SAFETY: AVX is there, by the privacy of this type.
-        unsafe { _mm256_movemask_ps(mask) as u32 }
+    fn mask(bits: u32) -> __m256 {
+        // SAFETY: AVX2 is there, by the privacy of this type; no memory is touched.
+        unsafe {
+            let lanes = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+            let of_lane = _mm256_and_si256(_mm256_set1_epi32(bits as i32), lanes);
+            _mm256_castsi256_ps(_mm256_cmpeq_epi32(of_lane, lanes))
+        }
     }
 }

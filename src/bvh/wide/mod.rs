@@ -11,26 +11,33 @@
 //! says does not matter for a hit, as long as it is a box around the triangle's own; so another tree finds the same.
 //!
 //! # Instruction sets
-//! The kernels are written once, over [`Eight`], eight `f32`s with the few operations that they need. [`Eight`] has an
-//! implementation for each instruction set, in a file of its own: `avx2`, and `portable` for everything else. No
-//! operation of them rounds differently. [`answer`] picks one when the program runs.
+//! The kernels are written once, over [`Lanes`], several `f32`s with the few operations that they need. It has an
+//! implementation for each instruction set, in a file of its own: `avx512`, `avx2`, and `portable` for everything else.
+//! No operation of them rounds differently. [`answer`] picks one when the program runs.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
 mod block;
 mod collapse;
-mod eight;
+mod lanes;
 mod node;
+mod packet;
 mod portable;
 mod tree;
 mod walk;
 
 pub(crate) use block::TriangleBlock;
-pub(crate) use eight::{Eight, Query, answer};
+pub(crate) use lanes::{Eight, InstructionSet, Lanes, Query, answer, by_axis};
 #[cfg(test)]
 pub(crate) use node::LEAF;
+pub(crate) use packet::{
+    Answers, FEW_RAYS, Found, Group, PacketLeaves, PacketRays, View, Ways, lanes_of, largest_size,
+    walk_packet,
+};
 #[cfg(test)]
 pub(crate) use portable::Portable;
 pub(crate) use tree::WideTree;
 pub use tree::{WideBox, WideStats};
-pub(crate) use walk::{FEW, Leaves, MANY, WideRay, few_hold, walk};
+pub(crate) use walk::{FEW, Leaves, MANY, WideRay, few_hold, walk, walk_from};

@@ -6,10 +6,10 @@ use super::{
     Eight, WideTree,
     node::{LEAF, WideNode},
 };
-use crate::bvh::{MAX_DEPTH, slab::SlabRay, traverse::STOP};
+use crate::bvh::{MAX_DEPTH, goal::Goal, slab::SlabRay, traverse::STOP};
 
 /// A node's children are written in a window of eight.
-const WINDOW: usize = 8;
+pub(super) const WINDOW: usize = 8;
 /// Entries of a stack that ordinary meshes of a million triangles get by with: they need 40 to 60.
 pub(crate) const FEW: usize = 64;
 /// Entries that every tree gets by with: two levels of trees no deeper than [`MAX_DEPTH`], seven a node.
@@ -103,22 +103,35 @@ pub(crate) trait Leaves<E> {
     }
 }
 
-/// Walks a tree along the ray and visits each leaf it reaches: with `NEAREST_FIRST` in the order in which it enters
+/// Walks a tree along the ray and visits each leaf it reaches: with [`Goal::NEAREST_FIRST`] in the order in which it enters
 /// nodes, and else in no particular order, since sorting costs more than a ray saves that wants any hit. What is entered
 /// exactly at the limit is still walked, since ties are decided by number. Returns the last limit.
 ///
 /// The stack holds the tree's [`WideTree::most_pending`] and [`WINDOW`] more, and what the leaves need.
 #[inline(always)]
-pub(crate) fn walk<E: Eight, const NEAREST_FIRST: bool>(
+pub(crate) fn walk<E: Eight, G: Goal>(
     tree: &WideTree,
+    stack: &mut [u64],
+    ray: &WideRay<E>,
+    limit: f32,
+    leaves: &mut impl Leaves<E>,
+) -> f32 {
+    match tree.root {
+        Some(root) => walk_from::<E, G>(tree, root, stack, ray, limit, leaves),
+        None => limit,
+    }
+}
+
+/// [`walk`] from a node or, marked by [`LEAF`], a leaf on.
+#[inline(always)]
+pub(crate) fn walk_from<E: Eight, G: Goal>(
+    tree: &WideTree,
+    mut next: u32,
     stack: &mut [u64],
     ray: &WideRay<E>,
     mut limit: f32,
     leaves: &mut impl Leaves<E>,
 ) -> f32 {
-    let Some(mut next) = tree.root else {
-        return limit;
-    };
     let mut pending = 0;
     loop {
         if next & LEAF != 0 {
@@ -141,7 +154,7 @@ pub(crate) fn walk<E: Eight, const NEAREST_FIRST: bool>(
                     next = node.child(first);
                     continue;
                 }
-                if NEAREST_FIRST {
+                if G::NEAREST_FIRST {
                     let entries = entries.to_array();
                     let second = hits.trailing_zeros();
                     hits &= hits - 1;
@@ -190,7 +203,7 @@ pub(crate) fn walk<E: Eight, const NEAREST_FIRST: bool>(
             }
             pending -= 1;
             let waiting = stack[pending];
-            if !NEAREST_FIRST || f32::from_bits((waiting >> 32) as u32) <= limit {
+            if !G::NEAREST_FIRST || f32::from_bits((waiting >> 32) as u32) <= limit {
                 next = waiting as u32;
                 break;
             }

@@ -1,0 +1,166 @@
+//! A block of triangles against the rays of a packet.
+
+use glam::DVec3;
+
+use super::{Found, View, found::lanes_of};
+use crate::bvh::{
+    goal::Goal,
+    slab::triangle_box,
+    wide::{InstructionSet, Lanes, TriangleBlock, by_axis},
+};
+
+impl TriangleBlock {
+    /// Tests the triangles, one after the other, against those rays. The operations are those of
+    /// [`super::super::super::triangle::cross`], one by one.
+    #[inline(always)]
+    pub(crate) fn cross_packet<S: InstructionSet, G: Goal>(
+        &self,
+        view: &View<S>,
+        lanes: u32,
+        instance: u32,
+        found: &mut Found<S::Packet>,
+    ) {
+        let mut is_nearer = false;
+        for lane in 0..Self::CAPACITY {
+            if self.is_empty(lane) {
+                break;
+            }
+            let (passed, edges) = self.edges_of(lane, view);
+            let passed = passed & if G::ANY { lanes & found.active } else { lanes };
+            if passed != 0 {
+                is_nearer |= self.accept_packet::<S, G>(lane, view, passed, edges, instance, found);
+                if G::ANY && found.active == 0 {
+                    return;
+                }
+            }
+        }
+        if is_nearer {
+            found.look_ahead();
+        }
+    }
+
+    /// Which rays' lines cross the triangle, and the edge functions of corners 1 and 2 and the sum of all.
+    #[inline(always)]
+    fn edges_of<S: InstructionSet>(
+        &self,
+        triangle: usize,
+        view: &View<S>,
+    ) -> (u32, [S::Packet; 3]) {
+        let frame = &view.frame;
+        let [x, y, z] = frame.axes;
+        let [x, y, z] = [self.axis(x), self.axis(y), self.axis(z)];
+        let triangle = triangle % 8;
+        let [a, b, c] = by_axis!(|i| frame.corner(x[i][triangle], y[i][triangle], z[i][triangle]));
+        let [u, v, w] = [edge(c, b), edge(a, c), edge(b, a)];
+        let det = u.add(v).add(w);
+        let zero = S::Packet::splat(0.0);
+        let outside = S::Packet::and(u.min(v).min(w).lt(zero), zero.lt(u.max(v).max(w)));
+        let size = det.abs();
+        let area = S::Packet::and(zero.lt(size), size.lt(S::Packet::splat(f32::INFINITY)));
+        let passed = S::Packet::bits(S::Packet::and_not(outside, area));
+        (passed, [v, w, det])
+    }
+
+    /// The rest of the test, for rays whose lines cross the triangle; whether any has found a nearer hit.
+    #[inline(always)]
+    fn accept_packet<S: InstructionSet, G: Goal>(
+        &self,
+        triangle: usize,
+        view: &View<S>,
+        passed: u32,
+        edges: [S::Packet; 3],
+        instance: u32,
+        found: &mut Found<S::Packet>,
+    ) -> bool {
+        let corners = self.corners(triangle % 8);
+        let bounds = triangle_box(corners.map(Into::into));
+        let (min, max) = (bounds.min.to_array(), bounds.max.to_array());
+        let [x, y, z] = by_axis!(|axis| {
+            let face = if view.backwards[axis] { max } else { min };
+            view.near(axis, face[axis])
+        });
+        let entry = x.max(y).max(z);
+        let [x, y, z] = by_axis!(|axis| {
+            let face = if view.backwards[axis] { min } else { max };
+            view.far(axis, face[axis])
+        });
+        let exit = x.min(y).min(z);
+        let (zero, limit) = (S::Packet::splat(0.0), found.limit);
+        let ahead = S::Packet::and(zero.lt(exit), entry.le(exit.min(limit)));
+        let mut within = passed & S::Packet::bits(ahead);
+        if G::ANY {
+            let sure = S::Packet::and(zero.lt(entry), exit.lt(limit));
+            let sure = within & S::Packet::bits(sure);
+            found.end(sure);
+            within &= !sure;
+        }
+        if within == 0 {
+            return false;
+        }
+        let [a, b, c] = corners.map(|corner| corner.as_dvec3());
+        let t = plane::<S>(view, a, (b - a).cross(c - a));
+        let t = t.max(entry).min(exit);
+        let ahead = within & S::Packet::bits(zero.lt(t));
+        let nearer = ahead & S::Packet::bits(t.lt(limit));
+        if G::ANY {
+            found.end(nearer);
+            return false;
+        }
+        let tied = ahead & found.hit & !nearer & S::Packet::bits(t.le(limit));
+        let number = self.number(triangle % 8);
+        let won = if tied == 0 {
+            nearer
+        } else {
+            nearer | wins_ties::<S::Packet>(found, tied, (instance, number))
+        };
+        if won == 0 {
+            return false;
+        }
+        let mask = S::Packet::mask(won);
+        found.hit |= won;
+        found.limit = S::Packet::select(mask, t, found.limit);
+        found.edges = by_axis!(|i| S::Packet::select(mask, edges[i], found.edges[i]));
+        let number = S::Packet::splat(f32::from_bits(number));
+        let instance = S::Packet::splat(f32::from_bits(instance));
+        found.triangle = S::Packet::select(mask, number, found.triangle);
+        found.instance = S::Packet::select(mask, instance, found.instance);
+        nearer != 0
+    }
+}
+
+/// `t` where the rays' lines meet a triangle's plane: [`super::super::super::triangle`]'s, in lanes.
+#[inline(always)]
+fn plane<S: InstructionSet>(view: &View<S>, corner: DVec3, normal: DVec3) -> S::Packet {
+    let (corner, normal) = (corner.to_array(), normal.to_array());
+    let normal = by_axis!(|axis| S::Packet::splat_f64(normal[axis]));
+    let [x, y, z] = by_axis!(|axis| {
+        let corner = S::Packet::splat_f64(corner[axis]);
+        let away = S::Packet::sub_f64(corner, view.frame.origin[axis]);
+        S::Packet::mul_f64(normal[axis], away)
+    });
+    let height = S::Packet::add_f64(S::Packet::add_f64(x, y), z);
+    let [x, y, z] = by_axis!(|axis| S::Packet::mul_f64(normal[axis], view.frame.direction[axis]));
+    let rate = S::Packet::add_f64(S::Packet::add_f64(x, y), z);
+    S::Packet::narrow(S::Packet::div_f64(height, rate))
+}
+
+/// The edge function of the edge between two corners. Not fused: see [`super::super::super::triangle`].
+#[inline(always)]
+fn edge<L: Lanes>(p: [L; 2], q: [L; 2]) -> L {
+    p[0].mul(q[1]).sub(p[1].mul(q[0]))
+}
+
+/// Those of the rays that hit this triangle as far away as another, and this is the one to take.
+#[inline(always)]
+fn wins_ties<L: Lanes>(found: &Found<L>, tied: u32, this: (u32, u32)) -> u32 {
+    let (instance, triangle) = (found.instance.to_array(), found.triangle.to_array());
+    lanes_of(tied)
+        .filter(|&lane| {
+            let other = (
+                instance.as_ref()[lane].to_bits(),
+                triangle.as_ref()[lane].to_bits(),
+            );
+            this < other
+        })
+        .fold(0, |bits, lane| bits | 1 << lane)
+}

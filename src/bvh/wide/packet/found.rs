@@ -1,0 +1,209 @@
+//! What the rays of a packet have found so far.
+
+use crate::bvh::{goal::Goal, queries::Best, ray::Hit, traverse::STOP, wide::Lanes};
+
+/// The lanes whose bits are set.
+#[inline(always)]
+pub(crate) fn lanes_of(bits: u32) -> LanesOf {
+    LanesOf(bits)
+}
+
+/// [`lanes_of`].
+pub(crate) struct LanesOf(u32);
+
+impl Iterator for LanesOf {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        if self.0 == 0 {
+            return None;
+        }
+        let lane = self.0.trailing_zeros() as usize;
+        self.0 &= self.0 - 1;
+        Some(lane)
+    }
+}
+
+/// One lane.
+#[inline(always)]
+fn number<L: Lanes>(lanes: L, lane: usize) -> f32 {
+    lanes.to_array().as_ref()[lane]
+}
+
+/// Puts a number into the lanes that the mask names.
+#[inline(always)]
+fn put<L: Lanes>(lanes: &mut L, mask: L::Mask, x: f32) {
+    *lanes = L::select(mask, L::splat(x), *lanes);
+}
+
+/// The nearest hits of a packet's rays, or which of them have any.
+pub(crate) struct Found<L> {
+    /// Where each ray ends.
+    end: L,
+    /// The `t` of its nearest hit, or where it ends.
+    pub(super) limit: L,
+    /// Edge functions of the triangle that it hits: those of corners 1 and 2, and the sum of all.
+    pub(super) edges: [L; 3],
+    /// The bits of numbers.
+    pub(super) triangle: L,
+    pub(super) instance: L,
+    /// The rays that have hit something.
+    pub(super) hit: u32,
+    /// The rays that go on: all, unless any hit is enough.
+    pub(crate) active: u32,
+    /// The largest limit of them.
+    pub(super) farthest: f32,
+}
+
+/// Where answers are put, ray by ray.
+pub(crate) enum Answers<'a> {
+    /// The nearest hits.
+    Closest(&'a mut [Option<Hit>]),
+    /// Whether there are any.
+    Any(&'a mut [bool]),
+}
+
+impl Answers<'_> {
+    /// The answer for one ray.
+    #[inline(always)]
+    pub(crate) fn set(&mut self, lane: usize, hit: Option<Hit>) {
+        match self {
+            Self::Closest(closest) => closest[lane] = hit,
+            Self::Any(any) => any[lane] = hit.is_some(),
+        }
+    }
+}
+
+impl<L: Lanes> Found<L> {
+    /// Nothing, for rays that end there. Those that are not `active` are not asked for.
+    #[inline(always)]
+    pub(crate) fn nothing(end: L, active: u32) -> Self {
+        let zero = L::splat(0.0);
+        let mut found = Self {
+            end,
+            limit: end,
+            edges: [zero; 3],
+            triangle: zero,
+            instance: zero,
+            hit: 0,
+            active,
+            farthest: 0.0,
+        };
+        found.look_ahead();
+        found
+    }
+
+    /// Finds the largest limit anew.
+    #[inline(always)]
+    pub(super) fn look_ahead(&mut self) {
+        let nothing = L::splat(f32::NEG_INFINITY);
+        self.farthest = L::select(L::mask(self.active), self.limit, nothing).largest();
+    }
+
+    /// A ray hit something, and any hit is enough.
+    #[inline(always)]
+    pub(super) fn end(&mut self, lanes: u32) {
+        self.hit |= lanes;
+        self.active &= !lanes;
+    }
+
+    /// One of the rays, to go on alone.
+    #[inline(always)]
+    pub(crate) fn alone(&self, lane: usize) -> Alone {
+        let limit = number(self.limit, lane);
+        let hit = Hit {
+            t: limit,
+            instance: number(self.instance, lane).to_bits(),
+            triangle: number(self.triangle, lane).to_bits(),
+            u: 0.0,
+            v: 0.0,
+        };
+        let is_hit = self.hit >> lane & 1 == 1;
+        Alone {
+            lane,
+            end: number(self.end, lane),
+            limit,
+            best: if is_hit { Best::of(hit) } else { Best::NONE },
+            is_new: false,
+        }
+    }
+
+    /// What that ray has found.
+    #[inline(always)]
+    pub(crate) fn rejoin<G: Goal>(&mut self, alone: Alone) {
+        if !alone.is_new {
+            return;
+        }
+        let bit = 1 << alone.lane;
+        if G::ANY {
+            return self.end(bit);
+        }
+        let Best(hit) = alone.best;
+        let mask = L::mask(bit);
+        put(&mut self.limit, mask, hit.t);
+        put(&mut self.edges[0], mask, hit.u);
+        put(&mut self.edges[1], mask, hit.v);
+        put(&mut self.edges[2], mask, 1.0);
+        put(&mut self.triangle, mask, f32::from_bits(hit.triangle));
+        put(&mut self.instance, mask, f32::from_bits(hit.instance));
+        self.hit |= bit;
+        self.look_ahead();
+    }
+
+    /// Writes the answers down.
+    #[inline(always)]
+    pub(crate) fn write(&self, answers: &mut Answers<'_>) {
+        match answers {
+            Answers::Any(any) => {
+                for lane in lanes_of(self.hit) {
+                    any[lane] = true;
+                }
+            }
+            Answers::Closest(closest) if self.hit != 0 => {
+                let inverse = L::splat(1.0).div(self.edges[2]);
+                let u = self.edges[0].mul(inverse).to_array();
+                let v = self.edges[1].mul(inverse).to_array();
+                let t = self.limit.to_array();
+                let (triangle, instance) = (self.triangle.to_array(), self.instance.to_array());
+                for lane in lanes_of(self.hit) {
+                    closest[lane] = Some(Hit {
+                        t: t.as_ref()[lane],
+                        instance: instance.as_ref()[lane].to_bits(),
+                        triangle: triangle.as_ref()[lane].to_bits(),
+                        u: u.as_ref()[lane],
+                        v: v.as_ref()[lane],
+                    });
+                }
+            }
+            Answers::Closest(_) => {}
+        }
+    }
+}
+
+/// A ray of a packet that goes on alone.
+pub(crate) struct Alone {
+    lane: usize,
+    end: f32,
+    /// Beyond this nothing matters.
+    pub(crate) limit: f32,
+    best: Best,
+    is_new: bool,
+}
+
+impl Alone {
+    /// Takes a hit if it lies on the ray and is nearer; the new limit, or [`STOP`] where any hit is enough.
+    #[inline(always)]
+    pub(crate) fn offer<G: Goal>(&mut self, hit: Hit, limit: f32) -> f32 {
+        if !(hit.t > 0.0 && hit.t < self.end && hit.t <= limit) {
+            return limit;
+        }
+        if G::ANY {
+            self.is_new = true;
+            return STOP;
+        }
+        let new = self.best.offer(hit, limit);
+        self.is_new |= self.best.is(&hit);
+        new
+    }
+}

@@ -1,0 +1,161 @@
+//! A group of rays as the boxes and triangles of a tree see it.
+
+use super::{Group, PacketRays};
+use crate::bvh::wide::{Eight, InstructionSet, Lanes, by_axis, node::WideNode};
+
+/// What the tests need of a group of rays in a tree's space.
+pub(crate) struct View<S: InstructionSet> {
+    /// The rows of a node that hold the faces which the rays meet first, axis by axis. Those they meet last are their
+    /// neighbours.
+    near: [usize; 3],
+    /// What those are measured from, ray by ray.
+    pub(super) near_origin: [S::Packet; 3],
+    pub(super) far_origin: [S::Packet; 3],
+    pub(super) inverse: [S::Packet; 3],
+    bounds: Bounds<S::Eight>,
+    pub(super) frame: Frame<S::Packet>,
+    /// Along which axes the rays go backwards.
+    pub(super) backwards: [bool; 3],
+}
+
+/// The rays' frame, as [`Shear`](crate::bvh::triangle::Shear) has it of one.
+pub(super) struct Frame<L: Lanes> {
+    pub(super) axes: [usize; 3],
+    pub(super) from: [L; 3],
+    pub(super) slope: [L; 2],
+    pub(super) origin: [L::Doubles; 3],
+    pub(super) direction: [L::Doubles; 3],
+}
+
+/// Bounds of all rays, eight times over.
+struct Bounds<E> {
+    /// Of the origins, those that make a ray enter first and leave last.
+    near_origin: [E; 3],
+    far_origin: [E; 3],
+    least_inverse: [E; 3],
+    most_inverse: [E; 3],
+}
+
+impl<S: InstructionSet> View<S> {
+    #[inline(always)]
+    pub(crate) fn new(rays: &PacketRays<S::Packet>, group: &Group) -> Self {
+        let mask = S::Packet::mask(group.lanes);
+        let backwards = group.backwards;
+        let (mut near_origin, mut far_origin) = (rays.origin, rays.origin);
+        let nothing = S::Eight::splat(0.0);
+        let mut bounds = Bounds {
+            near_origin: [nothing; 3],
+            far_origin: [nothing; 3],
+            least_inverse: [nothing; 3],
+            most_inverse: [nothing; 3],
+        };
+        for axis in 0..3 {
+            let [above, below] = rays.padded(axis);
+            let (near, far) = if backwards[axis] {
+                near_origin[axis] = below;
+                far_origin[axis] = above;
+                (smallest(mask, below), largest(mask, above))
+            } else {
+                near_origin[axis] = above;
+                far_origin[axis] = below;
+                (largest(mask, above), smallest(mask, below))
+            };
+            let inverse = rays.inverse[axis];
+            bounds.near_origin[axis] = S::Eight::splat(near);
+            bounds.far_origin[axis] = S::Eight::splat(far);
+            bounds.least_inverse[axis] = S::Eight::splat(smallest(mask, inverse));
+            bounds.most_inverse[axis] = S::Eight::splat(largest(mask, inverse));
+        }
+        Self {
+            near: by_axis!(|axis| 2 * axis | usize::from(backwards[axis])),
+            near_origin,
+            far_origin,
+            inverse: rays.inverse,
+            bounds,
+            frame: Frame::new(rays, group.axis),
+            backwards,
+        }
+    }
+
+    /// Which children any ray may enter, if none ends behind `limit`, and where the first does at the earliest.
+    #[inline(always)]
+    pub(super) fn span(&self, node: &WideNode, limit: f32) -> (u32, S::Eight) {
+        let bounds = &self.bounds;
+        let [x, y, z] = by_axis!(|axis| {
+            let face = S::Eight::load(node.row(self.near[axis]));
+            let way = face.sub(bounds.near_origin[axis]);
+            way.mul(bounds.least_inverse[axis])
+                .min(way.mul(bounds.most_inverse[axis]))
+        });
+        // Zero last, so that no entry is -0.0.
+        let entries = x.max(y).max(z).max(S::Eight::splat(0.0));
+        let [x, y, z] = by_axis!(|axis| {
+            let face = S::Eight::load(node.row(self.near[axis] ^ 1));
+            let way = face.sub(bounds.far_origin[axis]);
+            way.mul(bounds.least_inverse[axis])
+                .max(way.mul(bounds.most_inverse[axis]))
+        });
+        let exits = x.min(y).min(z).min(S::Eight::splat(limit));
+        (S::Eight::bits(entries.le(exits)), entries)
+    }
+
+    /// Which rays enter a child, no later than at their limits.
+    #[inline(always)]
+    pub(super) fn enter(&self, node: &WideNode, child: u32, limit: S::Packet) -> u32 {
+        let child = child as usize % 8;
+        let [x, y, z] = by_axis!(|axis| self.near(axis, node.row(self.near[axis])[child]));
+        let entry = x.max(y).max(z).max(S::Packet::splat(0.0));
+        let [x, y, z] = by_axis!(|axis| self.far(axis, node.row(self.near[axis] ^ 1)[child]));
+        let exit = x.min(y).min(z).min(limit);
+        S::Packet::bits(entry.le(exit))
+    }
+
+    /// Where the rays meet a face of a box that they meet first of two.
+    #[inline(always)]
+    pub(super) fn near(&self, axis: usize, face: f32) -> S::Packet {
+        (S::Packet::splat(face).sub(self.near_origin[axis])).mul(self.inverse[axis])
+    }
+
+    /// Where the rays meet a face of a box that they meet last of two.
+    #[inline(always)]
+    pub(super) fn far(&self, axis: usize, face: f32) -> S::Packet {
+        (S::Packet::splat(face).sub(self.far_origin[axis])).mul(self.inverse[axis])
+    }
+}
+
+/// The smallest of the lanes that the mask names.
+#[inline(always)]
+fn smallest<L: Lanes>(mask: L::Mask, lanes: L) -> f32 {
+    L::select(mask, lanes, L::splat(f32::INFINITY)).smallest()
+}
+
+/// The largest of the lanes that the mask names.
+#[inline(always)]
+fn largest<L: Lanes>(mask: L::Mask, lanes: L) -> f32 {
+    L::select(mask, lanes, L::splat(f32::NEG_INFINITY)).largest()
+}
+
+impl<L: Lanes> Frame<L> {
+    #[inline(always)]
+    fn new(rays: &PacketRays<L>, z: usize) -> Self {
+        let axes = [[1, 2, 0], [2, 0, 1], [0, 1, 2]][z % 3];
+        let along = by_axis!(|i| rays.direction[axes[i]]);
+        Self {
+            axes,
+            from: by_axis!(|i| rays.origin[axes[i]]),
+            slope: [along[0].div(along[2]), along[1].div(along[2])],
+            origin: by_axis!(|i| rays.origin[i].widen()),
+            direction: by_axis!(|i| rays.direction[i].widen()),
+        }
+    }
+
+    /// x and y of a corner in the rays' frames.
+    #[inline(always)]
+    pub(super) fn corner(&self, x: f32, y: f32, z: f32) -> [L; 2] {
+        let depth = L::splat(z).sub(self.from[2]);
+        [
+            (L::splat(x).sub(self.from[0])).sub(depth.mul(self.slope[0])),
+            (L::splat(y).sub(self.from[1])).sub(depth.mul(self.slope[1])),
+        ]
+    }
+}

@@ -1,0 +1,92 @@
+//! The walk of a packet through a wide tree.
+
+use super::{FEW_RAYS, Found, View};
+use crate::bvh::{
+    goal::Goal,
+    wide::{InstructionSet, Lanes, WideTree, node::LEAF, walk::WINDOW},
+};
+
+/// What the leaves of a tree hold, as [`super::super::Leaves`].
+pub(crate) trait PacketLeaves<S: InstructionSet> {
+    /// Tests those rays against a leaf. The rest of the walk's stack may be used.
+    fn visit(&mut self, leaf: u32, lanes: u32, found: &mut Found<S::Packet>, stack: &mut [u64]);
+
+    /// Lets those rays go on one by one from a child, a node or a leaf.
+    fn alone(&mut self, child: u32, lanes: u32, found: &mut Found<S::Packet>, stack: &mut [u64]);
+}
+
+/// Walks a tree with those rays of a group, and visits each leaf that any of them reaches. What waits is a place, a node
+/// and which of its children, and is tested when its turn comes.
+///
+/// The stack holds the tree's [`WideTree::most_pending`] and [`WINDOW`] more, and what the leaves need.
+#[inline(always)]
+pub(crate) fn walk_packet<S: InstructionSet, G: Goal>(
+    tree: &WideTree,
+    stack: &mut [u64],
+    view: &View<S>,
+    lanes: u32,
+    found: &mut Found<S::Packet>,
+    leaves: &mut impl PacketLeaves<S>,
+) {
+    let Some(root) = tree.root else {
+        return;
+    };
+    if root & LEAF != 0 {
+        leaves.visit(root & !LEAF, lanes, found, stack);
+        return;
+    }
+    let mut pending = 0;
+    let mut next = root;
+    loop {
+        let (mut hits, entries) = view.span(&tree.nodes[next as usize], found.farthest);
+        if hits != 0 {
+            let entries = entries.to_array();
+            let window = &mut stack[pending..pending + WINDOW];
+            let mut count = 0;
+            while hits != 0 {
+                let child = hits.trailing_zeros();
+                hits &= hits - 1;
+                let entry = u64::from(entries[child as usize % 8].to_bits());
+                let new = entry << 32 | u64::from(next << 3 | child);
+                let mut place = count;
+                if G::NEAREST_FIRST {
+                    while place > 0 && window[(place - 1) % 8] < new {
+                        window[place % 8] = window[(place - 1) % 8];
+                        place -= 1;
+                    }
+                }
+                window[place % 8] = new;
+                count += 1;
+            }
+            pending += count;
+        }
+        next = loop {
+            if pending == 0 {
+                return;
+            }
+            pending -= 1;
+            let waiting = stack[pending];
+            if f32::from_bits((waiting >> 32) as u32) > found.farthest {
+                continue;
+            }
+            let place = waiting as u32;
+            let (node, child) = (&tree.nodes[place as usize >> 3], place & 7);
+            let lanes = lanes & if G::ANY { found.active } else { lanes };
+            let entered = view.enter(node, child, found.limit) & lanes;
+            if entered == 0 {
+                continue;
+            }
+            let child = node.child(child);
+            if entered.count_ones() <= FEW_RAYS {
+                leaves.alone(child, entered, found, &mut stack[pending..]);
+            } else if child & LEAF != 0 {
+                leaves.visit(child & !LEAF, entered, found, &mut stack[pending..]);
+            } else {
+                break child;
+            }
+            if G::ANY && lanes & found.active == 0 {
+                return;
+            }
+        };
+    }
+}
