@@ -36,6 +36,7 @@ mod sample_chunk;
 mod snapshot;
 mod status;
 mod sum;
+mod sum_columns;
 #[cfg(test)]
 mod test_scene;
 mod tile_state;

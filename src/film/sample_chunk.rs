@@ -1,6 +1,7 @@
 //! The samples of a chunk: batch by batch, so that a render can stop between two of them.
 
 use super::Sum;
+use super::sum_columns::SumColumns;
 use super::tile_state::{Chunk, TILE_PIXELS};
 use super::tiles::Tile;
 use super::unmet::{NO_OCTAVES, Octaves, octave};
@@ -9,6 +10,7 @@ use crate::trace::lights::sample_count;
 use crate::trace::{Camera, RayCounts, SampleId, Workspace, World, radiance};
 use glam::{UVec2, Vec3};
 use std::cell::RefCell;
+use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
@@ -29,7 +31,7 @@ pub(super) struct BatchSize {
     most: usize,
 }
 
-const LARGEST_BATCH: usize = 1024;
+const LARGEST_BATCH: usize = 512;
 /// Some milliseconds of rays through a large scene.
 const RAYS: u64 = 8192;
 const SHORT: Duration = Duration::from_micros(400);
@@ -95,9 +97,13 @@ fn rays_of_first_hit(subject: &Subject) -> u64 {
 
 /// What a thread keeps from chunk to chunk, so that none allocates.
 pub(super) struct Scratch {
+    /// The chunk's pixels, each with its place in the tile, and the sums of the batches' samples.
     places: Vec<(UVec2, usize)>,
+    columns: SumColumns,
     samples: Vec<SampleId>,
     values: Vec<Vec3>,
+    /// The same as `values`.
+    colors: Vec<[f32; 3]>,
     workspace: Workspace,
     /// `TILE_PIXELS` for each segment of the chunk.
     pub sums: Vec<Sum>,
@@ -111,8 +117,10 @@ impl Default for Scratch {
     fn default() -> Self {
         Self {
             places: Vec::new(),
+            columns: SumColumns::default(),
             samples: Vec::new(),
             values: Vec::new(),
+            colors: Vec::new(),
             workspace: Workspace::default(),
             sums: Vec::new(),
             near: Vec::new(),
@@ -149,12 +157,15 @@ impl Scratch {
         self.sums.clear();
         self.near.clear();
         self.octaves.fill(0);
-        for segment in chunk.segments() {
+        let mut places = std::mem::take(&mut self.places);
+        let complete = chunk.segments().all(|segment| {
             let first = self.sums.len();
             self.sums.resize(first + TILE_PIXELS, Sum::default());
-            let mut places = std::mem::take(&mut self.places);
             places.clear();
-            places.extend(tile.pixels().filter(|(_, at)| chunk.pixels.has(*at)));
+            places.extend(
+                tile.pixels_in_blocks()
+                    .filter(|(_, at)| chunk.pixels.has(*at)),
+            );
             if segment.start == 0 && !known.is_empty() {
                 // The first segment is sample 0 alone.
                 for &(_, at) in &places {
@@ -165,36 +176,88 @@ impl Scratch {
                 }
                 places.retain(|&(_, at)| known[at].is_none());
             }
-            let pixels = places.len() as u64;
-            let mut next = segment.start * pixels;
-            while next < segment.end * pixels {
-                let end = (next + batch.get() as u64).min(segment.end * pixels);
-                let place = |i: u64| places[(i % pixels) as usize];
-                let ids = (next..end).map(|i| SampleId {
-                    pixel: place(i).0,
-                    index: i / pixels,
-                });
-                rays += self.evaluate(subject, ids, batch);
-                for (i, value) in (next..end).zip(&self.values) {
-                    self.sums[first + place(i).1].add(*value);
-                    self.octaves[octave(*value)] += 1;
-                }
-                for &(i, deviation) in self.workspace.deviations() {
-                    self.near.resize(self.sums.len(), Sum::default());
-                    self.near[first + place(next + u64::from(i)).1].add(deviation);
-                }
-                next = end;
-                if stopped() {
-                    self.places = places;
-                    return None;
-                }
-            }
-            self.places = places;
+            let sampled = self.sum_segment(subject, &places, segment, first, batch, stopped);
+            rays += sampled.unwrap_or_default();
+            sampled.is_some()
+        });
+        self.places = places;
+        if !complete {
+            return None;
         }
         if !self.near.is_empty() {
             self.near.resize(self.sums.len(), Sum::default());
         }
         Some(rays)
+    }
+
+    /// Adds these samples of these pixels to the segment's sums, which begin with the `first`.
+    fn sum_segment(
+        &mut self,
+        subject: &Subject,
+        places: &[(UVec2, usize)],
+        segment: Range<u64>,
+        first: usize,
+        batch: &BatchSize,
+        stopped: &dyn Fn() -> bool,
+    ) -> Option<RayCounts> {
+        let mut rays = RayCounts::default();
+        self.columns.reset(places.len());
+        // The next sample: of the pixel at that place, with that index.
+        let (mut place, mut index) = (0, segment.start);
+        let mut left = (segment.end - segment.start) * places.len() as u64;
+        while left > 0 {
+            let count = (batch.get() as u64).min(left);
+            let first_place = place;
+            let ids = (0..count).map(|_| {
+                let id = SampleId {
+                    pixel: places[place].0,
+                    index,
+                };
+                place += 1;
+                if place == places.len() {
+                    (place, index) = (0, index + 1);
+                }
+                id
+            });
+            rays += self.evaluate(subject, ids, batch);
+            self.sum_batch(places, first_place, first);
+            left -= count;
+            if stopped() {
+                return None;
+            }
+        }
+        for (i, &(_, at)) in places.iter().enumerate() {
+            self.sums[first + at].merge(&self.columns.get(i));
+        }
+        Some(rays)
+    }
+
+    /// Adds the batch's values to the pixels, the first of them to that at `first_place`.
+    fn sum_batch(&mut self, places: &[(UVec2, usize)], first_place: usize, first: usize) {
+        self.colors.clear();
+        (self.colors).extend(self.values.iter().map(|value| value.to_array()));
+        let (mut at, mut rest) = (first_place, &self.colors[..]);
+        while !rest.is_empty() {
+            let (run, others) = rest.split_at(rest.len().min(places.len() - at));
+            self.columns.add(at, run);
+            (at, rest) = (0, others);
+        }
+        // Neighbours are often as bright as each other.
+        let (mut same, mut samples) = (0, 0);
+        for value in &self.values {
+            let octave = octave(*value);
+            if octave != same {
+                self.octaves[same] += std::mem::take(&mut samples);
+                same = octave;
+            }
+            samples += 1;
+        }
+        self.octaves[same] += samples;
+        for &(i, deviation) in self.workspace.deviations() {
+            let (_, at) = places[(first_place + i as usize) % places.len()];
+            self.near.resize(self.sums.len(), Sum::default());
+            self.near[first + at].add(deviation);
+        }
     }
 
     /// The radiance of samples, which stays in `self.values` until the next call.

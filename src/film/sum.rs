@@ -6,12 +6,12 @@ use glam::Vec3;
 /// far outside what 24-bit values of a scene-referred picture can show. 2^22 samples of the largest
 /// value fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Sum([i128; 3]);
+pub struct Sum(pub(super) [i128; 3]);
 
-const FRACTION_BITS: u32 = 64;
+pub(super) const FRACTION_BITS: u32 = 64;
 /// What a fixed-point step is worth.
 const UNIT: f64 = 1.0 / (1u128 << FRACTION_BITS) as f64;
-const LARGEST: f32 = (1u64 << 40) as f32;
+pub(super) const LARGEST: f32 = (1u64 << 40) as f32;
 
 impl Sum {
     /// Adds a colour. A component that is not a number counts as zero, an infinite one as the largest.
@@ -51,7 +51,7 @@ impl Sum {
     /// how far the mean of both together is from this one's. In f64, from exact sums.
     pub fn half_difference(&self, other: &Self, count: u32) -> [f64; 3] {
         let unit = UNIT / (2.0 * f64::from(count.max(1)));
-        std::array::from_fn(|i| (other.0[i] - self.0[i]) as f64 * unit)
+        std::array::from_fn(|i| to_f64(other.0[i] - self.0[i]) * unit)
     }
 
     /// The mean over `count` values; zero where there are none.
@@ -60,9 +60,17 @@ impl Sum {
             return Vec3::ZERO;
         }
         let unit = UNIT / f64::from(count);
-        let [r, g, b] = self.0.map(|sum| (sum as f64 * unit) as f32);
+        let [r, g, b] = self.0.map(|sum| (to_f64(sum) * unit) as f32);
         Vec3::new(r, g, b)
     }
+}
+
+/// The nearest f64, or the one beside it: both halves are rounded, and their sum once more. A general conversion of 128
+/// bits takes several times as long.
+#[inline(always)]
+fn to_f64(sum: i128) -> f64 {
+    const HIGH: f64 = (1u128 << 64) as f64;
+    (sum >> 64) as i64 as f64 * HIGH + sum as u64 as f64
 }
 
 /// Exact but for what lies below 2^-64; NaN becomes zero.

@@ -121,6 +121,7 @@ impl TileState {
                 let near = near.next().unwrap_or_default();
                 self.commit(chunk.pixels, sums, near, segment.end - segment.start);
             }
+            self.note_moves(chunk.pixels);
             return true;
         }
         let mut pending = self.pending.take().unwrap_or_else(|| {
@@ -153,6 +154,7 @@ impl TileState {
         let complete = pending.missing[first] == 0;
         if complete {
             self.commit(chunk.pixels, &pending.sums, &pending.near, chunk.of);
+            self.note_moves(chunk.pixels);
             let Pending { sums, near, .. } = &mut *pending;
             for sums in [sums, near] {
                 for (at, sum) in sums.iter_mut().enumerate() {
@@ -194,6 +196,10 @@ impl TileState {
                 sum.merge(near);
             }
         }
+    }
+
+    /// The pixels have changed: says how far they moved.
+    fn note_moves(&mut self, pixels: Pixels) {
         let near = self.near_errors();
         let means = Means::of(&self.pixels, &near, self.tile.extent);
         for half in 0..2 {

@@ -10,7 +10,7 @@ use super::recorder::{Adding, LightKind, LitPoint, Recorder};
 use super::sampler::Purpose;
 use super::shading::reflected;
 use super::{Lights, SampleId, Surface};
-use crate::bvh::{Aggregate, Hit, Ray};
+use crate::bvh::{Aggregate, Hit, Order, Ray};
 use crate::scene::{Lighting, RenderSettings};
 use glam::Vec3;
 
@@ -251,7 +251,9 @@ impl<R: Recorder> Batch<'_, R> {
             }
             return;
         }
-        self.world.aggregate.occlusions(rays, occluded);
+        self.world
+            .aggregate
+            .occlusions_in(Order::Light, rays, occluded);
         for (shadow, occluded) in shadows.iter().zip(occluded) {
             if !*occluded {
                 self.recorder.arrived(shadow.point, Vec3::ONE);

@@ -15,7 +15,7 @@ use super::near_lights::NearLights;
 use super::recorder::{Adding, Recorder};
 use super::sampler::Sampler;
 use super::{Camera, Cone, Surface, World};
-use crate::bvh::{Hit, Ray};
+use crate::bvh::{Hit, Order, Ray};
 use crate::scene::{Lighting, RenderSettings};
 use glam::{UVec2, Vec3};
 
@@ -268,7 +268,13 @@ impl<R: Recorder> Batch<'_, R> {
     fn find_nearest(&self, paths: &Paths, hits: &mut Vec<Option<Hit>>, behind: &mut Behind) {
         let aggregate = &self.world.aggregate;
         if paths.straight.is_empty() {
-            aggregate.closest_hits(&paths.rays, hits);
+            // Neighbouring pixels' rays start out as neighbours; after a bounce they may go anywhere.
+            let order = if paths.states.is_empty() {
+                Order::Tile
+            } else {
+                Order::None
+            };
+            aggregate.closest_hits_in(order, &paths.rays, hits);
             return;
         }
         let is_straight = |i: usize| paths.states[i].after.is_some();
