@@ -70,7 +70,9 @@ impl Sum {
 #[inline(always)]
 fn to_f64(sum: i128) -> f64 {
     const HIGH: f64 = (1u128 << 64) as f64;
-    (sum >> 64) as i64 as f64 * HIGH + sum as u64 as f64
+    let magnitude = sum.unsigned_abs();
+    let value = (magnitude >> 64) as u64 as f64 * HIGH + magnitude as u64 as f64;
+    if sum < 0 { -value } else { value }
 }
 
 /// Exact but for what lies below 2^-64; NaN becomes zero.
