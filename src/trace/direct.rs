@@ -1,6 +1,6 @@
 //! Direct light: shadow rays to points of the lights, gathered for a whole batch, then traced.
 
-use super::lights::{LightPoint, sample_count};
+use super::lights::{LightPoint, MIDDLE, sample_count};
 use super::radiance::{Batch, Path, Shadow, Workspace};
 use super::recorder::{LightKind, Recorder};
 use super::sampler::Purpose;
@@ -13,9 +13,6 @@ use glam::Vec3;
 /// A shadow ray ends this much before its light, as a fraction of the distance: a light that lies
 /// in a surface is not hidden by it. 64 units of rounding; t itself is good to a few.
 const SHORT_OF_THE_LIGHT: f32 = 1.0 - 64.0 * f32::EPSILON;
-
-/// The middle of a light, in the numbers that choose its points.
-const MIDDLE: [f32; 2] = [0.5, 0.5];
 
 impl<R: Recorder> Batch<'_, R> {
     /// Adds a shadow ray for every light point that can add something; `weight` is the path's
@@ -72,9 +69,19 @@ impl<R: Recorder> Batch<'_, R> {
             let count = (light.samples, light.area_normal().length());
             let at = seen_from(light.id);
             let first = workspace.shadows.len();
-            self.gather_area(path, surface, light.id, count, weight, workspace, |u| {
-                light.point(at, u, lighting)
-            });
+            let frame = workspace.frames.get(i).copied().flatten();
+            self.gather_area(
+                path,
+                surface,
+                light.id,
+                count,
+                weight,
+                workspace,
+                |u| match &frame {
+                    Some(frame) => light.point_for(frame, surface, at, u),
+                    None => light.point(at, u, lighting),
+                },
+            );
             if let Some(expected) = workspace.near_lights.parallelogram(i, light, surface, at) {
                 self.gather_near(path, count, weight * expected, first, workspace);
             }
@@ -112,8 +119,11 @@ impl<R: Recorder> Batch<'_, R> {
         for i in 0..u64::from(count) {
             let index = index * u64::from(count) + i;
             let [u, v, ..] = sampler.block(index, Purpose::Light(id), path.name);
-            self.recorder.light_place([u, v], count);
-            self.gather_point(path, surface, point([u, v]), weight, workspace);
+            let point = point([u, v]);
+            if let Some(point) = &point {
+                self.recorder.light_place(point, count);
+            }
+            self.gather_point(path, surface, point, weight, workspace);
         }
     }
 

@@ -6,15 +6,18 @@
 //! | point | `I · cone / d²`, W/m² |
 //! | directional | `E`, W/m²; of a disc of directions as [`SunDisc`] has it |
 //! | segment | `I'(x) · length / d²` for a uniform point x of it |
-//! | parallelogram | `L(x) · cos θ · area / d²` for a uniform point x of it, θ at the emitter |
+//! | parallelogram | `L(x) / p(x)` for a point x of it chosen by the density p per solid angle of [`parallelogram_warp`](super::parallelogram_warp); `L · cos θ · area / d²` where points are chosen evenly, θ at the emitter |
 //!
-//! With Classic lighting the colour itself arrives, whatever the distance and the angle; a
-//! parallelogram shines to both sides then, as in simple Phong ray tracers.
+//! With Classic lighting the colour itself arrives, whatever the distance and the angle, and points are chosen evenly;
+//! a parallelogram shines to both sides then, as in simple Phong ray tracers.
 //!
 //! A light may move while the shutter is open. Few do, so their velocities stand apart, and the kinds
 //! know nothing of them: a light that moves by `velocity · t` is, seen from x, what the same light
 //! standing still is, seen from `x - velocity · t` ([`Lights::in_rest_frame`]).
 
+use super::Surface;
+use super::parallelogram_warp::ParallelogramFrame;
+use super::receiver::Receivers;
 use super::spot_cone::SpotCone;
 use super::sun_disc::SunDisc;
 use crate::scene::Lighting;
@@ -112,7 +115,14 @@ pub struct LightPoint {
     pub distance: f32,
     /// What arrives if nothing is in the way, before the surface's cosine.
     pub arriving: Vec3,
+    /// Where on the light, in [0, 1]²; a segment uses the first number.
+    pub place: [f32; 2],
+    /// How likely that place is, as a multiple of what it is where points are chosen evenly over the light.
+    pub density: f32,
 }
+
+/// The middle of a light, in the numbers that choose its points.
+pub(super) const MIDDLE: [f32; 2] = [0.5, 0.5];
 
 /// Below this squared distance (in m²) a light is at the point: `1/d²` stays finite in f32.
 const LEAST_SQUARED_DISTANCE: f32 = 1e-30;
@@ -165,6 +175,8 @@ impl PointLight {
                 Lighting::Physical => self.color * (cone * inverse_square(distance)),
                 Lighting::Classic => self.color * cone,
             },
+            place: MIDDLE,
+            density: 1.0,
         })
     }
 }
@@ -176,6 +188,8 @@ impl DirectionalLight {
             direction: self.to_light,
             distance: f32::INFINITY,
             arriving: self.color,
+            place: MIDDLE,
+            density: 1.0,
         }
     }
 
@@ -189,6 +203,8 @@ impl DirectionalLight {
             direction,
             distance: f32::INFINITY,
             arriving: self.color * counts,
+            place: u,
+            density: 1.0,
         }
     }
 
@@ -211,6 +227,8 @@ impl SegmentLight {
                 Lighting::Physical => color * (along.length() * inverse_square(distance)),
                 Lighting::Classic => color,
             },
+            place: [u, 0.5],
+            density: 1.0,
         })
     }
 }
@@ -238,6 +256,8 @@ impl ParallelogramLight {
                 direction,
                 distance,
                 arriving: color,
+                place: u,
+                density: 1.0,
             });
         }
         // Cosine times area in one: the normal's length is the area.
@@ -247,6 +267,46 @@ impl ParallelogramLight {
             direction,
             distance,
             arriving: color * (facing * inverse_square(distance)),
+            place: u,
+            density: 1.0,
+        })
+    }
+
+    /// What choosing its points for a place needs to know of it; `None` where it is so thin that its points are chosen
+    /// evenly.
+    pub fn frame(&self) -> Option<ParallelogramFrame> {
+        ParallelogramFrame::new(self.corner, self.edges, &self.colors, self.two_sided)
+    }
+
+    /// The point that the numbers `u` in [0, 1)² choose for a surface at `from`, Physical; `None` where nothing can arrive.
+    /// The frame is the light's own.
+    pub fn point_for(
+        &self,
+        frame: &ParallelogramFrame,
+        surface: &Surface,
+        from: Vec3,
+        u: [f32; 2],
+    ) -> Option<LightPoint> {
+        let receivers = Receivers::of(surface, from);
+        let numbers = u.map(|number| [number]);
+        let chosen = if surface.specular == Vec3::ZERO {
+            frame.matt_places(&receivers, &numbers)
+        } else {
+            frame.glossy_places(&receivers, &numbers)
+        };
+        let ([[u], [v]], [solid_angle]) = (chosen.uv, chosen.solid_angle);
+        if !(solid_angle > 0.0 && solid_angle < f32::INFINITY) {
+            return None;
+        }
+        let offset = (self.corner - from) + u * self.edges[0] + v * self.edges[1];
+        let (direction, distance) = towards(offset)?;
+        let facing = direction.dot(self.area_normal()).abs();
+        Some(LightPoint {
+            direction,
+            distance,
+            arriving: self.color(u, v) * solid_angle,
+            place: [u, v],
+            density: facing * inverse_square(distance) / solid_angle,
         })
     }
 

@@ -36,9 +36,13 @@ mod material;
 mod mipmap;
 mod near_lights;
 mod needs;
+mod parallelogram_warp;
+mod piecewise;
+mod polynomials;
 mod probe;
 mod radiance;
 mod ray_tree;
+mod receiver;
 mod recorder;
 mod sampler;
 mod scatter;
@@ -62,11 +66,13 @@ pub use lights::{
 };
 pub use material::Material;
 pub use needs::{Needs, samples_per_pixel};
+pub use parallelogram_warp::{ParallelogramFrame, Places};
 pub use probe::{MOST_RAYS, ProbeError, Samples, probe};
 pub use radiance::{RayCounts, SampleId, Workspace, radiance};
 pub use ray_tree::{
     Crossing, LightSample, ProbedSample, RayCost, RayEnd, RayHit, RayKind, RayTree, TracedRay,
 };
+pub use receiver::Receivers;
 pub use recorder::LightKind;
 pub use sampler::{Purpose, Sampler};
 pub use spot_cone::SpotCone;

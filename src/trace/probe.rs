@@ -114,7 +114,6 @@ struct Recording<'a> {
     /// Whatever adds something next.
     adding: u32,
     light: (LightKind, u64),
-    place: [f32; 2],
     /// Light samples that share the light; 0 where it is taken for a point.
     count: u32,
 }
@@ -135,7 +134,6 @@ impl<'a> Recording<'a> {
             path: 0,
             adding: 0,
             light: (LightKind::Point, 0),
-            place: [0.5; 2],
             count: 0,
         }
     }
@@ -281,12 +279,10 @@ impl Recorder for Recording<'_> {
 
     fn light(&mut self, kind: LightKind, id: u64) {
         self.light = (kind, id);
-        self.place = [0.5; 2];
         self.count = 0;
     }
 
-    fn light_place(&mut self, place: [f32; 2], count: u32) {
-        self.place = place;
+    fn light_place(&mut self, _point: &LightPoint, count: u32) {
         self.count = count;
     }
 
@@ -312,7 +308,8 @@ impl Recorder for Recording<'_> {
         let light = LightSample {
             kind: self.light.0,
             id: self.light.1,
-            place: self.place,
+            place: point.place,
+            density: point.density,
             direction: point.direction,
             distance: point.distance,
             arriving: point.arriving,

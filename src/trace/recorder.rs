@@ -53,9 +53,9 @@ pub(super) trait Recorder {
     /// The following light samples are of this light, of its middle.
     #[inline(always)]
     fn light(&mut self, _kind: LightKind, _id: u64) {}
-    /// The following light sample is of this place of the light, one of `count`.
+    /// The following light sample is of this point of the light, one of `count`.
     #[inline(always)]
-    fn light_place(&mut self, _place: [f32; 2], _count: u32) {}
+    fn light_place(&mut self, _point: &LightPoint, _count: u32) {}
     /// A point of a light, as the surface sees it.
     #[inline(always)]
     fn light_sample(&mut self, _surface: &Surface, _point: &LightPoint) {}

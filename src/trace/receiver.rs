@@ -1,0 +1,38 @@
+use super::Surface;
+use glam::Vec3;
+
+/// What points of a light are chosen for: places that see it, and how they reflect, in columns. What a place
+/// reflects counts with one number instead of a colour.
+#[derive(Clone, Copy, Debug)]
+pub struct Receivers<const N: usize> {
+    /// Where they are, in the frame in which the light stands still: x, y, z.
+    pub from: [[f32; N]; 3],
+    /// Unit normals for shading.
+    pub normal: [[f32; N]; 3],
+    /// The mirrored direction to the viewer, a unit vector: its cosine with a direction l is `r·v`.
+    pub mirrored: [[f32; N]; 3],
+    /// kd, the mean of its channels.
+    pub diffuse: [f32; N],
+    /// ks, the mean of its channels.
+    pub specular: [f32; N],
+    /// s ≥ 1.
+    pub shininess: [f32; N],
+}
+
+impl Receivers<1> {
+    /// One place, as the light's points are chosen for a surface there.
+    #[inline(always)]
+    pub fn of(surface: &Surface, from: Vec3) -> Self {
+        let n = surface.normal;
+        let mirrored = 2.0 * n.dot(surface.to_viewer) * n - surface.to_viewer;
+        let columns = |v: Vec3| v.to_array().map(|x| [x]);
+        Self {
+            from: columns(from),
+            normal: columns(n),
+            mirrored: columns(mirrored),
+            diffuse: [surface.diffuse.element_sum() / 3.0],
+            specular: [surface.specular.element_sum() / 3.0],
+            shininess: [surface.shininess],
+        }
+    }
+}
