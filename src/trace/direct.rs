@@ -57,9 +57,12 @@ impl<R: Recorder> Batch<'_, R> {
             let count = (light.samples, size);
             let at = seen_from(light.id);
             let first = workspace.shadows.len();
-            self.gather_area(path, surface, light.id, count, weight, workspace, |u| {
-                light.point(at, u[0], lighting)
-            });
+            let frame = workspace.light_frames.segment(i);
+            let point = |u: [f32; 2]| match &frame {
+                Some(frame) => light.point_for(frame, surface, at, u[0]),
+                None => light.point(at, u[0], lighting),
+            };
+            self.gather_area(path, surface, light.id, count, weight, workspace, point);
             if let Some(expected) = workspace.near_lights.segment(i, light, surface, at) {
                 self.gather_near(path, count, weight * expected, first, workspace);
             }
@@ -69,19 +72,12 @@ impl<R: Recorder> Batch<'_, R> {
             let count = (light.samples, light.area_normal().length());
             let at = seen_from(light.id);
             let first = workspace.shadows.len();
-            let frame = workspace.frames.get(i).copied().flatten();
-            self.gather_area(
-                path,
-                surface,
-                light.id,
-                count,
-                weight,
-                workspace,
-                |u| match &frame {
-                    Some(frame) => light.point_for(frame, surface, at, u),
-                    None => light.point(at, u, lighting),
-                },
-            );
+            let frame = workspace.light_frames.parallelogram(i);
+            let point = |u| match &frame {
+                Some(frame) => light.point_for(frame, surface, at, u),
+                None => light.point(at, u, lighting),
+            };
+            self.gather_area(path, surface, light.id, count, weight, workspace, point);
             if let Some(expected) = workspace.near_lights.parallelogram(i, light, surface, at) {
                 self.gather_near(path, count, weight * expected, first, workspace);
             }

@@ -5,8 +5,11 @@
 //! |---|---|
 //! | point | `I · cone / d²`, W/m² |
 //! | directional | `E`, W/m²; of a disc of directions as [`SunDisc`] has it |
-//! | segment | `I'(x) · length / d²` for a uniform point x of it |
-//! | parallelogram | `L(x) / p(x)` for a point x of it chosen by the density p per solid angle of [`parallelogram_warp`](super::parallelogram_warp); `L · cos θ · area / d²` where points are chosen evenly, θ at the emitter |
+//! | segment | `I'(x) / (p(x) d²)` for a point x of it |
+//! | parallelogram | `L(x) · cos θ / (p(x) d²)` for a point x of it, θ at the emitter |
+//!
+//! p is the density with which the point is chosen: one over length or area where all points are alike, else what
+//! `segment_warp` and `parallelogram_warp` take for the surface that sees it.
 //!
 //! With Classic lighting the colour itself arrives, whatever the distance and the angle, and points are chosen evenly;
 //! a parallelogram shines to both sides then, as in simple Phong ray tracers.
@@ -18,6 +21,7 @@
 use super::Surface;
 use super::parallelogram_warp::ParallelogramFrame;
 use super::receiver::Receivers;
+use super::segment_warp::SegmentFrame;
 use super::spot_cone::SpotCone;
 use super::sun_disc::SunDisc;
 use crate::scene::Lighting;
@@ -227,8 +231,43 @@ impl SegmentLight {
                 Lighting::Physical => color * (along.length() * inverse_square(distance)),
                 Lighting::Classic => color,
             },
-            place: [u, 0.5],
+            place: [u, MIDDLE[1]],
             density: 1.0,
+        })
+    }
+
+    /// What choosing its points for a surface needs to know of it; `None` where it has no length.
+    pub fn frame(&self) -> Option<SegmentFrame> {
+        SegmentFrame::new(self.ends, &self.colors)
+    }
+
+    /// The point that the number `u` in [0, 1) chooses for a surface at `from`, Physical; `None` where nothing can
+    /// arrive. The frame is the light's own.
+    pub fn point_for(
+        &self,
+        frame: &SegmentFrame,
+        surface: &Surface,
+        from: Vec3,
+        u: f32,
+    ) -> Option<LightPoint> {
+        let receivers = Receivers::of(surface, from);
+        let chosen = if surface.specular == Vec3::ZERO {
+            frame.matt_places(&receivers, &[u])
+        } else {
+            frame.glossy_places(&receivers, &[u])
+        };
+        let ([u], [arriving]) = (chosen.u, chosen.arriving);
+        if !(arriving > 0.0 && arriving < f32::INFINITY) {
+            return None;
+        }
+        let along = self.ends[1] - self.ends[0];
+        let (direction, distance) = towards((self.ends[0] - from) + u * along)?;
+        Some(LightPoint {
+            direction,
+            distance,
+            arriving: self.colors[0].lerp(self.colors[1], u) * arriving,
+            place: [u, MIDDLE[1]],
+            density: along.length() * inverse_square(distance) / arriving,
         })
     }
 }

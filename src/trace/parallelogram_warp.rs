@@ -2,7 +2,7 @@
 //! cosine × radiance × reflectance, and known.
 //!
 //! # The cylinder
-//! About the axis through the shading point along the light's second edge, directions have an angle α around it and a
+//! About the axis through the shading point along the light's longer edge, directions have an angle α around it and a
 //! sine s of their elevation along it, and dω = dα ds. Directions of one α meet the light along a line parallel to that edge
 //! and see one interval of s; the light as a whole is one interval of α. So no equation has to be solved: α is chosen by a
 //! density that is linear between nodes (of each, what its interval of s gives by the trapezoid rule), then s likewise
@@ -15,19 +15,18 @@
 //! # Digits
 //! The widths of both intervals are factors of what arrives, so they are computed from the light's own width and length
 //! and not as differences. A point is put together from its place on the light, so it lies on the light to f32's last digits.
-//! Lights that look small have points chosen evenly over their area: there all points give nearly the same.
+//! Of lights that look small u and v stand for t and q: they are the same there but for a factor.
 //!
 //! # Columns
 //! Plain loops over N receivers, whose bodies have no branch: N = 1 for one, some dozens for a batch, with the same bits.
 
-use super::piecewise::{choose, larger, smaller, within_one};
+use super::piecewise::{choose, larger, relative_luminances, smaller, within_one};
 use super::polynomials::{exp2, log2};
 use super::receiver::Receivers;
 use glam::Vec3;
 use std::f32::consts::SQRT_2;
 
-/// Below this solid angle in sr points are chosen evenly over the area: digits get scarce, and there is nothing to
-/// gain but at a horizon.
+/// Below this solid angle in sr digits of t and q get scarce.
 const LEAST_SOLID_ANGLE: f32 = 1e-4;
 
 /// As a part of the longer edge, the least width or length that rounding leaves some digits of.
@@ -59,6 +58,8 @@ pub struct ParallelogramFrame {
     /// Luminance at the corners.
     luminances: [f32; 4],
     is_even: bool,
+    /// The light's first edge is the longer one, and stands in the second's place here.
+    is_turned: bool,
 }
 
 /// The places that numbers choose, in columns.
@@ -116,18 +117,26 @@ impl ParallelogramFrame {
         colors: &[Vec3; 4],
         two_sided: bool,
     ) -> Option<Self> {
-        let scale = edges[0].length().max(edges[1].length());
+        let [first, second] = edges.map(Vec3::length);
+        let scale = first.max(second);
+        let is_turned = first > second;
         let [a, b] = edges.map(|edge| edge / scale);
+        let [a, b] = if is_turned { [b, a] } else { [a, b] };
+        let front = if is_turned { b.cross(a) } else { a.cross(b) };
+        let front = front.normalize_or_zero();
         let length = b.length();
         let along = b / length;
         let shear = a.dot(along);
         let across = a - shear * along;
         let width = across.length();
         let has_extent = width > LEAST_EXTENT && length > LEAST_EXTENT;
-        let luminances = colors.map(luminance);
+        let mut luminances = relative_luminances(colors);
+        if is_turned {
+            luminances.swap(1, 2);
+        }
         (has_extent && (1.0 / scale).is_finite()).then(|| Self {
             corner,
-            axes: [a.cross(b).normalize_or_zero(), across / width, along],
+            axes: [front, across / width, along],
             per_metre: 1.0 / scale,
             width,
             shear,
@@ -137,6 +146,7 @@ impl ParallelogramFrame {
             two_sided,
             luminances,
             is_even: luminances.iter().all(|l| *l == luminances[0]),
+            is_turned,
         })
     }
 
@@ -179,7 +189,7 @@ impl ParallelogramFrame {
         let mut seen = [0.0; N];
         for (row, marginal) in marginal.iter_mut().enumerate() {
             let part = row as f32 / (ROWS - 1) as f32;
-            let lines = self.lines::<GLOSSY, N>(&views, |i| views.first[i] + part * views.width[i]);
+            let lines = self.lines::<GLOSSY, N>(&views, |_| part, |_| true);
             let nodes = self.nodes::<GLOSSY, EVEN, N>(&views, &lobes, &lines);
             for i in 0..N {
                 let sum =
@@ -190,15 +200,13 @@ impl ParallelogramFrame {
             }
         }
         let across = choose(&marginal, &numbers[0]);
-        let t = |i: usize| views.first[i] + across.place[i] * views.width[i];
-        let lines = self.lines::<GLOSSY, N>(&views, t);
-        let along = choose(
-            &self.nodes::<GLOSSY, EVEN, N>(&views, &lobes, &lines),
-            &numbers[1],
-        );
+        let looks_large =
+            |i: usize| seen[i] * views.width[i] > LEAST_SOLID_ANGLE / SQRT_2 * ROWS as f32;
+        let lines = self.lines::<GLOSSY, N>(&views, |i| across.place[i], looks_large);
+        let nodes = self.nodes::<GLOSSY, EVEN, N>(&views, &lobes, &lines);
+        let along = choose(&nodes, &numbers[1]);
 
-        let [mut u, mut v] = *numbers;
-        let mut solid_angle = [0.0; N];
+        let [mut u, mut v, mut solid_angle] = [[0.0; N]; 3];
         for i in 0..N {
             let height = self.height(&lines, i);
             let q = lines.q[0][i] + along.place[i] * height;
@@ -206,23 +214,26 @@ impl ParallelogramFrame {
             let root = (2.0 - q * q).sqrt();
             let y = lines.distance[i] * (q * root) / c;
             let stretch = lines.stretch[i] * (2.0 * c / root);
-            let warped =
-                stretch * (views.width[i] * height) / (across.density[i] * along.density[i]);
+            let warped = stretch * (views.width[i] * height);
 
-            let looks_large = seen[i] * views.width[i] > LEAST_SOLID_ANGLE / SQRT_2 * ROWS as f32;
-            let even = self.even_solid_angle(&views, i, [u[i], v[i]]);
-            u[i] = if looks_large { lines.u[i] } else { u[i] };
-            v[i] = if looks_large {
+            let [v0, v1] = [lines.v[0][i], lines.v[1][i]];
+            let even_v = v0 + along.place[i] * (v1 - v0);
+            let shown = (views.ends[1][i] - views.ends[0][i]) * (v1 - v0);
+            let even = shown * self.even_solid_angle(&views, i, [lines.u[i], even_v]);
+            let is_large = looks_large(i);
+            u[i] = lines.u[i];
+            v[i] = if is_large {
                 self.v_at(&lines, i, y)
             } else {
-                v[i]
+                even_v
             };
-            let chosen = if looks_large { warped } else { even };
+            let chosen = if is_large { warped } else { even };
             let shines = views.offset[0][i] > 0.0 && views.ends[0][i] < views.ends[1][i];
-            solid_angle[i] = if shines { chosen } else { 0.0 };
+            let density = across.density[i] * along.density[i];
+            solid_angle[i] = if shines { chosen / density } else { 0.0 };
         }
         Places {
-            uv: [u, v],
+            uv: if self.is_turned { [v, u] } else { [u, v] },
             solid_angle,
         }
     }
@@ -295,28 +306,30 @@ impl ParallelogramFrame {
             shininess: receivers.shininess,
         };
         if GLOSSY {
-            let last = |i: usize| views.first[i] + views.width[i];
-            let lines =
-                self.lines::<false, N>(views, |i| smaller(larger(0.0, views.first[i]), last(i)));
+            let nearest = |i: usize| within_one(-views.first[i] / views.width[i]);
+            let lines = self.lines::<false, N>(views, nearest, |_| true);
             for i in 0..N {
                 // In radians, at most.
                 let across = 2.0 / (ROWS - 1) as f32 * views.width[i];
                 let along = SQRT_2 / 4.0 * (lines.q[1][i] - lines.q[0][i]);
                 let step = larger(across, along);
                 let shininess = smaller(receivers.shininess[i], SHARPEST / (step * step));
+                let [diffuse, specular] = receivers.parts(i);
+                lobes.diffuse[i] = diffuse;
+                lobes.specular[i] = specular * (0.5 * (shininess + 2.0));
                 lobes.shininess[i] = shininess;
-                lobes.specular[i] *= 0.5 * (shininess + 2.0);
             }
         }
         lobes
     }
 
-    /// The lines of those t.
+    /// The lines at places in [0, 1] of the interval of t, or of that of u where there is no difference but in digits.
     #[inline(always)]
     fn lines<const GLOSSY: bool, const N: usize>(
         &self,
         views: &Views<N>,
-        t: impl Fn(usize) -> f32,
+        place: impl Fn(usize) -> f32,
+        by_angle: impl Fn(usize) -> bool,
     ) -> Lines<N> {
         let mut lines = Lines {
             u: [0.0; N],
@@ -330,13 +343,16 @@ impl ParallelogramFrame {
             q: [[0.0; N]; 2],
         };
         for i in 0..N {
-            let t = t(i);
+            let t = views.first[i] + place(i) * views.width[i];
             let [z, x0, y0] = [0, 1, 2].map(|axis| views.offset[axis][i]);
             let [nz, nx, ny] = [0, 1, 2].map(|axis| views.normal[axis][i]);
             // 1 - t², at least what rounding leaves of it.
             let rest = larger((1.0 - t) * (1.0 + t), 1e-12);
             let u = (2.0 * t * z / rest - x0) * self.per_width;
-            let u = smaller(larger(u, views.ends[0][i]), views.ends[1][i]);
+            let [first, last] = [views.ends[0][i], views.ends[1][i]];
+            let u = smaller(larger(u, first), last);
+            let even = first + place(i) * (last - first);
+            let u = if by_angle(i) { u } else { even };
             let x = x0 + u * self.width;
             let start = y0 + u * self.shear;
             let squared = larger(z * z + x * x, f32::MIN_POSITIVE);
@@ -450,11 +466,6 @@ impl ParallelogramFrame {
         let squared = larger(z * z + x * x + y * y, f32::MIN_POSITIVE);
         self.width * self.length * z / (squared * squared.sqrt())
     }
-}
-
-/// How bright linear RGB is: Rec. 709's weights.
-fn luminance(color: Vec3) -> f32 {
-    color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
 /// tan(α/2) of the first of two angles whose tangents are x/z, and how much more it is of the second: their x differ

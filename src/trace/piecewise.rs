@@ -1,8 +1,13 @@
 //! Choosing places on lines by densities that are linear between evenly spaced nodes, in columns.
 
+use glam::Vec3;
+
 /// The least that a node counts, as a part of the largest: where the true density is not linear between nodes, a
 /// sample then counts at most 50 times what it should.
 const LEAST_NODE: f32 = 0.02;
+
+/// What a node counts at least where all are nothing: its square is a float.
+const LEAST: f32 = 1e-18;
 
 /// Places on lines, and the densities there.
 pub(super) struct Chosen<const N: usize> {
@@ -12,7 +17,7 @@ pub(super) struct Chosen<const N: usize> {
     pub density: [f32; N],
 }
 
-/// The places that `numbers` in [0, 1) choose on N lines of `NODES` nodes, which are not negative. Nodes much below the
+/// The places that `numbers` in [0, 1) choose on N lines of `NODES` nodes, which are not negative and below 1e18. Nodes much below the
 /// largest are raised; where all are zero, all places are alike.
 ///
 /// Within a cell between nodes a and b the share ξ of its density ends at ξ (a + b) / (a + √((1-ξ) a² + ξ b²)), where
@@ -23,7 +28,7 @@ pub(super) fn choose<const NODES: usize, const N: usize>(
     numbers: &[f32; N],
 ) -> Chosen<N> {
     let cells = (NODES - 1) as f32;
-    let mut least = [f32::MIN_POSITIVE; N];
+    let mut least = [LEAST; N];
     for node in nodes {
         for i in 0..N {
             least[i] = larger(least[i], LEAST_NODE * node[i]);
@@ -75,6 +80,17 @@ pub(super) fn smaller(a: f32, b: f32) -> f32 {
 #[inline(always)]
 pub(super) fn within_one(x: f32) -> f32 {
     smaller(larger(x, 0.0), 1.0)
+}
+
+/// How bright colours are, as parts of the brightest: linear RGB with Rec. 709's weights.
+pub(super) fn relative_luminances<const N: usize>(colors: &[Vec3; N]) -> [f32; N] {
+    let brightest = colors
+        .iter()
+        .fold(0.0, |most, color| color.max_element().max(most));
+    colors.map(|color| {
+        let relative = (color / brightest).dot(Vec3::new(0.2126, 0.7152, 0.0722));
+        if brightest > 0.0 { relative } else { 1.0 }
+    })
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! The value of samples: a batch at a time, bounce by bounce.
 
+use super::light_frames::LightFrames;
 use super::near_lights::NearLights;
-use super::parallelogram_warp::ParallelogramFrame;
 use super::recorder::Recorder;
 use super::sampler::{Purpose, Sampler};
-use super::{Camera, Cone, ImagePlane, ParallelogramLight, Surface, World};
+use super::{Camera, Cone, ImagePlane, Surface, World};
 use crate::bvh::{Hit, Ray};
 use crate::scene::{Lighting, RenderSettings};
 use glam::{UVec2, Vec3};
@@ -85,8 +85,7 @@ pub struct Workspace {
     pub(super) shadow_rays: Vec<Ray>,
     pub(super) occluded: Vec<bool>,
     pub(super) near_lights: NearLights,
-    /// One for each parallelogram light, in their order; empty where all points are chosen evenly.
-    pub(super) frames: Vec<Option<ParallelogramFrame>>,
+    pub(super) light_frames: LightFrames,
 }
 
 impl Workspace {
@@ -168,13 +167,7 @@ pub(super) fn radiance_with<R: Recorder>(
     assert_eq!(samples.len(), values.len(), "one value for each sample");
     values.fill(Vec3::ZERO);
     workspace.near_lights.begin(&world.lights, settings);
-    workspace.frames.clear();
-    if settings.lighting == Lighting::Physical && settings.features.soft_shadows {
-        let lights = &world.lights.parallelograms;
-        workspace
-            .frames
-            .extend(lights.iter().map(ParallelogramLight::frame));
-    }
+    workspace.light_frames.begin(&world.lights, settings);
     let mut batch = Batch {
         world,
         settings,

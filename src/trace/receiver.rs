@@ -1,4 +1,5 @@
 use super::Surface;
+use super::piecewise::larger;
 use glam::Vec3;
 
 /// What points of a light are chosen for: places that see it, and how they reflect, in columns. What a place
@@ -17,6 +18,16 @@ pub struct Receivers<const N: usize> {
     pub specular: [f32; N],
     /// s ≥ 1.
     pub shininess: [f32; N],
+}
+
+impl<const N: usize> Receivers<N> {
+    /// The parts that kd and ks have in their sum.
+    #[inline(always)]
+    pub(super) fn parts(&self, i: usize) -> [f32; 2] {
+        let [diffuse, specular] = [self.diffuse[i], self.specular[i]];
+        let per_sum = 1.0 / larger(diffuse + specular, f32::MIN_POSITIVE);
+        [diffuse * per_sum, specular * per_sum]
+    }
 }
 
 impl Receivers<1> {
