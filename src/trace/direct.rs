@@ -1,7 +1,10 @@
 //! Direct light, one light after another: points of it for all vertices of a batch, shadow rays there, and what arrives.
 
+use super::chosen_places::{ChosenPlace, ChosenPlaces};
+use super::light_frames::{Frame, LightFrames};
 use super::lights::{
-    DirectionalLight, LightPoint, ParallelogramLight, PointLight, SegmentLight, sample_count,
+    DirectionalLight, LightPoint, MIDDLE, ParallelogramLight, PointLight, SegmentLight,
+    sample_count,
 };
 use super::near_lights::NearLights;
 use super::numbers::{Asking, Pairs};
@@ -18,15 +21,15 @@ use glam::Vec3;
 /// in a surface is not hidden by it. 64 units of rounding; t itself is good to a few.
 const SHORT_OF_THE_LIGHT: f32 = 1.0 - 64.0 * f32::EPSILON;
 
-/// The middle of a light, in the numbers that choose its points.
-const MIDDLE: [f32; 2] = [0.5, 0.5];
-
 /// The arrays of one light's points, and of the shadow rays to them.
 #[derive(Default)]
 pub(super) struct ShadowRays {
-    /// Which numbers choose the points, and those numbers.
+    /// The vertex of each question for a point, which numbers choose it, those numbers, and what they choose where
+    /// points of the light are not all alike.
+    askers: Vec<u32>,
     asking: Asking,
-    places: Pairs,
+    numbers: Pairs,
+    chosen: ChosenPlaces,
     /// Points of lights so far at this bounce, those that nothing comes from included: what tells them apart.
     points: u32,
     rays: Vec<Ray>,
@@ -86,7 +89,26 @@ impl Lamp<'_> {
         }
     }
 
-    /// The point that the numbers choose, as `from` sees it in the frame that moves with the light.
+    /// What choosing its points for a surface needs to know of it; nothing where all points are alike.
+    fn frame(self, frames: &LightFrames) -> Option<Frame> {
+        match self {
+            Self::Point(_) | Self::Directional(_) => None,
+            Self::Segment(i, _) => frames.segment(i),
+            Self::Parallelogram(i, _) => frames.parallelogram(i),
+        }
+    }
+
+    /// The point that was chosen for a surface at `from`, in the frame that moves with the light.
+    fn chosen(self, from: Vec3, chosen: ChosenPlace) -> Option<LightPoint> {
+        let ChosenPlace { place, arriving } = chosen;
+        match self {
+            Self::Point(_) | Self::Directional(_) => None,
+            Self::Segment(_, light) => light.chosen(from, place[0], arriving),
+            Self::Parallelogram(_, light) => light.chosen(from, place, arriving),
+        }
+    }
+
+    /// The point that the numbers choose where all points are alike.
     #[inline(always)]
     fn point(self, from: Vec3, u: [f32; 2], lighting: Lighting) -> Option<LightPoint> {
         match self {
@@ -120,6 +142,7 @@ impl<R: Recorder> Batch<'_, R> {
     pub(super) fn add_direct_light(
         &mut self,
         vertices: &[Vertex],
+        frames: &LightFrames,
         shadow_rays: &mut ShadowRays,
         near: &mut NearLights,
     ) {
@@ -133,7 +156,8 @@ impl<R: Recorder> Batch<'_, R> {
             .chain(segments.map(|(i, light)| Lamp::Segment(i, light)))
             .chain(parallelograms.map(|(i, light)| Lamp::Parallelogram(i, light)));
         for lamp in lamps {
-            self.gather(lamp, vertices, shadow_rays, near);
+            let frame = lamp.frame(frames);
+            self.gather(lamp, frame.as_ref(), vertices, shadow_rays, near);
             self.add_arriving_light(shadow_rays);
             near.compare(&shadow_rays.shadows, &shadow_rays.occluded);
         }
@@ -145,6 +169,7 @@ impl<R: Recorder> Batch<'_, R> {
     fn gather(
         &mut self,
         lamp: Lamp,
+        frame: Option<&Frame>,
         vertices: &[Vertex],
         shadow_rays: &mut ShadowRays,
         near: &mut NearLights,
@@ -162,13 +187,22 @@ impl<R: Recorder> Batch<'_, R> {
             Some(count) if vertex.path.first => count,
             _ => 1,
         };
+        let from = |vertex: &Vertex| {
+            lights.in_rest_frame(lamp.id(), vertex.surface.point.position, vertex.ray.time)
+        };
         if samples.is_some() {
             shadow_rays.ask(vertices, count_at, self.samples, self.pixels);
-            (shadow_rays.places).draw(
-                &shadow_rays.asking,
-                Purpose::Light(lamp.id()),
-                self.settings,
-            );
+            let ShadowRays {
+                askers,
+                asking,
+                numbers,
+                chosen,
+                ..
+            } = shadow_rays;
+            numbers.draw(asking, Purpose::Light(lamp.id()), self.settings);
+            if let Some(frame) = frame {
+                chosen.choose(frame, vertices, askers, numbers, from);
+            }
         }
         let mut asked = 0;
         for vertex in vertices {
@@ -179,14 +213,13 @@ impl<R: Recorder> Batch<'_, R> {
                 asked += count as usize;
                 continue;
             }
-            let from = lights.in_rest_frame(lamp.id(), surface.point.position, vertex.ray.time);
+            let from = from(vertex);
             let first = shadow_rays.rays.len();
             for _ in 0..count {
-                let (place, point) = if samples.is_some() {
-                    let place = shadow_rays.places.get(asked);
-                    (place, lamp.point(from, place, lighting))
-                } else {
-                    (MIDDLE, lamp.middle(from, lighting))
+                let point = match (samples, frame) {
+                    (None, _) => lamp.middle(from, lighting),
+                    (Some(_), None) => lamp.point(from, shadow_rays.numbers.get(asked), lighting),
+                    (Some(_), Some(_)) => lamp.chosen(from, shadow_rays.chosen.get(asked)),
                 };
                 asked += 1;
                 let number = shadow_rays.points;
@@ -198,7 +231,6 @@ impl<R: Recorder> Batch<'_, R> {
                         path: vertex.number,
                         kind: lamp.kind(),
                         id: lamp.id(),
-                        place,
                         count: samples.map(|_| count),
                         surface,
                         point,
@@ -308,11 +340,13 @@ impl ShadowRays {
         pixels: &[u32],
     ) {
         self.asking.clear();
-        for vertex in vertices {
+        self.askers.clear();
+        for (asker, vertex) in vertices.iter().enumerate() {
             let sample = vertex.path.sample as usize;
             let count = u64::from(count_at(vertex));
             let first = samples[sample].index * count;
             for index in first..first + count {
+                self.askers.push(asker as u32);
                 self.asking.push(pixels[sample], vertex.path.name, index);
             }
         }

@@ -5,16 +5,23 @@
 //! |---|---|
 //! | point | `I · cone / d²`, W/m² |
 //! | directional | `E`, W/m²; of a disc of directions as [`SunDisc`] has it |
-//! | segment | `I'(x) · length / d²` for a uniform point x of it |
-//! | parallelogram | `L(x) · cos θ · area / d²` for a uniform point x of it, θ at the emitter |
+//! | segment | `I'(x) / (p(x) d²)` for a point x of it |
+//! | parallelogram | `L(x) · cos θ / (p(x) d²)` for a point x of it, θ at the emitter |
 //!
-//! With Classic lighting the colour itself arrives, whatever the distance and the angle; a
-//! parallelogram shines to both sides then, as in simple Phong ray tracers.
+//! p is the density with which the point is chosen: one over length or area where all points are alike, else what
+//! `segment_warp` and `parallelogram_warp` take for the surface that sees it.
+//!
+//! With Classic lighting the colour itself arrives, whatever the distance and the angle, and points are chosen evenly;
+//! a parallelogram shines to both sides then, as in simple Phong ray tracers.
 //!
 //! A light may move while the shutter is open. Few do, so their velocities stand apart, and the kinds
 //! know nothing of them: a light that moves by `velocity · t` is, seen from x, what the same light
 //! standing still is, seen from `x - velocity · t` ([`Lights::in_rest_frame`]).
 
+use super::Surface;
+use super::parallelogram_warp::ParallelogramFrame;
+use super::receiver::Receivers;
+use super::segment_warp::SegmentFrame;
 use super::spot_cone::SpotCone;
 use super::sun_disc::SunDisc;
 use crate::scene::Lighting;
@@ -112,7 +119,14 @@ pub struct LightPoint {
     pub distance: f32,
     /// What arrives if nothing is in the way, before the surface's cosine.
     pub arriving: Vec3,
+    /// Where on the light, in [0, 1]²; a segment uses the first number.
+    pub place: [f32; 2],
+    /// How likely that place is, as a multiple of what it is where points are chosen evenly over the light.
+    pub density: f32,
 }
+
+/// The middle of a light, in the numbers that choose its points.
+pub(super) const MIDDLE: [f32; 2] = [0.5, 0.5];
 
 /// Below this squared distance (in m²) a light is at the point: `1/d²` stays finite in f32.
 const LEAST_SQUARED_DISTANCE: f32 = 1e-30;
@@ -165,6 +179,8 @@ impl PointLight {
                 Lighting::Physical => self.color * (cone * inverse_square(distance)),
                 Lighting::Classic => self.color * cone,
             },
+            place: MIDDLE,
+            density: 1.0,
         })
     }
 }
@@ -176,6 +192,8 @@ impl DirectionalLight {
             direction: self.to_light,
             distance: f32::INFINITY,
             arriving: self.color,
+            place: MIDDLE,
+            density: 1.0,
         }
     }
 
@@ -189,6 +207,8 @@ impl DirectionalLight {
             direction,
             distance: f32::INFINITY,
             arriving: self.color * counts,
+            place: u,
+            density: 1.0,
         }
     }
 
@@ -211,6 +231,47 @@ impl SegmentLight {
                 Lighting::Physical => color * (along.length() * inverse_square(distance)),
                 Lighting::Classic => color,
             },
+            place: [u, MIDDLE[1]],
+            density: 1.0,
+        })
+    }
+
+    /// What choosing its points for a surface needs to know of it; `None` where it has no length.
+    pub fn frame(&self) -> Option<SegmentFrame> {
+        SegmentFrame::new(self.ends, &self.colors)
+    }
+
+    /// The point that the number `u` in [0, 1) chooses for a surface at `from`, Physical; `None` where nothing can
+    /// arrive. The frame is the light's own.
+    pub fn point_for(
+        &self,
+        frame: &SegmentFrame,
+        surface: &Surface,
+        from: Vec3,
+        u: f32,
+    ) -> Option<LightPoint> {
+        let receivers = Receivers::of(surface, from);
+        let chosen = if surface.specular == Vec3::ZERO {
+            frame.matt_places(&receivers, &[u])
+        } else {
+            frame.glossy_places(&receivers, &[u])
+        };
+        self.chosen(from, chosen.u[0], chosen.arriving[0])
+    }
+
+    /// The point at that place, of which so much arrives at `from` per unit of its colour, for its density.
+    pub(super) fn chosen(&self, from: Vec3, u: f32, arriving: f32) -> Option<LightPoint> {
+        if !(arriving > 0.0 && arriving < f32::INFINITY) {
+            return None;
+        }
+        let along = self.ends[1] - self.ends[0];
+        let (direction, distance) = towards((self.ends[0] - from) + u * along)?;
+        Some(LightPoint {
+            direction,
+            distance,
+            arriving: self.colors[0].lerp(self.colors[1], u) * arriving,
+            place: [u, MIDDLE[1]],
+            density: along.length() * inverse_square(distance) / arriving,
         })
     }
 }
@@ -238,6 +299,8 @@ impl ParallelogramLight {
                 direction,
                 distance,
                 arriving: color,
+                place: u,
+                density: 1.0,
             });
         }
         // Cosine times area in one: the normal's length is the area.
@@ -247,6 +310,55 @@ impl ParallelogramLight {
             direction,
             distance,
             arriving: color * (facing * inverse_square(distance)),
+            place: u,
+            density: 1.0,
+        })
+    }
+
+    /// What choosing its points for a place needs to know of it; `None` where it is so thin that its points are chosen
+    /// evenly.
+    pub fn frame(&self) -> Option<ParallelogramFrame> {
+        ParallelogramFrame::new(self.corner, self.edges, &self.colors, self.two_sided)
+    }
+
+    /// The point that the numbers `u` in [0, 1)² choose for a surface at `from`, Physical; `None` where nothing can arrive.
+    /// The frame is the light's own.
+    pub fn point_for(
+        &self,
+        frame: &ParallelogramFrame,
+        surface: &Surface,
+        from: Vec3,
+        u: [f32; 2],
+    ) -> Option<LightPoint> {
+        let receivers = Receivers::of(surface, from);
+        let numbers = u.map(|number| [number]);
+        let chosen = if surface.specular == Vec3::ZERO {
+            frame.matt_places(&receivers, &numbers)
+        } else {
+            frame.glossy_places(&receivers, &numbers)
+        };
+        self.chosen(from, chosen.uv.map(|[place]| place), chosen.solid_angle[0])
+    }
+
+    /// The point at that place, chosen with a density of one in `solid_angle` sr as `from` sees it.
+    pub(super) fn chosen(
+        &self,
+        from: Vec3,
+        [u, v]: [f32; 2],
+        solid_angle: f32,
+    ) -> Option<LightPoint> {
+        if !(solid_angle > 0.0 && solid_angle < f32::INFINITY) {
+            return None;
+        }
+        let offset = (self.corner - from) + u * self.edges[0] + v * self.edges[1];
+        let (direction, distance) = towards(offset)?;
+        let facing = direction.dot(self.area_normal()).abs();
+        Some(LightPoint {
+            direction,
+            distance,
+            arriving: self.color(u, v) * solid_angle,
+            place: [u, v],
+            density: facing * inverse_square(distance) / solid_angle,
         })
     }
 

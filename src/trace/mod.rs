@@ -24,6 +24,7 @@
 
 pub mod camera;
 mod camera_rays;
+mod chosen_places;
 mod cut_out;
 mod digest;
 mod direct;
@@ -32,18 +33,24 @@ mod emitters;
 mod environment;
 mod first_hit;
 mod footprint;
+mod light_frames;
 pub mod lights;
 mod material;
 mod mipmap;
 mod near_lights;
 mod needs;
 mod numbers;
+mod parallelogram_warp;
+mod piecewise;
+mod polynomials;
 mod probe;
 mod radiance;
 mod ray_tree;
+mod receiver;
 mod recorder;
 mod sampler;
 mod scatter;
+mod segment_warp;
 pub mod shading;
 mod sobol;
 mod spot_cone;
@@ -66,13 +73,16 @@ pub use lights::{
 };
 pub use material::Material;
 pub use needs::{Needs, samples_per_pixel};
+pub use parallelogram_warp::{ParallelogramFrame, Places};
 pub use probe::{MOST_RAYS, ProbeError, Samples, probe};
 pub use radiance::{RayCounts, SampleId, Workspace, radiance};
 pub use ray_tree::{
     Crossing, LightSample, ProbedSample, RayCost, RayEnd, RayHit, RayKind, RayTree, TracedRay,
 };
+pub use receiver::Receivers;
 pub use recorder::LightKind;
 pub use sampler::{Purpose, Sampler};
+pub use segment_warp::{SegmentFrame, SegmentPlaces};
 pub use spot_cone::SpotCone;
 pub use sun_disc::SunDisc;
 pub use surface::Surface;

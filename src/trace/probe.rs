@@ -294,7 +294,8 @@ impl Recorder for Recording<'_> {
         let light = LightSample {
             kind: lit.kind,
             id: lit.id,
-            place: lit.place,
+            place: of_light.place,
+            density: of_light.density,
             direction: of_light.direction,
             distance: of_light.distance,
             arriving: of_light.arriving,

@@ -228,8 +228,10 @@ pub struct LightSample {
     pub kind: LightKind,
     /// The light's `SceneId`.
     pub id: u64,
-    /// Where on the light, in [0, 1)²; a segment uses the first number.
+    /// Where on the light, in [0, 1]²; a segment uses the first number.
     pub place: [f32; 2],
+    /// How likely that place is, as a multiple of what it is where points are chosen evenly over the light.
+    pub density: f32,
     /// Unit vector from the surface.
     pub direction: Vec3,
     /// In metres; infinite for a directional light.

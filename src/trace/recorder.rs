@@ -41,8 +41,6 @@ pub(super) struct LitPoint<'a> {
     pub path: u32,
     pub kind: LightKind,
     pub id: u64,
-    /// Where on the light, in [0, 1]².
-    pub place: [f32; 2],
     /// How many such points share the light; `None` where it is taken for a single point.
     pub count: Option<u32>,
     pub surface: &'a Surface,

@@ -70,6 +70,8 @@ mod tests {
             direction,
             distance: 1.0,
             arriving: Vec3::ONE,
+            place: [0.5; 2],
+            density: 1.0,
         }
     }
 

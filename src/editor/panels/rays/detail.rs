@@ -206,6 +206,11 @@ fn of_light(lines: &mut Vec<Figure>, light: &LightSample, names: &Names) {
         ("light", "Which one", names.of(light.id)),
         ("place", "Where on the light, in 0 to 1", format!("{u} {v}")),
         (
+            "density",
+            "How likely that place is, as a multiple of that of an even choice",
+            light.density.to_string(),
+        ),
+        (
             "distance",
             "Metres to that place",
             light.distance.to_string(),
