@@ -157,16 +157,26 @@ impl Plane {
     /// Of a triangle that is no line; corners may be as small or large as f32 holds.
     fn of([a, b, c]: [Vec3; 3]) -> Self {
         let (ab, ac) = (b - a, c - a);
-        // Scaled first: the product of two small edges would leave f32's range.
-        let scale = ab.abs().max(ac.abs()).max_element();
-        let normal = (ab / scale).cross(ac / scale);
+        let longest = ab.abs().max(ac.abs()).max_element();
+        // The square of the product of tiny or huge edges would leave f32's range.
+        let scale = if (1e-8..1e8).contains(&longest) {
+            1.0
+        } else {
+            longest
+        };
+        let normal = if scale == 1.0 {
+            ab.cross(ac)
+        } else {
+            (ab / scale).cross(ac / scale)
+        };
         let squared = normal.length_squared();
-        if squared > 1e-12 && squared.is_finite() {
+        let edge = longest / scale;
+        if squared > 1e-12 * (edge * edge) * (edge * edge) && squared.is_finite() {
             // Twice the area over the longest edge, of which no coordinate is longer than twice the scale.
             let area = squared.sqrt();
             return Self {
-                normal: normal / area,
-                height: area * scale * (1.0 / 3.5),
+                normal: normal * (1.0 / area),
+                height: area / edge * scale * (1.0 / 3.5),
             };
         }
         // A sliver: f32's product has lost its digits.

@@ -18,6 +18,7 @@ pub struct Environment {
 
 impl Environment {
     /// Radiance from `direction`, of any length.
+    #[inline]
     pub fn radiance(&self, direction: Vec3) -> Vec3 {
         let Some(map) = &self.map else {
             return self.background;

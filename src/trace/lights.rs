@@ -136,7 +136,12 @@ const LEAST_SQUARED_DISTANCE: f32 = 1e-30;
 /// A light's own corner or end comes first when the way is summed up, `(corner - from) + edge`: far from the origin a
 /// sum of positions loses the digits that their difference has.
 fn towards(offset: Vec3) -> Option<(Vec3, f32)> {
-    // Scaled first: squares of tiny and huge offsets leave f32's range.
+    let squared = offset.length_squared();
+    if (1e-20..1e30).contains(&squared) {
+        let length = squared.sqrt();
+        return Some((offset * (1.0 / length), length));
+    }
+    // Squares of tiny and huge offsets leave f32's range.
     let scale = offset.abs().max_element();
     if !(scale > 0.0 && scale < f32::INFINITY) {
         return None;
