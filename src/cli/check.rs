@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 
 #[derive(Args)]
 pub(super) struct Check {
-    /// Scene files (.scn.ron, .obj, .gltf, .glb) or names of built-in scenes
+    /// Scene files (.scn.ron, .obj, .gltf, .glb, .stl, .ply) or names of built-in scenes
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
     /// Print all that is known as JSON

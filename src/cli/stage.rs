@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 /// Which scene a command opens, and how.
 #[derive(Args)]
 pub(super) struct SceneArgs {
-    /// Scene file (.scn.ron, .obj, .gltf, .glb) or name of a built-in scene
+    /// Scene file (.scn.ron, .obj, .gltf, .glb, .stl, .ply) or name of a built-in scene
     pub scene: PathBuf,
     /// Let the scene refer to files outside its own folder
     #[arg(long)]

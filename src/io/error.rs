@@ -176,6 +176,8 @@ pub enum Problem {
     UnknownMaterial { name: String },
     #[error("holds no triangles")]
     NoTriangles,
+    #[error("holds {count} points and no triangles; have the program that made it build a surface")]
+    PointsAlone { count: u64 },
     #[error("no mesh named `{name}`; it has {known}")]
     NoSuchMesh { name: String, known: String },
     #[error("no picture `{name}`; it has {count}, counted from texture0")]

@@ -28,7 +28,7 @@ pub struct Imported {
     pub notes: Notes,
 }
 
-/// Adds what an OBJ, glTF or GLB file holds to the open scene; on an error the world is as it was.
+/// Adds what a model file holds to the open scene; on an error the world is as it was.
 /// `next` numbers the new entities.
 ///
 /// A file outside the scene's folder can be imported, and the scene may from then on refer to

@@ -5,7 +5,7 @@ use super::file_name::encoded;
 use super::folder::Folder;
 use super::frame::frame;
 use super::ids::assign_ids;
-use super::loader::{Loader, read_model};
+use super::loader::{Loader, MODEL_EXTENSIONS, read_model};
 use super::model::Model;
 use super::notes::Notes;
 use super::picture::PictureUse;
@@ -29,7 +29,7 @@ use std::path::{Path, PathBuf};
 /// What can be opened.
 #[derive(Clone)]
 pub enum SceneSource {
-    /// `.scn.ron`, `.obj`, `.gltf` or `.glb`.
+    /// `.scn.ron`, or one that holds a model: `.obj`, `.gltf`, `.glb`, `.stl`, `.ply`.
     File(PathBuf),
     /// A scene that Glassbox makes.
     Builtin(&'static BuiltinScene),
@@ -102,7 +102,7 @@ pub fn open(
     let unframed = options.unframed;
     match extension.as_str() {
         "scn.ron" | "ron" => opened.notes = open_scene(world, file, folder, options)?,
-        "obj" | "gltf" | "glb" => {
+        model if MODEL_EXTENSIONS.contains(&model) => {
             let model = read_model(file, &folder, &options.limits)?;
             opened.notes = open_model(world, model, file, folder, options.limits)?;
             if !unframed {
@@ -114,7 +114,7 @@ pub fn open(
                 file,
                 Problem::UnknownExtension {
                     extension,
-                    wanted: "scenes; .scn.ron, .obj, .gltf and .glb are",
+                    wanted: "scenes; .scn.ron, .obj, .gltf, .glb, .stl and .ply are",
                 },
             ));
         }

@@ -9,6 +9,7 @@ mod output;
 mod pictures;
 #[cfg(unix)]
 mod pipes;
+mod scans;
 mod scenes;
 
 use crate::files::app::app;

@@ -6,5 +6,7 @@ pub mod models;
 mod names;
 mod obj;
 mod pictures;
+mod ply;
 mod round_trip;
 mod sets;
+mod stl;
