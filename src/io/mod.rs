@@ -48,10 +48,12 @@ mod regular;
 #[cfg(feature = "editor")]
 mod reload;
 mod replace;
+mod resolve;
 mod save;
 mod scene_file;
 pub mod shapes;
 mod sources;
+mod spawn;
 mod stl;
 mod text;
 

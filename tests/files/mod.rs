@@ -1,7 +1,10 @@
 //! Scenes and models through files and back.
 
 pub mod app;
+mod exports;
+mod framing;
 mod gltf;
+mod gltf_rest;
 pub mod models;
 mod names;
 mod obj;
