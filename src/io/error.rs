@@ -121,6 +121,10 @@ pub enum Problem {
     Unreadable(String),
     #[error("cannot be written: {0}; choose another place or change its permissions")]
     Unwritable(String),
+    #[error(
+        "needs {needs}, and {free} are free on its disk; make room there, or choose another place"
+    )]
+    NoSpace { needs: Size, free: Size },
     #[error("the folder does not exist; create it first")]
     NoFolder,
     #[error("is the same file as `{input}`, which is read here; write under another name")]
