@@ -14,7 +14,7 @@
 //! | [`film`] | pixels: samples become a picture, the picture becomes a screen's |
 //! | [`inspect`] | what the tracer did, as lines and figures: rays, nodes, normals, samples, motion |
 //! | [`sync`] | entities to the tracer's world: what changed, and only that |
-//! | [`io`] | scene files, OBJ, glTF, pictures, shapes, built-in scenes |
+//! | [`io`] | scene files, OBJ, glTF, STL, PLY, pictures, shapes, built-in scenes |
 //! | [`app`] | the rooms above as one app without a window |
 //! | [`report`] | speed against error: kernels, sampling, features, hard cases |
 //! | `view` | the traced picture in a Bevy camera, gizmos; the only room that knows Bevy's renderer |

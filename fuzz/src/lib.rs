@@ -15,11 +15,13 @@ thread_local! {
 
 /// The kinds of files that are read, by the names of their targets: the file that is opened, and the one that gets the
 /// bytes.
-pub const KINDS: [(&str, &str, &str); 6] = [
+pub const KINDS: [(&str, &str, &str); 8] = [
     ("obj", "a.obj", "a.obj"),
     ("mtl", "a.obj", "a.mtl"),
     ("gltf", "a.gltf", "a.gltf"),
     ("glb", "a.glb", "a.glb"),
+    ("stl", "a.stl", "a.stl"),
+    ("ply", "a.ply", "a.ply"),
     ("scene", "a.scn.ron", "a.scn.ron"),
     ("picture", "a.obj", "a.picture"),
 ];

@@ -3,14 +3,17 @@
 use super::Failure;
 use super::output::say;
 use crate::app::headless_app;
+use crate::io::place::world_from;
 use crate::io::{FileNote, LoadProblems, OpenOptions, SceneSource, open};
 use crate::scene::{
     DirectionalLamp, ParallelogramLamp, Phong, PointLamp, SceneCamera, SegmentLamp,
 };
 use bevy::asset::Assets;
 use bevy::ecs::component::Component;
+use bevy::ecs::entity::Entity;
 use bevy::ecs::query::With;
 use bevy::ecs::world::World;
+use bevy::math::Vec3;
 use bevy::mesh::{Mesh, Mesh3d};
 use clap::Args;
 use serde::Serialize;
@@ -18,7 +21,7 @@ use std::path::{Path, PathBuf};
 
 #[derive(Args)]
 pub(super) struct Check {
-    /// Scene files (.scn.ron, .obj, .gltf, .glb) or names of built-in scenes
+    /// Scene files (.scn.ron, .obj, .gltf, .glb, .stl, .ply) or names of built-in scenes
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
     /// Print all that is known as JSON
@@ -40,6 +43,10 @@ struct Checked {
     error: Option<String>,
     objects: usize,
     triangles: usize,
+    /// Of all triangles, in the world's space.
+    area: f64,
+    /// The corners of the box around them; none where there is nothing.
+    bounds: Option<[[f32; 3]; 2]>,
     materials: usize,
     lights: usize,
     cameras: usize,
@@ -103,6 +110,8 @@ fn check(world: &mut World, file: &Path, allow_outside: bool) -> Checked {
         error: None,
         objects: 0,
         triangles: 0,
+        area: 0.0,
+        bounds: None,
         materials: 0,
         lights: 0,
         cameras: 0,
@@ -111,9 +120,16 @@ fn check(world: &mut World, file: &Path, allow_outside: bool) -> Checked {
     match opened {
         Err(error) => checked.error = Some(error.to_string()),
         Ok(opened) => {
-            let meshes: Vec<_> = world.query::<&Mesh3d>().iter(world).cloned().collect();
-            checked.objects = meshes.len();
-            checked.triangles = meshes.iter().map(|mesh| triangles(world, mesh)).sum();
+            let mut query = world.query::<(Entity, &Mesh3d)>();
+            let objects: Vec<_> = query.iter(world).map(|(e, m)| (e, m.0.id())).collect();
+            checked.objects = objects.len();
+            let meshes = world.resource::<Assets<Mesh>>();
+            for (entity, mesh) in objects {
+                let place = world_from(world, entity);
+                for corners in meshes.get(mesh).into_iter().flat_map(triangles_of) {
+                    checked.count(corners.map(|corner| place.transform_point3(corner)));
+                }
+            }
             let mut materials = world.query_filtered::<&Phong, bevy::ecs::query::Without<Mesh3d>>();
             checked.materials = materials.iter(world).count();
             checked.lights = count::<PointLamp>(world)
@@ -153,11 +169,21 @@ fn count<T: Component>(world: &mut World) -> usize {
     world.query_filtered::<(), With<T>>().iter(world).count()
 }
 
-fn triangles(world: &World, object: &Mesh3d) -> usize {
-    let meshes = world.resource::<Assets<Mesh>>();
-    let mesh = meshes.get(&object.0);
-    let corners = mesh.map(|mesh| mesh.indices().map_or(mesh.count_vertices(), |i| i.len()));
-    corners.unwrap_or(0) / 3
+/// The corners of a mesh's triangles.
+fn triangles_of(mesh: &Mesh) -> impl Iterator<Item = [Vec3; 3]> {
+    let triangles = mesh.triangles().into_iter().flatten();
+    triangles.map(|triangle| triangle.vertices)
+}
+
+impl Checked {
+    fn count(&mut self, [a, b, c]: [Vec3; 3]) {
+        self.triangles += 1;
+        let [u, v] = [b - a, c - a].map(Vec3::as_dvec3);
+        self.area += 0.5 * u.cross(v).length();
+        let [least, most] = self.bounds.map_or([a; 2], |bounds| bounds.map(Vec3::from));
+        let (least, most) = (least.min(a).min(b).min(c), most.max(a).max(b).max(c));
+        self.bounds = Some([least.to_array(), most.to_array()]);
+    }
 }
 
 fn print(checked: &Checked) -> Result<(), Failure> {

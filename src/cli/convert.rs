@@ -3,7 +3,7 @@
 use super::Failure;
 use super::output::{say, tell};
 use super::stage::{SceneArgs, Stage};
-use crate::io::{check_save, save};
+use crate::io::{OpenOptions, check_save, extension, save};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -20,12 +20,17 @@ pub(super) struct Convert {
 
 pub(super) fn run(args: Convert) -> Result<(), Failure> {
     check_save(&args.output).map_err(Failure::of_output)?;
-    let mut stage = Stage::open(&args.scene, args.quiet)?;
+    let options = OpenOptions {
+        // A model stays what it is; a scene is rendered, and has to have a camera.
+        unframed: extension(&args.output) != "scn.ron",
+        ..OpenOptions::default()
+    };
+    let mut stage = Stage::open_with(&args.scene, args.quiet, options)?;
     stage.check_outputs([&*args.output])?;
     let notes = save(stage.app.world_mut(), &args.output)?;
     if !args.quiet {
-        for note in notes {
-            tell("note", format_args!("{}: {note}", args.output.display()));
+        for note in notes.iter() {
+            tell("note", note);
         }
         say(args.output.display())?;
     }

@@ -62,7 +62,7 @@ enum Command {
     Inspect(inspect::Inspect),
     /// List the built-in scenes: name, triangles, lights, and what they show
     Scenes,
-    /// Convert a scene: .scn.ron, .obj, .gltf, .glb or a built-in one to .scn.ron, .obj or .glb
+    /// Convert a scene or a model, a file or a built-in one, to .scn.ron, .obj or .glb
     Convert(convert::Convert),
     /// Open files without rendering them: what they hold, and what of it cannot be shown
     Check(check::Check),

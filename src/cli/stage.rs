@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 /// Which scene a command opens, and how.
 #[derive(Args)]
 pub(super) struct SceneArgs {
-    /// Scene file (.scn.ron, .obj, .gltf, .glb) or name of a built-in scene
+    /// Scene file (.scn.ron, .obj, .gltf, .glb, .stl, .ply) or name of a built-in scene
     pub scene: PathBuf,
     /// Let the scene refer to files outside its own folder
     #[arg(long)]
@@ -38,11 +38,16 @@ pub(super) struct Stage {
 impl Stage {
     /// Opens the scene. What was left out or added is told on standard error, unless `quiet`.
     pub fn open(args: &SceneArgs, quiet: bool) -> Result<Self, Failure> {
+        Self::open_with(args, quiet, OpenOptions::default())
+    }
+
+    /// The same with options of which the arguments say their part.
+    pub fn open_with(args: &SceneArgs, quiet: bool, options: OpenOptions) -> Result<Self, Failure> {
         let mut app = headless_app();
         let options = OpenOptions {
             allow_outside: args.allow_outside,
             limits: args.memory.limits(),
-            ..OpenOptions::default()
+            ..options
         };
         let opened = open(app.world_mut(), &SceneSource::named(&args.scene), options)?;
         if !quiet {

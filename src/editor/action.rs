@@ -187,7 +187,7 @@ macro_rules! actions {
 
 actions! {
     New "New" [ctrl(KeyCode::KeyN)] "Starts an empty scene with a camera and a light"
-    OpenDialog "Open…" [ctrl(KeyCode::KeyO)] "Opens a scene or a model: .scn.ron, .obj, .gltf, .glb"
+    OpenDialog "Open…" [ctrl(KeyCode::KeyO)] "Opens a scene or a model: .scn.ron, .obj, .gltf, .glb, .stl, .ply"
     Save "Save" [ctrl(KeyCode::KeyS)] "Writes the scene to its file"
     SaveAsDialog "Save as…" [ctrl_shift(KeyCode::KeyS)] "Writes the scene to another file: .scn.ron, .obj or .glb"
     ImportDialog "Import…" [ctrl(KeyCode::KeyI)] "Adds a model's meshes, materials, lights and cameras to this scene"

@@ -26,7 +26,7 @@
 //! | `pointer`, `keys`, `pick` | what a press means, what a key means, what is under the pointer |
 //! | `pace` | how often the window is drawn |
 //! | `script` | clicks and keys from a file |
-//! | `startup` | whether there can be a window at all |
+//! | `startup`, `signals` | whether there can be a window at all; being asked to end from outside |
 
 pub mod action;
 mod cameras;
@@ -51,6 +51,8 @@ pub mod render_job;
 mod schedule;
 mod script;
 pub mod selection;
+#[cfg(unix)]
+mod signals;
 mod startup;
 mod trees;
 pub mod viewport;

@@ -42,6 +42,8 @@ pub fn run(scene: SceneSource, script: Option<Script>, limits: Limits) -> ExitCo
     app.add_plugins(DefaultPlugins.set(window).set(log))
         .add_plugins(parts(document))
         .add_plugins(PacePlugin);
+    #[cfg(unix)]
+    app.add_plugins(super::signals::SignalsPlugin);
     let world = app.world_mut();
     world.resource_mut::<SceneFiles>().limits = limits;
     match &scene {

@@ -117,7 +117,8 @@ impl fmt::Display for Size {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let megabytes = self.0 as f64 / 2_f64.powi(20);
         match megabytes {
-            0.0..1000.0 => write!(f, "{megabytes:.0} MB"),
+            0.0..1.0 => write!(f, "{:.0} kB", megabytes * 1024.0),
+            1.0..1000.0 => write!(f, "{megabytes:.0} MB"),
             _ => write!(f, "{:.1} GB", megabytes / 1024.0),
         }
     }
@@ -281,6 +282,7 @@ mod tests {
         }
         assert_eq!(Size(1 << 30).to_string(), "1.0 GB");
         assert_eq!(Size(999 << 20).to_string(), "999 MB");
+        assert_eq!(Size(3 << 10).to_string(), "3 kB");
     }
 
     #[cfg(target_os = "linux")]

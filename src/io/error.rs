@@ -121,6 +121,10 @@ pub enum Problem {
     Unreadable(String),
     #[error("cannot be written: {0}; choose another place or change its permissions")]
     Unwritable(String),
+    #[error(
+        "needs {needs}, and {free} are free on its disk; make room there, or choose another place"
+    )]
+    NoSpace { needs: Size, free: Size },
     #[error("the folder does not exist; create it first")]
     NoFolder,
     #[error("is the same file as `{input}`, which is read here; write under another name")]
@@ -176,6 +180,8 @@ pub enum Problem {
     UnknownMaterial { name: String },
     #[error("holds no triangles")]
     NoTriangles,
+    #[error("holds {count} points and no triangles; have the program that made it build a surface")]
+    PointsAlone { count: u64 },
     #[error("no mesh named `{name}`; it has {known}")]
     NoSuchMesh { name: String, known: String },
     #[error("no picture `{name}`; it has {count}, counted from texture0")]

@@ -1,13 +1,16 @@
 //! What a model file can hold of the open scene, gathered for its writers.
 
+use super::error::Place;
+use super::notes::Notes;
 use super::place::is_hidden;
 use super::scene_file::scene_entities;
 use crate::scene::{
     DirectionalLamp, Environment, Lens, Motion, ParallelogramLamp, Phong, PhongMaps, PointLamp,
-    SRGB_16_BITS, SceneCamera, SceneId, SegmentLamp, UsesMaterial,
+    RenderSettings, SRGB_16_BITS, SceneCamera, SceneId, SegmentLamp, UsesMaterial,
 };
 use crate::trace::srgb;
 use bevy::asset::{AssetId, Assets};
+use bevy::ecs::hierarchy::ChildOf;
 use bevy::ecs::name::Name;
 use bevy::image::Image;
 use bevy::mesh::{Mesh, Mesh3d};
@@ -15,7 +18,10 @@ use bevy::prelude::{Component, Entity, World};
 use exr::prelude::f16;
 use image::{DynamicImage, ImageBuffer};
 use std::collections::{HashMap, HashSet};
+use std::path::Path;
 use wgpu_types::TextureFormat;
+
+const LEFT_OUT: &str = "left out";
 
 /// Objects and materials of the scene, in the order of their `SceneId`.
 #[derive(Default)]
@@ -26,8 +32,8 @@ pub(crate) struct Exported {
     pub objects: Vec<Object>,
     /// Materials that objects use, with names that no other has.
     pub materials: Vec<Material>,
-    /// What no model file can say, a line each.
-    pub notes: Vec<String>,
+    /// What no model file can say.
+    pub notes: Notes,
 }
 
 /// Something with triangles.
@@ -47,8 +53,8 @@ pub(crate) struct Material {
     pub maps: PhongMaps,
 }
 
-/// Gathers the scene. Hidden objects are left out: a model file would show them.
-pub(crate) fn gather(world: &mut World) -> Exported {
+/// Gathers the scene for a file. Hidden objects are left out: a model file would show them.
+pub(crate) fn gather(world: &mut World, file: &Path) -> Exported {
     let mut entities = scene_entities(world);
     entities.sort_by_key(|&e| world.get::<SceneId>(e).copied().unwrap_or_default());
     let world = &*world;
@@ -85,23 +91,32 @@ pub(crate) fn gather(world: &mut World) -> Exported {
         });
     }
     let mut note = |count: usize, what: &str| {
-        if count > 0 {
-            out.notes.push(format!("{count} {what}"));
+        for _ in 0..count {
+            out.notes.add(file, Place::Whole, what, LEFT_OUT);
         }
     };
-    note(hidden, "hidden objects were left out");
-    note(
-        count::<SegmentLamp>(world, &entities),
-        "segment lights were left out",
-    );
+    note(hidden, "hidden objects");
+    note(count::<SegmentLamp>(world, &entities), "segment lights");
     note(
         count::<ParallelogramLamp>(world, &entities),
-        "parallelogram lights were left out",
+        "parallelogram lights",
     );
-    note(count::<Motion>(world, &entities), "motions were left out");
-    note(count::<Lens>(world, &entities), "lenses were left out");
-    if world.get_resource::<Environment>() != Some(&Environment::default()) {
-        out.notes.push("the environment was left out".into());
+    note(count::<Motion>(world, &entities), "motions");
+    note(count::<Lens>(world, &entities), "lenses");
+    let environment = world.get_resource::<Environment>();
+    let is_set = environment.is_some_and(|environment| *environment != Environment::default());
+    note(is_set.into(), "the environment");
+    let settings = world.get_resource::<RenderSettings>();
+    let is_set = settings.is_some_and(|settings| *settings != RenderSettings::default());
+    note(is_set.into(), "the render settings");
+    let meshes = world.get_resource::<Assets<Mesh>>();
+    let is_colored = |object: &&Object| {
+        let mesh = meshes.and_then(|meshes| meshes.get(object.mesh));
+        mesh.is_some_and(|mesh| mesh.contains_attribute(Mesh::ATTRIBUTE_COLOR))
+    };
+    for object in out.objects.iter().filter(is_colored) {
+        let what = "vertex colours of";
+        (out.notes).add_named(file, Place::Whole, what, &object.name, LEFT_OUT);
     }
     out.entities = entities
         .into_iter()
@@ -111,17 +126,24 @@ pub(crate) fn gather(world: &mut World) -> Exported {
 }
 
 impl Exported {
-    /// Notes for a format without lights and cameras.
-    pub fn note_lights_and_cameras(&mut self, world: &World) {
+    /// Notes for a format without lights, cameras and parents.
+    pub fn note_lights_and_cameras(&mut self, world: &World, file: &Path) {
         let lights = count::<PointLamp>(world, &self.entities)
             + count::<DirectionalLamp>(world, &self.entities);
         let cameras = count::<SceneCamera>(world, &self.entities);
-        for (count, what) in [
-            (lights, "point and directional lights"),
-            (cameras, "cameras"),
+        let placed = self.objects.iter().map(|object| object.entity);
+        let children = placed.filter(|&object| world.get::<ChildOf>(object).is_some());
+        for (count, what, instead) in [
+            (lights, "point and directional lights", LEFT_OUT),
+            (cameras, "cameras", LEFT_OUT),
+            (
+                children.count(),
+                "objects below others",
+                "written where they stand, beside them",
+            ),
         ] {
-            if count > 0 {
-                self.notes.push(format!("{count} {what} were left out"));
+            for _ in 0..count {
+                self.notes.add(file, Place::Whole, what, instead);
             }
         }
     }

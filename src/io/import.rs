@@ -1,13 +1,15 @@
 //! Adding to the open scene what a model file holds.
 
 use super::budget::beside;
-use super::error::{FileError, Place};
+use super::error::FileError;
 use super::folder::Folder;
 use super::loader::{Loader, read_model};
 use super::notes::Notes;
-use super::open::{Loaded, resolve, spawn_model};
+use super::open::Loaded;
+use super::resolve::resolve;
 use super::scene_file::Rebase;
 use super::sources::SceneFiles;
+use super::spawn::spawn_model;
 use crate::scene::SceneId;
 use bevy::camera::visibility::Visibility;
 use bevy::ecs::hierarchy::ChildOf;
@@ -28,7 +30,7 @@ pub struct Imported {
     pub notes: Notes,
 }
 
-/// Adds what an OBJ, glTF or GLB file holds to the open scene; on an error the world is as it was.
+/// Adds what a model file holds to the open scene; on an error the world is as it was.
 /// `next` numbers the new entities.
 ///
 /// A file outside the scene's folder can be imported, and the scene may from then on refer to
@@ -46,18 +48,14 @@ pub fn import(
     let mut model = read_model(file, &folder, &limits)?;
     let path = scene_folder.name_of(file);
     let mut loaded = Loaded::of_model(&mut model, &path, &mut Loader::new(&folder, &limits))?;
-    let rebase = Rebase::between(folder, scene_folder);
+    let rebase = Rebase::between(folder, scene_folder, file);
     let mut notes = std::mem::take(&mut model.notes);
     notes.append(std::mem::take(&mut loaded.notes));
-    let mut outside = Vec::new();
     for (source, _, _) in &mut loaded.pictures {
-        source.path = rebase.path(&source.path, &mut outside);
+        source.path = rebase.path(&source.path, &mut notes);
     }
     for (_, phong) in &mut model.materials {
-        rebase.apply(phong, &mut outside);
-    }
-    for what in outside {
-        notes.add(file, Place::Whole, what, "shown from there");
+        rebase.apply(phong, &mut notes);
     }
     if path.starts_with("..") {
         world.resource_mut::<SceneFiles>().folder.allow_outside = true;

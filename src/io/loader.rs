@@ -4,7 +4,7 @@ use super::file_name::{BUILTIN, split_fragment};
 use super::folder::Folder;
 use super::model::Model;
 use super::picture::{PictureUse, cut_short, read_picture};
-use super::{Limits, extension, gltf, obj, open_regular, shapes};
+use super::{Limits, extension, gltf, obj, open_regular, ply, shapes, stl};
 use crate::scene::{MeshSource, TextureSource};
 use bevy::image::Image;
 use bevy::mesh::Mesh;
@@ -123,6 +123,9 @@ fn shape_error(error: shapes::ShapeError) -> FileError {
     FileError::new("shape", Problem::Shape(error.to_string()))
 }
 
+/// How the files end that hold models, and not scenes.
+pub(crate) const MODEL_EXTENSIONS: [&str; 5] = ["obj", "gltf", "glb", "stl", "ply"];
+
 /// Reads a model file of any kind, by its extension.
 pub(crate) fn read_model(
     file: &std::path::Path,
@@ -133,11 +136,13 @@ pub(crate) fn read_model(
     match extension.as_str() {
         "obj" => obj::read_obj(file, folder, limits),
         "gltf" | "glb" => gltf::read_gltf(file, folder, limits),
+        "stl" => stl::read_stl(file, limits),
+        "ply" => ply::read_ply(file, folder, limits),
         _ => Err(FileError::new(
             file,
             Problem::UnknownExtension {
                 extension,
-                wanted: "models; .obj, .gltf and .glb are",
+                wanted: "models; .obj, .gltf, .glb, .stl and .ply are",
             },
         )),
     }

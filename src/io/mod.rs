@@ -10,6 +10,8 @@
 //! | `.scn.ron` | everything | everything |
 //! | `.obj` with `.mtl` | meshes, materials, pictures | the same, in the world's space |
 //! | `.glb`, `.gltf` | meshes, hierarchy, materials, pictures, lights, cameras | `.glb`, the same |
+//! | `.stl`, ASCII or binary | facets, their colours | – |
+//! | `.ply`, ASCII or binary | polygons, strips, normals, colours, a picture | – |
 //! | `.exr` of [`write_part`] | exact sums of some samples | the same |
 //! | `.png`, `.jpg`, `.exr`, `.hdr` | pictures, by their content | pictures |
 //! | WebP, TGA, BMP, DDS, GIF's first frame | pictures, by their content | – |
@@ -39,16 +41,21 @@ mod open;
 mod part;
 mod picture;
 pub(crate) mod place;
+mod ply;
 mod polygon;
 mod problems;
 mod regular;
 #[cfg(feature = "editor")]
 mod reload;
 mod replace;
+mod resolve;
 mod save;
 mod scene_file;
 pub mod shapes;
 mod sources;
+mod spawn;
+mod stl;
+mod text;
 
 #[cfg(feature = "editor")]
 pub(crate) use budget::beside;
@@ -59,6 +66,8 @@ pub use folder::Folder;
 pub use identity::check_outputs;
 pub use import::{Imported, import};
 pub use limits::Limits;
+#[cfg(feature = "editor")]
+pub(crate) use loader::MODEL_EXTENSIONS;
 pub use notes::{FileNote, Notes};
 #[cfg(feature = "editor")]
 pub(crate) use on_disk::{OnDisk, has_changed};

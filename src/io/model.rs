@@ -5,7 +5,7 @@ use crate::scene::{DirectionalLamp, Phong, PointLamp, SceneCamera};
 use bevy::asset::RenderAssetUsages;
 use bevy::mesh::{Indices, Mesh, PrimitiveTopology};
 use bevy::transform::components::Transform;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
 
 /// The content of a model file.
@@ -37,6 +37,29 @@ pub(crate) struct Node {
     pub point_lamp: Option<PointLamp>,
     pub directional_lamp: Option<DirectionalLamp>,
     pub camera: Option<SceneCamera>,
+}
+
+/// Gives names that no mesh has yet; the search for one goes on where the last of the same name ended.
+#[derive(Default)]
+pub(crate) struct FreeNames {
+    next: HashMap<String, u64>,
+}
+
+impl FreeNames {
+    /// The name, or with a number where another mesh has it.
+    pub fn free(&mut self, name: String, taken: &BTreeMap<String, Mesh>) -> String {
+        if !taken.contains_key(&name) {
+            return name;
+        }
+        let next = self.next.entry(name.clone()).or_insert(2);
+        loop {
+            let numbered = format!("{name}#{next}");
+            *next += 1;
+            if !taken.contains_key(&numbered) {
+                return numbered;
+            }
+        }
+    }
 }
 
 /// A triangle mesh as Bevy keeps it. Normals and texture coordinates may be empty.

@@ -3,33 +3,29 @@ use super::builtin::{self, BuiltinScene};
 use super::error::{FileError, Problem};
 use super::file_name::encoded;
 use super::folder::Folder;
-use super::frame::frame;
+use super::frame::{frame, frame_nothing};
 use super::ids::assign_ids;
-use super::loader::{Loader, read_model};
+use super::loader::{Loader, MODEL_EXTENSIONS, read_model};
 use super::model::Model;
 use super::notes::Notes;
 use super::picture::PictureUse;
+use super::resolve::resolve;
 use super::scene_file::{SceneFile, read_scene, scene_entities};
-use super::sources::{SceneFiles, resolve_environment, resolve_meshes, resolve_pictures};
+use super::sources::SceneFiles;
+use super::spawn::spawn_model;
 use super::{Limits, LoadProblems, extension, shapes};
-use crate::scene::{
-    Environment, MeshSource, Phong, RenderSettings, SceneId, TextureSource, UsesMaterial,
-};
+use crate::scene::{Environment, MeshSource, Phong, RenderSettings, SceneId, TextureSource};
 use bevy::asset::{Assets, Handle};
-use bevy::camera::primitives::{Aabb, MeshAabb};
-use bevy::camera::visibility::Visibility;
-use bevy::ecs::hierarchy::ChildOf;
-use bevy::ecs::name::Name;
 use bevy::image::Image;
-use bevy::mesh::{Mesh, Mesh3d};
-use bevy::prelude::{Entity, World};
+use bevy::mesh::Mesh;
+use bevy::prelude::World;
 use std::collections::{BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
 
 /// What can be opened.
 #[derive(Clone)]
 pub enum SceneSource {
-    /// `.scn.ron`, `.obj`, `.gltf` or `.glb`.
+    /// `.scn.ron`, or one that holds a model: `.obj`, `.gltf`, `.glb`, `.stl`, `.ply`.
     File(PathBuf),
     /// A scene that Glassbox makes.
     Builtin(&'static BuiltinScene),
@@ -102,7 +98,7 @@ pub fn open(
     let unframed = options.unframed;
     match extension.as_str() {
         "scn.ron" | "ron" => opened.notes = open_scene(world, file, folder, options)?,
-        "obj" | "gltf" | "glb" => {
+        model if MODEL_EXTENSIONS.contains(&model) => {
             let model = read_model(file, &folder, &options.limits)?;
             opened.notes = open_model(world, model, file, folder, options.limits)?;
             if !unframed {
@@ -114,7 +110,7 @@ pub fn open(
                 file,
                 Problem::UnknownExtension {
                     extension,
-                    wanted: "scenes; .scn.ron, .obj, .gltf and .glb are",
+                    wanted: "scenes; .scn.ron, .obj, .gltf, .glb, .stl and .ply are",
                 },
             ));
         }
@@ -190,69 +186,6 @@ fn open_model(
     Ok(notes)
 }
 
-/// Entities that a model became.
-pub(super) struct SpawnedModel {
-    /// Materials that objects share.
-    pub materials: Vec<Entity>,
-    /// Parents before their children.
-    pub nodes: Vec<Entity>,
-}
-
-/// Makes a model's entities; `path` is what its meshes' sources call the file.
-pub(super) fn spawn_model(
-    world: &mut World,
-    model: Model,
-    path: &str,
-    next: &mut dyn FnMut() -> SceneId,
-) -> SpawnedModel {
-    let materials: Vec<Entity> = model
-        .materials
-        .into_iter()
-        .map(|(name, phong)| world.spawn((next(), Name::new(name), phong)).id())
-        .collect();
-    let mut spawned: Vec<Entity> = Vec::with_capacity(model.nodes.len());
-    for node in model.nodes {
-        let base = (
-            next(),
-            Name::new(node.name),
-            node.transform,
-            Visibility::default(),
-        );
-        let material = node.material.and_then(|index| materials.get(index));
-        let material = material.map(|&material| UsesMaterial(material));
-        let mesh = node.mesh.map(|name| {
-            let path = path.to_owned();
-            let source = MeshSource::File { path, name };
-            let (handle, bounds) = loaded_mesh(world, &source).unwrap_or_default();
-            (source, Mesh3d(handle), bounds)
-        });
-        // All at once: each kind of entity that they would be on the way would keep its room for all of them.
-        let mut entity = match (mesh, material) {
-            (Some(mesh), Some(material)) => world.spawn((base, mesh, material)),
-            (Some(mesh), None) => world.spawn((base, mesh)),
-            (None, Some(material)) => world.spawn((base, material)),
-            (None, None) => world.spawn(base),
-        };
-        if let Some(&parent) = node.parent.and_then(|parent| spawned.get(parent)) {
-            entity.insert(ChildOf(parent));
-        }
-        if let Some(lamp) = node.point_lamp {
-            entity.insert(lamp);
-        }
-        if let Some(lamp) = node.directional_lamp {
-            entity.insert(lamp);
-        }
-        if let Some(camera) = node.camera {
-            entity.insert(camera);
-        }
-        spawned.push(entity.id());
-    }
-    SpawnedModel {
-        materials,
-        nodes: spawned,
-    }
-}
-
 /// Refuses shapes that are too many together before the first is made. Their numbers are checked one by one.
 fn check_shapes(scene: &SceneFile, memory: &Budget) -> Result<(), Problem> {
     let mut seen = std::collections::HashSet::new();
@@ -268,21 +201,12 @@ fn check_shapes(scene: &SceneFile, memory: &Budget) -> Result<(), Problem> {
     memory.apart().claim(bytes)
 }
 
-/// The mesh of a source that has been handed over, and the box around it.
-fn loaded_mesh(world: &mut World, source: &MeshSource) -> Option<(Handle<Mesh>, Aabb)> {
-    let files = world.get_resource::<SceneFiles>()?;
-    let id = files.loaded_mesh(source, world.get_resource::<Assets<Mesh>>()?)?;
-    let mut assets = world.resource_mut::<Assets<Mesh>>();
-    let bounds = assets.get(id)?.compute_aabb();
-    Some((assets.get_strong_handle(id)?, bounds.unwrap_or_default()))
-}
-
 /// Replaces the open scene by one with a camera and a light, and nothing to see.
 pub fn open_empty(world: &mut World) {
     let limits = world.get_resource::<SceneFiles>();
     let limits = limits.map(|files| files.limits.clone()).unwrap_or_default();
     clear(world, SceneFiles::new(Folder::default(), limits));
-    frame(world, Path::new(""), &mut Notes::default());
+    frame_nothing(world);
     resolve(world);
 }
 
@@ -477,45 +401,4 @@ fn clear(world: &mut World, files: SceneFiles) {
     world.insert_resource(RenderSettings::default());
     world.insert_resource(LoadProblems::default());
     world.insert_resource(files);
-}
-
-/// What the systems of [`super::IoPlugin`] do each frame, now.
-pub(super) fn resolve(world: &mut World) {
-    for result in [
-        world.run_system_cached(resolve_meshes),
-        world.run_system_cached(resolve_pictures),
-        world.run_system_cached(resolve_environment),
-    ] {
-        // Fails only where the plugin's resources are missing; the first frame would say the same.
-        if let Err(error) = result {
-            bevy::log::error!("sources were not resolved: {error}");
-        }
-    }
-}
-
-/// Tries again what could not be loaded.
-#[cfg(feature = "editor")]
-pub(super) fn retry(world: &mut World) {
-    use bevy::ecs::change_detection::DetectChangesMut;
-    let mut failed: Vec<(Option<Entity>, &str)> = Vec::new();
-    if let Some(problems) = world.get_resource::<LoadProblems>() {
-        failed.extend(problems.problems.iter().map(|p| (p.entity, p.what)));
-    }
-    for (entity, _) in failed {
-        match entity {
-            Some(entity) => {
-                if let Some(mut source) = world.get_mut::<MeshSource>(entity) {
-                    source.set_changed();
-                }
-                if let Some(mut phong) = world.get_mut::<Phong>(entity) {
-                    phong.set_changed();
-                }
-            }
-            None => {
-                if let Some(mut environment) = world.get_resource_mut::<Environment>() {
-                    environment.set_changed();
-                }
-            }
-        }
-    }
 }

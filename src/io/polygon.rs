@@ -24,6 +24,21 @@ pub(crate) enum Fit {
     TooLarge,
 }
 
+impl Fit {
+    /// What there is to say of a polygon, and what became of it.
+    pub fn note(self) -> Option<(&'static str, &'static str)> {
+        match self {
+            Self::Exact => None,
+            Self::Flat => Some(("a polygon without area", "its triangles have none")),
+            Self::Crossed => Some(("a polygon that crosses itself", "its triangles may overlap")),
+            Self::TooLarge => Some((
+                "a polygon of very many corners",
+                "what is concave is filled",
+            )),
+        }
+    }
+}
+
 /// Makes triangles of polygons. Keeps its memory from one to the next, and count of its work.
 #[derive(Default)]
 pub(crate) struct Triangulator {

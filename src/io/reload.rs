@@ -156,7 +156,7 @@ impl Reloaded {
         }
         world.insert_resource(files);
         if missing {
-            super::open::retry(world);
+            super::resolve::retry(world);
         }
         replaced || missing
     }

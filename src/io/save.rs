@@ -1,4 +1,5 @@
 use super::error::{FileError, Problem};
+use super::notes::Notes;
 use super::sources::SceneFiles;
 use super::{check_outputs, check_writable, extension, gltf, obj, scene_file};
 use bevy::prelude::World;
@@ -33,11 +34,11 @@ fn unknown(file: &Path) -> FileError {
 }
 
 /// Writes the open scene as `.scn.ron`, `.obj` (with its `.mtl`) or `.glb`; the extension decides.
-/// Returns a line for each thing that the format cannot say. The file appears complete or not at
+/// Returns what the format cannot say. The file appears complete or not at
 /// all, and so does an OBJ with all that it names. Entities without a `SceneId` get one.
 ///
 /// Nothing that the scene was read from is written over; a scene file may be replaced by the scene itself.
-pub fn save(world: &mut World, file: &Path) -> Result<Vec<String>, FileError> {
+pub fn save(world: &mut World, file: &Path) -> Result<Notes, FileError> {
     let extension = extension(file);
     let is_scene = extension == "scn.ron";
     let mtl = (extension == "obj").then(|| obj::mtl_of(file));

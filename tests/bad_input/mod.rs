@@ -1,6 +1,8 @@
 //! What is wrong with a file ends in one line that names the file, the place and what would help,
 //! and in nothing else: no panic, no half-written output, the open scene untouched.
 
+#[cfg(target_os = "linux")]
+mod full_disk;
 mod gltf;
 mod limits;
 mod memory;
@@ -9,6 +11,7 @@ mod output;
 mod pictures;
 #[cfg(unix)]
 mod pipes;
+mod scans;
 mod scenes;
 
 use crate::files::app::app;

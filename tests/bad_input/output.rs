@@ -1,13 +1,13 @@
 use super::says;
 use crate::files::app::app;
 use glassbox::io::{
-    FileError, OpenOptions, PictureFormat, Problem, SceneSource, check_writable, open, save,
+    FileError, Notes, OpenOptions, PictureFormat, Problem, SceneSource, check_writable, open, save,
     write_picture,
 };
 use std::fs;
 use std::path::Path;
 
-fn saved(file: &Path) -> Result<Vec<String>, FileError> {
+fn saved(file: &Path) -> Result<Notes, FileError> {
     let mut app = app();
     let source = SceneSource::named("triangle");
     open(app.world_mut(), &source, OpenOptions::default()).unwrap();

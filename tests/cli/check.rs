@@ -67,6 +67,8 @@ fn json_says_the_same_of_every_file() {
     assert_eq!(output.status.code(), Some(1));
     let all: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(all[0]["triangles"], 1);
+    assert_eq!(all[0]["area"], 0.5);
+    assert_eq!(all[0]["bounds"][1][1], 1.0, "{all}");
     assert_eq!(all[0]["error"], serde_json::Value::Null);
     let lines = &all[0]["notes"][0];
     assert_eq!(lines["count"], 2, "{all}");

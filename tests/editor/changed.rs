@@ -3,7 +3,9 @@
 use super::scene_copy::SceneCopy;
 use super::{act, editor, named};
 use bevy::app::{App, AppExit};
+use bevy::ecs::entity::Entity;
 use bevy::ecs::message::Messages;
+use bevy::window::WindowFocused;
 use glassbox::editor::action::Addition;
 use glassbox::editor::document::{
     Answer, Document, Purpose, Question, RecoveryFolder, adopt, answer,
@@ -191,4 +193,44 @@ fn a_link_to_the_open_file_is_the_open_file() {
     fs::write(&file, "theirs").unwrap();
     act(&mut app, Action::SaveAs(link.clone()));
     assert_eq!(question(&app), changed(&link));
+}
+
+/// The window is turned to.
+fn focus(app: &mut App) {
+    let window = Entity::PLACEHOLDER;
+    app.world_mut().write_message(WindowFocused {
+        window,
+        focused: true,
+    });
+    app.update();
+}
+
+#[test]
+fn a_change_of_another_program_is_asked_about_when_the_window_is_turned_to_and_once_each() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.scn.ron");
+    let mut app = editor("triangle");
+    act(&mut app, Action::SaveAs(file.clone()));
+    focus(&mut app);
+    assert_eq!(question(&app), None, "nobody has changed it");
+    add(&mut app, "Sphere");
+    let ours = SceneCopy::of(&mut app);
+    let text = fs::read_to_string(&file).unwrap();
+    for spaces in ["\n", "\n\n"] {
+        fs::write(&file, format!("{text}{spaces}")).unwrap();
+        app.update();
+        assert_eq!(question(&app), None, "nobody has turned to the window");
+        focus(&mut app);
+        assert_eq!(question(&app), changed(&file), "{spaces:?}");
+        answer(app.world_mut(), Answer::Cancel);
+        focus(&mut app);
+        assert_eq!(question(&app), None, "it was asked already");
+        SceneCopy::of(&mut app).assert_same(&ours, "the edits are still there");
+    }
+    act(&mut app, Action::Save);
+    assert_eq!(question(&app), changed(&file), "it is not written over");
+    answer(app.world_mut(), Answer::Yes);
+    focus(&mut app);
+    assert_eq!(question(&app), None, "it is ours again");
+    assert!(!app.world().resource::<Document>().unsaved());
 }

@@ -1,10 +1,15 @@
 //! Scenes and models through files and back.
 
 pub mod app;
+mod exports;
+mod framing;
 mod gltf;
+mod gltf_rest;
 pub mod models;
 mod names;
 mod obj;
 mod pictures;
+mod ply;
 mod round_trip;
 mod sets;
+mod stl;

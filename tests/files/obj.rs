@@ -22,7 +22,7 @@ fn open(files: &[(&str, &[u8])]) -> (App, Vec<String>, TempDir) {
     let (app, opened) = opened(&folder.path().join(files[0].0));
     let lines = opened.notes.lines();
     // Those of what is added, which every OBJ has.
-    let told = lines.into_iter().filter(|line| !line.contains("was added"));
+    let told = lines.into_iter().filter(|line| !line.contains("added"));
     (app, told.collect(), folder)
 }
 

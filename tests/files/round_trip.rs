@@ -263,13 +263,13 @@ fn an_obj_becomes_an_object_for_each_name_and_material() {
     assert_eq!(
         opened.notes.len(),
         2,
-        "a camera and a light: {:?}",
+        "a camera and lights: {:?}",
         opened.notes
     );
     let world = app.world_mut();
     let cameras = world.query::<&SceneCamera>().iter(world).count();
     let lamps = world.query::<&DirectionalLamp>().iter(world).count();
-    assert_eq!((cameras, lamps), (1, 1));
+    assert_eq!((cameras, lamps), (1, 3));
 }
 
 #[test]

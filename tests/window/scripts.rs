@@ -72,7 +72,7 @@ fn a_size_that_no_window_can_have_is_named_with_its_line() {
 
 #[cfg(unix)]
 #[test]
-fn ctrl_c_in_the_terminal_keeps_unsaved_work_and_a_script_that_quits_leaves_none() {
+fn who_is_asked_to_end_keeps_unsaved_work_and_a_script_that_quits_leaves_none() {
     let Some(display) = Display::open() else {
         return;
     };
@@ -90,30 +90,35 @@ fn ctrl_c_in_the_terminal_keeps_unsaved_work_and_a_script_that_quits_leaves_none
 
     let script = folder.join("script.ron");
     std::fs::write(&script, format!("[{edit}, Screenshot(\"done.png\")]")).unwrap();
-    // What runs in the background of a shell has it ignored, and hands that on.
-    let mut command = display.command_in(folder, &["env", "--default-signal=INT"]);
-    command.args(["cornell-box", "--script"]).arg(&script);
-    let mut editor = command.spawn().unwrap();
-    let start = std::time::Instant::now();
-    while !folder.join("done.png").exists() {
-        assert!(start.elapsed() < super::PATIENCE, "there was no picture");
-        std::thread::sleep(std::time::Duration::from_millis(100));
+    let signals = [("INT", 130), ("TERM", 143), ("HUP", 129)];
+    for (kept, (signal, code)) in signals.into_iter().enumerate() {
+        // What runs in the background of a shell has it ignored, and hands that on.
+        let mut command =
+            display.command_in(folder, &["env", &format!("--default-signal={signal}")]);
+        command.args(["cornell-box", "--script"]).arg(&script);
+        let mut editor = command.spawn().unwrap();
+        let start = std::time::Instant::now();
+        while !folder.join("done.png").exists() {
+            assert!(start.elapsed() < super::PATIENCE, "there was no picture");
+            std::thread::sleep(std::time::Duration::from_millis(100));
+        }
+        let killed = std::process::Command::new("kill")
+            .args([&format!("-{signal}"), &editor.id().to_string()])
+            .status();
+        assert!(killed.unwrap().success());
+        let start = std::time::Instant::now();
+        let status = loop {
+            if let Some(status) = editor.try_wait().unwrap() {
+                break status;
+            }
+            if start.elapsed() > std::time::Duration::from_secs(60) {
+                let _ = editor.kill();
+                panic!("SIG{signal} did not end the editor");
+            }
+            std::thread::sleep(std::time::Duration::from_millis(100));
+        };
+        assert_eq!(status.code(), Some(code), "SIG{signal}");
+        assert_eq!(copies(), kept + 1, "SIG{signal} is nobody's consent");
+        std::fs::remove_file(folder.join("done.png")).unwrap();
     }
-    let killed = std::process::Command::new("kill")
-        .args(["-INT", &editor.id().to_string()])
-        .status();
-    assert!(killed.unwrap().success());
-    let start = std::time::Instant::now();
-    let status = loop {
-        if let Some(status) = editor.try_wait().unwrap() {
-            break status;
-        }
-        if start.elapsed() > std::time::Duration::from_secs(60) {
-            let _ = editor.kill();
-            panic!("Ctrl+C did not end the editor");
-        }
-        std::thread::sleep(std::time::Duration::from_millis(100));
-    };
-    assert_eq!(status.code(), Some(130));
-    assert_eq!(copies(), 1, "Ctrl+C is nobody's consent");
 }

@@ -1,6 +1,7 @@
 //! The desktop's own file dialogs.
 
 use super::question::Purpose;
+use crate::io::MODEL_EXTENSIONS;
 use rfd::FileDialog;
 use std::env::{split_paths, var_os};
 use std::path::{Path, PathBuf};
@@ -32,11 +33,14 @@ pub(super) fn choose(purpose: Purpose, start: &Path) -> Option<PathBuf> {
     match purpose {
         Purpose::Open => dialog
             .set_title("Open")
-            .add_filter("Scenes and models", &["ron", "obj", "gltf", "glb"])
+            .add_filter(
+                "Scenes and models",
+                &[&["ron"], &MODEL_EXTENSIONS[..]].concat(),
+            )
             .pick_file(),
         Purpose::Import => dialog
             .set_title("Import")
-            .add_filter("Models", &["obj", "gltf", "glb"])
+            .add_filter("Models", &MODEL_EXTENSIONS)
             .pick_file(),
         Purpose::SaveAs => {
             let name = start.file_name().unwrap_or_default().to_string_lossy();

@@ -179,7 +179,7 @@ pub(super) fn write_to(world: &mut World, path: &Path) {
     let mut notices = world.resource_mut::<Notices>();
     let verb = if is_scene { "Saved" } else { "Exported" };
     notices.tell(format!("{verb} {}", path.display()));
-    notices.notes(&name, notes);
+    notices.notes(&name, notes.lines());
     if !is_scene {
         return;
     }

@@ -8,8 +8,10 @@
 //! | `dialog` | asks for a file: natively where that works, else by a typed path |
 //! | `recovery` | copies of unsaved work, and offering them after a crash |
 //! | `watch` | meshes and textures that change on disk |
+//! | `changed` | the scene's own file that another program changes |
 //! | `window` | the title, closing, and files dropped on it |
 
+mod changed;
 mod dialog;
 mod dialog_native;
 mod files;
@@ -127,6 +129,7 @@ impl Plugin for DocumentPlugin {
             recovery::add_to(app, folder, !self.leaves_recovered);
         }
         watch::add_to(app);
+        changed::add_to(app);
         window::add_to(app, self.keeps_title);
     }
 }

@@ -33,7 +33,8 @@ pub enum Question {
         /// What writes it.
         then: Action,
     },
-    /// Another program has changed the scene's file since it was read or written here. Answers: `Yes` overwrites it,
+    /// Another program has changed the scene's file since it was read or written here; asked when that is seen, and
+    /// before it would be written over. Answers: `Yes` overwrites it,
     /// `No` opens it as it is now, `Elsewhere` asks for another file, `Cancel`.
     Changed {
         /// The file.

@@ -7,7 +7,7 @@ use crate::editor::history::History;
 use crate::editor::notice::Notices;
 use crate::editor::schedule::EditorUpdate;
 use crate::editor::selection::Selection;
-use crate::io::{PICTURE_EXTENSIONS, SceneFiles};
+use crate::io::{MODEL_EXTENSIONS, PICTURE_EXTENSIONS, SceneFiles};
 use crate::scene::{Environment, Phong, TextureSource, UsesMaterial};
 use bevy::app::{App, PreUpdate};
 use bevy::ecs::message::{MessageCursor, Messages};
@@ -69,7 +69,7 @@ fn drop_file(world: &mut World, file: &Path) {
         "ron" => {
             world.write_message(Action::Open(file.to_path_buf()));
         }
-        "obj" | "gltf" | "glb" => {
+        model if MODEL_EXTENSIONS.contains(&model) => {
             world.write_message(Action::Import(file.to_path_buf()));
         }
         picture if PICTURE_EXTENSIONS.contains(&picture) => {
@@ -78,8 +78,9 @@ fn drop_file(world: &mut World, file: &Path) {
         }
         _ => {
             let text = format!(
-                "{}: neither a scene (.scn.ron), a model (.obj, .gltf, .glb) nor a picture (.{})",
+                "{}: neither a scene (.scn.ron), a model (.{}) nor a picture (.{})",
                 file.display(),
+                MODEL_EXTENSIONS.join(", ."),
                 PICTURE_EXTENSIONS.join(", .")
             );
             world.resource_mut::<Notices>().fault(text);

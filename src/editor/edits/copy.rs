@@ -156,7 +156,7 @@ pub fn paste(world: &mut World, clipboard: &Clipboard) -> Result<Vec<SceneId>, F
     let mut content = read_scene_text(Path::new("clipboard"), clipboard.text.as_bytes(), &limits)?;
     let mut free = FreeIds::new(world);
     let mut names = Names::new(world);
-    let rebase = Rebase::between(clipboard.folder.clone(), here);
+    let rebase = Rebase::between(clipboard.folder.clone(), here, Path::new("clipboard"));
     let renumbered = content.as_addition(|| free.next(), &rebase);
     let spawned = content
         .spawn(world)

@@ -1,9 +1,10 @@
-use super::super::error::FileError;
+use super::super::error::{FileError, Place};
 use super::super::exported::{Exported, Material, gather, pixels_of};
 use super::super::file_name::split_fragment;
 use super::super::model::MeshParts;
+use super::super::notes::Notes;
 use super::super::picture::encode_png;
-use super::super::replace::replace_file;
+use super::super::replace::{check_space, replace_file};
 use super::glb::Bytes;
 use super::lamps::{camera_json, directional_json, point_json};
 use super::material::material_json;
@@ -22,11 +23,12 @@ use std::path::Path;
 
 /// Writes the scene's hierarchy, meshes, materials, pictures, point and directional lights and
 /// cameras into one GLB. Returns what could not be said.
-pub(crate) fn write_glb(world: &mut World, file: &Path) -> Result<Vec<String>, FileError> {
+pub(crate) fn write_glb(world: &mut World, file: &Path) -> Result<Notes, FileError> {
     super::super::check_writable(file)?;
-    let exported = gather(world);
+    let exported = gather(world, file);
     let mut glb = Glb {
         world,
+        file,
         bytes: Bytes::default(),
         lists: Map::new(),
         meshes: HashMap::new(),
@@ -39,6 +41,7 @@ pub(crate) fn write_glb(world: &mut World, file: &Path) -> Result<Vec<String>, F
     }
     glb.nodes(&exported);
     let (root, bytes, notes) = glb.finish();
+    check_space(file, bytes.len() as u64)?;
     replace_file(file, |out| bytes.write(&root, out))?;
     Ok(notes)
 }
@@ -46,13 +49,14 @@ pub(crate) fn write_glb(world: &mut World, file: &Path) -> Result<Vec<String>, F
 /// A glTF document while it grows.
 struct Glb<'a> {
     world: &'a World,
+    file: &'a Path,
     bytes: Bytes,
     /// The top-level arrays by their names.
     lists: Map<String, Value>,
     /// Primitives that are written: their attributes and indices, without a material.
     meshes: HashMap<AssetId<Mesh>, Value>,
     textures: HashMap<AssetId<Image>, usize>,
-    notes: Vec<String>,
+    notes: Notes,
 }
 
 impl Glb<'_> {
@@ -68,6 +72,12 @@ impl Glb<'_> {
         }
     }
 
+    /// Says that something with a name is left out.
+    fn note(&mut self, what: &str, name: &str) {
+        let file = self.file;
+        (self.notes).add_named(file, Place::Whole, what, name, "left out");
+    }
+
     fn material(&mut self, material: &Material) -> Value {
         let phong = &material.phong;
         let mut json = material_json(&material.name, phong);
@@ -78,10 +88,7 @@ impl Glb<'_> {
                     pbr["baseColorTexture"] = json!({ "index": texture });
                     pbr["baseColorFactor"] = json!([1.0, 1.0, 1.0, phong.opacity]);
                 }
-                None => self.notes.push(format!(
-                    "the picture `{}` cannot be embedded and was left out",
-                    source.path
-                )),
+                None => self.note("a picture that cannot be embedded:", &source.path),
             }
         }
         if let Some(source) = &phong.opacity_map {
@@ -95,10 +102,10 @@ impl Glb<'_> {
                 } else {
                     "OPAQUE"
                 });
-                self.notes.push(format!(
-                    "material `{}`: its opacity picture was left out",
-                    material.name
-                ));
+                self.note(
+                    "an opacity picture of its own of the material",
+                    &material.name,
+                );
             }
         }
         json
@@ -158,8 +165,9 @@ impl Glb<'_> {
     fn node(&mut self, entity: Entity) -> Value {
         let world = self.world;
         let mut node = json!({});
-        if let Some(name) = world.get::<Name>(entity) {
-            node["name"] = json!(name.as_str());
+        let name = world.get::<Name>(entity).map_or("", Name::as_str);
+        if !name.is_empty() {
+            node["name"] = json!(name);
         }
         if let Some(transform) = world.get::<Transform>(entity)
             && *transform != Transform::IDENTITY
@@ -173,10 +181,13 @@ impl Glb<'_> {
             node["camera"] = json!(camera);
         }
         let point = world.get::<PointLamp>(entity).map(point_json);
-        let directional = world.get::<DirectionalLamp>(entity).map(directional_json);
+        let sun = world.get::<DirectionalLamp>(entity);
+        if sun.is_some_and(|sun| sun.angular_diameter > 0.0) {
+            self.note("an angular diameter of the light", name);
+        }
+        let directional = sun.map(directional_json);
         if point.is_some() && directional.is_some() {
-            let text = "one entity has two lights: its directional one was left out";
-            self.notes.push(text.into());
+            self.note("a directional light beside a point light of", name);
         }
         if let Some(light) = point.or(directional) {
             let light = self.push("lights", light);
@@ -193,8 +204,7 @@ impl Glb<'_> {
                 .and_then(|meshes| meshes.get(id))
                 .and_then(MeshParts::of);
             let Some(parts) = parts.filter(|parts| parts.triangles().next().is_some()) else {
-                let text = format!("`{name}`: its mesh is no indexed triangle list");
-                self.notes.push(text);
+                self.note("a mesh that is no indexed triangle list:", name);
                 return None;
             };
             let mut attributes = json!({ "POSITION": self.bytes.push_vectors(parts.positions) });
@@ -215,7 +225,7 @@ impl Glb<'_> {
         Some(self.push("meshes", json!({ "name": name, "primitives": [primitive] })))
     }
 
-    fn finish(mut self) -> (Value, Bytes, Vec<String>) {
+    fn finish(mut self) -> (Value, Bytes, Notes) {
         let mut root = json!({
             "asset": {
                 "version": "2.0",

@@ -1,4 +1,4 @@
-//! Wavefront OBJ and MTL, each line read once: [`text`] makes lines of bytes, [`statements`] and [`mtl`] say what they
+//! Wavefront OBJ and MTL, each line read once: [`super::text`] makes lines of bytes, [`statements`] and [`mtl`] say what they
 //! mean, [`parts`] makes meshes, [`phong`] materials. What cannot be used is noted, with its line, and the rest is
 //! shown.
 
@@ -8,10 +8,10 @@ mod parts;
 mod phong;
 mod read;
 mod statements;
-mod text;
 mod write;
 mod write_mtl;
 
+use super::text;
 use std::path::Path;
 
 pub(crate) use read::read_obj;

@@ -4,7 +4,7 @@
 use super::super::error::{FileError, Place, Problem};
 use super::super::model::triangle_mesh;
 use super::super::notes::Notes;
-use super::super::polygon::{Fit, Triangulator};
+use super::super::polygon::Triangulator;
 use super::content::{Content, Corner, Face, NONE, Part};
 use bevy::math::{Vec2, Vec3};
 use bevy::mesh::Mesh;
@@ -148,14 +148,9 @@ impl<'a> Builder<'a> {
         }
         polygon.clear();
         polygon.extend(corners.iter().map(|corner| self.position(corner)));
-        let (what, instead) = match self.triangulator.triangulate(polygon, triangles) {
-            Fit::Exact => return,
-            Fit::Flat => ("a polygon without area", "its triangles have none"),
-            Fit::Crossed => ("a polygon that crosses itself", "its triangles may overlap"),
-            Fit::TooLarge => (
-                "a polygon of very many corners",
-                "what is concave is filled",
-            ),
+        let fit = self.triangulator.triangulate(polygon, triangles);
+        let Some((what, instead)) = fit.note() else {
+            return;
         };
         let place = Place::Line(face.line.into());
         self.notes.add(self.file, place, what, instead);

@@ -1,6 +1,6 @@
 use super::super::error::{FileError, Place, Problem};
 use super::super::folder::Folder;
-use super::super::model::{Model, Node};
+use super::super::model::{FreeNames, Model, Node};
 use super::super::names::Names;
 use super::super::notes::Notes;
 use super::content::{Content, Part};
@@ -10,8 +10,7 @@ use super::phong::phong_of;
 use super::statements::read_content;
 use super::text::unquoted;
 use crate::io::Limits;
-use bevy::mesh::Mesh;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 use std::path::Path;
 
 /// Reads an OBJ: one object for each `o` or `g` and material in it. The mesh is called like the object where that has
@@ -61,6 +60,7 @@ pub(crate) fn read_obj(file: &Path, folder: &Folder, limits: &Limits) -> Result<
     }
     let several = materials_of_objects(&groups);
     let (keys, parts): (Vec<_>, Vec<_>) = groups.into_iter().unzip();
+    let mut free_names = FreeNames::default();
     let mut builder = Builder::new(file, &content, &parts, &mut model.notes);
     for (key, part) in keys.into_iter().zip(parts) {
         let object = &content.objects[key.object as usize];
@@ -79,7 +79,7 @@ pub(crate) fn read_obj(file: &Path, folder: &Folder, limits: &Limits) -> Result<
         let plain = format!("{name} without picture");
         for (name, mesh) in [(name, meshes.mesh), (plain, meshes.without_picture)] {
             let Some(mesh) = mesh else { continue };
-            let name = free_name(name, &model.meshes);
+            let name = free_names.free(name, &model.meshes);
             model.nodes.push(Node {
                 name: name.clone(),
                 mesh: Some(name.clone()),
@@ -234,14 +234,4 @@ fn materials_of_objects(groups: &[(Key, Part)]) -> HashMap<u32, u32> {
         *counts.entry(key.object).or_default() += 1;
     }
     counts
-}
-
-/// The name, or with a number where another mesh has it.
-fn free_name(name: String, taken: &BTreeMap<String, Mesh>) -> String {
-    if !taken.contains_key(&name) {
-        return name;
-    }
-    let mut numbered = (2_u32..).map(|number| format!("{name}#{number}"));
-    let free = numbered.find(|name| !taken.contains_key(name));
-    free.unwrap_or(name)
 }

@@ -3,7 +3,7 @@
 use super::super::error::{FileError, Place, Problem};
 use super::super::notes::Notes;
 use super::content::{BEYOND, Content, Corner, Face, LEFT_OUT, NONE, Part, out_of_range};
-use super::text::{Lines, keyword, number, text, values};
+use super::text::{Lines, keyword, number, shown, text, values};
 use crate::io::Limits;
 use crate::io::budget::Growing;
 use std::collections::HashMap;
@@ -153,8 +153,7 @@ impl Reader<'_> {
     }
 
     fn unread(&mut self, word: &[u8], why: &str) {
-        const SHOWN: usize = 24;
-        let word = text(&word[..word.len().min(SHOWN)]);
+        let word = shown(word);
         self.note(&format!("`{word}`, which is {why}"), LEFT_OUT);
     }
 

@@ -1,9 +1,10 @@
-use super::super::error::{FileError, Problem};
+use super::super::error::{FileError, Place, Problem};
 use super::super::exported::{Exported, gather};
 use super::super::file_name::fits_a_line;
 use super::super::folder::stays_inside;
 use super::super::identity::folder_of;
 use super::super::model::MeshParts;
+use super::super::notes::Notes;
 use super::super::place::world_from;
 use super::super::replace::Staged;
 use super::stem_of;
@@ -29,11 +30,11 @@ pub(crate) fn mtl_of(file: &Path) -> PathBuf {
 /// an MTL with another content, the new MTL is written under a name of its own beside it, and an OBJ that names
 /// that one takes the old one's place; nothing needs the old MTL then, and it is replaced, and at last the OBJ
 /// again.
-pub(crate) fn write_obj(world: &mut World, file: &Path) -> Result<Vec<String>, FileError> {
+pub(crate) fn write_obj(world: &mut World, file: &Path) -> Result<Notes, FileError> {
     let mtl = mtl_of(file);
     let mtl_name = name_in_obj(&mtl)?;
-    let mut exported = gather(world);
-    exported.note_lights_and_cameras(world);
+    let mut exported = gather(world, file);
+    exported.note_lights_and_cameras(world, file);
     super::super::check_writable(file)?;
     super::super::check_writable(&mtl)?;
     let left = left_between(file, &mtl);
@@ -42,7 +43,7 @@ pub(crate) fn write_obj(world: &mut World, file: &Path) -> Result<Vec<String>, F
         pictures,
         replaced,
     } = library(world, &mtl, left.as_deref(), &mut exported)?;
-    let scene = Drawn::of(world, &mut exported);
+    let scene = Drawn::of(world, file, &mut exported);
     let obj = |mtl: &str| Staged::new(file, |out| scene.write(mtl, out));
     let library = |mtl: &Path| Staged::new(mtl, |out| out.write_all(text.as_bytes()));
 
@@ -122,16 +123,14 @@ struct DrawnObject<'a> {
 }
 
 impl<'a> Drawn<'a> {
-    fn of(world: &'a World, exported: &mut Exported) -> Self {
+    fn of(world: &'a World, file: &Path, exported: &mut Exported) -> Self {
         let meshes = world.get_resource::<Assets<Mesh>>();
         let mut objects = Vec::with_capacity(exported.objects.len());
         for object in std::mem::take(&mut exported.objects) {
             let mesh = meshes.and_then(|meshes| meshes.get(object.mesh));
             let Some(parts) = mesh.and_then(MeshParts::of) else {
-                exported.notes.push(format!(
-                    "`{}`: its mesh is no indexed triangle list",
-                    object.name
-                ));
+                let what = "a mesh that is no indexed triangle list:";
+                (exported.notes).add_named(file, Place::Whole, what, &object.name, "left out");
                 continue;
             };
             objects.push(DrawnObject {

@@ -1,8 +1,9 @@
-use super::super::error::FileError;
+use super::super::error::{FileError, Place};
 use super::super::exported::{Exported, pixels_of};
 use super::super::file_name::{BUILTIN, fits_a_line, split_fragment};
 use super::super::folder::{Folder, stays_inside};
 use super::super::identity::folder_of;
+use super::super::notes::Notes;
 use super::super::replace::replace_file;
 use super::super::scene_file::Rebase;
 use super::super::sources::SceneFiles;
@@ -125,7 +126,7 @@ impl Pictures<'_> {
     /// A picture that is a file, as the MTL can name it.
     fn named(&self, path: &str) -> Option<String> {
         let is_file = !path.starts_with(BUILTIN) && split_fragment(path).1.is_empty();
-        let named = is_file.then(|| self.rebase.path(path, &mut Vec::new()))?;
+        let named = is_file.then(|| self.rebase.path(path, &mut Notes::default()))?;
         // Nothing is escaped in an MTL.
         let here = Folder::of(self.file, true);
         let named = match here.file_of(&named).strip_prefix(&here.path) {
@@ -172,7 +173,7 @@ impl Pictures<'_> {
         &mut self,
         source: Option<&TextureSource>,
         loaded: Option<&Handle<Image>>,
-        notes: &mut Vec<String>,
+        notes: &mut Notes,
     ) -> Result<Option<String>, FileError> {
         let Some(TextureSource { path }) = source else {
             return Ok(None);
@@ -185,9 +186,8 @@ impl Pictures<'_> {
         }
         let pixels = loaded.and_then(|handle| pixels_of(self.world, handle.id()));
         let Some(pixels) = pixels else {
-            notes.push(format!(
-                "the picture `{path}` is not loaded and was left out"
-            ));
+            let what = "a picture that is not loaded:";
+            notes.add_named(self.file, Place::Whole, what, path, "left out");
             return Ok(None);
         };
         let (extension, format) = match pixels {
@@ -204,7 +204,8 @@ impl Pictures<'_> {
             replace_file(&place, |out| out.write_all(&bytes))?;
             self.created.0.push(place);
         }
-        notes.push(format!("the picture `{path}` was written as `{name}`"));
+        let what = format!("an MTL cannot name the picture `{path}`, written as");
+        notes.add_named(self.file, Place::Whole, what, &name, "named so");
         self.beside.push((path.clone(), name.clone()));
         Ok(Some(name))
     }

@@ -12,9 +12,11 @@
 
 mod leftovers;
 mod output;
+mod space;
 mod target;
 
 pub(crate) use output::Output;
+pub(crate) use space::check_space;
 
 use super::error::FileError;
 use super::identity::folder_of;

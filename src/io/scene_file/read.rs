@@ -1,4 +1,6 @@
 use super::super::error::{FileError, Place, Problem};
+#[cfg(feature = "editor")]
+use super::super::notes::Notes;
 use super::super::on_disk::OnDisk;
 use super::FileVersion;
 use super::check::check_value;
@@ -199,7 +201,7 @@ impl SceneFile {
         mut next: impl FnMut() -> SceneId,
         rebase: &super::Rebase,
     ) -> std::collections::HashMap<SceneId, SceneId> {
-        let mut notes = Vec::new();
+        let mut notes = Notes::default();
         let mut renumbered = std::collections::HashMap::new();
         self.content.resources.clear();
         let entities = self.content.entities.iter_mut();

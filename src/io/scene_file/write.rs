@@ -1,9 +1,10 @@
-use super::super::error::{FileError, Problem};
+use super::super::error::{FileError, Place, Problem};
 use super::super::file_name::{BUILTIN, split_fragment};
 use super::super::folder::Folder;
 use super::super::ids::assign_ids;
+use super::super::notes::Notes;
 use super::super::on_disk::OnDisk;
-use super::super::replace::replace_file;
+use super::super::replace::{check_space, replace_file};
 use super::super::sources::SceneFiles;
 use super::kept::{kept_only, kept_types};
 use super::{FileVersion, scene_entities};
@@ -18,12 +19,11 @@ use bevy::transform::components::Transform;
 use bevy::world_serialization::serde::DynamicWorldSerializer;
 use bevy::world_serialization::{DynamicWorld, serialize_ron};
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Writes the scene. Entities without a [`SceneId`], or with one that another has, get the next
-/// free number first. Paths are written relative to the new file's folder. Returns a line for each
-/// thing that the file cannot say.
-pub(crate) fn write_scene(world: &mut World, file: &Path) -> Result<Vec<String>, FileError> {
+/// free number first. Paths are written relative to the new file's folder. Returns what the file cannot say.
+pub(crate) fn write_scene(world: &mut World, file: &Path) -> Result<Notes, FileError> {
     let content = SceneContent::of_scene(world, file)?;
     let written = content.write(file)?;
     if let Some(mut files) = world.get_resource_mut::<SceneFiles>() {
@@ -35,8 +35,8 @@ pub(crate) fn write_scene(world: &mut World, file: &Path) -> Result<Vec<String>,
 /// What a scene file says, taken from the world, so that it can be written on another thread.
 pub(crate) struct SceneContent {
     content: DynamicWorld,
-    /// A line for each thing that the file cannot say.
-    pub notes: Vec<String>,
+    /// What the file cannot say.
+    pub notes: Notes,
 }
 
 impl SceneContent {
@@ -80,7 +80,7 @@ impl SceneContent {
         file: &Path,
         rebase: Option<&Rebase>,
     ) -> Result<Self, FileError> {
-        let mut notes = Vec::new();
+        let mut notes = Notes::default();
         let mut labels = EntityHashMap::default();
         for &entity in entities {
             let id = world.get::<SceneId>(entity).map_or(0, |id| id.0);
@@ -95,9 +95,8 @@ impl SceneContent {
             })?;
             labels.insert(entity, label);
             if world.get::<Mesh3d>(entity).is_some() && world.get::<MeshSource>(entity).is_none() {
-                notes.push(format!(
-                    "entity {id}: its mesh has no MeshSource, so the file cannot say it"
-                ));
+                let what = "meshes without a MeshSource, of entities";
+                notes.add_named(file, Place::Whole, what, &id.to_string(), "left out");
             }
         }
         let registry = kept_types();
@@ -110,7 +109,8 @@ impl SceneContent {
             dynamic.components.retain_mut(|component| {
                 let kept = relabel(component.as_mut(), &labels);
                 if !kept {
-                    notes.push("a reference to an entity outside the scene was left out".into());
+                    let what = "a reference to an entity outside the scene";
+                    notes.add(file, Place::Whole, what, "left out");
                 }
                 if let Some(rebase) = rebase {
                     rebase.apply(component.as_mut(), &mut notes);
@@ -130,8 +130,6 @@ impl SceneContent {
             .entities
             .sort_by_key(|dynamic| dynamic.entity.to_bits());
         content.resources.push(Box::new(FileVersion::CURRENT));
-        notes.sort();
-        notes.dedup();
         Ok(Self { content, notes })
     }
 
@@ -149,6 +147,7 @@ impl SceneContent {
     /// Writes the file: complete, or not at all.
     pub fn write(&self, file: &Path) -> Result<OnDisk, FileError> {
         let text = self.to_text(file)?;
+        check_space(file, text.len() as u64)?;
         replace_file(file, |writer| writer.write_all(text.as_bytes()))?;
         Ok(OnDisk::new(file, text.as_bytes()))
     }
@@ -176,6 +175,8 @@ fn relabel(component: &mut dyn PartialReflect, labels: &EntityHashMap<Entity>) -
 pub(crate) struct Rebase {
     from: Folder,
     to: Folder,
+    /// The file that the paths are for, as notes call it.
+    file: PathBuf,
 }
 
 impl Rebase {
@@ -187,15 +188,17 @@ impl Rebase {
         Self {
             from,
             to: Folder::of(file, true),
+            file: file.to_path_buf(),
         }
     }
 
-    /// From one folder to another.
-    pub fn between(from: Folder, to: Folder) -> Self {
-        Self { from, to }
+    /// From one folder to another, for what comes from a file.
+    pub fn between(from: Folder, to: Folder, file: &Path) -> Self {
+        let file = file.to_path_buf();
+        Self { from, to, file }
     }
 
-    pub fn apply(&self, value: &mut dyn PartialReflect, notes: &mut Vec<String>) {
+    pub fn apply(&self, value: &mut dyn PartialReflect, notes: &mut Notes) {
         let mut texture = |source: &mut Option<TextureSource>| {
             if let Some(TextureSource { path }) = source {
                 *path = self.path(path, notes);
@@ -212,7 +215,7 @@ impl Rebase {
     }
 
     /// The same file, named from the other folder.
-    pub fn path(&self, path: &str, notes: &mut Vec<String>) -> String {
+    pub fn path(&self, path: &str, notes: &mut Notes) -> String {
         if path.starts_with(BUILTIN) {
             return path.to_owned();
         }
@@ -224,9 +227,9 @@ impl Rebase {
             return path.to_owned();
         }
         if named.starts_with("..") {
-            notes.push(format!(
-                "`{named}` lies outside the written file's folder: copy it there, or open with --allow-outside"
-            ));
+            let what = "outside the folder of the file that names it:";
+            let instead = "copy it there, or open with --allow-outside";
+            notes.add_named(&self.file, Place::Whole, what, &named, instead);
         }
         if !fragment.is_empty() {
             named = format!("{named}#{fragment}");

@@ -195,10 +195,10 @@ fn path_ui(
 ) -> Option<Answer> {
     let hint = match purpose {
         Purpose::Open => {
-            "A scene or a model: .scn.ron, .obj, .gltf, .glb, or a built-in scene's name"
+            "A scene or a model: .scn.ron, .obj, .gltf, .glb, .stl, .ply, or a built-in scene's name"
         }
         Purpose::SaveAs => "Where to: .scn.ron keeps everything; .obj and .glb are models",
-        Purpose::Import => "A model: .obj, .gltf or .glb",
+        Purpose::Import => "A model: .obj, .gltf, .glb, .stl or .ply",
     };
     ui.label(hint);
     let is_new = panels.typed_path.is_none();

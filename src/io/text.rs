@@ -1,13 +1,13 @@
 //! The lines of a text file as old and new programs write them.
 
-use super::super::error::{FileError, Place, Problem};
+use super::error::{FileError, Place, Problem};
 use std::borrow::Cow;
 use std::io::{BufRead, Cursor, Read};
 use std::path::{Path, PathBuf};
 
 /// Hands out a file's lines one at a time: ended by LF, CR LF or CR alone, joined where they end in `\`, without a
 /// byte order mark, from UTF-8 or UTF-16.
-pub(super) struct Lines {
+pub(crate) struct Lines {
     reader: Box<dyn BufRead>,
     file: PathBuf,
     /// Bytes of one line, with those that it is continued on.
@@ -21,7 +21,7 @@ impl Lines {
     /// Opens a file of at most `file_bytes`.
     pub fn open(file: &Path, file_bytes: u64, limit: usize) -> Result<Self, FileError> {
         let reading = |error: std::io::Error| FileError::reading(file, &error);
-        let mut reader = super::super::open_to_read(file, file_bytes)?;
+        let mut reader = super::open_to_read(file, file_bytes)?;
         let start = reader.fill_buf().map_err(reading)?;
         let (mark, wide) = encoding(start);
         reader.consume(mark);
@@ -45,6 +45,14 @@ impl Lines {
             line: Vec::new(),
             number: 0,
         })
+    }
+
+    /// The next line and its number as it stands, whatever it ends in; `None` at the end.
+    pub fn next_unjoined(&mut self) -> Result<Option<(u64, &[u8])>, FileError> {
+        self.line.clear();
+        let any = self.read_line()?;
+        self.number += u64::from(any);
+        Ok(any.then_some((self.number, self.line.as_slice())))
     }
 
     /// The next line and its number, that of the last where several were joined; `None` at the end.
@@ -126,18 +134,18 @@ fn has_comment(line: &[u8]) -> bool {
 }
 
 /// The words of a line, without spaces and tabs.
-pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> + Clone {
+pub(crate) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> + Clone {
     line.split(u8::is_ascii_whitespace)
         .filter(|word| !word.is_empty())
 }
 
 /// The words before a comment.
-pub(super) fn values(line: &[u8]) -> impl Iterator<Item = &[u8]> + Clone {
+pub(crate) fn values(line: &[u8]) -> impl Iterator<Item = &[u8]> + Clone {
     words(line).take_while(|word| word.first() != Some(&b'#'))
 }
 
 /// The first word, and what follows it without the spaces around.
-pub(super) fn keyword(line: &[u8]) -> (&[u8], &[u8]) {
+pub(crate) fn keyword(line: &[u8]) -> (&[u8], &[u8]) {
     let line = line.trim_ascii();
     let end = line.iter().position(u8::is_ascii_whitespace);
     let (word, rest) = line.split_at(end.unwrap_or(line.len()));
@@ -145,32 +153,38 @@ pub(super) fn keyword(line: &[u8]) -> (&[u8], &[u8]) {
 }
 
 /// Bytes as text. What is no UTF-8 is taken as Latin-1, which old exporters wrote.
-pub(super) fn text(bytes: &[u8]) -> Cow<'_, str> {
+pub(crate) fn text(bytes: &[u8]) -> Cow<'_, str> {
     match std::str::from_utf8(bytes) {
         Ok(text) => Cow::Borrowed(text),
         Err(_) => bytes.iter().map(|&byte| char::from(byte)).collect(),
     }
 }
 
+/// The start of a word, as a message shows it: a file of noise has words of any length.
+pub(crate) fn shown(word: &[u8]) -> Cow<'_, str> {
+    const SHOWN: usize = 24;
+    text(&word[..word.len().min(SHOWN)])
+}
+
 /// Why a word is no number that can be used.
-pub(super) fn number(word: &[u8]) -> Result<f32, Problem> {
+pub(crate) fn number(word: &[u8]) -> Result<f32, Problem> {
     let parsed = std::str::from_utf8(word)
         .ok()
         .and_then(|word| word.parse::<f32>().ok());
     match parsed {
         Some(value) if value.is_finite() => Ok(value),
         Some(_) => Err(Problem::NotFinite {
-            what: format!("`{}`", text(word)),
+            what: format!("`{}`", shown(word)),
         }),
         None => Err(Problem::Malformed(format!(
             "`{}` is not a number",
-            text(word)
+            shown(word)
         ))),
     }
 }
 
 /// A name without the quotes around it.
-pub(super) fn unquoted(name: &str) -> &str {
+pub(crate) fn unquoted(name: &str) -> &str {
     let inner = name
         .strip_prefix('"')
         .and_then(|name| name.strip_suffix('"'));

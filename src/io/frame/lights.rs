@@ -1,0 +1,74 @@
+//! Lights as photographers set them up for a thing that has none.
+
+use crate::scene::{DirectionalLamp, Phong, UsesMaterial};
+use bevy::math::{Quat, Vec3};
+use bevy::mesh::Mesh3d;
+use bevy::prelude::{With, World};
+use bevy::transform::components::Transform;
+use std::f32::consts::PI;
+
+/// From what is shown to the key light, seen by a level camera in front of it: over its left shoulder.
+const KEY_FROM: Vec3 = Vec3::new(-0.5, 1.0, 0.8);
+/// To the light that parts what is shown from what is behind it.
+const BACK_FROM: Vec3 = Vec3::new(0.3, 0.6, -1.0);
+/// Together they leave a white surface that faces the key light a radiance below 1.
+const KEY: f32 = 0.6 * PI;
+/// Less than half of the key, so that shapes are told by both, and what the key does not reach can be seen.
+const FILL: f32 = 0.25 * PI;
+const BACK: f32 = 0.2 * PI;
+
+/// The lights for what a camera looks at: names, places, lamps.
+///
+/// The fill comes from where the camera is: all that is seen has some of it, and its shadows fall behind what casts
+/// them. Wide lamps would be softer, and need many samples on whatever shines.
+pub(super) fn studio(eye: Transform) -> [(&'static str, Transform, DirectionalLamp); 3] {
+    let turn = heading(eye);
+    let lamp = |intensity| DirectionalLamp {
+        intensity,
+        ..DirectionalLamp::default()
+    };
+    [
+        ("Key light", from(turn * KEY_FROM), lamp(KEY)),
+        ("Fill light", from(*eye.back()), lamp(FILL)),
+        ("Back light", from(turn * BACK_FROM), lamp(BACK)),
+    ]
+}
+
+/// The only light of a scene: a white surface that faces it has a radiance of 1.
+pub(super) fn sole(eye: Transform) -> (Transform, DirectionalLamp) {
+    let lamp = DirectionalLamp {
+        intensity: PI,
+        ..DirectionalLamp::default()
+    };
+    (from(heading(eye) * KEY_FROM), lamp)
+}
+
+/// How a level camera that looks along -Z turns to look where this one does.
+fn heading(eye: Transform) -> Quat {
+    let back = eye.back();
+    match (back.x, back.z) {
+        // Straight up or down: its own up says where the front is.
+        (x, z) if x.hypot(z) < 1e-3 => Quat::from_rotation_y(-eye.up().x.atan2(-eye.up().z)),
+        (x, z) => Quat::from_rotation_y(x.atan2(z)),
+    }
+}
+
+fn from(direction: Vec3) -> Transform {
+    Transform::from_translation(direction).looking_at(Vec3::ZERO, Vec3::Y)
+}
+
+/// Whether nothing of what is shown would stand out from black.
+pub(super) fn is_dark(world: &mut World) -> bool {
+    /// Of the light that falls on it. Charcoal has 0.04.
+    const DARK: f32 = 0.05;
+    let mut query = world.query_filtered::<(Option<&UsesMaterial>, &Phong), With<Mesh3d>>();
+    let mut is_dark = query.iter(world).map(|(shared, own)| {
+        let shared = shared.and_then(|UsesMaterial(material)| world.get::<Phong>(*material));
+        let phong = shared.unwrap_or(own);
+        let colors = [phong.diffuse, phong.specular, phong.emission];
+        let most = colors.map(|color| color.red.max(color.green).max(color.blue));
+        phong.diffuse_map.is_none() && most.iter().all(|&most| most < DARK)
+    });
+    let any = is_dark.next();
+    any == Some(true) && is_dark.all(|is_dark| is_dark)
+}

@@ -1,0 +1,103 @@
+//! What a model file leaves to whoever shows it: where to look from, and by what light.
+//!
+//! | what is missing | what is added |
+//! |---|---|
+//! | a camera | one that sees as much as can be seen at once: [`viewpoint`] |
+//! | lights | a key, a soft fill and one from behind; grey behind what is dark: [`lights`] |
+//! | light enough | exposure, where the file's own lights leave nearly all of it black: [`exposure`] |
+//!
+//! All of it are ordinary entities and settings of the scene.
+
+mod exposure;
+mod lights;
+mod surface;
+mod viewpoint;
+
+use super::error::Place;
+use super::ids::assign_ids;
+use super::notes::Notes;
+use super::place::world_from;
+use crate::scene::{
+    DirectionalLamp, Environment, ParallelogramLamp, PointLamp, RenderSettings, SceneCamera,
+    SegmentLamp,
+};
+use bevy::color::LinearRgba;
+use bevy::ecs::name::Name;
+use bevy::ecs::query::QueryFilter;
+use bevy::math::Vec3;
+use bevy::prelude::{Bundle, Entity, Or, With, World};
+use bevy::transform::components::Transform;
+use std::path::Path;
+use surface::Surface;
+use viewpoint::framing;
+
+type Lamp = Or<(
+    With<PointLamp>,
+    With<DirectionalLamp>,
+    With<SegmentLamp>,
+    With<ParallelogramLamp>,
+)>;
+
+/// Gives a scene what it lacks to be seen. Notes say what; `file` is where it came from.
+pub(crate) fn frame(world: &mut World, file: &Path, notes: &mut Notes) {
+    let mut note = |what: &str, instead| notes.add(file, Place::Whole, what, instead);
+    let has_lamps = count::<Lamp>(world) > 0;
+    let surface = Surface::of(world);
+    let mut added = Vec::new();
+    let eye = match first_camera(world) {
+        Some(eye) => eye,
+        None => {
+            let eye = framing(&surface);
+            added.push(spawn(world, "Camera", eye, SceneCamera::default()));
+            note("has no camera", "one that shows everything was added");
+            eye
+        }
+    };
+    if !has_lamps {
+        for (name, transform, lamp) in lights::studio(eye) {
+            added.push(spawn(world, name, transform, lamp));
+        }
+        let mut instead = "a key light, a fill light and one from behind were added";
+        if lights::is_dark(world) {
+            world.resource_mut::<Environment>().background = LinearRgba::rgb(0.2, 0.2, 0.2);
+            instead = "a key light, a fill light, one from behind and a grey background were added";
+        }
+        note("has no light", instead);
+    } else if let Some(stops) = exposure::missing(world, &surface) {
+        world.resource_mut::<RenderSettings>().output.exposure = stops;
+        let what =
+            format!("lights so weak that the picture would be nearly black, by {stops} stops");
+        note(&what, "the picture is exposed by as much more");
+    }
+    assign_ids(world, &added);
+}
+
+/// Gives a scene with nothing in it a camera and a light.
+pub(super) fn frame_nothing(world: &mut World) {
+    let eye = framing(&Surface::default());
+    let camera = spawn(world, "Camera", eye, SceneCamera::default());
+    let (transform, lamp) = lights::sole(eye);
+    let light = spawn(world, "Light", transform, lamp);
+    assign_ids(world, &[camera, light]);
+}
+
+/// Where the first camera stands.
+fn first_camera(world: &mut World) -> Option<Transform> {
+    let mut cameras = world.query_filtered::<Entity, With<SceneCamera>>();
+    let camera = cameras.iter(world).next()?;
+    let place = world_from(world, camera);
+    let (forward, up) = (
+        place.transform_vector3(-Vec3::Z),
+        place.transform_vector3(Vec3::Y),
+    );
+    let position = Transform::from_translation(place.translation.into());
+    Some(position.looking_to(forward, up))
+}
+
+fn spawn(world: &mut World, name: &'static str, transform: Transform, what: impl Bundle) -> Entity {
+    world.spawn((Name::new(name), transform, what)).id()
+}
+
+fn count<F: QueryFilter>(world: &mut World) -> usize {
+    world.query_filtered::<Entity, F>().iter(world).count()
+}

@@ -1,0 +1,130 @@
+//! What has been read of a PLY, and what it becomes.
+
+use super::super::Limits;
+use super::super::budget::Growing;
+use super::super::error::{FileError, Place, Problem};
+use super::super::model::triangle_mesh;
+use super::super::notes::Notes;
+use super::body::Fault;
+use bevy::color::Srgba;
+use bevy::mesh::Mesh;
+use std::path::Path;
+
+/// What there is to say, and what reading may take.
+pub(super) struct Work<'a> {
+    pub file: &'a Path,
+    pub limits: &'a Limits,
+    pub notes: Notes,
+    /// The first thing that could not be used: the reason, should nothing be left to show.
+    pub fault: Option<FileError>,
+    memory: Growing<'a>,
+    /// Corners of one face that were spoken for.
+    corners: usize,
+}
+
+impl<'a> Work<'a> {
+    pub fn of(file: &'a Path, limits: &'a Limits) -> Self {
+        Self {
+            file,
+            limits,
+            notes: Notes::default(),
+            fault: None,
+            memory: Growing::of(&limits.memory),
+            corners: 1 << 16,
+        }
+    }
+
+    /// Says that something cannot be used.
+    pub fn fault(&mut self, place: Place, problem: Problem, what: &str, instead: &'static str) {
+        self.notes.add(self.file, place.clone(), what, instead);
+        let file = self.file;
+        self.fault
+            .get_or_insert_with(|| FileError::at(file, place, problem));
+    }
+
+    /// Speaks for the memory of a face's corners, before it is known how many are there.
+    pub fn claim_corners(&mut self, count: usize) -> Result<(), Fault> {
+        const STEP: usize = 1 << 16;
+        /// As numbers, as places, as triangles, and what finding those takes; vectors grow to twice their length.
+        const CORNER: u64 = 2 * (2 * 8 + 12 + 12 + 40);
+        if count > self.corners {
+            let bytes = STEP as u64 * CORNER;
+            self.limits.memory.claim(bytes).map_err(Fault::Final)?;
+            self.corners += STEP;
+        }
+        Ok(())
+    }
+
+    /// Speaks for the memory of what there is so far.
+    pub fn claim(&mut self, content: &Content) -> Result<(), Fault> {
+        let vertices = content.positions.len() as u64;
+        let triangles = content.indices.len() as u64 / 3;
+        let too_many = |what, count, limit| Problem::TooMany { what, count, limit };
+        let limits = self.limits;
+        // Indices are 32 bits wide.
+        if vertices > limits.vertices.min(u32::MAX.into()) {
+            let problem = too_many("vertices", vertices, limits.vertices);
+            return Err(Fault::Final(problem));
+        }
+        if triangles > limits.triangles {
+            let problem = too_many("triangles", triangles, limits.triangles);
+            return Err(Fault::Final(problem));
+        }
+        (self.memory)
+            .reach(vertices, triangles, 1)
+            .map_err(Fault::Final)
+    }
+}
+
+/// A mesh while it grows. Columns are as long as that of positions, or empty.
+#[derive(Default)]
+pub(super) struct Content {
+    /// Those that the file has come first; those made for faces with colours or texture coordinates of their own after.
+    pub positions: Vec<[f32; 3]>,
+    pub normals: Vec<[f32; 3]>,
+    /// v downwards.
+    pub uvs: Vec<[f32; 2]>,
+    /// As screens take them, in [0, 1]; with alpha, which is linear.
+    pub colors: Vec<[f32; 4]>,
+    pub indices: Vec<u32>,
+}
+
+impl Content {
+    pub fn into_mesh(mut self, work: &mut Work) -> Mesh {
+        let is_finite = |position: &[f32; 3]| position.iter().all(|value| value.is_finite());
+        // No face uses them.
+        for position in self.positions.iter_mut().filter(|p| !is_finite(p)) {
+            *position = [0.0; 3];
+        }
+        let repaired = clear(&mut self.normals) | clear(&mut self.uvs);
+        if repaired {
+            let what = "normals or texture coordinates that are not finite numbers";
+            (work.notes).add(work.file, Place::Whole, what, "0 is taken for them");
+        }
+        let is_colored = self.colors.iter().any(|&color| color != [1.0; 4]);
+        let mut mesh = triangle_mesh(self.positions, self.normals, self.uvs, self.indices);
+        if is_colored {
+            let what = "vertex colours";
+            (work.notes).add(work.file, Place::Whole, what, "kept, and not traced");
+            let linear = |[r, g, b, a]: [f32; 4]| {
+                let [r, g, b] = [r, g, b].map(Srgba::gamma_function);
+                [r, g, b, a]
+            };
+            let colors: Vec<[f32; 4]> = self.colors.into_iter().map(linear).collect();
+            mesh.insert_attribute(Mesh::ATTRIBUTE_COLOR, colors);
+        }
+        mesh
+    }
+}
+
+/// Puts 0 in the place of what is not finite; true where there was any.
+fn clear<const N: usize>(values: &mut [[f32; N]]) -> bool {
+    let mut any = false;
+    for value in values {
+        if !value.iter().all(|value| value.is_finite()) {
+            *value = [0.0; N];
+            any = true;
+        }
+    }
+    any
+}

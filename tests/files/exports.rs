@@ -1,0 +1,96 @@
+//! What a model file cannot say of a scene is told when it is written.
+
+use super::app::app;
+use bevy::asset::Assets;
+use bevy::ecs::hierarchy::ChildOf;
+use bevy::ecs::name::Name;
+use bevy::math::Vec3;
+use bevy::mesh::{Mesh, Mesh3d};
+use bevy::prelude::World;
+use bevy::transform::components::Transform;
+use glassbox::io::save;
+use glassbox::scene::*;
+
+/// A scene with something of everything that not every format has.
+fn scene(world: &mut World) {
+    let parent = world.spawn((SceneId(1), Transform::default())).id();
+    let cube = MeshSource::Shape(Shape::Cuboid { size: Vec3::ONE });
+    world.spawn((
+        SceneId(2),
+        Name::new("cube"),
+        ChildOf(parent),
+        cube,
+        Motion::default(),
+    ));
+    for id in 3..6 {
+        world.spawn((SceneId(id), SegmentLamp::default()));
+    }
+    let soft = DirectionalLamp {
+        angular_diameter: 1.0,
+        ..DirectionalLamp::default()
+    };
+    world.spawn((SceneId(6), Name::new("sky"), soft));
+    world.spawn((SceneId(7), SceneCamera::default(), Lens::default()));
+    world.resource_mut::<Environment>().intensity = 2.0;
+    world.resource_mut::<RenderSettings>().output.exposure = 1.0;
+}
+
+#[test]
+fn each_kind_of_thing_that_a_format_cannot_say_is_one_note_with_its_number() {
+    let folder = tempfile::tempdir().unwrap();
+    let both = [
+        ("segment lights; left out (3 times)", 3),
+        ("motions; left out", 1),
+        ("lenses; left out", 1),
+        ("the environment; left out", 1),
+        ("the render settings; left out", 1),
+    ];
+    let of_obj = [
+        ("point and directional lights; left out", 1),
+        ("cameras; left out", 1),
+        ("objects below others; written where they stand", 1),
+    ];
+    let of_glb = [("an angular diameter of the light `sky`; left out", 1)];
+    for (name, own) in [
+        ("a.obj", &of_obj[..]),
+        ("a.glb", &of_glb),
+        ("a.scn.ron", &[]),
+    ] {
+        let mut app = app();
+        scene(app.world_mut());
+        app.update();
+        let file = folder.path().join(name);
+        let notes = save(app.world_mut(), &file).unwrap();
+        let expected: Vec<_> = match name {
+            "a.scn.ron" => Vec::new(),
+            _ => both.iter().chain(own).collect(),
+        };
+        for (text, count) in &expected {
+            let line = format!("{}: {text}", file.display());
+            let is_it = |note: &&_| ToString::to_string(*note).starts_with(&line);
+            let said: Vec<_> = notes.iter().filter(is_it).collect();
+            assert_eq!(said.len(), 1, "{line} in {:#?}", notes.lines());
+            assert_eq!(said[0].count, *count, "{line}");
+        }
+        assert_eq!(notes.len(), expected.len(), "{:#?}", notes.lines());
+    }
+}
+
+#[test]
+fn vertex_colours_are_not_lost_without_a_word() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\no leaf\nf 1 2 3\n";
+    let file = super::app::write(folder.path(), "a.obj", text);
+    let (mut app, _) = super::app::opened(&file);
+    let world = app.world_mut();
+    let mut meshes = world.query::<&Mesh3d>();
+    let handle = meshes.single(world).unwrap().0.clone();
+    let mesh = world.resource::<Assets<Mesh>>().get(&handle).unwrap();
+    assert!(mesh.contains_attribute(Mesh::ATTRIBUTE_COLOR));
+    for name in ["b.obj", "b.glb"] {
+        let notes = save(app.world_mut(), &folder.path().join(name));
+        let lines = notes.unwrap().lines();
+        let is_it = |line: &&String| line.contains("vertex colours of `leaf`; left out");
+        assert_eq!(lines.iter().filter(is_it).count(), 1, "{name}: {lines:?}");
+    }
+}

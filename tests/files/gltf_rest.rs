@@ -1,0 +1,72 @@
+//! What stands where in a glTF file: morph weights, skins, instances.
+
+use super::gltf::{POSITIONS, base64, corners, document, place, plain};
+use super::models::objects;
+use bevy::math::Vec3;
+use bevy::mesh::Mesh3d;
+use serde_json::json;
+
+#[test]
+fn morph_weights_and_skins_stand_as_the_file_starts_with_them() {
+    let primitive =
+        json!({ "attributes": { "POSITION": 0 }, "indices": 2, "targets": [{ "POSITION": 0 }] });
+    for (of_mesh, of_node, factor) in [(0.5, None, 1.5), (0.5, Some(2.0), 3.0)] {
+        let (mut app, _) = document(primitive.clone(), |d| {
+            d["meshes"][0]["weights"] = json!([of_mesh]);
+            if let Some(weight) = of_node {
+                d["nodes"][0]["weights"] = json!([weight]);
+            }
+        });
+        assert_eq!(corners(&mut app)[0][1], factor * Vec3::from(POSITIONS[1]));
+    }
+    let primitive =
+        json!({ "attributes": { "POSITION": 0, "JOINTS_0": 3, "WEIGHTS_0": 4 }, "indices": 2 });
+    let (mut app, notes) = document(primitive, |d| {
+        // All weight on the first joint: bytes of zeros, and of ones behind every fourth.
+        let bytes = [[0_u8; 20], [255, 0, 0, 0].repeat(5).try_into().unwrap()].concat();
+        let uri = format!("data:application/octet-stream;base64,{}", base64(&bytes));
+        d["buffers"]
+            .as_array_mut()
+            .unwrap()
+            .push(json!({ "byteLength": 40, "uri": uri }));
+        let views = d["bufferViews"].as_array_mut().unwrap();
+        views.push(json!({ "buffer": 1, "byteLength": 20 }));
+        views.push(json!({ "buffer": 1, "byteOffset": 20, "byteLength": 20 }));
+        let accessors = d["accessors"].as_array_mut().unwrap();
+        for (view, normalized) in [(3, false), (4, true)] {
+            accessors.push(
+                json!({ "bufferView": view, "componentType": 5121, "count": 5,
+                "type": "VEC4", "normalized": normalized }),
+            );
+        }
+        d["skins"] = json!([{ "joints": [1] }]);
+        d["nodes"] = json!([
+            { "mesh": 0, "skin": 0, "translation": [50.0, 0.0, 0.0] },
+            { "name": "bone", "translation": [0.0, 3.0, 0.0], "scale": [2.0, 2.0, 2.0] },
+        ]);
+        d["scenes"] = json!([{ "nodes": [0, 1] }]);
+    });
+    let expected = 2.0 * Vec3::from(POSITIONS[1]) + Vec3::new(0.0, 3.0, 0.0);
+    let found = corners(&mut app)[0][1];
+    assert!(found.abs_diff_eq(expected, 1e-5), "{found}: {notes:?}");
+    let world = app.world_mut();
+    let mut shown = world
+        .query_filtered::<&bevy::transform::components::Transform, bevy::prelude::With<Mesh3d>>();
+    let places: Vec<_> = shown.iter(world).map(|place| place.translation).collect();
+    assert_eq!(places, [Vec3::ZERO], "the joint places it, not the node");
+}
+
+#[test]
+fn a_mesh_that_is_instanced_is_there_as_often() {
+    let (mut app, notes) = document(plain(), |d| {
+        // The positions serve as places.
+        let instancing = json!({ "attributes": { "TRANSLATION": 0 } });
+        d["nodes"][0]["extensions"] = json!({ "EXT_mesh_gpu_instancing": instancing });
+        d["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]);
+    });
+    assert_eq!(objects(app.world_mut()).len(), POSITIONS.len(), "{notes:?}");
+    for (i, [x, y, z]) in POSITIONS.into_iter().enumerate() {
+        let place = place(app.world_mut(), &format!("node/{i}"));
+        assert_eq!(place.translation, Vec3::new(x, y, z).into());
+    }
+}

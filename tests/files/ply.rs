@@ -1,0 +1,232 @@
+//! PLY as scanners and MeshLab write it.
+
+use super::app::{opened, write};
+use super::models::objects;
+use bevy::mesh::{Mesh, Mesh3d, MeshVertexAttribute, VertexAttributeValues};
+use bevy::prelude::{App, Assets};
+use glassbox::io::save;
+use std::path::PathBuf;
+
+const XYZ: &str = "property float x\nproperty float y\nproperty float z\n";
+const FACES: &str = "property list uchar int vertex_indices\n";
+
+/// An ASCII file of these elements and numbers.
+fn ascii(elements: &str, numbers: &str) -> String {
+    format!("ply\nformat ascii 1.0\n{elements}end_header\n{numbers}")
+}
+
+/// A square with what its vertices and faces have besides.
+fn square(vertex: &str, face: &str, [a, b, c, d]: [&str; 4], faces: &[&str]) -> String {
+    let count = faces.len();
+    let elements = format!("element vertex 4\n{XYZ}{vertex}element face {count}\n{FACES}{face}");
+    let faces = faces.join("\n");
+    ascii(
+        &elements,
+        &format!("0 0 0 {a}\n1 0 0 {b}\n1 1 0 {c}\n0 1 0 {d}\n{faces}\n"),
+    )
+}
+
+/// The app, and what was said of the file itself.
+fn open(content: impl AsRef<[u8]>) -> (App, Vec<String>) {
+    let folder = tempfile::tempdir().unwrap();
+    let (app, opened) = opened(&write(folder.path(), "scan.ply", content));
+    let lines = opened.notes.lines().into_iter();
+    (app, lines.filter(|line| !line.contains("added")).collect())
+}
+
+fn attribute(app: &mut App, id: MeshVertexAttribute) -> Option<VertexAttributeValues> {
+    let world = app.world_mut();
+    let handle = world.query::<&Mesh3d>().single(world).unwrap().0.clone();
+    let mesh = world.resource::<Assets<Mesh>>().get(&handle).unwrap();
+    mesh.attribute(id).cloned()
+}
+
+fn corpus(name: &str) -> Vec<u8> {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/bad_input/corpus");
+    std::fs::read(folder.join(name)).unwrap()
+}
+
+#[test]
+fn binary_of_both_orders_of_bytes_says_the_same_as_text() {
+    let text = "element vertex 4\nproperty double x\nproperty double y\nproperty double z\nproperty float nx\n\
+        property float ny\nproperty float nz\nelement face 1\nproperty list uchar ushort vertex_index\n\
+        property list uchar float texcoord\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n\
+        element tristrips 1\nproperty list int int vertex_indices\n";
+    // Lines mean nothing to what reads number after number.
+    let numbers = "0 0 0 0 0 1 1 0 0 0 0 1\n1 1 0 0 0 1 0 1 0 0 0 1 4 0 1 2 3 8 0 0 1 0 1 1 0 1 200 100 50\n\
+        7 0 1 3 -1 1 2 3";
+    let mut all = Vec::new();
+    for content in [
+        corpus("little.ply"),
+        corpus("big.ply"),
+        ascii(text, numbers).into_bytes(),
+    ] {
+        let (mut app, told) = open(content);
+        assert_eq!(told.len(), 1, "{told:?}");
+        assert!(told[0].contains("vertex colours"), "{told:?}");
+        let triangles = objects(app.world_mut())[0].2.clone();
+        assert_eq!(
+            triangles.len(),
+            4,
+            "a square and a strip of one and one triangle"
+        );
+        let normals = attribute(&mut app, Mesh::ATTRIBUTE_NORMAL);
+        let uvs = attribute(&mut app, Mesh::ATTRIBUTE_UV_0);
+        all.push(format!("{triangles:?} {normals:?} {uvs:?}"));
+        let Some(VertexAttributeValues::Float32x4(colors)) =
+            attribute(&mut app, Mesh::ATTRIBUTE_COLOR)
+        else {
+            panic!("no colours");
+        };
+        // Files hold them as screens take them: 200 of 255 is 0.578 of the light.
+        assert!((colors[0][0] - 0.5776).abs() < 1e-3, "{colors:?}");
+    }
+    assert_eq!(all[0], all[1]);
+    assert_eq!(all[0], all[2]);
+}
+
+#[test]
+fn polygons_are_triangulated_by_their_shape() {
+    let arrow = "0 0 0 4 0 0 4 4 0 2 1 0 0 4 0";
+    let elements = format!("element vertex 5\n{XYZ}element face 1\n{FACES}");
+    let (mut app, told) = open(ascii(&elements, &format!("{arrow} 5 0 1 2 3 4")));
+    assert_eq!(told, [""; 0]);
+    let triangles = &objects(app.world_mut())[0].2;
+    let area = |&[a, b, c]: &[[f32; 3]; 3]| {
+        0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+    };
+    assert_eq!(triangles.iter().map(area).sum::<f32>(), 10.0);
+}
+
+#[test]
+fn strips_turn_every_second_triangle_around() {
+    let elements = format!(
+        "element vertex 5\n{XYZ}element tristrips 1\nproperty list int int vertex_indices\n"
+    );
+    let points = "0 0 0 1 0 0 0 1 0 1 1 0 0 2 0";
+    let (mut app, told) = open(ascii(&elements, &format!("{points} 6 0 1 2 3 3 4")));
+    assert_eq!(told, [""; 0]);
+    let triangles = &objects(app.world_mut())[0].2;
+    assert_eq!(
+        triangles.len(),
+        2,
+        "a repeated vertex is no triangle: {triangles:?}"
+    );
+    let faces_up =
+        |&[a, b, c]: &[[f32; 3]; 3]| (b[0] - a[0]) * (c[1] - a[1]) > (b[1] - a[1]) * (c[0] - a[0]);
+    assert!(triangles.iter().all(faces_up), "{triangles:?}");
+}
+
+#[test]
+fn a_picture_is_the_material_and_its_coordinates_count_from_the_bottom() {
+    let folder = tempfile::tempdir().unwrap();
+    let picture = folder.path().join("Wall.png");
+    glassbox::io::write_picture(&picture, 2, 1, &[[0.5; 3], [1.0; 3]]).unwrap();
+    let uvs = "property float s\nproperty float t\n";
+    let text = square(uvs, "", ["0 0", "1 0", "1 1", "0 1"], &["4 0 1 2 3"]);
+    let text = text.replace(
+        "format ascii 1.0\n",
+        "format ascii 1.0\ncomment TextureFile wall.png\n",
+    );
+    let (mut app, opened) = opened(&write(folder.path(), "scan.ply", &text));
+    let lines = opened.notes.lines();
+    assert!(
+        lines.iter().any(|line| line.contains("spelt otherwise")),
+        "{lines:?}"
+    );
+    let before = objects(app.world_mut());
+    let map = before[0].1.diffuse_map.as_ref();
+    assert_eq!(map.map(|map| map.path.as_str()), Some("Wall.png"));
+    let expected =
+        VertexAttributeValues::Float32x2(vec![[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]]);
+    assert_eq!(attribute(&mut app, Mesh::ATTRIBUTE_UV_0), Some(expected));
+    let scene = folder.path().join("scene.scn.ron");
+    save(app.world_mut(), &scene).unwrap();
+    let (mut app, _) = super::app::opened(&scene);
+    assert_eq!(objects(app.world_mut()), before);
+    let (_, told) = open(&text);
+    assert!(
+        told[0].contains("there is no picture `wall.png`; shown without"),
+        "{told:?}"
+    );
+}
+
+#[test]
+fn faces_that_share_a_vertex_and_disagree_about_it_have_each_their_own() {
+    let uvs = "property list uchar float texcoord\n";
+    let faces = ["3 0 1 2 6 0 0 1 0 1 1", "3 0 2 3 6 0 0 1 1 0.5 0.5"];
+    let (mut app, told) = open(square("", uvs, [""; 4], &faces));
+    assert_eq!(told, [""; 0]);
+    let Some(VertexAttributeValues::Float32x2(uvs)) = attribute(&mut app, Mesh::ATTRIBUTE_UV_0)
+    else {
+        panic!("no texture coordinates");
+    };
+    assert_eq!(uvs.len(), 4, "they agree");
+    let faces = ["3 0 1 2 6 0 0 1 0 1 1", "3 0 2 3 6 0.5 0 1 1 0.5 0.5"];
+    let (mut app, _) = open(square(
+        "",
+        "property list uchar float texcoord\n",
+        [""; 4],
+        &faces,
+    ));
+    let count = attribute(&mut app, Mesh::ATTRIBUTE_UV_0).map(|uvs| uvs.len());
+    assert_eq!(count, Some(5));
+}
+
+#[test]
+fn what_cannot_be_used_of_a_ply_is_told_and_the_rest_is_shown() {
+    let one = "3 0 1 2";
+    let plain = |faces: &[&str]| square("", "", [""; 4], faces);
+    let more = |text: String| text.replace("element face 2", "element face 3");
+    for (content, note) in [
+        (plain(&[one, "2 0 1"]), "fewer than 3 corners; left out"),
+        (
+            plain(&[one, "3 0 1 4"]),
+            "a corner that cannot be used; left out",
+        ),
+        (
+            plain(&[one, "3 0 1 -1"]),
+            "a corner that cannot be used; left out",
+        ),
+        (
+            plain(&[one, "3 0 1 nan"]),
+            "a corner that cannot be used; left out",
+        ),
+        (
+            plain(&[one, "-3 0 1 3"]),
+            "a length of -3; what comes before is shown",
+        ),
+        (
+            plain(&[one, "3 0 one 3"]),
+            "scan.ply:15: `one` is not a number; what comes before",
+        ),
+        (more(plain(&[one, "1 0"])), "ends too early"),
+        (
+            plain(&[one]) + "7\n",
+            "something behind its last element; left out",
+        ),
+        (
+            square("property float quality\n", "", ["1"; 4], &[one]),
+            "`quality`; left out",
+        ),
+        (
+            square("", "property int flags\n", [""; 4], &["3 0 1 2 7"]),
+            "`flags`; left out",
+        ),
+        (
+            plain(&[one]).replace(" 1.0\n", " 2.0\n"),
+            "version `2.0` of PLY; read as",
+        ),
+    ] {
+        let (mut app, told) = open(&content);
+        assert!(
+            told.iter().any(|line| line.contains(note)),
+            "{note}: {told:?}"
+        );
+        assert_eq!(objects(app.world_mut())[0].2.len(), 1, "{note}");
+    }
+    let hole = plain(&[one, "3 0 2 3"]).replace("0 1 0 \n", "0 nan 0\n");
+    let (mut app, told) = open(hole);
+    assert!(told[0].contains("a corner that cannot be used"), "{told:?}");
+    assert_eq!(objects(app.world_mut())[0].2.len(), 1);
+}
