@@ -200,21 +200,18 @@ impl<'a, S: InstructionSet> Packet<'a, S> {
     #[inline(always)]
     fn new(rays: &'a [Ray]) -> Self {
         let zero = S::Packet::splat(0.0);
-        let mut columns = [zero.to_array(); 8];
-        for (lane, ray) in rays.iter().enumerate() {
+        let mut rows = [[0.0; 8]; 16];
+        for (row, ray) in rows.iter_mut().zip(rays) {
             let (from, along) = (ray.origin, ray.direction);
-            let numbers = [
+            *row = [
                 from.x, from.y, from.z, along.x, along.y, along.z, ray.t_max, ray.time,
             ];
-            for (column, number) in columns.iter_mut().zip(numbers) {
-                column.as_mut()[lane] = number;
-            }
         }
-        let [_, _, _, _, _, _, end, time] = &columns;
-        let (end, time) = (S::Packet::load(end), S::Packet::load(time));
+        let columns = S::Packet::columns(&rows);
+        let [.., end, time] = columns;
         // -0.0 becomes +0.0, so that both mean the same.
-        let origin = by_axis!(|i| S::Packet::load(&columns[i]).add(zero));
-        let direction = by_axis!(|i| S::Packet::load(&columns[3 + i]).add(zero));
+        let origin = by_axis!(|i| columns[i].add(zero));
+        let direction = by_axis!(|i| columns[3 + i].add(zero));
         let longest = largest_size(&direction);
         let ordinary = S::Packet::splat(1.0 / ORDINARY);
         let reach = S::Packet::splat(REACH);
@@ -392,14 +389,21 @@ impl Arrangement for TwoLevels<'_> {
         let ways = Ways::of(&rays);
         let mut left = packet.lanes;
         while let Some(group) = ways.next_group(&mut left) {
-            let view = View::<S>::new(&rays, &group);
+            let mut view = View::<S>::new(&rays, &group);
             let mut leaves = PacketOfInstances::<S, G> {
                 scene,
                 places,
                 packet,
                 goal: PhantomData,
             };
-            walk_packet::<S, G>(&scene.wide, stack, &view, group.lanes, found, &mut leaves);
+            walk_packet::<S, G>(
+                &scene.wide,
+                stack,
+                &mut view,
+                group.lanes,
+                found,
+                &mut leaves,
+            );
         }
     }
 }
@@ -517,7 +521,14 @@ struct PacketOfInstances<'a, S: InstructionSet, G> {
 
 impl<S: InstructionSet, G: Goal> PacketLeaves<S> for PacketOfInstances<'_, S, G> {
     #[inline(always)]
-    fn visit(&mut self, leaf: u32, lanes: u32, found: &mut Found<S::Packet>, stack: &mut [u64]) {
+    fn visit(
+        &mut self,
+        leaf: u32,
+        lanes: u32,
+        _: &mut View<S>,
+        found: &mut Found<S::Packet>,
+        stack: &mut [u64],
+    ) {
         let packet = self.packet;
         for &number in &self.places[self.scene.wide_leaves[leaf as usize].clone()] {
             let instance = &self.scene.instances()[number as usize];

@@ -19,6 +19,8 @@ pub(crate) trait Lanes: Copy {
     fn splat(x: f32) -> Self;
     /// From memory.
     fn load(from: &Self::Array) -> Self;
+    /// Columns: the `i`th has the `i`th number of each row. As many of the rows as there are lanes.
+    fn columns(rows: &[[f32; 8]; 16]) -> [Self; 8];
     /// To memory.
     fn to_array(self) -> Self::Array;
     /// Sum.

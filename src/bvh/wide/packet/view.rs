@@ -13,18 +13,19 @@ pub(crate) struct View<S: InstructionSet> {
     pub(super) far_origin: [S::Packet; 3],
     pub(super) inverse: [S::Packet; 3],
     bounds: Bounds<S::Eight>,
-    pub(super) frame: Frame<S::Packet>,
+    frame: Option<Frame<S::Packet>>,
+    /// The longest component of the directions.
+    axis: usize,
     /// Along which axes the rays go backwards.
     pub(super) backwards: [bool; 3],
 }
 
 /// The rays' frame, as [`Shear`](crate::bvh::triangle::Shear) has it of one.
-pub(super) struct Frame<L: Lanes> {
+#[derive(Clone, Copy)]
+pub(super) struct Frame<L> {
     pub(super) axes: [usize; 3],
     pub(super) from: [L; 3],
     pub(super) slope: [L; 2],
-    pub(super) origin: [L::Doubles; 3],
-    pub(super) direction: [L::Doubles; 3],
 }
 
 /// Bounds of all rays, eight times over.
@@ -72,8 +73,19 @@ impl<S: InstructionSet> View<S> {
             far_origin,
             inverse: rays.inverse,
             bounds,
-            frame: Frame::new(rays, group.axis),
+            // Made at the first leaf: many packets meet none.
+            frame: None,
+            axis: group.axis,
             backwards,
+        }
+    }
+
+    /// The rays' frame.
+    #[inline(always)]
+    pub(super) fn frame(&mut self, rays: &PacketRays<S::Packet>) -> Frame<S::Packet> {
+        match self.frame {
+            Some(frame) => frame,
+            None => *self.frame.insert(Frame::new(rays, self.axis)),
         }
     }
 
@@ -144,8 +156,6 @@ impl<L: Lanes> Frame<L> {
             axes,
             from: by_axis!(|i| rays.origin[axes[i]]),
             slope: [along[0].div(along[2]), along[1].div(along[2])],
-            origin: by_axis!(|i| rays.origin[i].widen()),
-            direction: by_axis!(|i| rays.direction[i].widen()),
         }
     }
 
