@@ -4,7 +4,7 @@
 use std::marker::PhantomData;
 
 #[cfg(test)]
-use super::wide::Portable;
+use super::wide::answer_with_each;
 use super::{
     aggregate::{Aggregate, Places},
     goal::{Any, Goal, Nearest},
@@ -91,13 +91,46 @@ impl Aggregate {
 
 #[cfg(test)]
 impl Aggregate {
-    /// What [`Aggregate::closest_hits`] and [`Aggregate::occlusions`] find on a machine without vector instructions.
-    pub(super) fn ask_portably(&self, order: Order, rays: &[Ray]) -> (Vec<Option<Hit>>, Vec<bool>) {
+    /// What [`Aggregate::closest_hits_in`] and [`Aggregate::occlusions_in`] find with each instruction set of this
+    /// machine; the names of those that it lacks.
+    pub(super) fn ask_with_each(
+        &self,
+        order: Order,
+        rays: &[Ray],
+        mut check: impl FnMut(&str, Vec<Option<Hit>>, Vec<bool>),
+    ) -> Vec<&'static str> {
+        let both = || Both {
+            aggregate: self,
+            order,
+            rays,
+        };
+        answer_with_each(both, |name, (hits, occluded)| check(name, hits, occluded))
+    }
+}
+
+#[cfg(test)]
+struct Both<'a> {
+    aggregate: &'a Aggregate,
+    order: Order,
+    rays: &'a [Ray],
+}
+
+#[cfg(test)]
+impl Query for Both<'_> {
+    type Answer = (Vec<Option<Hit>>, Vec<bool>);
+
+    #[inline(always)]
+    fn ask<S: InstructionSet>(self) -> Self::Answer {
+        let Self {
+            aggregate,
+            order,
+            rays,
+        } = self;
         let (mut all_hits, mut all_occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
         let (hits, occluded) = (all_hits.as_mut_slice(), all_occluded.as_mut_slice());
-        arranged!(self, of => {
-            Closest { of, order, rays, hits }.ask::<Portable>();
-            AnyOf { of, order, rays, occluded }.ask::<Portable>();
+        arranged!(aggregate, of => {
+            Closest { of, order, rays, hits }.ask::<S>();
+            AnyOf { of, order, rays, occluded }.ask::<S>();
         });
         (all_hits, all_occluded)
     }

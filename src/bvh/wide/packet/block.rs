@@ -32,20 +32,17 @@ impl TriangleBlock {
         instance: u32,
         found: &mut Found<S::Packet>,
     ) {
+        let bounds = &self.boxes::<S::Eight>();
+        let entered = view.may_enter(bounds, found.farthest);
+        if entered == 0 {
+            return;
+        }
         let frame = view.frame(rays);
-        let mut boxes = None;
         let mut is_nearer = false;
-        for lane in 0..Self::CAPACITY {
-            if self.is_empty(lane) {
-                break;
-            }
+        for lane in lanes_of(entered) {
             let (passed, edges) = self.edges_of::<S>(lane, &frame);
             let passed = passed & if G::ANY { lanes & found.active } else { lanes };
             if passed != 0 {
-                let bounds = match &boxes {
-                    Some(boxes) => boxes,
-                    None => &*boxes.insert(self.boxes::<S::Eight>()),
-                };
                 let test = Test {
                     triangle: lane,
                     bounds,
