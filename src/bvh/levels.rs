@@ -4,7 +4,7 @@
 use std::marker::PhantomData;
 
 #[cfg(test)]
-use super::wide::Portable;
+use super::wide::answer_with_each;
 use super::{
     aggregate::{Aggregate, Places},
     goal::{Any, Goal, Nearest},
@@ -91,13 +91,46 @@ impl Aggregate {
 
 #[cfg(test)]
 impl Aggregate {
-    /// What [`Aggregate::closest_hits`] and [`Aggregate::occlusions`] find on a machine without vector instructions.
-    pub(super) fn ask_portably(&self, order: Order, rays: &[Ray]) -> (Vec<Option<Hit>>, Vec<bool>) {
+    /// What [`Aggregate::closest_hits_in`] and [`Aggregate::occlusions_in`] find with each instruction set of this
+    /// machine; the names of those that it lacks.
+    pub(super) fn ask_with_each(
+        &self,
+        order: Order,
+        rays: &[Ray],
+        mut check: impl FnMut(&str, Vec<Option<Hit>>, Vec<bool>),
+    ) -> Vec<&'static str> {
+        let both = || Both {
+            aggregate: self,
+            order,
+            rays,
+        };
+        answer_with_each(both, |name, (hits, occluded)| check(name, hits, occluded))
+    }
+}
+
+#[cfg(test)]
+struct Both<'a> {
+    aggregate: &'a Aggregate,
+    order: Order,
+    rays: &'a [Ray],
+}
+
+#[cfg(test)]
+impl Query for Both<'_> {
+    type Answer = (Vec<Option<Hit>>, Vec<bool>);
+
+    #[inline(always)]
+    fn ask<S: InstructionSet>(self) -> Self::Answer {
+        let Self {
+            aggregate,
+            order,
+            rays,
+        } = self;
         let (mut all_hits, mut all_occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
         let (hits, occluded) = (all_hits.as_mut_slice(), all_occluded.as_mut_slice());
-        arranged!(self, of => {
-            Closest { of, order, rays, hits }.ask::<Portable>();
-            AnyOf { of, order, rays, occluded }.ask::<Portable>();
+        arranged!(aggregate, of => {
+            Closest { of, order, rays, hits }.ask::<S>();
+            AnyOf { of, order, rays, occluded }.ask::<S>();
         });
         (all_hits, all_occluded)
     }
@@ -200,21 +233,18 @@ impl<'a, S: InstructionSet> Packet<'a, S> {
     #[inline(always)]
     fn new(rays: &'a [Ray]) -> Self {
         let zero = S::Packet::splat(0.0);
-        let mut columns = [zero.to_array(); 8];
-        for (lane, ray) in rays.iter().enumerate() {
+        let mut rows = [[0.0; 8]; 16];
+        for (row, ray) in rows.iter_mut().zip(rays) {
             let (from, along) = (ray.origin, ray.direction);
-            let numbers = [
+            *row = [
                 from.x, from.y, from.z, along.x, along.y, along.z, ray.t_max, ray.time,
             ];
-            for (column, number) in columns.iter_mut().zip(numbers) {
-                column.as_mut()[lane] = number;
-            }
         }
-        let [_, _, _, _, _, _, end, time] = &columns;
-        let (end, time) = (S::Packet::load(end), S::Packet::load(time));
+        let columns = S::Packet::columns(&rows);
+        let [.., end, time] = columns;
         // -0.0 becomes +0.0, so that both mean the same.
-        let origin = by_axis!(|i| S::Packet::load(&columns[i]).add(zero));
-        let direction = by_axis!(|i| S::Packet::load(&columns[3 + i]).add(zero));
+        let origin = by_axis!(|i| columns[i].add(zero));
+        let direction = by_axis!(|i| columns[3 + i].add(zero));
         let longest = largest_size(&direction);
         let ordinary = S::Packet::splat(1.0 / ORDINARY);
         let reach = S::Packet::splat(REACH);
@@ -392,14 +422,21 @@ impl Arrangement for TwoLevels<'_> {
         let ways = Ways::of(&rays);
         let mut left = packet.lanes;
         while let Some(group) = ways.next_group(&mut left) {
-            let view = View::<S>::new(&rays, &group);
+            let mut view = View::<S>::new(&rays, &group);
             let mut leaves = PacketOfInstances::<S, G> {
                 scene,
                 places,
                 packet,
                 goal: PhantomData,
             };
-            walk_packet::<S, G>(&scene.wide, stack, &view, group.lanes, found, &mut leaves);
+            walk_packet::<S, G>(
+                &scene.wide,
+                stack,
+                &mut view,
+                group.lanes,
+                found,
+                &mut leaves,
+            );
         }
     }
 }
@@ -517,7 +554,14 @@ struct PacketOfInstances<'a, S: InstructionSet, G> {
 
 impl<S: InstructionSet, G: Goal> PacketLeaves<S> for PacketOfInstances<'_, S, G> {
     #[inline(always)]
-    fn visit(&mut self, leaf: u32, lanes: u32, found: &mut Found<S::Packet>, stack: &mut [u64]) {
+    fn visit(
+        &mut self,
+        leaf: u32,
+        lanes: u32,
+        _: &mut View<S>,
+        found: &mut Found<S::Packet>,
+        stack: &mut [u64],
+    ) {
         let packet = self.packet;
         for &number in &self.places[self.scene.wide_leaves[leaf as usize].clone()] {
             let instance = &self.scene.instances()[number as usize];

@@ -202,15 +202,21 @@ impl MeshTree {
         found: &mut Found<S::Packet>,
         stack: &mut [u64],
     ) {
-        let view = View::<S>::new(rays, group);
+        let mut view = View::<S>::new(rays, group);
         let mut leaves = PacketOfMesh::<S, G> {
             mesh: self,
             rays,
-            view: &view,
             instance,
             goal: PhantomData,
         };
-        wide::walk_packet::<S, G>(&self.wide, stack, &view, group.lanes, found, &mut leaves);
+        wide::walk_packet::<S, G>(
+            &self.wide,
+            stack,
+            &mut view,
+            group.lanes,
+            found,
+            &mut leaves,
+        );
     }
 
     /// Walks the tree along a ray in object space, from the first `t` of the span to the second, the limit. `at(triangle
@@ -305,16 +311,22 @@ impl<E: Eight, At: FnMut(u32, Crossing, f32) -> f32, G: Goal> Leaves<E> for Mesh
 struct PacketOfMesh<'a, S: InstructionSet, G> {
     mesh: &'a MeshTree,
     rays: &'a PacketRays<S::Packet>,
-    view: &'a View<S>,
     instance: u32,
     goal: PhantomData<G>,
 }
 
 impl<S: InstructionSet, G: Goal> PacketLeaves<S> for PacketOfMesh<'_, S, G> {
     #[inline(always)]
-    fn visit(&mut self, leaf: u32, lanes: u32, found: &mut Found<S::Packet>, _: &mut [u64]) {
+    fn visit(
+        &mut self,
+        leaf: u32,
+        lanes: u32,
+        view: &mut View<S>,
+        found: &mut Found<S::Packet>,
+        _: &mut [u64],
+    ) {
         for block in &self.mesh.blocks[leaf as usize..] {
-            block.cross_packet::<S, G>(self.view, lanes, self.instance, found);
+            block.cross_packet::<S, G>(self.rays, view, lanes, self.instance, found);
             if !block.continues() {
                 break;
             }

@@ -3,7 +3,9 @@
 use glam::Vec3;
 
 /// A half-open piece of a line: the points `origin + t · direction` with `0 < t < t_max`.
+// In this order, so that a packet reads eight numbers at once.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Ray {
     /// Where it starts, in world space. A coordinate that is not finite, or beyond [`super::REACH`], makes the ray a miss.
     pub origin: Vec3,

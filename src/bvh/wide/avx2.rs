@@ -76,6 +76,24 @@ macro_rules! halves {
     )*};
 }
 
+/// Four numbers of four rows, column by column: columns 0 to 3 in the lower half, and 4 to 7 in the upper.
+#[inline(always)]
+fn four_rows(a: &[f32; 8], b: &[f32; 8], c: &[f32; 8], d: &[f32; 8]) -> [__m256; 4] {
+    let (a, b) = (Avx2::load(a).0, Avx2::load(b).0);
+    let (c, d) = (Avx2::load(c).0, Avx2::load(d).0);
+    // SAFETY: only this file's instruction set comes here, whose type is private; no memory is touched.
+    unsafe {
+        let (ab, ab_high) = (_mm256_unpacklo_ps(a, b), _mm256_unpackhi_ps(a, b));
+        let (cd, cd_high) = (_mm256_unpacklo_ps(c, d), _mm256_unpackhi_ps(c, d));
+        [
+            _mm256_shuffle_ps::<0x44>(ab, cd),
+            _mm256_shuffle_ps::<0xee>(ab, cd),
+            _mm256_shuffle_ps::<0x44>(ab_high, cd_high),
+            _mm256_shuffle_ps::<0xee>(ab_high, cd_high),
+        ]
+    }
+}
+
 impl Lanes for Avx2 {
     type Array = [f32; 8];
     type Mask = __m256;
@@ -87,6 +105,22 @@ impl Lanes for Avx2 {
     fn load(from: &[f32; 8]) -> Self {
         // SAFETY: AVX is there, by the privacy of this type; the reference is good for 32 bytes, at any alignment.
         Self(unsafe { _mm256_loadu_ps(from.as_ptr()) })
+    }
+
+    #[inline(always)]
+    fn columns(rows: &[[f32; 8]; 16]) -> [Self; 8] {
+        let [a, b, c, d] = four_rows(&rows[0], &rows[1], &rows[2], &rows[3]);
+        let [e, f, g, h] = four_rows(&rows[4], &rows[5], &rows[6], &rows[7]);
+        let halves = [(a, e), (b, f), (c, g), (d, h)];
+        let mut columns = [Self::splat(0.0); 8];
+        for (i, (first, last)) in halves.into_iter().enumerate() {
+            // SAFETY: AVX is there, by the privacy of this type; no memory is touched.
+            unsafe {
+                columns[i].0 = _mm256_permute2f128_ps::<0x20>(first, last);
+                columns[4 + i].0 = _mm256_permute2f128_ps::<0x31>(first, last);
+            }
+        }
+        columns
     }
 
     #[inline(always)]

@@ -88,6 +88,27 @@ impl Lanes for Half {
     }
 
     #[inline(always)]
+    fn columns(rows: &[[f32; 8]; 16]) -> [Self; 8] {
+        let mut columns = [[0.0; 8]; 8];
+        for (lane, row) in rows[..8].iter().enumerate() {
+            for (column, number) in columns.iter_mut().zip(row) {
+                column[lane] = *number;
+            }
+        }
+        let [a, b, c, d, e, f, g, h] = &columns;
+        [
+            Self::load(a),
+            Self::load(b),
+            Self::load(c),
+            Self::load(d),
+            Self::load(e),
+            Self::load(f),
+            Self::load(g),
+            Self::load(h),
+        ]
+    }
+
+    #[inline(always)]
     fn to_array(self) -> [f32; 8] {
         let mut array = [0.0; 8];
         // SAFETY: AVX is there, by the privacy of this type; the array is good for 32 bytes, at any alignment.
@@ -179,6 +200,33 @@ macro_rules! halves {
     )*};
 }
 
+/// Eight rows, column by column, in quarters: columns 0 to 3 of the first four rows, their columns 4 to 7, and the same of
+/// the last four rows.
+#[inline(always)]
+fn eight_rows(rows: &[[f32; 8]]) -> [__m512; 4] {
+    let (a, b) = (two_rows(&rows[0], &rows[4]), two_rows(&rows[1], &rows[5]));
+    let (c, d) = (two_rows(&rows[2], &rows[6]), two_rows(&rows[3], &rows[7]));
+    // SAFETY: only this file's instruction set comes here, whose types are private; no memory is touched.
+    unsafe {
+        let (ab, ab_high) = (_mm512_unpacklo_ps(a, b), _mm512_unpackhi_ps(a, b));
+        let (cd, cd_high) = (_mm512_unpacklo_ps(c, d), _mm512_unpackhi_ps(c, d));
+        [
+            _mm512_shuffle_ps::<0x44>(ab, cd),
+            _mm512_shuffle_ps::<0xee>(ab, cd),
+            _mm512_shuffle_ps::<0x44>(ab_high, cd_high),
+            _mm512_shuffle_ps::<0xee>(ab_high, cd_high),
+        ]
+    }
+}
+
+/// Two rows, one behind the other.
+#[inline(always)]
+fn two_rows(first: &[f32; 8], last: &[f32; 8]) -> __m512 {
+    let (first, last) = (Half::load(first).0, Half::load(last).0);
+    // SAFETY: only this file's instruction set comes here, whose types are private; no memory is touched.
+    unsafe { _mm512_insertf32x8::<1>(_mm512_castps256_ps512(first), last) }
+}
+
 impl Lanes for Full {
     type Array = [f32; 16];
     type Mask = __mmask16;
@@ -190,6 +238,22 @@ impl Lanes for Full {
     fn load(from: &[f32; 16]) -> Self {
         // SAFETY: AVX-512 is there, by the privacy of this type; the reference is good for 64 bytes, at any alignment.
         Self(unsafe { _mm512_loadu_ps(from.as_ptr()) })
+    }
+
+    #[inline(always)]
+    fn columns(rows: &[[f32; 8]; 16]) -> [Self; 8] {
+        let [a, b, c, d] = eight_rows(&rows[0..8]);
+        let [e, f, g, h] = eight_rows(&rows[8..16]);
+        let halves = [(a, e), (b, f), (c, g), (d, h)];
+        let mut columns = [Self::splat(0.0); 8];
+        for (i, (first, last)) in halves.into_iter().enumerate() {
+            // SAFETY: AVX-512 is there, by the privacy of this type; no memory is touched.
+            unsafe {
+                columns[i].0 = _mm512_shuffle_f32x4::<0x88>(first, last);
+                columns[4 + i].0 = _mm512_shuffle_f32x4::<0xdd>(first, last);
+            }
+        }
+        columns
     }
 
     #[inline(always)]

@@ -12,8 +12,6 @@ use crate::bvh::{
 
 /// Set in the last lane's number where the next block belongs to the same leaf. Triangles are numbered in 31 bits.
 const CONTINUES: u32 = 1 << 31;
-/// Set in the number of every other lane without a triangle.
-const EMPTY: u32 = 1 << 31;
 
 /// 320 bytes, five cache lines: up to eight triangles, a lane each, their coordinates axis by axis and corner by
 /// corner.
@@ -45,9 +43,8 @@ impl TriangleBlock {
     fn new(triangles: &[LeafTriangle]) -> Self {
         let mut block = Self {
             axes: [[[0.0; 8]; 3]; 3],
-            numbers: [EMPTY; 8],
+            numbers: [0; 8],
         };
-        block.numbers[Self::CAPACITY - 1] = 0;
         for (lane, triangle) in triangles.iter().enumerate() {
             for (corner, position) in triangle.corners().iter().enumerate() {
                 for axis in 0..3 {
@@ -63,12 +60,6 @@ impl TriangleBlock {
     #[inline(always)]
     pub(crate) fn continues(&self) -> bool {
         self.numbers[7] & CONTINUES != 0
-    }
-
-    /// Whether this lane, and so all that follow, is known to hold no triangle; of the last lane it is not known.
-    #[inline(always)]
-    pub(super) fn is_empty(&self, lane: usize) -> bool {
-        lane < Self::CAPACITY - 1 && self.numbers[lane] & EMPTY != 0
     }
 
     /// One coordinate of the triangles, corner by corner.

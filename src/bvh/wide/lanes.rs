@@ -19,6 +19,8 @@ pub(crate) trait Lanes: Copy {
     fn splat(x: f32) -> Self;
     /// From memory.
     fn load(from: &Self::Array) -> Self;
+    /// Columns: the `i`th has the `i`th number of each row. As many of the rows as there are lanes.
+    fn columns(rows: &[[f32; 8]; 16]) -> [Self; 8];
     /// To memory.
     fn to_array(self) -> Self::Array;
     /// Sum.
@@ -129,4 +131,28 @@ pub(crate) fn answer<Q: Query>(query: Q) -> Q::Answer {
         }
     }
     query.ask::<Portable>()
+}
+
+/// Answers a question with each instruction set that this machine has, and names those that it lacks.
+#[cfg(test)]
+pub(crate) fn answer_with_each<Q: Query>(
+    mut query: impl FnMut() -> Q,
+    mut check: impl FnMut(&str, Q::Answer),
+) -> Vec<&'static str> {
+    let mut lacking = Vec::new();
+    #[cfg(target_arch = "x86_64")]
+    {
+        if super::avx512::is_available() {
+            check("AVX-512", super::avx512::answer(query()));
+        } else {
+            lacking.push("AVX-512");
+        }
+        if super::avx2::is_available() {
+            check("AVX2", super::avx2::answer(query()));
+        } else {
+            lacking.push("AVX2");
+        }
+    }
+    check("portable", query().ask::<Portable>());
+    lacking
 }

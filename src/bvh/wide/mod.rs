@@ -29,11 +29,13 @@ mod tree;
 mod walk;
 
 pub(crate) use block::TriangleBlock;
+#[cfg(test)]
+pub(crate) use lanes::answer_with_each;
 pub(crate) use lanes::{Eight, InstructionSet, Lanes, Query, answer, by_axis};
 #[cfg(test)]
 pub(crate) use node::LEAF;
 pub(crate) use packet::{
-    Answers, FEW_RAYS, Found, Group, PacketLeaves, PacketRays, View, Ways, lanes_of, largest_size,
+    Answers, Found, Group, PacketLeaves, PacketRays, View, Ways, lanes_of, largest_size,
     walk_packet,
 };
 #[cfg(test)]

@@ -47,6 +47,11 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
+    fn columns(rows: &[[f32; 8]; 16]) -> [Self; 8] {
+        std::array::from_fn(|i| Self(std::array::from_fn(|lane| rows[lane][i])))
+    }
+
+    #[inline(always)]
     fn to_array(self) -> [f32; 8] {
         self.0
     }

@@ -2,12 +2,23 @@
 
 use glam::DVec3;
 
-use super::{Found, View, found::lanes_of};
+use super::{Found, PacketRays, View, found::lanes_of, largest_size, view::Frame};
 use crate::bvh::{
     goal::Goal,
-    slab::triangle_box,
-    wide::{InstructionSet, Lanes, TriangleBlock, by_axis},
+    slab::PAD,
+    wide::{Eight, InstructionSet, Lanes, TriangleBlock, by_axis},
 };
+
+/// What is known of a triangle and the rays that reached it.
+struct Test<'a, S: InstructionSet> {
+    triangle: usize,
+    /// The lower and the upper corners of the block's boxes.
+    bounds: &'a [[[f32; 8]; 3]; 2],
+    /// Which rays' lines cross it.
+    passed: u32,
+    edges: [S::Packet; 3],
+    instance: u32,
+}
 
 impl TriangleBlock {
     /// Tests the triangles, one after the other, against those rays. The operations are those of
@@ -15,20 +26,31 @@ impl TriangleBlock {
     #[inline(always)]
     pub(crate) fn cross_packet<S: InstructionSet, G: Goal>(
         &self,
-        view: &View<S>,
+        rays: &PacketRays<S::Packet>,
+        view: &mut View<S>,
         lanes: u32,
         instance: u32,
         found: &mut Found<S::Packet>,
     ) {
+        let bounds = &self.boxes::<S::Eight>();
+        let entered = view.may_enter(bounds, found.farthest);
+        if entered == 0 {
+            return;
+        }
+        let frame = view.frame(rays);
         let mut is_nearer = false;
-        for lane in 0..Self::CAPACITY {
-            if self.is_empty(lane) {
-                break;
-            }
-            let (passed, edges) = self.edges_of(lane, view);
+        for lane in lanes_of(entered) {
+            let (passed, edges) = self.edges_of::<S>(lane, &frame);
             let passed = passed & if G::ANY { lanes & found.active } else { lanes };
             if passed != 0 {
-                is_nearer |= self.accept_packet::<S, G>(lane, view, passed, edges, instance, found);
+                let test = Test {
+                    triangle: lane,
+                    bounds,
+                    passed,
+                    edges,
+                    instance,
+                };
+                is_nearer |= self.accept_packet::<S, G>(&test, rays, view, found);
                 if G::ANY && found.active == 0 {
                     return;
                 }
@@ -39,14 +61,36 @@ impl TriangleBlock {
         }
     }
 
+    /// The lower and the upper corners of the triangles' padded boxes: [`triangle_box`](crate::bvh::slab::triangle_box),
+    /// eight at once.
+    #[inline(always)]
+    fn boxes<E: Eight>(&self) -> [[[f32; 8]; 3]; 2] {
+        let [min, max] = [
+            by_axis!(|axis| {
+                let [a, b, c] = self.axis(axis);
+                E::load(a).min(E::load(b)).min(E::load(c))
+            }),
+            by_axis!(|axis| {
+                let [a, b, c] = self.axis(axis);
+                E::load(a).max(E::load(b)).max(E::load(c))
+            }),
+        ];
+        let pad = largest_size(&min)
+            .max(largest_size(&max))
+            .mul(E::splat(PAD));
+        [
+            by_axis!(|axis| min[axis].sub(pad).to_array()),
+            by_axis!(|axis| max[axis].add(pad).to_array()),
+        ]
+    }
+
     /// Which rays' lines cross the triangle, and the edge functions of corners 1 and 2 and the sum of all.
     #[inline(always)]
     fn edges_of<S: InstructionSet>(
         &self,
         triangle: usize,
-        view: &View<S>,
+        frame: &Frame<S::Packet>,
     ) -> (u32, [S::Packet; 3]) {
-        let frame = &view.frame;
         let [x, y, z] = frame.axes;
         let [x, y, z] = [self.axis(x), self.axis(y), self.axis(z)];
         let triangle = triangle % 8;
@@ -65,24 +109,27 @@ impl TriangleBlock {
     #[inline(always)]
     fn accept_packet<S: InstructionSet, G: Goal>(
         &self,
-        triangle: usize,
+        test: &Test<S>,
+        rays: &PacketRays<S::Packet>,
         view: &View<S>,
-        passed: u32,
-        edges: [S::Packet; 3],
-        instance: u32,
         found: &mut Found<S::Packet>,
     ) -> bool {
-        let corners = self.corners(triangle % 8);
-        let bounds = triangle_box(corners.map(Into::into));
-        let (min, max) = (bounds.min.to_array(), bounds.max.to_array());
+        let Test {
+            triangle,
+            bounds: [min, max],
+            passed,
+            edges,
+            instance,
+        } = *test;
+        let triangle = triangle % 8;
         let [x, y, z] = by_axis!(|axis| {
             let face = if view.backwards[axis] { max } else { min };
-            view.near(axis, face[axis])
+            view.near(axis, face[axis][triangle])
         });
         let entry = x.max(y).max(z);
         let [x, y, z] = by_axis!(|axis| {
             let face = if view.backwards[axis] { min } else { max };
-            view.far(axis, face[axis])
+            view.far(axis, face[axis][triangle])
         });
         let exit = x.min(y).min(z);
         let (zero, limit) = (S::Packet::splat(0.0), found.limit);
@@ -97,8 +144,9 @@ impl TriangleBlock {
         if within == 0 {
             return false;
         }
-        let [a, b, c] = corners.map(|corner| corner.as_dvec3());
-        let t = plane::<S>(view, a, (b - a).cross(c - a));
+        let [a, b, c] = self.corners(triangle);
+        let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
+        let t = plane(rays, a, (b - a).cross(c - a));
         let t = t.max(entry).min(exit);
         let ahead = within & S::Packet::bits(zero.lt(t));
         let nearer = ahead & S::Packet::bits(t.lt(limit));
@@ -107,7 +155,7 @@ impl TriangleBlock {
             return false;
         }
         let tied = ahead & found.hit & !nearer & S::Packet::bits(t.le(limit));
-        let number = self.number(triangle % 8);
+        let number = self.number(triangle);
         let won = if tied == 0 {
             nearer
         } else {
@@ -130,18 +178,18 @@ impl TriangleBlock {
 
 /// `t` where the rays' lines meet a triangle's plane: [`super::super::super::triangle`]'s, in lanes.
 #[inline(always)]
-fn plane<S: InstructionSet>(view: &View<S>, corner: DVec3, normal: DVec3) -> S::Packet {
+fn plane<L: Lanes>(rays: &PacketRays<L>, corner: DVec3, normal: DVec3) -> L {
     let (corner, normal) = (corner.to_array(), normal.to_array());
-    let normal = by_axis!(|axis| S::Packet::splat_f64(normal[axis]));
+    let normal = by_axis!(|axis| L::splat_f64(normal[axis]));
     let [x, y, z] = by_axis!(|axis| {
-        let corner = S::Packet::splat_f64(corner[axis]);
-        let away = S::Packet::sub_f64(corner, view.frame.origin[axis]);
-        S::Packet::mul_f64(normal[axis], away)
+        let corner = L::splat_f64(corner[axis]);
+        let away = L::sub_f64(corner, rays.origin[axis].widen());
+        L::mul_f64(normal[axis], away)
     });
-    let height = S::Packet::add_f64(S::Packet::add_f64(x, y), z);
-    let [x, y, z] = by_axis!(|axis| S::Packet::mul_f64(normal[axis], view.frame.direction[axis]));
-    let rate = S::Packet::add_f64(S::Packet::add_f64(x, y), z);
-    S::Packet::narrow(S::Packet::div_f64(height, rate))
+    let height = L::add_f64(L::add_f64(x, y), z);
+    let [x, y, z] = by_axis!(|axis| L::mul_f64(normal[axis], rays.direction[axis].widen()));
+    let rate = L::add_f64(L::add_f64(x, y), z);
+    L::narrow(L::div_f64(height, rate))
 }
 
 /// The edge function of the edge between two corners. Not fused: see [`super::super::super::triangle`].

@@ -13,18 +13,19 @@ pub(crate) struct View<S: InstructionSet> {
     pub(super) far_origin: [S::Packet; 3],
     pub(super) inverse: [S::Packet; 3],
     bounds: Bounds<S::Eight>,
-    pub(super) frame: Frame<S::Packet>,
+    frame: Option<Frame<S::Packet>>,
+    /// The longest component of the directions.
+    axis: usize,
     /// Along which axes the rays go backwards.
     pub(super) backwards: [bool; 3],
 }
 
 /// The rays' frame, as [`Shear`](crate::bvh::triangle::Shear) has it of one.
-pub(super) struct Frame<L: Lanes> {
+#[derive(Clone, Copy)]
+pub(super) struct Frame<L> {
     pub(super) axes: [usize; 3],
     pub(super) from: [L; 3],
     pub(super) slope: [L; 2],
-    pub(super) origin: [L::Doubles; 3],
-    pub(super) direction: [L::Doubles; 3],
 }
 
 /// Bounds of all rays, eight times over.
@@ -67,36 +68,50 @@ impl<S: InstructionSet> View<S> {
             bounds.most_inverse[axis] = S::Eight::splat(largest(mask, inverse));
         }
         Self {
-            near: by_axis!(|axis| 2 * axis | usize::from(backwards[axis])),
+            near: by_axis!(|axis| 2 * axis + usize::from(backwards[axis])),
             near_origin,
             far_origin,
             inverse: rays.inverse,
             bounds,
-            frame: Frame::new(rays, group.axis),
+            // Made at the first leaf: many packets meet none.
+            frame: None,
+            axis: group.axis,
             backwards,
+        }
+    }
+
+    /// The rays' frame.
+    #[inline(always)]
+    pub(super) fn frame(&mut self, rays: &PacketRays<S::Packet>) -> Frame<S::Packet> {
+        match self.frame {
+            Some(frame) => frame,
+            None => *self.frame.insert(Frame::new(rays, self.axis)),
         }
     }
 
     /// Which children any ray may enter, if none ends behind `limit`, and where the first does at the earliest.
     #[inline(always)]
     pub(super) fn span(&self, node: &WideNode, limit: f32) -> (u32, S::Eight) {
-        let bounds = &self.bounds;
-        let [x, y, z] = by_axis!(|axis| {
-            let face = S::Eight::load(node.row(self.near[axis]));
-            let way = face.sub(bounds.near_origin[axis]);
-            way.mul(bounds.least_inverse[axis])
-                .min(way.mul(bounds.most_inverse[axis]))
+        let near = by_axis!(|axis| node.row(self.near[axis]));
+        let far = by_axis!(|axis| node.row(self.near[axis] ^ 1));
+        self.bounds.span(near, far, limit)
+    }
+
+    /// Which of eight boxes, by their lower and their upper corners, any ray may enter.
+    #[inline(always)]
+    pub(super) fn may_enter(&self, [min, max]: &[[[f32; 8]; 3]; 2], limit: f32) -> u32 {
+        let [lower, upper] = [min, max];
+        let near = by_axis!(|i| if self.backwards[i] {
+            &upper[i]
+        } else {
+            &lower[i]
         });
-        // Zero last, so that no entry is -0.0.
-        let entries = x.max(y).max(z).max(S::Eight::splat(0.0));
-        let [x, y, z] = by_axis!(|axis| {
-            let face = S::Eight::load(node.row(self.near[axis] ^ 1));
-            let way = face.sub(bounds.far_origin[axis]);
-            way.mul(bounds.least_inverse[axis])
-                .max(way.mul(bounds.most_inverse[axis]))
+        let far = by_axis!(|i| if self.backwards[i] {
+            &lower[i]
+        } else {
+            &upper[i]
         });
-        let exits = x.min(y).min(z).min(S::Eight::splat(limit));
-        (S::Eight::bits(entries.le(exits)), entries)
+        self.bounds.span(near, far, limit).0
     }
 
     /// Which rays enter a child, no later than at their limits.
@@ -123,6 +138,27 @@ impl<S: InstructionSet> View<S> {
     }
 }
 
+impl<E: Eight> Bounds<E> {
+    /// See [`View::span`]; of boxes with those faces, axis by axis.
+    #[inline(always)]
+    fn span(&self, near: [&[f32; 8]; 3], far: [&[f32; 8]; 3], limit: f32) -> (u32, E) {
+        let [x, y, z] = by_axis!(|axis| {
+            let way = E::load(near[axis]).sub(self.near_origin[axis]);
+            way.mul(self.least_inverse[axis])
+                .min(way.mul(self.most_inverse[axis]))
+        });
+        // Zero last, so that no entry is -0.0.
+        let entries = x.max(y).max(z).max(E::splat(0.0));
+        let [x, y, z] = by_axis!(|axis| {
+            let way = E::load(far[axis]).sub(self.far_origin[axis]);
+            way.mul(self.least_inverse[axis])
+                .max(way.mul(self.most_inverse[axis]))
+        });
+        let exits = x.min(y).min(z).min(E::splat(limit));
+        (E::bits(entries.le(exits)), entries)
+    }
+}
+
 /// The smallest of the lanes that the mask names.
 #[inline(always)]
 fn smallest<L: Lanes>(mask: L::Mask, lanes: L) -> f32 {
@@ -144,8 +180,6 @@ impl<L: Lanes> Frame<L> {
             axes,
             from: by_axis!(|i| rays.origin[axes[i]]),
             slope: [along[0].div(along[2]), along[1].div(along[2])],
-            origin: by_axis!(|i| rays.origin[i].widen()),
-            direction: by_axis!(|i| rays.direction[i].widen()),
         }
     }
 

@@ -9,7 +9,14 @@ use crate::bvh::{
 /// What the leaves of a tree hold, as [`super::super::Leaves`].
 pub(crate) trait PacketLeaves<S: InstructionSet> {
     /// Tests those rays against a leaf. The rest of the walk's stack may be used.
-    fn visit(&mut self, leaf: u32, lanes: u32, found: &mut Found<S::Packet>, stack: &mut [u64]);
+    fn visit(
+        &mut self,
+        leaf: u32,
+        lanes: u32,
+        view: &mut View<S>,
+        found: &mut Found<S::Packet>,
+        stack: &mut [u64],
+    );
 
     /// Lets those rays go on one by one from a child, a node or a leaf.
     fn alone(&mut self, child: u32, lanes: u32, found: &mut Found<S::Packet>, stack: &mut [u64]);
@@ -23,7 +30,7 @@ pub(crate) trait PacketLeaves<S: InstructionSet> {
 pub(crate) fn walk_packet<S: InstructionSet, G: Goal>(
     tree: &WideTree,
     stack: &mut [u64],
-    view: &View<S>,
+    view: &mut View<S>,
     lanes: u32,
     found: &mut Found<S::Packet>,
     leaves: &mut impl PacketLeaves<S>,
@@ -32,7 +39,7 @@ pub(crate) fn walk_packet<S: InstructionSet, G: Goal>(
         return;
     };
     if root & LEAF != 0 {
-        leaves.visit(root & !LEAF, lanes, found, stack);
+        leaves.visit(root & !LEAF, lanes, view, found, stack);
         return;
     }
     let mut pending = 0;
@@ -80,7 +87,7 @@ pub(crate) fn walk_packet<S: InstructionSet, G: Goal>(
             if entered.count_ones() <= FEW_RAYS {
                 leaves.alone(child, entered, found, &mut stack[pending..]);
             } else if child & LEAF != 0 {
-                leaves.visit(child & !LEAF, entered, found, &mut stack[pending..]);
+                leaves.visit(child & !LEAF, entered, view, found, &mut stack[pending..]);
             } else {
                 break child;
             }
