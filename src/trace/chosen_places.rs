@@ -2,7 +2,8 @@
 
 use super::light_frames::Frame;
 use super::numbers::Pairs;
-use super::parallelogram_warp::{ParallelogramFrame, Places};
+use super::parallelogram_frame::ParallelogramFrame;
+use super::parallelogram_warp::Places;
 use super::radiance::Vertex;
 use super::receiver::Receivers;
 use super::segment_warp::{SegmentFrame, SegmentPlaces};

@@ -1,4 +1,4 @@
-use super::parallelogram_warp::ParallelogramFrame;
+use super::parallelogram_frame::ParallelogramFrame;
 use super::segment_warp::SegmentFrame;
 use super::{Lights, ParallelogramLight, SegmentLight};
 use crate::scene::{Lighting, RenderSettings};

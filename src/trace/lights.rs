@@ -19,7 +19,7 @@
 //! standing still is, seen from `x - velocity · t` ([`Lights::in_rest_frame`]).
 
 use super::Surface;
-use super::parallelogram_warp::ParallelogramFrame;
+use super::parallelogram_frame::ParallelogramFrame;
 use super::receiver::Receivers;
 use super::segment_warp::SegmentFrame;
 use super::spot_cone::SpotCone;

@@ -40,6 +40,7 @@ mod mipmap;
 mod near_lights;
 mod needs;
 mod numbers;
+mod parallelogram_frame;
 mod parallelogram_warp;
 mod piecewise;
 mod polynomials;
@@ -73,7 +74,8 @@ pub use lights::{
 };
 pub use material::Material;
 pub use needs::{Needs, samples_per_pixel};
-pub use parallelogram_warp::{ParallelogramFrame, Places};
+pub use parallelogram_frame::ParallelogramFrame;
+pub use parallelogram_warp::Places;
 pub use probe::{MOST_RAYS, ProbeError, Samples, probe};
 pub use radiance::{RayCounts, SampleId, Workspace, radiance};
 pub use ray_tree::{

@@ -17,8 +17,8 @@ use glam::Vec3;
 /// Seen under a smaller angle, in radians, digits of w get scarce.
 const LEAST_ANGLE: f32 = 1e-3;
 
-/// The sharpest lobe that the nodes see, as an exponent times their squared distance in radians.
-const SHARPEST: f32 = 2.0;
+/// The sharpest lobe that the nodes see, as an exponent times their squared distance in radians: as of parallelograms.
+const SHARPEST: f32 = 8.0;
 
 /// Nodes where colour or reflectance differ.
 const NODES: usize = 9;

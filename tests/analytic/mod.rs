@@ -1,6 +1,7 @@
 //! The picture against closed forms: what the tracer computes is compared with what it should be.
 
 mod irradiance;
+mod light_points;
 mod mirrors;
 mod views;
 
