@@ -140,6 +140,7 @@ fn a_batch_allocates_nothing_once_its_arrays_have_grown() {
         .collect();
     let mirror = Material {
         specular: Vec3::splat(0.5),
+        mirror: Vec3::splat(0.5),
         opacity: 0.6,
         ..Material::default()
     };

@@ -49,6 +49,7 @@ pub(super) fn world() -> World {
     };
     let mirror = Material {
         specular: Vec3::splat(0.7),
+        mirror: Vec3::splat(0.7),
         ..paint(0.1, 0.1, 0.1)
     };
     World {

@@ -15,8 +15,10 @@ use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 pub struct Phong {
     /// kd, in [0, 1]. A diffuse map takes its place.
     pub diffuse: LinearRgba,
-    /// ks, in [0, 1]: the highlight, and what a mirror reflects.
+    /// ks, in [0, 1]: the highlight.
     pub specular: LinearRgba,
+    /// km, in [0, 1]: how much of what the mirror direction shows is reflected.
+    pub mirror: LinearRgba,
     /// s ≥ 1: how narrow the highlight is; a glossy reflection's disc has radius 1/s.
     pub shininess: f32,
     /// d in [0, 1]: 1 is opaque.
@@ -35,6 +37,7 @@ impl Default for Phong {
         Self {
             diffuse: LinearRgba::rgb(0.8, 0.8, 0.8),
             specular: LinearRgba::BLACK,
+            mirror: LinearRgba::BLACK,
             shininess: 10.0,
             opacity: 1.0,
             emission: LinearRgba::BLACK,

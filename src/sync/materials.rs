@@ -206,6 +206,7 @@ fn material(
     Material {
         diffuse: reader.color("diffuse", phong.diffuse, 1.0),
         specular: reader.color("specular", phong.specular, 1.0),
+        mirror: reader.color("mirror", phong.mirror, 1.0),
         shininess: reader
             .number("shininess", phong.shininess, 1.0..=f32::MAX)
             .unwrap_or(1.0),
@@ -228,6 +229,7 @@ mod tests {
         let phong = Phong {
             diffuse: LinearRgba::rgb(0.5, 2.0, 0.5),
             specular: LinearRgba::rgb(f32::NAN, 0.0, 0.0),
+            mirror: LinearRgba::rgb(0.0, -1.0, 0.0),
             shininess: 0.0,
             opacity: -3.0,
             emission: LinearRgba::rgb(9.0, 0.0, 0.0),
@@ -250,10 +252,11 @@ mod tests {
         );
         assert_eq!(material.diffuse.to_array(), [0.5, 1.0, 0.5]);
         assert_eq!(material.specular.to_array(), [0.0; 3]);
+        assert_eq!(material.mirror.to_array(), [0.0; 3]);
         assert_eq!((material.shininess, material.opacity), (1.0, 0.0));
         assert_eq!(material.emission.to_array(), [9.0, 0.0, 0.0]);
         let named: Vec<String> = problems.iter().map(ToString::to_string).collect();
-        assert_eq!(named.len(), 4, "{named:#?}");
+        assert_eq!(named.len(), 5, "{named:#?}");
         assert!(
             named[0].starts_with("material 4: its diffuse is 2"),
             "{}",

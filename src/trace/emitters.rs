@@ -14,8 +14,8 @@ pub fn emitters(world: &World, camera: &Camera, settings: &RenderSettings) -> Ve
     let physical = settings.lighting == Lighting::Physical;
     let mut mirror = Vec3::ZERO;
     if settings.max_depth > 0 {
-        let specular = world.materials.iter().map(|material| material.specular);
-        mirror = specular.fold(mirror, Vec3::max);
+        let mirrors = world.materials.iter().map(|material| material.mirror);
+        mirror = mirrors.fold(mirror, Vec3::max);
     }
     let moves =
         features.motion && (world.needs.motion_samples > 0 || camera.optics.velocity != Vec3::ZERO);

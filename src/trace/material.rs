@@ -5,8 +5,10 @@ use glam::Vec3;
 pub struct Material {
     /// kd.
     pub diffuse: Vec3,
-    /// ks.
+    /// ks: the highlight.
     pub specular: Vec3,
+    /// km: the reflection.
+    pub mirror: Vec3,
     /// s ≥ 1.
     pub shininess: f32,
     /// d in [0, 1].
@@ -26,6 +28,7 @@ impl Default for Material {
         Self {
             diffuse: Vec3::splat(0.8),
             specular: Vec3::ZERO,
+            mirror: Vec3::ZERO,
             shininess: 10.0,
             opacity: 1.0,
             emission: Vec3::ZERO,

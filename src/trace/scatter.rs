@@ -28,7 +28,7 @@ impl<R: Recorder> Batch<'_, R> {
         let settings = self.settings;
         let mirrors = settings.features.mirrors && path.bounces < settings.max_depth;
         let reflects = if mirrors {
-            (path.throughput * surface.opacity * surface.specular).max_element()
+            (path.throughput * surface.opacity * surface.mirror).max_element()
         } else {
             0.0
         };
@@ -70,7 +70,7 @@ impl<R: Recorder> Batch<'_, R> {
         weight: f32,
         workspace: &mut Workspace,
     ) {
-        let throughput = path.throughput * surface.specular * (surface.opacity * weight);
+        let throughput = path.throughput * surface.mirror * (surface.opacity * weight);
         let origin = self
             .world
             .aggregate

@@ -23,6 +23,8 @@ pub struct Surface {
     pub diffuse: Vec3,
     /// ks.
     pub specular: Vec3,
+    /// km.
+    pub mirror: Vec3,
     /// s ≥ 1.
     pub shininess: f32,
     /// d, opacity map included.
@@ -110,6 +112,7 @@ impl Surface {
             to_viewer,
             diffuse,
             specular: material.specular,
+            mirror: material.mirror,
             shininess: material.shininess,
             opacity,
             emission: material.emission,
@@ -130,6 +133,7 @@ impl Surface {
             to_viewer,
             diffuse: Vec3::splat(0.8),
             specular: Vec3::ZERO,
+            mirror: Vec3::ZERO,
             shininess: 1.0,
             opacity: 1.0,
             emission: Vec3::ZERO,

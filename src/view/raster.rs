@@ -127,7 +127,7 @@ pub struct RasterTwin(Entity);
 /// Ours to Bevy's.
 pub fn standard_material(phong: &Phong, maps: Option<&PhongMaps>) -> StandardMaterial {
     let diffuse = maps.and_then(|maps| maps.diffuse.clone());
-    let mirror = luminance(phong.specular).clamp(0.0, 1.0);
+    let mirror = luminance(phong.mirror).clamp(0.0, 1.0);
     let kd = if diffuse.is_some() {
         LinearRgba::WHITE
     } else {
@@ -144,7 +144,7 @@ pub fn standard_material(phong: &Phong, maps: Option<&PhongMaps>) -> StandardMat
         emissive: phong.emission,
         perceptual_roughness: roughness.clamp(0.089, 1.0),
         metallic: if mirror > 0.5 { mirror } else { 0.0 },
-        reflectance: 0.5 * mirror,
+        reflectance: 0.5 * luminance(phong.specular).clamp(0.0, 1.0),
         alpha_mode: if phong.opacity < 1.0 {
             AlphaMode::Blend
         } else {

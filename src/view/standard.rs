@@ -4,7 +4,7 @@
 //!
 //! | Bevy's | ours |
 //! |---|---|
-//! | `StandardMaterial` | [`Phong`] and [`PhongMaps`]: kd = base colour · (1 - metallic); ks = base colour · metallic + 0.16 · reflectance² · (1 - metallic); s = 2/α² - 2 with α = roughness² (Beckmann's, Walter et al. 2007), 1 to 10,000; d = the base colour's alpha, but 1 where the alpha mode is opaque; ke = emissive; the base colour's texture takes kd's place (it is not multiplied) |
+//! | `StandardMaterial` | [`Phong`] and [`PhongMaps`]: kd = base colour · (1 - metallic); ks = base colour · metallic + 0.16 · reflectance² · (1 - metallic); km = ks · (1 - roughness)², as a mirror is sharp; s = 2/α² - 2 with α = roughness² (Beckmann's, Walter et al. 2007), 1 to 10,000; d = the base colour's alpha, but 1 where the alpha mode is opaque; ke = emissive; the base colour's texture takes kd's place (it is not multiplied) |
 //! | `PointLight` | [`PointLamp`] of lumens / 4π · E |
 //! | `SpotLight` | the same, with its cone |
 //! | `DirectionalLight` | [`DirectionalLamp`] of lux · E |
@@ -72,9 +72,13 @@ pub fn phong(material: &StandardMaterial) -> (Phong, PhongMaps) {
     let color = |v: Vec3| LinearRgba::rgb(v.x, v.y, v.z);
     let kd = base.to_vec3() * (1.0 - metallic);
     let ks = base.to_vec3() * metallic + Vec3::splat(dielectric);
+    let gloss = (1.0 - material.perceptual_roughness)
+        .clamp(0.0, 1.0)
+        .powi(2);
     let phong = Phong {
         diffuse: color(kd.clamp(Vec3::ZERO, Vec3::ONE)),
         specular: color(ks.clamp(Vec3::ZERO, Vec3::ONE)),
+        mirror: color((gloss * ks).clamp(Vec3::ZERO, Vec3::ONE)),
         shininess: shininess.clamp(1.0, MOST_SHININESS),
         opacity: if opaque {
             1.0
@@ -260,6 +264,7 @@ mod tests {
         });
         assert_eq!(matte.diffuse, LinearRgba::rgb(0.8, 0.1, 0.1));
         assert_eq!(matte.specular.to_vec3(), Vec3::ZERO);
+        assert_eq!(matte.mirror.to_vec3(), Vec3::ZERO);
         assert_eq!(matte.shininess, 1.0);
         let (metal, _) = phong(&StandardMaterial {
             base_color: red,
@@ -269,6 +274,14 @@ mod tests {
         });
         assert_eq!(metal.diffuse.to_vec3(), Vec3::ZERO);
         assert_eq!(metal.specular, LinearRgba::rgb(0.8, 0.1, 0.1));
+        let mirrored = metal.mirror.to_vec3() / metal.specular.to_vec3();
+        assert!((mirrored - 0.81).abs().max_element() < 1e-6, "{mirrored}");
+        let (rough, _) = phong(&StandardMaterial {
+            perceptual_roughness: 1.0,
+            metallic: 1.0,
+            ..StandardMaterial::default()
+        });
+        assert_eq!(rough.mirror.to_vec3(), Vec3::ZERO, "it is no mirror");
         assert_eq!(metal.shininess, MOST_SHININESS);
     }
 

@@ -168,6 +168,7 @@ const TASKS: &[Task] = &[
                 *phong.into_inner() = Phong {
                     diffuse: LinearRgba::BLACK,
                     specular: LinearRgba::rgb(0.9, 0.9, 0.9),
+                    mirror: LinearRgba::rgb(0.9, 0.9, 0.9),
                     shininess: 100.0,
                     ..Phong::default()
                 };

@@ -174,6 +174,7 @@ fn metal_and_roughness_become_phong_by_the_rule() {
     let base = LinearRgba::rgb(0.5, 0.25, 1.0);
     let mirror = material(1.0, 0.0);
     assert_eq!((mirror.diffuse, mirror.specular), (LinearRgba::BLACK, base));
+    assert_eq!(mirror.mirror, base);
     assert_eq!(mirror.shininess, 10_000.0);
     assert_eq!(
         mirror.opacity, 1.0,
@@ -405,8 +406,8 @@ fn materials_of_extensions_become_phong() {
     }));
     assert_eq!(unlit.emission, LinearRgba::rgb(0.5, 0.25, 0.0));
     assert_eq!(
-        (unlit.diffuse, unlit.specular),
-        (LinearRgba::BLACK, LinearRgba::BLACK)
+        (unlit.diffuse, unlit.specular, unlit.mirror),
+        (LinearRgba::BLACK, LinearRgba::BLACK, LinearRgba::BLACK)
     );
     for (mode, cutoff, opacity) in [
         ("OPAQUE", 0.9, 1.0),

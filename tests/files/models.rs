@@ -100,6 +100,7 @@ fn hierarchy(world: &mut World) {
             Phong {
                 diffuse: LinearRgba::rgb(0.1, 0.2, 1.0 / 3.0),
                 specular: LinearRgba::rgb(0.7, 0.6, 0.5),
+                mirror: LinearRgba::rgb(0.2, 0.3, 0.25),
                 shininess: 77.7,
                 opacity: 0.3,
                 emission: LinearRgba::rgb(5.0, 0.0, 0.1),
@@ -353,5 +354,40 @@ fn a_large_object_is_read_in_parts_and_is_one_mesh() {
             [[0.0; 3], [1.0, y, 0.0], [1.0, y + 1.0, 0.0]],
             "{i}"
         );
+    }
+}
+
+#[test]
+fn an_obj_says_whether_a_material_mirrors_and_has_one_colour_for_it() {
+    let color = LinearRgba::rgb(0.25, 0.5, 0.75);
+    let other = LinearRgba::rgb(0.5, 0.5, 0.5);
+    let none = LinearRgba::BLACK;
+    for (written, read, is_noted) in [
+        ((none, none), (none, none), false),
+        ((color, none), (color, none), false),
+        ((color, color), (color, color), false),
+        ((none, color), (color, color), true),
+        ((color, other), (color, color), true),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut first = app();
+        first.world_mut().spawn((
+            SceneId(1),
+            Transform::default(),
+            MeshSource::Shape(Shape::Cuboid { size: Vec3::ONE }),
+            Phong {
+                specular: written.0,
+                mirror: written.1,
+                ..Phong::default()
+            },
+        ));
+        first.update();
+        let file = folder.path().join("a.obj");
+        let notes = save(first.world_mut(), &file).unwrap_or_else(|error| panic!("{error}"));
+        let noted = notes.iter().any(|note| note.contains("mirror"));
+        assert_eq!(noted, is_noted, "{written:?}: {notes:?}");
+        let (mut second, _) = opened(&file);
+        let phong = &objects(second.world_mut())[0].1;
+        assert_eq!((phong.specular, phong.mirror), read, "{written:?}");
     }
 }

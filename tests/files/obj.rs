@@ -182,14 +182,34 @@ fn a_factor_does_not_outlive_its_picture() {
 }
 
 #[test]
-fn without_highlights_means_without_and_a_very_wide_one_fades() {
-    for illum in [0, 1] {
-        let (phong, _) = material(&format!("illum {illum}\nKs 1 1 1"));
-        assert_eq!(phong.specular, LinearRgba::BLACK);
+fn illum_says_whether_there_is_a_highlight_and_whether_there_is_a_mirror() {
+    let highlight = LinearRgba::rgb(0.25, 0.5, 0.75);
+    for (illum, specular, mirror) in [
+        ("illum 0", LinearRgba::BLACK, LinearRgba::BLACK),
+        ("illum 1", LinearRgba::BLACK, LinearRgba::BLACK),
+        ("illum 2", highlight, LinearRgba::BLACK),
+        ("", highlight, LinearRgba::BLACK),
+        ("illum 3", highlight, highlight),
+        ("illum 5", highlight, highlight),
+        ("illum 8", highlight, highlight),
+        ("illum 10", highlight, LinearRgba::BLACK),
+    ] {
+        let (phong, _) = material(&format!("{illum}\nKs 0.25 0.5 0.75"));
+        assert_eq!(
+            (phong.specular, phong.mirror),
+            (specular, mirror),
+            "{illum}"
+        );
     }
+}
+
+#[test]
+fn a_very_wide_highlight_fades_and_the_mirror_does_not() {
     let (phong, _) = material("illum 2\nKs 0.5 0.5 0.5\nNs 0.25");
     assert_eq!(phong.shininess, 1.0);
     assert_eq!(phong.specular, LinearRgba::rgb(0.125, 0.125, 0.125));
+    let (phong, _) = material("illum 3\nKs 0.5 0.5 0.5\nNs 0.25");
+    assert_eq!(phong.mirror, LinearRgba::rgb(0.5, 0.5, 0.5));
 }
 
 #[test]

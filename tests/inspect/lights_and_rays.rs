@@ -73,6 +73,7 @@ fn s1_the_camera_ray_has_the_colour_of_what_it_hits_shaded_or_not() {
 fn s2_each_bounce_has_the_colour_that_it_carries_and_a_miss_is_red_or_the_backgrounds() {
     let mirror = Material {
         specular: Vec3::splat(0.5),
+        mirror: Vec3::splat(0.5),
         shininess: 1e6,
         ..matt(Vec3::ZERO)
     };
@@ -294,6 +295,7 @@ fn s13_all_camera_rays_of_the_pixel_are_drawn_one_in_each_cell_of_the_grid() {
 fn s14_every_ray_of_a_blurred_reflection_passes_its_disc() {
     let shiny = Material {
         specular: Vec3::ONE,
+        mirror: Vec3::ONE,
         shininess: 10.0,
         ..matt(Vec3::ZERO)
     };

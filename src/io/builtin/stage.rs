@@ -90,12 +90,13 @@ pub(super) fn matte(r: f32, g: f32, b: f32) -> Phong {
     }
 }
 
-/// A material that scatters and mirrors: `specular` is also how much of its surroundings it shows.
+/// A material that scatters and mirrors: it shows its surroundings in the colour of its highlight.
 pub(super) fn glossy(diffuse: [f32; 3], specular: [f32; 3], shininess: f32) -> Phong {
     let rgb = |[r, g, b]: [f32; 3]| LinearRgba::rgb(r, g, b);
     Phong {
         diffuse: rgb(diffuse),
         specular: rgb(specular),
+        mirror: rgb(specular),
         shininess,
         ..Phong::default()
     }

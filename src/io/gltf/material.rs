@@ -5,16 +5,16 @@
 //!
 //! | Phong | from |
 //! |---|---|
-//! | gloss | `g = (1 - r)²`: Phong's ks mirrors sharply, which a rough surface does not |
+//! | gloss | `g = (1 - r)²`: a mirror is sharp, and a rough surface is none |
 //! | `diffuse` | `b · (1 - m·g)`: what a rough metal does not mirror it scatters |
-//! | `specular` | `lerp(F0, b, m) · g` |
+//! | `specular`, `mirror` | `lerp(F0, b, m) · g` |
 //! | `shininess` | `2/r⁴ - 2`, within 1 to 10,000: the lobe of the same width (Walter et al. 2007, section 5.2, with α = r²) |
 //! | `opacity` | base alpha where `alphaMode` is `BLEND`; 0 or 1 where it is `MASK`; else 1; times 1 - transmission |
 //! | `emission` | emissive factor · `KHR_materials_emissive_strength` |
 //! | `diffuse_map`, `opacity_map` | the base colour's picture, and its alpha where opacity counts |
 //!
 //! A picture of metalness and roughness counts with its mean. `KHR_materials_pbrSpecularGlossiness`: `diffuse` and
-//! `specular` as they are there, `specular` times the gloss of `r = 1 - glossiness`. `KHR_materials_unlit`: what would
+//! `specular` as they are there, `specular` times the gloss of `r = 1 - glossiness`, which is `mirror`, too. `KHR_materials_unlit`: what would
 //! be `diffuse` is `emission`, and reflects nothing.
 //!
 //! Out: `b = diffuse`, `m = 0`, `r` from `shininess`, and the exact Phong numbers in the material's
@@ -45,6 +45,8 @@ pub(super) const EXTRAS: &str = "glassbox_phong";
 struct Numbers {
     diffuse: [f32; 3],
     specular: [f32; 3],
+    /// The same as `specular` in files that are older than it.
+    mirror: Option<[f32; 3]>,
     shininess: f32,
     opacity: f32,
     emission: [f32; 3],
@@ -160,6 +162,7 @@ pub(super) fn phong_of(document: &Document, index: usize, material: Json, name: 
             phong.diffuse = LinearRgba::BLACK;
         }
         phong.specular = LinearRgba::BLACK;
+        phong.mirror = LinearRgba::BLACK;
     }
     if let Some(texture) = texture {
         pictures(document, texture, has_alpha, &note, base, &mut phong);
@@ -212,6 +215,7 @@ fn metallic_roughness(
     Phong {
         diffuse: color(base.map(|b| b * (1.0 - metal * gloss))),
         specular: color(specular),
+        mirror: color(specular),
         shininess: shininess(rough),
         ..Phong::default()
     }
@@ -221,9 +225,11 @@ fn specular_glossiness(json: Json, base: [f32; 3]) -> Phong {
     let rough = 1.0 - unit(json.number("glossinessFactor").unwrap_or(1.0));
     let gloss = (1.0 - rough) * (1.0 - rough);
     let specular = json.numbers("specularFactor").unwrap_or([1.0; 3]);
+    let specular = color(specular.map(|s| unit(s) * gloss));
     Phong {
         diffuse: color(base),
-        specular: color(specular.map(|s| unit(s) * gloss)),
+        specular,
+        mirror: specular,
         shininess: shininess(rough),
         ..Phong::default()
     }
@@ -371,6 +377,7 @@ fn exact_phong(json: Json) -> Option<Phong> {
     Some(Phong {
         diffuse: color(numbers.diffuse.map(unit)),
         specular: color(numbers.specular.map(unit)),
+        mirror: color(numbers.mirror.unwrap_or(numbers.specular).map(unit)),
         shininess: numbers.shininess.clamp(1.0, f32::MAX),
         opacity: unit(numbers.opacity),
         emission: color(numbers.emission.map(at_least_0)),
@@ -384,6 +391,7 @@ pub(super) fn material_json(name: &str, phong: &Phong) -> serde_json::Value {
     let numbers = Numbers {
         diffuse: rgb(phong.diffuse),
         specular: rgb(phong.specular),
+        mirror: Some(rgb(phong.mirror)),
         shininess: phong.shininess,
         opacity: phong.opacity,
         emission: rgb(phong.emission),

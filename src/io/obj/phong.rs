@@ -3,7 +3,7 @@
 //! | MTL | Phong |
 //! |---|---|
 //! | `Kd`, `map_Kd` | `diffuse`, `diffuse_map` |
-//! | `Ks` | `specular`; black where `illum` is 0 or 1 |
+//! | `Ks` | `specular`, but where `illum` is 0 or 1; `mirror`, where it is 3 to 9 |
 //! | `Ns` | `shininess`; below 1 it is 1, and `specular` fades with it |
 //! | `d`, `Tr` | `opacity`; `Tr` is 1 - `d`, and `d` wins |
 //! | `map_d` | `opacity_map`: its alpha where any of that is below 1, else its brightness |
@@ -45,8 +45,11 @@ pub(super) fn phong_of(
         emission: color(material.emission, default.emission),
         ..default
     };
-    if matches!(material.illum, Some(0 | 1)) {
-        exact.specular = LinearRgba::BLACK;
+    match material.illum {
+        Some(0 | 1) => exact.specular = LinearRgba::BLACK,
+        Some(3..=9) => exact.mirror = exact.specular,
+        // 2 and no model at all mean a highlight alone.
+        _ => {}
     }
     if material.specular_map.is_some() && exact.specular != LinearRgba::BLACK {
         note(
@@ -54,6 +57,7 @@ pub(super) fn phong_of(
             "left out, and Ks with it",
         );
         exact.specular = LinearRgba::BLACK;
+        exact.mirror = LinearRgba::BLACK;
     }
     if material.emission_map.is_some() && exact.emission != LinearRgba::BLACK {
         note(
@@ -157,6 +161,7 @@ fn clamp(phong: Phong) -> Phong {
     Phong {
         diffuse: each(phong.diffuse, 1.0),
         specular: each(phong.specular, 1.0),
+        mirror: each(phong.mirror, 1.0),
         shininess: phong.shininess.max(1.0),
         opacity: phong.opacity.clamp(0.0, 1.0),
         emission: each(phong.emission, f32::MAX),

@@ -8,7 +8,7 @@ use super::super::scene_file::Rebase;
 use super::super::sources::SceneFiles;
 use super::stem_of;
 use crate::io::Limits;
-use crate::scene::TextureSource;
+use crate::scene::{Phong, TextureSource};
 use bevy::asset::Handle;
 use bevy::color::LinearRgba;
 use bevy::image::Image;
@@ -81,7 +81,15 @@ pub(super) fn library(
         // Writing to a string cannot fail.
         let _ = writeln!(text, "newmtl {}", material.name);
         let _ = writeln!(text, "Kd {}", rgb(phong.diffuse));
-        let _ = writeln!(text, "Ks {}", rgb(phong.specular));
+        let (highlight, illum) = highlight(phong);
+        if phong.mirror != LinearRgba::BLACK && phong.mirror != phong.specular {
+            notes.push(format!(
+                "material `{}`: highlight and mirror have one colour in an MTL",
+                material.name
+            ));
+        }
+        let _ = writeln!(text, "Ks {}", rgb(highlight));
+        let _ = writeln!(text, "illum {illum}");
         let _ = writeln!(text, "Ns {}", phong.shininess);
         let _ = writeln!(text, "d {}", phong.opacity);
         let _ = writeln!(text, "Ke {}", rgb(phong.emission));
@@ -98,6 +106,17 @@ pub(super) fn library(
         replaced: pictures.replaced(&old),
         pictures: pictures.created,
     })
+}
+
+/// The one colour that an MTL has for highlight and mirror, and the model that says which of them there are.
+fn highlight(phong: &Phong) -> (LinearRgba, u8) {
+    const NONE: LinearRgba = LinearRgba::BLACK;
+    match (phong.specular, phong.mirror) {
+        (NONE, NONE) => (NONE, 1),
+        (specular, NONE) => (specular, 2),
+        (NONE, mirror) => (mirror, 3),
+        (specular, _) => (specular, 3),
+    }
 }
 
 /// The content of a file that is there.

@@ -71,6 +71,9 @@ fn phong(p: &Phong) -> Checked {
     for value in channels(p.specular) {
         within("Phong.specular", value, 0.0, 1.0, UNIT)?;
     }
+    for value in channels(p.mirror) {
+        within("Phong.mirror", value, 0.0, 1.0, UNIT)?;
+    }
     for value in channels(p.emission) {
         at_least_0("Phong.emission", value)?;
     }

@@ -6,6 +6,7 @@
 
 mod check;
 mod kept;
+mod migrate;
 mod read;
 mod write;
 
@@ -33,8 +34,8 @@ use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 pub(crate) struct FileVersion(pub u32);
 
 impl FileVersion {
-    /// The rules that this program writes.
-    const CURRENT: Self = Self(1);
+    /// The rules that this program writes. Version 1 had no mirror of its own: what it calls `specular` was both.
+    const CURRENT: Self = Self(2);
 }
 
 /// Every entity that belongs to the scene: what carries one of its components, and the ancestors

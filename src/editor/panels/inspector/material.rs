@@ -84,8 +84,11 @@ pub(super) fn material_ui(
 fn fields_ui(ui: &mut Ui, several: &mut Several<Phong>) {
     let says = "kd: the colour of the body, lit from all sides alike";
     several.color(ui, "Diffuse", says, |phong| &mut phong.diffuse);
-    let says = "ks: the highlight's colour, and what a mirror reflects; black is no mirror";
+    let says = "ks: the highlight's colour, of lights alone; black is matt";
     several.color(ui, "Specular", says, |phong| &mut phong.specular);
+    let says =
+        "km: how much of its surroundings it reflects, and in which colour; black is no mirror";
+    several.color(ui, "Mirror", says, |phong| &mut phong.mirror);
     let says = "How narrow the highlight is; a glossy reflection blurs by one over it";
     let number = Number::logarithmic(1.0, 10_000.0, "");
     several.number(ui, "Shininess", says, number, |phong| &mut phong.shininess);
