@@ -129,6 +129,8 @@ fn a_batch_allocates_nothing_once_its_arrays_have_grown() {
         tree,
         normals: vec![],
         uvs: vec![],
+        colors: Vec::new(),
+        alphas: Vec::new(),
     });
     let objects = (0..2)
         .map(|i| Object {

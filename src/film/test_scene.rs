@@ -40,6 +40,8 @@ pub(super) fn world() -> World {
                 tree,
                 normals: vec![],
                 uvs: vec![],
+                colors: Vec::new(),
+                alphas: Vec::new(),
             }),
         });
     }

@@ -8,7 +8,7 @@
 //! | file | in | out |
 //! |---|---|---|
 //! | `.scn.ron` | everything | everything |
-//! | `.obj` with `.mtl` | meshes, materials, pictures | the same, in the world's space |
+//! | `.obj` with `.mtl` | meshes, materials, pictures, colours of vertices | the same, in the world's space |
 //! | `.glb`, `.gltf` | meshes, hierarchy, materials, pictures, lights, cameras | `.glb`, the same |
 //! | `.exr` of [`write_part`] | exact sums of some samples | the same |
 //! | `.png`, `.jpg`, `.exr`, `.hdr` | pictures, by their content | pictures |

@@ -70,6 +70,8 @@ pub(crate) struct MeshParts<'a> {
     pub normals: &'a [[f32; 3]],
     /// As many as positions, or none.
     pub uvs: &'a [[f32; 2]],
+    /// As many as positions, or none: linear, with alpha.
+    pub colors: &'a [[f32; 4]],
     pub indices: &'a Indices,
 }
 
@@ -90,12 +92,17 @@ impl<'a> MeshParts<'a> {
             Ok(Some(Values::Float32x2(values))) if whole(values.len()) => values.as_slice(),
             _ => &[],
         };
+        let colors = match mesh.try_attribute_option(Mesh::ATTRIBUTE_COLOR) {
+            Ok(Some(Values::Float32x4(values))) if whole(values.len()) => values.as_slice(),
+            _ => &[],
+        };
         Some(Self {
             positions,
             normals: three(Mesh::ATTRIBUTE_NORMAL)
                 .filter(|values| whole(values.len()))
                 .unwrap_or(&[]),
             uvs,
+            colors,
             indices: mesh.try_indices_option().ok().flatten()?,
         })
     }

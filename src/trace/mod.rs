@@ -36,6 +36,7 @@ mod material;
 mod mipmap;
 mod near_lights;
 mod needs;
+mod normal_map;
 mod probe;
 mod radiance;
 mod ray_tree;
@@ -50,6 +51,7 @@ mod surface;
 mod texels;
 mod texture;
 mod world;
+mod wrap;
 
 pub use camera::{Camera, ImagePlane, Optics};
 pub use digest::{Digest, digest};
@@ -60,7 +62,7 @@ pub use footprint::Cone;
 pub use lights::{
     DirectionalLight, LightPoint, Lights, MovingLight, ParallelogramLight, PointLight, SegmentLight,
 };
-pub use material::Material;
+pub use material::{Map, Material};
 pub use needs::{Needs, samples_per_pixel};
 pub use probe::{MOST_RAYS, ProbeError, Samples, probe};
 pub use radiance::{RayCounts, SampleId, Workspace, radiance};
@@ -75,3 +77,4 @@ pub use surface::Surface;
 pub use texels::Texels;
 pub use texture::{Texture, TextureError};
 pub use world::{Mesh, Object, World};
+pub use wrap::Reading;

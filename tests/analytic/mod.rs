@@ -1,6 +1,7 @@
 //! The picture against closed forms: what the tracer computes is compared with what it should be.
 
 mod irradiance;
+mod materials;
 mod mirrors;
 mod views;
 
@@ -59,6 +60,8 @@ pub fn object(id: u64, corners: &[Vec3], material: u32) -> (Instance, Object) {
         tree: tree.clone(),
         normals: vec![],
         uvs: vec![],
+        colors: Vec::new(),
+        alphas: Vec::new(),
     };
     let instance = Instance::new(tree, &glam::Affine3A::IDENTITY).unwrap();
     (

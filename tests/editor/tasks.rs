@@ -182,9 +182,7 @@ const TASKS: &[Task] = &[
         act: |app| {
             let floor = named(app, "Floor");
             change(app, floor, |phong: Mut<Phong>| {
-                phong.into_inner().diffuse_map = Some(TextureSource {
-                    path: "builtin:checker".into(),
-                });
+                phong.into_inner().diffuse_map = Some(TextureSource::new("builtin:checker"));
             });
             app.update();
         },

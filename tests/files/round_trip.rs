@@ -28,10 +28,22 @@ fn rich_scene(world: &mut World, picture: &str) {
                 shininess: 33.3,
                 opacity: 0.9,
                 emission: color(2.0),
-                diffuse_map: Some(TextureSource {
-                    path: picture.into(),
+                alpha: Alpha::Mask { cutoff: 0.3 },
+                normal_scale: 0.7,
+                diffuse_map: Some(TextureSource::new(picture)),
+                specular_map: Some(TextureSource {
+                    wrap_u: Wrap::Clamp,
+                    wrap_v: Wrap::Mirror,
+                    filter: MapFilter::Nearest,
+                    ..TextureSource::new(picture)
                 }),
-                opacity_map: None,
+                mirror_map: Some(TextureSource::new("builtin:uv")),
+                emission_map: Some(TextureSource::new("builtin:checker")),
+                opacity_map: Some(TextureSource::new(picture)),
+                normal_map: Some(TextureSource {
+                    filter: MapFilter::Linear,
+                    ..TextureSource::new(picture)
+                }),
             },
         ))
         .id();
@@ -106,9 +118,7 @@ fn rich_scene(world: &mut World, picture: &str) {
     });
     world.insert_resource(Environment {
         rotation: 1.25,
-        map: Some(TextureSource {
-            path: picture.into(),
-        }),
+        map: Some(TextureSource::new(picture)),
         ..Default::default()
     });
 }
@@ -398,6 +408,20 @@ fn material_of_version(version: u32, phong: &str) -> Phong {
     let (mut app, _) = opened(&file);
     let material = by_id(app.world_mut(), 1);
     app.world().get::<Phong>(material).cloned().unwrap()
+}
+
+#[test]
+fn a_picture_of_the_first_version_takes_the_place_of_the_colour() {
+    let text = "diffuse: (red: 0.25, green: 0.5, blue: 0.75, alpha: 1.0), \
+                diffuse_map: Some((path: \"builtin:uv\"))";
+    let color = LinearRgba::rgb(0.25, 0.5, 0.75);
+    let old = material_of_version(1, text);
+    assert_eq!(old.diffuse, LinearRgba::WHITE);
+    assert_eq!(old.diffuse_map, Some(TextureSource::new("builtin:uv")));
+    let new = material_of_version(2, text);
+    assert_eq!(new.diffuse, color);
+    let without = material_of_version(1, text.split(", diffuse_map").next().unwrap());
+    assert_eq!(without.diffuse, color);
 }
 
 #[test]

@@ -4,9 +4,9 @@ use super::{RED, Scene, WHITE, expect, is_color, is_near, segment};
 use crate::analytic::{object, quad, world};
 use glam::{Vec2, Vec3};
 use glassbox::inspect::{InspectSettings, LineSet, MissColor, RaySettings, System};
-use glassbox::scene::{PixelSampling, Projection};
+use glassbox::scene::{PhongMap, PixelSampling, Projection};
 use glassbox::trace::{
-    Camera, Environment, Lights, Material, Mesh, Object, ParallelogramLight, PointLight,
+    Camera, Environment, Lights, Map, Material, Mesh, Object, ParallelogramLight, PointLight,
     SegmentLight, Texels, Texture,
 };
 use std::f32::consts::PI;
@@ -227,6 +227,8 @@ fn s8_the_camera_ray_takes_the_texels_colour() {
         tree: plain.mesh.tree.clone(),
         normals: vec![],
         uvs: uvs.to_vec(),
+        colors: Vec::new(),
+        alphas: Vec::new(),
     });
     let texels = vec![
         [0.9, 0.1, 0.1],
@@ -235,7 +237,8 @@ fn s8_the_camera_ray_takes_the_texels_colour() {
         [0.6, 0.6, 0.1],
     ];
     let material = Material {
-        diffuse_map: Some(0),
+        diffuse: Vec3::ONE,
+        maps: vec![Map::new(PhongMap::Diffuse, 0)],
         ..Material::default()
     };
     let mut world = world(vec![(instance, Object { mesh, ..plain })], vec![material]);

@@ -105,7 +105,8 @@ pub(super) fn glossy(diffuse: [f32; 3], specular: [f32; 3], shininess: f32) -> P
 /// A matte material that wears a generated picture.
 pub(super) fn pictured(name: &'static str) -> Phong {
     Phong {
-        diffuse_map: Some(TextureSource { path: name.into() }),
+        diffuse: LinearRgba::WHITE,
+        diffuse_map: Some(TextureSource::new(name)),
         ..Phong::default()
     }
 }
@@ -128,9 +129,7 @@ pub(super) fn plain_background(r: f32, g: f32, b: f32) -> Environment {
 pub(super) fn sky() -> Environment {
     Environment {
         background: LinearRgba::rgb(0.45, 0.60, 0.85),
-        map: Some(TextureSource {
-            path: "builtin:sky".into(),
-        }),
+        map: Some(TextureSource::new("builtin:sky")),
         ..Environment::default()
     }
 }

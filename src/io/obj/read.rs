@@ -10,6 +10,8 @@ use super::phong::phong_of;
 use super::statements::read_content;
 use super::text::unquoted;
 use crate::io::Limits;
+use crate::scene::Phong;
+use bevy::color::LinearRgba;
 use bevy::mesh::Mesh;
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
@@ -61,6 +63,7 @@ pub(crate) fn read_obj(file: &Path, folder: &Folder, limits: &Limits) -> Result<
     }
     let several = materials_of_objects(&groups);
     let (keys, parts): (Vec<_>, Vec<_>) = groups.into_iter().unzip();
+    let mut white = None;
     let mut builder = Builder::new(file, &content, &parts, &mut model.notes);
     for (key, part) in keys.into_iter().zip(parts) {
         let object = &content.objects[key.object as usize];
@@ -80,10 +83,24 @@ pub(crate) fn read_obj(file: &Path, folder: &Folder, limits: &Limits) -> Result<
         for (name, mesh) in [(name, meshes.mesh), (plain, meshes.without_picture)] {
             let Some(mesh) = mesh else { continue };
             let name = free_name(name, &model.meshes);
+            // Colours that the file gives are shown as they are.
+            let is_colored = mesh.contains_attribute(Mesh::ATTRIBUTE_COLOR);
+            let material = key.material.or_else(|| {
+                is_colored.then(|| {
+                    *white.get_or_insert_with(|| {
+                        let phong = Phong {
+                            diffuse: LinearRgba::WHITE,
+                            ..Phong::default()
+                        };
+                        model.materials.push(("vertex colours".to_owned(), phong));
+                        model.materials.len() - 1
+                    })
+                })
+            });
             model.nodes.push(Node {
                 name: name.clone(),
                 mesh: Some(name.clone()),
-                material: key.material,
+                material,
                 ..Node::default()
             });
             model.meshes.insert(name, mesh);

@@ -134,6 +134,10 @@ impl<'a> Drawn<'a> {
                 ));
                 continue;
             };
+            if parts.colors.iter().any(|color| color[3] != 1.0) {
+                let text = format!("`{}`: its vertices' alphas were left out", object.name);
+                exported.notes.push(text);
+            }
             objects.push(DrawnObject {
                 name: object.name,
                 material: exported.materials[object.material].name.clone(),
@@ -172,11 +176,16 @@ fn write_object(
     counts: &mut Counts,
 ) -> io::Result<()> {
     let linear = world_from_object.matrix3;
+    let mut colors = parts.colors.iter();
     for &position in parts.positions {
         let [x, y, z] = world_from_object
             .transform_point3(position.into())
             .to_array();
-        writeln!(out, "v {x} {y} {z}")?;
+        write!(out, "v {x} {y} {z}")?;
+        if let Some([r, g, b, _]) = colors.next() {
+            write!(out, " {r} {g} {b}")?;
+        }
+        writeln!(out)?;
     }
     for &[u, v] in parts.uvs {
         writeln!(out, "vt {u} {}", 1.0 - v)?;

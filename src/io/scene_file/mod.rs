@@ -34,7 +34,8 @@ use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 pub(crate) struct FileVersion(pub u32);
 
 impl FileVersion {
-    /// The rules that this program writes. Version 1 had no mirror of its own: what it calls `specular` was both.
+    /// The rules that this program writes. What version 1 calls `specular` is
+    /// the mirror, too, and its diffuse maps take the place of the colour.
     const CURRENT: Self = Self(2);
 }
 

@@ -117,8 +117,7 @@ impl Preset {
             shininess: self.shininess,
             opacity: self.opacity,
             emission: color(self.emission),
-            diffuse_map: phong.diffuse_map.take(),
-            opacity_map: phong.opacity_map.take(),
+            ..phong.clone()
         };
     }
 }
@@ -132,9 +131,7 @@ mod tests {
     #[test]
     fn every_preset_is_within_the_ranges_of_a_material_and_keeps_the_maps() {
         for preset in PRESETS {
-            let map = Some(TextureSource {
-                path: "builtin:uv".into(),
-            });
+            let map = Some(TextureSource::new("builtin:uv"));
             let mut phong = Phong {
                 diffuse_map: map.clone(),
                 ..Phong::default()
