@@ -16,9 +16,9 @@ use glam::UVec2;
 use glassbox::app::headless_app;
 use glassbox::io::builtin;
 use glassbox::report::features::{EFFECTS, Specimen, State};
-use glassbox::scene::{RenderSettings, TextureFilter};
+use glassbox::scene::{Alpha, PhongMap, RenderSettings, TextureFilter};
 use glassbox::sync::{Traced, TracedCameras};
-use glassbox::trace::World;
+use glassbox::trace::{Map, World};
 
 fn main() {
     divan::main();
@@ -50,6 +50,40 @@ fn on_but_absent(bencher: Bencher, effect: &str) {
 fn on_and_used(bencher: Bencher, effect: &str) {
     bench(bencher, effect, State::Used);
 }
+
+/// What a material may have beside its numbers: none of it costs anything where it is absent.
+#[divan::bench(args = MATERIALS.iter().map(|(name, _)| *name), sample_count = 20)]
+fn materials(bencher: Bencher, name: &str) {
+    let bring_in = MATERIALS.iter().find(|(other, _)| *other == name);
+    let (_, bring_in) = bring_in.expect("one of the names");
+    let mut specimen = Specimen::plain();
+    bring_in(&mut specimen);
+    specimen.settings.size = UVec2::splat(128);
+    specimen.settings.spp = 4;
+    bencher.bench_local(|| specimen.picture());
+}
+
+const MATERIALS: [(&str, fn(&mut Specimen)); 6] = [
+    ("plain", |_| {}),
+    ("diffuse map", Specimen::texture),
+    ("normal map", |specimen| {
+        specimen.texture();
+        specimen.material(|material| material.maps = vec![Map::new(PhongMap::Normal, 0)]);
+    }),
+    ("all maps", |specimen| {
+        specimen.texture();
+        let all = || PhongMap::ALL.map(|map| Map::new(map, 0)).to_vec();
+        specimen.material(|material| material.maps = all());
+    }),
+    ("mask", |specimen| {
+        specimen.texture();
+        specimen.material(|material| {
+            material.alpha = Alpha::Mask { cutoff: 0.5 };
+            material.maps = vec![Map::new(PhongMap::Opacity, 0)];
+        });
+    }),
+    ("vertex colours", Specimen::vertex_colors),
+];
 
 /// Filters of a texture look-up, on a scene that has textures: mipmaps cost only who asks for them.
 #[divan::bench(args = [TextureFilter::Nearest, TextureFilter::Bilinear, TextureFilter::Mipmap], sample_count = 20)]

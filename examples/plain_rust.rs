@@ -54,6 +54,8 @@ fn main() -> Result<(), Box<dyn Error>> {
                 tree,
                 normals: vec![],
                 uvs: vec![],
+                colors: Vec::new(),
+                alphas: Vec::new(),
             }),
         }]),
         materials: Arc::new(vec![Material::default()]),

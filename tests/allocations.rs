@@ -129,6 +129,8 @@ fn a_batch_allocates_nothing_once_its_arrays_have_grown() {
         tree,
         normals: vec![],
         uvs: vec![],
+        colors: Vec::new(),
+        alphas: Vec::new(),
     });
     let objects = (0..2)
         .map(|i| Object {
@@ -140,6 +142,7 @@ fn a_batch_allocates_nothing_once_its_arrays_have_grown() {
         .collect();
     let mirror = Material {
         specular: Vec3::splat(0.5),
+        mirror: Vec3::splat(0.5),
         opacity: 0.6,
         ..Material::default()
     };

@@ -88,7 +88,7 @@ impl Edited {
                 world.get_mut::<PointLamp>(self.light).unwrap().color =
                     LinearRgba::rgb(1.0, by, 0.0);
             }
-            2 => world.get_mut::<Phong>(object).unwrap().specular = LinearRgba::rgb(by, by, by),
+            2 => world.get_mut::<Phong>(object).unwrap().mirror = LinearRgba::rgb(by, by, by),
             3 => world.get_mut::<Transform>(object).unwrap().translation.y = by,
             4 => {
                 world.get_mut::<Transform>(self.camera).unwrap().translation =

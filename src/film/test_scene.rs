@@ -40,6 +40,8 @@ pub(super) fn world() -> World {
                 tree,
                 normals: vec![],
                 uvs: vec![],
+                colors: Vec::new(),
+                alphas: Vec::new(),
             }),
         });
     }
@@ -49,6 +51,7 @@ pub(super) fn world() -> World {
     };
     let mirror = Material {
         specular: Vec3::splat(0.7),
+        mirror: Vec3::splat(0.7),
         ..paint(0.1, 0.1, 0.1)
     };
     World {

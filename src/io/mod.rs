@@ -8,7 +8,7 @@
 //! | file | in | out |
 //! |---|---|---|
 //! | `.scn.ron` | everything | everything |
-//! | `.obj` with `.mtl` | meshes, materials, pictures | the same, in the world's space |
+//! | `.obj` with `.mtl` | meshes, materials, pictures, colours of vertices | the same, in the world's space |
 //! | `.glb`, `.gltf` | meshes, hierarchy, materials, pictures, lights, cameras | `.glb`, the same |
 //! | `.stl`, ASCII or binary | facets, their colours | – |
 //! | `.ply`, ASCII or binary | polygons, strips, normals, colours, a picture | – |

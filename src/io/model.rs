@@ -3,6 +3,7 @@
 use super::notes::Notes;
 use crate::scene::{DirectionalLamp, Phong, PointLamp, SceneCamera};
 use bevy::asset::RenderAssetUsages;
+use bevy::color::LinearRgba;
 use bevy::mesh::{Indices, Mesh, PrimitiveTopology};
 use bevy::transform::components::Transform;
 use std::collections::{BTreeMap, HashMap};
@@ -37,6 +38,24 @@ pub(crate) struct Node {
     pub point_lamp: Option<PointLamp>,
     pub directional_lamp: Option<DirectionalLamp>,
     pub camera: Option<SceneCamera>,
+}
+
+/// The material of meshes that have no other, and whose vertices have colours: those are shown as they are.
+#[derive(Default)]
+pub(crate) struct ColoredMaterial(Option<usize>);
+
+impl ColoredMaterial {
+    /// Its place among the materials, where it is put when first asked for.
+    pub fn place(&mut self, materials: &mut Vec<(String, Phong)>) -> usize {
+        *self.0.get_or_insert_with(|| {
+            let phong = Phong {
+                diffuse: LinearRgba::WHITE,
+                ..Phong::default()
+            };
+            materials.push(("vertex colours".to_owned(), phong));
+            materials.len() - 1
+        })
+    }
 }
 
 /// Gives names that no mesh has yet; the search for one goes on where the last of the same name ended.
@@ -93,6 +112,8 @@ pub(crate) struct MeshParts<'a> {
     pub normals: &'a [[f32; 3]],
     /// As many as positions, or none.
     pub uvs: &'a [[f32; 2]],
+    /// As many as positions, or none: linear, with alpha.
+    pub colors: &'a [[f32; 4]],
     pub indices: &'a Indices,
 }
 
@@ -113,12 +134,17 @@ impl<'a> MeshParts<'a> {
             Ok(Some(Values::Float32x2(values))) if whole(values.len()) => values.as_slice(),
             _ => &[],
         };
+        let colors = match mesh.try_attribute_option(Mesh::ATTRIBUTE_COLOR) {
+            Ok(Some(Values::Float32x4(values))) if whole(values.len()) => values.as_slice(),
+            _ => &[],
+        };
         Some(Self {
             positions,
             normals: three(Mesh::ATTRIBUTE_NORMAL)
                 .filter(|values| whole(values.len()))
                 .unwrap_or(&[]),
             uvs,
+            colors,
             indices: mesh.try_indices_option().ok().flatten()?,
         })
     }

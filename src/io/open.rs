@@ -14,8 +14,11 @@ use super::scene_file::{SceneFile, read_scene, scene_entities};
 use super::sources::SceneFiles;
 use super::spawn::spawn_model;
 use super::{Limits, LoadProblems, extension, shapes};
-use crate::scene::{Environment, MeshSource, Phong, RenderSettings, SceneId, TextureSource};
+use crate::scene::{
+    Environment, MeshSource, Phong, PhongMap, RenderSettings, SceneId, TextureSource,
+};
 use bevy::asset::{Assets, Handle};
+use bevy::color::LinearRgba;
 use bevy::image::Image;
 use bevy::mesh::Mesh;
 use bevy::prelude::World;
@@ -276,14 +279,13 @@ impl Loaded {
         let mut loaded = Self::default();
         let mut failed = HashSet::new();
         for (_, phong) in &mut model.materials {
-            let maps = [
-                (&mut phong.diffuse_map, PictureUse::Color),
-                (&mut phong.opacity_map, PictureUse::Data),
-            ];
-            for (map, usage) in maps {
-                let Some(source) = map else { continue };
+            for map in PhongMap::ALL {
+                let usage = PictureUse::of(map);
+                let Some(source) = map.source(phong) else {
+                    continue;
+                };
                 // One that many materials name is tried once.
-                let key = (source.clone(), usage);
+                let key = (source.path.clone(), usage);
                 if !failed.contains(&key)
                     && let Err(error) = loaded.load_picture(source, usage, loader)
                 {
@@ -300,7 +302,14 @@ impl Loaded {
                     failed.insert(key.clone());
                 }
                 if failed.contains(&key) {
-                    *map = None;
+                    *map.source_mut(phong) = None;
+                    // What it scales goes with it, but for the body that has to be seen.
+                    match map {
+                        PhongMap::Specular => phong.specular = LinearRgba::BLACK,
+                        PhongMap::Mirror => phong.mirror = LinearRgba::BLACK,
+                        PhongMap::Emission => phong.emission = LinearRgba::BLACK,
+                        PhongMap::Diffuse | PhongMap::Opacity | PhongMap::Normal => {}
+                    }
                 }
             }
         }
@@ -337,7 +346,7 @@ impl Loaded {
         loader: &mut Loader,
     ) -> Result<(), FileError> {
         let mut known = self.pictures.iter();
-        if !known.any(|(other, how, _)| other == source && *how == usage) {
+        if !known.any(|(other, how, _)| other.path == source.path && *how == usage) {
             let picture = loader.picture(source, usage)?;
             self.pictures.push((source.clone(), usage, picture));
         }
@@ -385,8 +394,8 @@ impl Loaded {
 
 /// The pictures that a material names.
 fn pictures_of(phong: &Phong) -> impl Iterator<Item = (&TextureSource, PictureUse)> {
-    let diffuse = phong.diffuse_map.iter().map(|map| (map, PictureUse::Color));
-    diffuse.chain(phong.opacity_map.iter().map(|map| (map, PictureUse::Data)))
+    let maps = PhongMap::ALL.into_iter();
+    maps.filter_map(|map| Some((map.source(phong)?, PictureUse::of(map))))
 }
 
 /// Removes the open scene; everything else in the world stays.

@@ -7,7 +7,7 @@ use super::folder::Folder;
 use super::loader::Loader;
 use super::picture::PictureUse;
 use super::sources::{SceneFiles, mesh_key};
-use crate::scene::{Environment, MeshSource, Phong, TextureSource};
+use crate::scene::{Environment, MeshSource, Phong, PhongMap, TextureSource};
 use bevy::asset::Assets;
 use bevy::image::Image;
 use bevy::mesh::Mesh;
@@ -86,8 +86,9 @@ pub(crate) fn source_files(world: &mut World) -> Vec<SourceFile> {
     }
     let mut materials = world.query::<&Phong>();
     for phong in materials.iter(world) {
-        found.picture(phong.diffuse_map.as_ref(), PictureUse::Color);
-        found.picture(phong.opacity_map.as_ref(), PictureUse::Data);
+        for map in PhongMap::ALL {
+            found.picture(map.source(phong), PictureUse::of(map));
+        }
     }
     if let Some(environment) = world.get_resource::<Environment>() {
         found.picture(environment.map.as_ref(), PictureUse::Color);

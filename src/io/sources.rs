@@ -12,7 +12,9 @@ use super::on_disk::OnDisk;
 use super::picture::PictureUse;
 use super::{LoadProblem, LoadProblems};
 use crate::io::Limits;
-use crate::scene::{Environment, EnvironmentMap, MeshSource, Phong, PhongMaps, TextureSource};
+use crate::scene::{
+    Environment, EnvironmentMap, MeshSource, Phong, PhongMap, PhongMaps, TextureSource,
+};
 use bevy::asset::{AssetId, Assets, Handle};
 use bevy::image::Image;
 use bevy::mesh::{Mesh, Mesh3d};
@@ -211,7 +213,7 @@ pub(crate) fn resolve_pictures(
     for (entity, phong, current) in &changed {
         let before = current.cloned().unwrap_or_default();
         problems.forget(entity, LoadProblem::PICTURE);
-        let mut load = |source: &Option<TextureSource>, usage, before: Option<Handle<Image>>| {
+        let mut load = |source: Option<&TextureSource>, usage, before: Option<Handle<Image>>| {
             let Some(source) = source else {
                 // What no source has named is an app's own, and stays.
                 return before
@@ -225,14 +227,11 @@ pub(crate) fn resolve_pictures(
                 }
             }
         };
-        let maps = PhongMaps {
-            diffuse: load(
-                &phong.diffuse_map,
-                PictureUse::Color,
-                before.diffuse.clone(),
-            ),
-            opacity: load(&phong.opacity_map, PictureUse::Data, before.opacity.clone()),
-        };
+        let mut maps = PhongMaps::default();
+        for map in PhongMap::ALL {
+            let before = map.loaded(&before).cloned();
+            *map.loaded_mut(&mut maps) = load(map.source(phong), PictureUse::of(map), before);
+        }
         if maps == before && (current.is_some() || maps == PhongMaps::default()) {
             continue;
         }
@@ -295,7 +294,7 @@ mod tests {
             .add(Image::default());
         let maps = PhongMaps {
             diffuse: Some(own.clone()),
-            opacity: None,
+            ..PhongMaps::default()
         };
         let entity = app.world_mut().spawn((Phong::default(), maps)).id();
         app.update();
@@ -304,9 +303,7 @@ mod tests {
             maps.unwrap_or_default().diffuse
         };
         assert_eq!(diffuse(&app), Some(own.clone()), "an app's own picture");
-        let source = Some(TextureSource {
-            path: "builtin:uv".into(),
-        });
+        let source = Some(TextureSource::new("builtin:uv"));
         app.world_mut()
             .get_mut::<Phong>(entity)
             .unwrap()

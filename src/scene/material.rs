@@ -13,21 +13,35 @@ use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 #[reflect(Component, Default, Clone, PartialEq, Debug)]
 #[type_path = "glassbox::scene"]
 pub struct Phong {
-    /// kd, in [0, 1]. A diffuse map takes its place.
+    /// kd, in [0, 1].
     pub diffuse: LinearRgba,
-    /// ks, in [0, 1]: the highlight, and what a mirror reflects.
+    /// ks, in [0, 1]: the highlight.
     pub specular: LinearRgba,
+    /// km, in [0, 1]: how much of what the mirror direction shows is reflected.
+    pub mirror: LinearRgba,
     /// s ≥ 1: how narrow the highlight is; a glossy reflection's disc has radius 1/s.
     pub shininess: f32,
     /// d in [0, 1]: 1 is opaque.
     pub opacity: f32,
     /// ke ≥ 0, radiance that the surface sends out by itself. It is seen; it does not light others.
     pub emission: LinearRgba,
-    /// A picture that takes the place of `diffuse`.
+    /// What becomes of `opacity`, its map's and the vertices' included.
+    pub alpha: Alpha,
+    /// How far the normal map bends: multiplies what leaves the normal, 1 as it is painted.
+    pub normal_scale: f32,
+    /// A picture that multiplies `diffuse`.
     pub diffuse_map: Option<TextureSource>,
-    /// A picture whose brightness multiplies `opacity`. The diffuse map is cut out by it: where its
+    /// A picture that multiplies `specular`.
+    pub specular_map: Option<TextureSource>,
+    /// A picture that multiplies `mirror`.
+    pub mirror_map: Option<TextureSource>,
+    /// A picture that multiplies `emission`.
+    pub emission_map: Option<TextureSource>,
+    /// A picture whose brightness multiplies `opacity`. Pictures of colours are cut out by it: where their
     /// colours are mixed, each counts by its opacity.
     pub opacity_map: Option<TextureSource>,
+    /// A picture of normals in tangent space, green upwards: they take the place of the mesh's.
+    pub normal_map: Option<TextureSource>,
 }
 
 impl Default for Phong {
@@ -35,16 +49,130 @@ impl Default for Phong {
         Self {
             diffuse: LinearRgba::rgb(0.8, 0.8, 0.8),
             specular: LinearRgba::BLACK,
+            mirror: LinearRgba::BLACK,
             shininess: 10.0,
             opacity: 1.0,
             emission: LinearRgba::BLACK,
+            alpha: Alpha::Blend,
+            normal_scale: 1.0,
             diffuse_map: None,
+            specular_map: None,
+            mirror_map: None,
+            emission_map: None,
             opacity_map: None,
+            normal_map: None,
         }
     }
 }
 
-/// A picture file, or one that a generated scene brings along.
+/// What a surface's opacity means.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[reflect(Default, Clone, PartialEq, Debug)]
+pub enum Alpha {
+    /// The part that is not let through.
+    #[default]
+    Blend,
+    /// The surface is there where the opacity, filtered, is at least the cutoff, and is not where it is less.
+    Mask {
+        /// At least 0. Above 1 nothing is there.
+        cutoff: f32,
+    },
+    /// Nothing: the surface is there.
+    Opaque,
+}
+
+/// Which picture of a [`Phong`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[expect(missing_docs, reason = "named like the numbers that they multiply")]
+pub enum PhongMap {
+    Diffuse,
+    Specular,
+    Mirror,
+    Emission,
+    Opacity,
+    Normal,
+}
+
+impl PhongMap {
+    /// All of them.
+    pub const ALL: [Self; 6] = [
+        Self::Diffuse,
+        Self::Specular,
+        Self::Mirror,
+        Self::Emission,
+        Self::Opacity,
+        Self::Normal,
+    ];
+
+    /// As messages call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Diffuse => "diffuse map",
+            Self::Specular => "specular map",
+            Self::Mirror => "mirror map",
+            Self::Emission => "emission map",
+            Self::Opacity => "opacity map",
+            Self::Normal => "normal map",
+        }
+    }
+
+    /// Whether it holds colours; the others hold numbers.
+    pub fn is_of_colors(self) -> bool {
+        !matches!(self, Self::Opacity | Self::Normal)
+    }
+
+    /// Where it comes from.
+    pub fn source(self, phong: &Phong) -> Option<&TextureSource> {
+        let source = match self {
+            Self::Diffuse => &phong.diffuse_map,
+            Self::Specular => &phong.specular_map,
+            Self::Mirror => &phong.mirror_map,
+            Self::Emission => &phong.emission_map,
+            Self::Opacity => &phong.opacity_map,
+            Self::Normal => &phong.normal_map,
+        };
+        source.as_ref()
+    }
+
+    /// The same, to be set.
+    pub fn source_mut(self, phong: &mut Phong) -> &mut Option<TextureSource> {
+        match self {
+            Self::Diffuse => &mut phong.diffuse_map,
+            Self::Specular => &mut phong.specular_map,
+            Self::Mirror => &mut phong.mirror_map,
+            Self::Emission => &mut phong.emission_map,
+            Self::Opacity => &mut phong.opacity_map,
+            Self::Normal => &mut phong.normal_map,
+        }
+    }
+
+    /// The loaded picture.
+    pub fn loaded(self, maps: &PhongMaps) -> Option<&Handle<Image>> {
+        let handle = match self {
+            Self::Diffuse => &maps.diffuse,
+            Self::Specular => &maps.specular,
+            Self::Mirror => &maps.mirror,
+            Self::Emission => &maps.emission,
+            Self::Opacity => &maps.opacity,
+            Self::Normal => &maps.normal,
+        };
+        handle.as_ref()
+    }
+
+    /// The same, to be set.
+    pub fn loaded_mut(self, maps: &mut PhongMaps) -> &mut Option<Handle<Image>> {
+        match self {
+            Self::Diffuse => &mut maps.diffuse,
+            Self::Specular => &mut maps.specular,
+            Self::Mirror => &mut maps.mirror,
+            Self::Emission => &mut maps.emission,
+            Self::Opacity => &mut maps.opacity,
+            Self::Normal => &mut maps.normal,
+        }
+    }
+}
+
+/// A picture file, or one that a generated scene brings along, and how a material reads it.
 #[derive(Reflect, Clone, Debug, Default, PartialEq, Eq, Hash)]
 #[reflect(Default, Clone, PartialEq, Debug, Hash)]
 pub struct TextureSource {
@@ -52,6 +180,48 @@ pub struct TextureSource {
     /// picture inside a glTF file; `builtin:checker` is one that Glassbox generates. Where no such file is there, `%` and
     /// two hexadecimal digits are a byte of a name; `\`, `:` and bytes that are no UTF-8 are written so.
     pub path: String,
+    /// What there is beyond its left and right edge. The environment's own map goes around.
+    pub wrap_u: Wrap,
+    /// The same beyond its upper and lower edge.
+    pub wrap_v: Wrap,
+    /// What there is between its pixels.
+    pub filter: MapFilter,
+}
+
+impl TextureSource {
+    /// A picture that repeats, filtered as the render's setting says.
+    pub fn new(path: impl Into<String>) -> Self {
+        Self {
+            path: path.into(),
+            ..Self::default()
+        }
+    }
+}
+
+/// What there is of a picture beyond its edge.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[reflect(Default, Clone, PartialEq, Debug, Hash)]
+pub enum Wrap {
+    /// The picture again.
+    #[default]
+    Repeat,
+    /// Its outermost pixels.
+    Clamp,
+    /// The picture again, every second time reversed.
+    Mirror,
+}
+
+/// What there is between the pixels of a map.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[reflect(Default, Clone, PartialEq, Debug, Hash)]
+pub enum MapFilter {
+    /// What the render's `texture_filter` says.
+    #[default]
+    Setting,
+    /// Hard pixels, whatever the setting is.
+    Nearest,
+    /// What the setting says, but never hard pixels: those become bilinear.
+    Linear,
 }
 
 /// Label of an [`Image`] of linear floats that were sRGB-encoded in 16 bits: Bevy has no format for such
@@ -64,10 +234,18 @@ pub const SRGB_16_BITS: &str = "sRGB in 16 bits";
 #[reflect(Component, Default, Clone, PartialEq, Debug)]
 #[type_path = "glassbox::scene"]
 pub struct PhongMaps {
-    /// Takes the place of `Phong::diffuse`.
+    /// Multiplies `Phong::diffuse`.
     pub diffuse: Option<Handle<Image>>,
+    /// Multiplies `Phong::specular`.
+    pub specular: Option<Handle<Image>>,
+    /// Multiplies `Phong::mirror`.
+    pub mirror: Option<Handle<Image>>,
+    /// Multiplies `Phong::emission`.
+    pub emission: Option<Handle<Image>>,
     /// Multiplies `Phong::opacity`.
     pub opacity: Option<Handle<Image>>,
+    /// Bends normals.
+    pub normal: Option<Handle<Image>>,
 }
 
 /// Names the entity whose [`Phong`] this object uses instead of its own.

@@ -28,7 +28,9 @@ mod settings;
 pub use camera::{Lens, Motion, Projection, SceneCamera};
 pub use identity::{NotTraced, SceneId};
 pub use lamps::{Cone, DirectionalLamp, ParallelogramLamp, PointLamp, SegmentLamp};
-pub use material::{Phong, PhongMaps, SRGB_16_BITS, TextureSource, UsesMaterial};
+pub use material::{
+    Alpha, MapFilter, Phong, PhongMap, PhongMaps, SRGB_16_BITS, TextureSource, UsesMaterial, Wrap,
+};
 pub use mesh_source::{MeshSource, Shape};
 pub use setting_table::{SETTINGS, Setting, SettingProblem, SettingRange, setting_problems};
 pub use settings::{

@@ -4,9 +4,9 @@ use super::reading::{Reader, Switched};
 use super::texture_data::TextureFault;
 use super::textures::TracedTextures;
 use super::traced::Draft;
-use crate::scene::{Phong, PhongMaps, SceneId, TextureSource, UsesMaterial};
-use crate::trace::{Material, Object, Texture};
-use bevy::asset::{AssetId, Handle};
+use crate::scene::{Alpha, Phong, PhongMap, PhongMaps, SceneId, UsesMaterial};
+use crate::trace::{Map, Material, Object, Texture};
+use bevy::asset::AssetId;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::lifecycle::RemovedComponents;
 use bevy::ecs::name::Name;
@@ -171,41 +171,60 @@ fn material(
     textures: &TracedTextures,
     bound: &mut BoundTextures,
 ) -> Material {
-    let mut map = |field, source: &Option<TextureSource>, handle: Option<&Handle<Image>>| {
-        let fault = match (handle, source) {
+    let alpha = match phong.alpha {
+        Alpha::Mask { cutoff } => Alpha::Mask {
+            cutoff: reader
+                .number("alpha cutoff", cutoff, 0.0..=f32::MAX)
+                .unwrap_or(0.5),
+        },
+        other => other,
+    };
+    let unused = PhongMaps::default();
+    let mut loaded = |of: PhongMap| {
+        let handle = of.loaded(maps.unwrap_or(&unused));
+        let fault = match (handle, of.source(phong)) {
             (Some(handle), _) => match textures.get(handle.id()) {
                 Ok(map) => {
                     if bound.met.insert(handle.id()) {
-                        reader.note_texels(field, map.replaced);
+                        reader.note_texels(of.name(), map.replaced);
                     }
-                    return Some((handle.id(), &map.texture));
+                    return Some((handle.id(), map));
                 }
                 Err(fault) => fault,
             },
             (None, Some(source)) => TextureFault::Unresolved(source.path.clone()),
             (None, None) => return None,
         };
+        let field = of.name();
         reader.note(Fault::Texture { field, fault });
         None
     };
-    let diffuse_map = map(
-        "diffuse map",
-        &phong.diffuse_map,
-        maps.and_then(|maps| maps.diffuse.as_ref()),
-    );
-    let opacity_map = map(
-        "opacity map",
-        &phong.opacity_map,
-        maps.and_then(|maps| maps.opacity.as_ref()),
-    );
-    let cut_out = diffuse_map
-        .zip(opacity_map)
-        .and_then(|((diffuse, _), (opacity, _))| textures.cut_out(diffuse, opacity));
-    let diffuse_map = diffuse_map.map(|(_, texture)| bound.place(cut_out.unwrap_or(texture)));
-    let opacity_map = opacity_map.map(|(_, texture)| bound.place(texture));
+    let pictures = PhongMap::ALL.map(|of| (of, loaded(of)));
+    let opacity = pictures.iter().find(|(of, _)| *of == PhongMap::Opacity);
+    let opacity = opacity.and_then(|(_, picture)| *picture).map(|(id, _)| id);
+    let mut list = Vec::new();
+    for (of, picture) in pictures {
+        let Some((id, picture)) = picture else {
+            continue;
+        };
+        if of == PhongMap::Opacity && alpha == Alpha::Opaque {
+            continue;
+        }
+        let cuts_out = opacity.filter(|_| of.is_of_colors() && alpha != Alpha::Opaque);
+        let cut_out = cuts_out.and_then(|opacity| textures.cut_out(id, opacity));
+        let source = of.source(phong).unwrap_or(&picture.sampler);
+        list.push(Map {
+            of,
+            texture: bound.place(cut_out.unwrap_or(&picture.texture)),
+            wrap: [source.wrap_u, source.wrap_v],
+            filter: source.filter,
+            is_cut_out: cut_out.is_some(),
+        });
+    }
     Material {
         diffuse: reader.color("diffuse", phong.diffuse, 1.0),
         specular: reader.color("specular", phong.specular, 1.0),
+        mirror: reader.color("mirror", phong.mirror, 1.0),
         shininess: reader
             .number("shininess", phong.shininess, 1.0..=f32::MAX)
             .unwrap_or(1.0),
@@ -213,8 +232,11 @@ fn material(
             .number("opacity", phong.opacity, 0.0..=1.0)
             .unwrap_or(1.0),
         emission: reader.color("emission", phong.emission, f32::MAX),
-        diffuse_map,
-        opacity_map,
+        alpha,
+        normal_scale: reader
+            .number("normal scale", phong.normal_scale, f32::MIN..=f32::MAX)
+            .unwrap_or(1.0),
+        maps: list,
     }
 }
 
@@ -228,6 +250,7 @@ mod tests {
         let phong = Phong {
             diffuse: LinearRgba::rgb(0.5, 2.0, 0.5),
             specular: LinearRgba::rgb(f32::NAN, 0.0, 0.0),
+            mirror: LinearRgba::rgb(0.0, -1.0, 0.0),
             shininess: 0.0,
             opacity: -3.0,
             emission: LinearRgba::rgb(9.0, 0.0, 0.0),
@@ -250,10 +273,11 @@ mod tests {
         );
         assert_eq!(material.diffuse.to_array(), [0.5, 1.0, 0.5]);
         assert_eq!(material.specular.to_array(), [0.0; 3]);
+        assert_eq!(material.mirror.to_array(), [0.0; 3]);
         assert_eq!((material.shininess, material.opacity), (1.0, 0.0));
         assert_eq!(material.emission.to_array(), [9.0, 0.0, 0.0]);
         let named: Vec<String> = problems.iter().map(ToString::to_string).collect();
-        assert_eq!(named.len(), 4, "{named:#?}");
+        assert_eq!(named.len(), 5, "{named:#?}");
         assert!(
             named[0].starts_with("material 4: its diffuse is 2"),
             "{}",

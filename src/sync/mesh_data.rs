@@ -1,9 +1,9 @@
-//! A Bevy mesh as the tracer keeps it: positions and triangles in a tree, normals and texture
-//! coordinates beside it.
+//! A Bevy mesh as the tracer keeps it: positions and triangles in a tree, normals, texture
+//! coordinates and colours beside it.
 
 use crate::bvh::{BuildOptions, MeshTree, Triangles};
 use crate::trace;
-use bevy::math::{Vec2, Vec3};
+use bevy::math::{Vec2, Vec3, Vec4};
 use bevy::mesh::{Indices, Mesh, MeshAccessError, PrimitiveTopology, VertexAttributeValues};
 use std::sync::Arc;
 
@@ -38,6 +38,8 @@ pub(super) struct MeshCopy {
     indices: Vec<[u32; 3]>,
     normals: Vec<Vec3>,
     uvs: Vec<Vec2>,
+    colors: Vec<Vec3>,
+    alphas: Vec<f32>,
 }
 
 impl MeshCopy {
@@ -66,11 +68,14 @@ impl MeshCopy {
             }
             _ => Vec::new(),
         };
+        let (colors, alphas) = vertex_colors(mesh, count);
         Ok(Self {
             positions,
             indices,
             normals,
             uvs,
+            colors,
+            alphas,
         })
     }
 
@@ -82,8 +87,46 @@ impl MeshCopy {
             tree: Arc::new(MeshTree::build(triangles, options)),
             normals: self.normals,
             uvs: self.uvs,
+            colors: self.colors,
+            alphas: self.alphas,
         })
     }
+}
+
+/// The colours and alphas of as many vertices, in [0, 1]; none where they would change nothing.
+fn vertex_colors(mesh: &Mesh, count: usize) -> (Vec<Vec3>, Vec<f32>) {
+    let colors: Vec<Vec4> = match mesh.try_attribute(Mesh::ATTRIBUTE_COLOR) {
+        Ok(VertexAttributeValues::Float32x4(values)) => {
+            values.iter().copied().map(Vec4::from).collect()
+        }
+        Ok(VertexAttributeValues::Unorm8x4(values)) => {
+            let parts = values.iter().map(|value| value.map(f32::from));
+            parts.map(|value| Vec4::from(value) / 255.0).collect()
+        }
+        _ => Vec::new(),
+    };
+    // What is no number is black, and in full.
+    let number = |c: f32, otherwise: f32| {
+        if c.is_nan() {
+            otherwise
+        } else {
+            c.clamp(0.0, 1.0)
+        }
+    };
+    let clean = |c: Vec4| {
+        let rgb = c.truncate().to_array().map(|channel| number(channel, 0.0));
+        Vec3::from(rgb).extend(number(c.w, 1.0))
+    };
+    let colors: Vec<Vec4> = colors.into_iter().map(clean).collect();
+    if colors.len() != count || colors.iter().all(|&color| color == Vec4::ONE) {
+        return (Vec::new(), Vec::new());
+    }
+    let alphas = if colors.iter().all(|color| color.w == 1.0) {
+        Vec::new()
+    } else {
+        colors.iter().map(|color| color.w).collect()
+    };
+    (colors.into_iter().map(Vec4::truncate).collect(), alphas)
 }
 
 /// Three indices a triangle. A list's surplus indices are no triangle, as in Bevy; every other
@@ -184,5 +227,27 @@ mod tests {
         let none =
             mesh(PrimitiveTopology::TriangleList).with_inserted_indices(Indices::U32(Vec::new()));
         assert!(indices_of(&none).is_empty());
+    }
+
+    #[test]
+    fn colours_and_alphas_are_kept_where_they_change_something() {
+        let of = |colors: [[f32; 4]; 4]| {
+            let mesh = mesh(PrimitiveTopology::TriangleList)
+                .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors.to_vec());
+            let traced = trace_mesh(&mesh, &BuildOptions::default()).unwrap();
+            (traced.colors, traced.alphas)
+        };
+        assert_eq!(of([[1.0; 4]; 4]), (vec![], vec![]));
+        let mut colors = [[1.0; 4]; 4];
+        colors[1] = [0.5, f32::NAN, 2.0, 1.0];
+        let (found, alphas) = of(colors);
+        assert_eq!(found[1], Vec3::new(0.5, 0.0, 1.0));
+        assert!(alphas.is_empty());
+        colors[2][3] = 0.25;
+        assert_eq!(of(colors).1, [1.0, 1.0, 0.25, 1.0]);
+        assert!(
+            of([[1.0, 1.0, 1.0, 0.5]; 4]).0.len() == 4,
+            "white that fades"
+        );
     }
 }

@@ -39,6 +39,7 @@
 mod cameras;
 mod environment;
 mod ids;
+mod image_sampler;
 mod instances;
 mod lights;
 mod materials;

@@ -1,7 +1,8 @@
+use super::image_sampler::sampler_of;
 use super::reading::Switched;
 use super::texture_data::{Replaced, TextureFault, trace_texture};
 use super::traced::Draft;
-use crate::scene::{EnvironmentMap, PhongMaps};
+use crate::scene::{EnvironmentMap, PhongMap, PhongMaps, TextureSource};
 use crate::trace::Texture;
 use bevy::asset::{AssetEvent, AssetId, Assets};
 use bevy::ecs::change_detection::DetectChanges;
@@ -24,15 +25,17 @@ pub(super) struct TracedTextures {
 /// A picture that could be converted.
 pub(super) struct TracedTexture {
     pub texture: Arc<Texture>,
+    /// How it is read where no source says so.
+    pub sampler: TextureSource,
     /// Texels that could not be taken as they were.
     pub replaced: Replaced,
 }
 
-/// A diffuse map with an opacity map as its alpha.
+/// A map of colours with an opacity map as its alpha.
 struct CutOut {
     /// The two that it was made of.
     of: [Arc<Texture>; 2],
-    /// The diffuse map itself where that is the alpha that it has.
+    /// The map of colours itself where that is the alpha that it has.
     texture: Arc<Texture>,
 }
 
@@ -46,24 +49,24 @@ impl TracedTextures {
         }
     }
 
-    /// A diffuse map as an opacity map cuts it out; `None` where one of them is missing.
+    /// A map of colours as an opacity map cuts it out; `None` where one of them is missing.
     pub fn cut_out(
         &self,
-        diffuse: AssetId<Image>,
+        colors: AssetId<Image>,
         opacity: AssetId<Image>,
     ) -> Option<&Arc<Texture>> {
-        let cut_out = self.cut_outs.get(&[diffuse, opacity])?;
+        let cut_out = self.cut_outs.get(&[colors, opacity])?;
         Some(&cut_out.texture)
     }
 
-    /// Makes what is new among pairs of a diffuse and an opacity map, and drops the others.
+    /// Makes what is new among pairs of a map of colours and an opacity map, and drops the others.
     fn cut_out_pairs(&mut self, pairs: impl Iterator<Item = [AssetId<Image>; 2]>) {
         let mut known = std::mem::take(&mut self.cut_outs);
         for pair in pairs {
-            let [Ok(diffuse), Ok(opacity)] = pair.map(|id| self.get(id)) else {
+            let [Ok(colors), Ok(opacity)] = pair.map(|id| self.get(id)) else {
                 continue;
             };
-            let of = [diffuse.texture.clone(), opacity.texture.clone()];
+            let of = [colors.texture.clone(), opacity.texture.clone()];
             let same = |cut_out: &CutOut| (0..2).all(|i| Arc::ptr_eq(&cut_out.of[i], &of[i]));
             if self.cut_outs.get(&pair).is_some_and(same) {
                 continue;
@@ -112,8 +115,8 @@ pub(super) fn sync_textures(
     }
     let used: HashSet<AssetId<Image>> = users
         .iter()
-        .flat_map(|maps| [&maps.diffuse, &maps.opacity])
-        .chain([&environment.0])
+        .flat_map(|maps| PhongMap::ALL.map(|map| map.loaded(maps)))
+        .chain([environment.0.as_ref()])
         .flatten()
         .map(|handle| handle.id())
         .collect();
@@ -121,18 +124,21 @@ pub(super) fn sync_textures(
     for id in used {
         if !known.by_asset.contains_key(&id) {
             let image = assets.get(id).ok_or(TextureFault::Missing);
-            let converted = image.and_then(trace_texture);
-            let texture = converted.map(|converted| TracedTexture {
-                texture: Arc::new(converted.texture),
-                replaced: converted.replaced,
+            let texture = image.and_then(|image| {
+                let converted = trace_texture(image)?;
+                Ok(TracedTexture {
+                    texture: Arc::new(converted.texture),
+                    sampler: sampler_of(image),
+                    replaced: converted.replaced,
+                })
             });
             known.by_asset.insert(id, texture);
             draft.changes.textures = true;
         }
     }
-    let pairs = users.iter().filter_map(|maps| {
-        let (diffuse, opacity) = (maps.diffuse.as_ref()?, maps.opacity.as_ref()?);
-        Some([diffuse.id(), opacity.id()])
+    let pairs = users.iter().flat_map(|maps| {
+        let colors = PhongMap::ALL.into_iter().filter(|map| map.is_of_colors());
+        colors.filter_map(|map| Some([map.loaded(maps)?.id(), maps.opacity.as_ref()?.id()]))
     });
     known.cut_out_pairs(pairs);
 }

@@ -7,6 +7,7 @@
 //! plain mean is left.
 
 use super::texture::Texture;
+use super::wrap::Reading;
 use crate::scene::TextureFilter;
 use glam::{Vec2, Vec3};
 
@@ -23,19 +24,21 @@ impl Texture {
         &self,
         uv: Vec2,
         footprint: f32,
-        filter: TextureFilter,
+        reading: impl Into<Reading>,
         raw: bool,
     ) -> Vec3 {
+        let reading = reading.into();
         // A single texel is what it is.
-        if self.is_opaque() || filter == TextureFilter::Nearest {
-            return self.sample(uv, footprint, filter, raw);
+        if self.is_opaque() || reading.filter == TextureFilter::Nearest {
+            return self.sample(uv, footprint, reading, raw);
         }
-        let (finer, coarser) = self.levels_between(footprint, filter, Texture::cut_out_levels);
-        let near = finer.weighted(uv, raw);
+        let (finer, coarser) =
+            self.levels_between(footprint, reading.filter, Texture::cut_out_levels);
+        let near = finer.weighted(uv, reading, raw);
         let Some((level, fraction)) = coarser else {
             return near.color;
         };
-        let far = level.weighted(uv, raw);
+        let far = level.weighted(uv, reading, raw);
         mean(
             [near, far],
             [1.0 - fraction, fraction],
@@ -45,8 +48,8 @@ impl Texture {
     }
 
     /// Between the four texels around a place.
-    fn weighted(&self, uv: Vec2, raw: bool) -> Weighted {
-        let ([x0, x1], [y0, y1], fx, fy) = self.around(uv);
+    fn weighted(&self, uv: Vec2, reading: Reading, raw: bool) -> Weighted {
+        let ([x0, x1], [y0, y1], fx, fy) = self.around(uv, reading.wrap);
         let texels = [(x0, y0), (x1, y0), (x0, y1), (x1, y1)].map(|(x, y)| Weighted {
             color: self.texel(x, y, raw),
             alpha: self.alpha(x, y),

@@ -130,6 +130,8 @@ impl Hash {
             .flat_map(|uv| uv.to_array().map(f32::to_bits))
             .collect();
         self.words(uvs.into_iter());
+        self.words(glam_words(&mesh.colors).into_iter());
+        self.words(mesh.alphas.iter().map(|alpha| alpha.to_bits()));
     }
 
     fn texture(&mut self, texture: &Texture) {

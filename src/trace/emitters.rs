@@ -1,7 +1,7 @@
 //! What a ray may meet that shines by itself: an error estimate has to reckon with those that no sample met.
 
-use super::{Camera, ParallelogramLight, World};
-use crate::scene::{Lighting, RenderSettings};
+use super::{Camera, Material, ParallelogramLight, World};
+use crate::scene::{Lighting, PhongMap, RenderSettings};
 use glam::{UVec2, Vec3};
 
 /// The largest radiance of everything that shines by itself and may be in the picture, in no order: visible
@@ -13,9 +13,15 @@ pub fn emitters(world: &World, camera: &Camera, settings: &RenderSettings) -> Ve
     let features = &settings.features;
     let physical = settings.lighting == Lighting::Physical;
     let mut mirror = Vec3::ZERO;
+    // The most that a map makes of a number, on a mesh that can wear it.
+    let brightest = |material: &Material, of: PhongMap| match material.map(of) {
+        Some(map) if features.textures => world.textures[map.texture as usize].brightest(),
+        _ => Vec3::ONE,
+    };
     if settings.max_depth > 0 {
-        let specular = world.materials.iter().map(|material| material.specular);
-        mirror = specular.fold(mirror, Vec3::max);
+        let mirrors = (world.materials.iter())
+            .map(|material| material.mirror * brightest(material, PhongMap::Mirror).max(Vec3::ONE));
+        mirror = mirrors.fold(mirror, Vec3::max);
     }
     let moves =
         features.motion && (world.needs.motion_samples > 0 || camera.optics.velocity != Vec3::ZERO);
@@ -38,10 +44,14 @@ pub fn emitters(world: &World, camera: &Camera, settings: &RenderSettings) -> Ve
         let Some(material) = world.materials.get(object.material as usize) else {
             continue;
         };
+        let of_object = |of| match object.mesh.uvs.is_empty() {
+            true => Vec3::ONE,
+            false => brightest(material, of),
+        };
         let radiance = if features.shading {
-            material.emission
+            material.emission * of_object(PhongMap::Emission)
         } else {
-            material.diffuse
+            material.diffuse * of_object(PhongMap::Diffuse)
         };
         if radiance == Vec3::ZERO {
             continue;

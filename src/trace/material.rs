@@ -1,3 +1,4 @@
+use crate::scene::{Alpha, MapFilter, PhongMap, Wrap};
 use glam::Vec3;
 
 /// A Phong material, resolved: colours in linear RGB, textures as indices into `World::textures`.
@@ -5,19 +6,63 @@ use glam::Vec3;
 pub struct Material {
     /// kd.
     pub diffuse: Vec3,
-    /// ks.
+    /// ks: the highlight.
     pub specular: Vec3,
+    /// km: the reflection.
+    pub mirror: Vec3,
     /// s ≥ 1.
     pub shininess: f32,
     /// d in [0, 1].
     pub opacity: f32,
     /// ke, radiance.
     pub emission: Vec3,
-    /// Takes the place of `diffuse`. Where there is an opacity map, too, this one's alpha is that
-    /// opacity, and weights its colours.
-    pub diffuse_map: Option<u32>,
-    /// Multiplies `opacity`.
-    pub opacity_map: Option<u32>,
+    /// What becomes of the opacity.
+    pub alpha: Alpha,
+    /// Multiplies what a normal map bends.
+    pub normal_scale: f32,
+    /// What the numbers are multiplied by, each kind once. Most materials have none, and pay for none.
+    pub maps: Vec<Map>,
+}
+
+/// A texture of a material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Map {
+    /// What it multiplies.
+    pub of: PhongMap,
+    /// Index into `World::textures`.
+    pub texture: u32,
+    /// Beyond its edges, across and down.
+    pub wrap: [Wrap; 2],
+    /// Between its texels.
+    pub filter: MapFilter,
+    /// Whether its colours are weighted by its alpha, which is then the opacity that cuts them out.
+    pub is_cut_out: bool,
+}
+
+impl Map {
+    /// A texture that repeats, filtered as the setting says.
+    pub fn new(of: PhongMap, texture: u32) -> Self {
+        Self {
+            of,
+            texture,
+            wrap: [Wrap::Repeat; 2],
+            filter: MapFilter::Setting,
+            is_cut_out: false,
+        }
+    }
+}
+
+impl Material {
+    /// The map of a kind.
+    pub fn map(&self, of: PhongMap) -> Option<&Map> {
+        self.maps.iter().find(|map| map.of == of)
+    }
+
+    /// Whether it may let light through; a mesh's own alphas apart.
+    pub fn is_transparent(&self) -> bool {
+        let fades = self.opacity < 1.0 || self.map(PhongMap::Opacity).is_some();
+        fades && self.alpha != Alpha::Opaque
+    }
 }
 
 impl Default for Material {
@@ -26,11 +71,13 @@ impl Default for Material {
         Self {
             diffuse: Vec3::splat(0.8),
             specular: Vec3::ZERO,
+            mirror: Vec3::ZERO,
             shininess: 10.0,
             opacity: 1.0,
             emission: Vec3::ZERO,
-            diffuse_map: None,
-            opacity_map: None,
+            alpha: Alpha::Blend,
+            normal_scale: 1.0,
+            maps: Vec::new(),
         }
     }
 }

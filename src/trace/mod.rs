@@ -39,6 +39,7 @@ mod material;
 mod mipmap;
 mod near_lights;
 mod needs;
+mod normal_map;
 mod numbers;
 mod parallelogram_frame;
 mod parallelogram_warp;
@@ -62,6 +63,7 @@ mod texels;
 mod texture;
 mod vectors;
 mod world;
+mod wrap;
 
 pub use camera::{Camera, ImagePlane, Optics};
 pub use digest::{Digest, digest};
@@ -72,7 +74,7 @@ pub use footprint::Cone;
 pub use lights::{
     DirectionalLight, LightPoint, Lights, MovingLight, ParallelogramLight, PointLight, SegmentLight,
 };
-pub use material::Material;
+pub use material::{Map, Material};
 pub use needs::{Needs, samples_per_pixel};
 pub use parallelogram_frame::ParallelogramFrame;
 pub use parallelogram_warp::Places;
@@ -91,3 +93,4 @@ pub use surface::Surface;
 pub use texels::Texels;
 pub use texture::{Texture, TextureError};
 pub use world::{Mesh, Object, World};
+pub use wrap::Reading;

@@ -1,5 +1,5 @@
-use super::{Camera, World};
-use crate::scene::RenderSettings;
+use super::{Camera, Object, World};
+use crate::scene::{Alpha, RenderSettings};
 
 /// What of the model a world uses at all. What it does not use is not computed, drawn or asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -15,14 +15,15 @@ pub struct Needs {
 impl Needs {
     /// Looks through a world's objects, materials and lights.
     pub fn of(world: &World) -> Self {
-        let transparent = |material: u32| {
-            let material = &world.materials[material as usize];
-            material.opacity < 1.0 || material.opacity_map.is_some()
+        let transparent = |object: &Object| {
+            let material = &world.materials[object.material as usize];
+            let vertices_fade = !object.mesh.alphas.is_empty() && material.alpha != Alpha::Opaque;
+            vertices_fade || material.is_transparent()
         };
         let objects = world.objects.iter().map(|object| object.motion_samples);
         let lights = world.lights.moving.iter().map(|light| light.samples);
         Self {
-            transparency: world.objects.iter().any(|o| transparent(o.material)),
+            transparency: world.objects.iter().any(transparent),
             visible_lights: world.lights.parallelograms.iter().any(|l| l.visible),
             motion_samples: objects.chain(lights).max().unwrap_or(0),
         }

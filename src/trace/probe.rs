@@ -192,6 +192,7 @@ impl<'a> Recording<'a> {
             material: object.material,
             diffuse: surface.diffuse,
             specular: surface.specular,
+            mirror: surface.mirror,
             shininess: surface.shininess,
             opacity: surface.opacity,
             emission: surface.emission,
@@ -339,7 +340,7 @@ impl Recorder for Recording<'_> {
         ray.chance = 1.0 / weight;
         if let Some(surface) = surface {
             ray.weight = match way {
-                Way::Mirror | Way::Gloss => surface.specular * (surface.opacity * share),
+                Way::Mirror | Way::Gloss => surface.mirror * (surface.opacity * share),
                 Way::Straight | Way::Translucent => Vec3::splat((1.0 - surface.opacity) * share),
             };
         }

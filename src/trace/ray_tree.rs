@@ -213,6 +213,8 @@ pub struct RayHit {
     pub diffuse: Vec3,
     /// ks.
     pub specular: Vec3,
+    /// km.
+    pub mirror: Vec3,
     /// s.
     pub shininess: f32,
     /// d, opacity map included; 1 where transparency is off.

@@ -27,7 +27,7 @@ impl<R: Recorder> Batch<'_, R> {
             let Vertex { path, surface, .. } = vertex;
             let mirrors = settings.features.mirrors && path.bounces < settings.max_depth;
             let reflects = if mirrors {
-                (path.throughput * surface.opacity * surface.specular).max_element()
+                (path.throughput * surface.opacity * surface.mirror).max_element()
             } else {
                 0.0
             };
@@ -65,7 +65,7 @@ impl<R: Recorder> Batch<'_, R> {
         let Vertex {
             path, surface, hit, ..
         } = vertex;
-        let throughput = path.throughput * surface.specular * (surface.opacity * weight);
+        let throughput = path.throughput * surface.mirror * (surface.opacity * weight);
         let aggregate = &self.world.aggregate;
         let origin = aggregate.leave(&surface.point, surface.geometric_normal);
         let mirrored = surface.mirrored();

@@ -1,7 +1,7 @@
-use super::World;
 use super::footprint::texture_footprint;
+use super::{Material, Reading, World, normal_map};
 use crate::bvh::{Hit, Ray, SurfacePoint};
-use crate::scene::{Lighting, RenderSettings, TextureFilter};
+use crate::scene::{Alpha, Lighting, PhongMap, RenderSettings, TextureFilter};
 use glam::{Vec2, Vec3};
 
 /// Below this cosine rounding may turn a normal to the wrong side of the ray: which one it came from is then asked of
@@ -19,16 +19,32 @@ pub struct Surface {
     pub normal: Vec3,
     /// Unit vector towards where the ray came from.
     pub to_viewer: Vec3,
-    /// kd, texture included.
+    /// kd, its map and the vertices' colours included.
     pub diffuse: Vec3,
-    /// ks.
+    /// ks, its map included.
     pub specular: Vec3,
+    /// km, its map included.
+    pub mirror: Vec3,
     /// s ≥ 1.
     pub shininess: f32,
-    /// d, opacity map included.
+    /// d, its map, the vertices' alphas and the cutoff included.
     pub opacity: f32,
-    /// ke.
+    /// ke, its map included.
     pub emission: Vec3,
+}
+
+/// Where on a triangle a hit reads its maps.
+struct Textured {
+    /// They leave the first corner, in world space.
+    edges: [Vec3; 2],
+    /// Of the corners.
+    uvs: [Vec2; 3],
+    /// Of the hit.
+    uv: Vec2,
+    /// Of the ray, in metres.
+    width: f32,
+    /// Whether the normal is the opposite of the mesh's.
+    is_turned: bool,
 }
 
 impl Surface {
@@ -60,60 +76,124 @@ impl Surface {
             above.unwrap_or(cosine >= 0.0)
         };
         let geometric_normal = if above { point.normal } else { -point.normal };
-        if settings.lighting == Lighting::Physical && normal.dot(geometric_normal) < 0.0 {
+        let is_turned =
+            settings.lighting == Lighting::Physical && normal.dot(geometric_normal) < 0.0;
+        if is_turned {
             normal = -normal;
         }
 
-        let mut diffuse = material.diffuse;
-        let mut opacity = material.opacity;
-        if settings.features.textures
-            && !mesh.uvs.is_empty()
-            && (material.diffuse_map.is_some() || material.opacity_map.is_some())
-        {
-            let uv: Vec2 = (0..3)
-                .map(|i| weights[i] * mesh.uvs[corners[i] as usize])
-                .sum();
-            let filter = settings.texture_filter;
-            let footprint = if filter == TextureFilter::Mipmap {
-                let [a, b, c] = mesh.tree.triangles().corners(hit.triangle);
-                texture_footprint(
-                    [b - a, c - a].map(|edge| instance.to_world_vector(edge)),
-                    corners.map(|i| mesh.uvs[i as usize]),
-                    width,
-                    geometric_normal.dot(to_viewer),
-                )
-            } else {
-                0.0
-            };
-            let raw = settings.lighting == Lighting::Classic;
-            if let Some(map) = material.diffuse_map {
-                let map = &world.textures[map as usize];
-                diffuse = if material.opacity_map.is_some() {
-                    map.sample_cut_out(uv, footprint, filter, raw)
-                } else {
-                    map.sample(uv, footprint, filter, raw)
-                };
-            }
-            if let Some(map) = material.opacity_map {
-                let map = world.textures[map as usize].opacity(uv, footprint, filter);
-                // A picture of floats may leave the range, and light would be negative.
-                opacity = (opacity * map).clamp(0.0, 1.0);
-            }
-        }
-        if !settings.features.transparency {
-            opacity = 1.0;
-        }
-        Self {
+        let mut surface = Self {
             point,
             geometric_normal,
             normal,
             to_viewer,
-            diffuse,
+            diffuse: material.diffuse,
             specular: material.specular,
+            mirror: material.mirror,
             shininess: material.shininess,
-            opacity,
+            opacity: material.opacity,
             emission: material.emission,
+        };
+        if !mesh.colors.is_empty() {
+            let [a, b, c] = corners.map(|corner| mesh.colors[corner as usize]);
+            surface.diffuse *= weights[0] * a + weights[1] * b + weights[2] * c;
+            if !mesh.alphas.is_empty() {
+                let [a, b, c] = corners.map(|corner| mesh.alphas[corner as usize]);
+                let alpha = weights[0] * a + weights[1] * b + weights[2] * c;
+                surface.opacity = (surface.opacity * alpha).clamp(0.0, 1.0);
+            }
         }
+        if !material.maps.is_empty() && settings.features.textures && !mesh.uvs.is_empty() {
+            let uvs = corners.map(|corner| mesh.uvs[corner as usize]);
+            let [a, b, c] = mesh.tree.triangles().corners(hit.triangle);
+            let triangle = Textured {
+                edges: [b - a, c - a].map(|edge| instance.to_world_vector(edge)),
+                uvs,
+                uv: (0..3).map(|i| weights[i] * uvs[i]).sum(),
+                width,
+                is_turned,
+            };
+            surface.multiply_maps(world, settings, material, &triangle);
+        }
+        match material.alpha {
+            Alpha::Blend => {}
+            Alpha::Mask { cutoff } => surface.opacity = f32::from(surface.opacity >= cutoff),
+            Alpha::Opaque => surface.opacity = 1.0,
+        }
+        if !settings.features.transparency {
+            surface.opacity = 1.0;
+        }
+        surface
+    }
+
+    /// Every number times its map.
+    fn multiply_maps(
+        &mut self,
+        world: &World,
+        settings: &RenderSettings,
+        material: &Material,
+        triangle: &Textured,
+    ) {
+        let setting = settings.texture_filter;
+        let uv = triangle.uv;
+        let footprint = if setting == TextureFilter::Mipmap {
+            let cosine = self.geometric_normal.dot(self.to_viewer);
+            texture_footprint(triangle.edges, triangle.uvs, triangle.width, cosine)
+        } else {
+            0.0
+        };
+        let raw = settings.lighting == Lighting::Classic;
+        for map in &material.maps {
+            let texture = &world.textures[map.texture as usize];
+            let reading = Reading {
+                filter: map.filter.with(setting),
+                wrap: map.wrap,
+            };
+            let color = || {
+                if map.is_cut_out {
+                    texture.sample_cut_out(uv, footprint, reading, raw)
+                } else {
+                    texture.sample(uv, footprint, reading, raw)
+                }
+            };
+            match map.of {
+                PhongMap::Diffuse => self.diffuse *= color(),
+                PhongMap::Specular => self.specular *= color(),
+                PhongMap::Mirror => self.mirror *= color(),
+                PhongMap::Emission => self.emission *= color(),
+                PhongMap::Opacity => {
+                    let map = texture.opacity(uv, footprint, reading);
+                    // A picture of floats may leave the range, and light would be negative.
+                    self.opacity = (self.opacity * map).clamp(0.0, 1.0);
+                }
+                PhongMap::Normal => {
+                    let texel = texture.sample(uv, footprint, reading, true);
+                    self.bend_normal(texel, material.normal_scale, triangle);
+                }
+            }
+        }
+    }
+
+    /// Takes the normal of a map's texel, as far as mirror directions stay above the surface.
+    fn bend_normal(&mut self, texel: Vec3, scale: f32, triangle: &Textured) {
+        let [a, b, c] = triangle.uvs;
+        let uvs = [b - a, c - a];
+        let bent = normal_map::bent(
+            self.normal,
+            triangle.is_turned,
+            texel,
+            scale,
+            triangle.edges,
+            uvs,
+        );
+        // Classic leaves normals on the side where the mesh has them.
+        let faces_viewer = self.normal.dot(self.geometric_normal) >= 0.0;
+        let above = |n| normal_map::above_surface(n, self.geometric_normal, self.to_viewer);
+        self.normal = if faces_viewer {
+            above(bent)
+        } else {
+            -above(-bent)
+        };
     }
 
     /// A matt grey surface at `position`, seen from its normal's side; exact. For the probe and for tests.
@@ -130,6 +210,7 @@ impl Surface {
             to_viewer,
             diffuse: Vec3::splat(0.8),
             specular: Vec3::ZERO,
+            mirror: Vec3::ZERO,
             shininess: 1.0,
             opacity: 1.0,
             emission: Vec3::ZERO,

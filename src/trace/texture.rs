@@ -1,6 +1,7 @@
 use super::mipmap::{self, Weight};
 use super::texels::Texels;
-use crate::scene::TextureFilter;
+use super::wrap::{self, Reading};
+use crate::scene::{TextureFilter, Wrap};
 use glam::{Vec2, Vec3};
 use std::sync::OnceLock;
 
@@ -129,18 +130,20 @@ impl Texture {
         })
     }
 
-    /// Colour at `uv`, repeated in both directions. `footprint` is the edge of the square that the
-    /// ray covers, in texture coordinates: only mipmaps look at it.
-    pub fn sample(&self, uv: Vec2, footprint: f32, filter: TextureFilter, raw: bool) -> Vec3 {
-        self.across_levels(footprint, filter, |level| {
-            level.filtered(uv, filter, |x, y| level.texel(x, y, raw))
+    /// Colour at `uv`. `footprint` is the edge of the square that the ray covers, in texture
+    /// coordinates: only mipmaps look at it.
+    pub fn sample(&self, uv: Vec2, footprint: f32, reading: impl Into<Reading>, raw: bool) -> Vec3 {
+        let reading = reading.into();
+        self.across_levels(footprint, reading.filter, |level| {
+            level.filtered(uv, reading, |x, y| level.texel(x, y, raw))
         })
     }
 
     /// Opacity at `uv`: alpha times the brightest colour channel, filtered.
-    pub fn opacity(&self, uv: Vec2, footprint: f32, filter: TextureFilter) -> f32 {
-        let opacity = self.across_levels(footprint, filter, |level| {
-            level.filtered(uv, filter, |x, y| Vec3::splat(level.texel_opacity(x, y)))
+    pub fn opacity(&self, uv: Vec2, footprint: f32, reading: impl Into<Reading>) -> f32 {
+        let reading = reading.into();
+        let opacity = self.across_levels(footprint, reading.filter, |level| {
+            level.filtered(uv, reading, |x, y| Vec3::splat(level.texel_opacity(x, y)))
         });
         opacity.x
     }
@@ -191,17 +194,17 @@ impl Texture {
         (finer, levels.get(below).map(|coarser| (coarser, fraction)))
     }
 
-    fn filtered(&self, uv: Vec2, filter: TextureFilter, texel: impl Fn(u32, u32) -> Vec3) -> Vec3 {
-        match filter {
+    fn filtered(&self, uv: Vec2, reading: Reading, texel: impl Fn(u32, u32) -> Vec3) -> Vec3 {
+        match reading.filter {
             TextureFilter::Nearest => {
-                let uv = repeated(uv);
+                let uv = wrap::inside(uv, reading.wrap);
                 texel(
                     ((uv.x * self.width as f32) as u32).min(self.width - 1),
                     ((uv.y * self.height as f32) as u32).min(self.height - 1),
                 )
             }
             TextureFilter::Bilinear | TextureFilter::Mipmap => {
-                let ([x0, x1], [y0, y1], fx, fy) = self.around(uv);
+                let ([x0, x1], [y0, y1], fx, fy) = self.around(uv, reading.wrap);
                 let top = texel(x0, y0).lerp(texel(x1, y0), fx);
                 let bottom = texel(x0, y1).lerp(texel(x1, y1), fx);
                 top.lerp(bottom, fy)
@@ -210,13 +213,13 @@ impl Texture {
     }
 
     /// The columns and rows of the four texels around a place, and how far it lies to the second ones.
-    pub(super) fn around(&self, uv: Vec2) -> ([u32; 2], [u32; 2], f32, f32) {
-        let uv = repeated(uv);
+    pub(super) fn around(&self, uv: Vec2, wrap: [Wrap; 2]) -> ([u32; 2], [u32; 2], f32, f32) {
+        let uv = wrap::inside(uv, wrap);
         let (x, fx) = split(uv.x * self.width as f32 - 0.5);
         let (y, fy) = split(uv.y * self.height as f32 - 0.5);
         (
-            [wrap(x, self.width), wrap(x + 1, self.width)],
-            [wrap(y, self.height), wrap(y + 1, self.height)],
+            [x, x + 1].map(|x| wrap::texel(x, self.width, wrap[0])),
+            [y, y + 1].map(|y| wrap::texel(y, self.height, wrap[1])),
             fx,
             fy,
         )
@@ -237,28 +240,20 @@ impl Texture {
             };
             let (x, fx) = split(column + turn);
             let y = y.clamp(0, i64::from(self.height) - 1) as u32;
-            let left = self.texel(wrap(x, self.width), y, false);
-            let right = self.texel(wrap(x + 1, self.width), y, false);
+            let [left, right] = [x, x + 1].map(|x| {
+                let x = wrap::texel(x, self.width, Wrap::Repeat);
+                self.texel(x, y, false)
+            });
             left.lerp(right, fx)
         };
         row(y).lerp(row(y + 1), fy)
     }
 }
 
-/// In [0, 1). A coordinate that is not finite (a broken mesh) reads the first texel.
-fn repeated(uv: Vec2) -> Vec2 {
-    let uv = if uv.is_finite() { uv } else { Vec2::ZERO };
-    uv - uv.floor()
-}
-
 /// Whole and fractional part.
 fn split(x: f32) -> (i64, f32) {
     let floor = x.floor();
     (floor as i64, x - floor)
-}
-
-fn wrap(i: i64, n: u32) -> u32 {
-    i.rem_euclid(i64::from(n)) as u32
 }
 
 #[cfg(test)]

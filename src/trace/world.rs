@@ -54,4 +54,8 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// One per vertex, (0, 0) at the picture's top left as in glTF and Bevy; empty where the mesh has none.
     pub uvs: Vec<Vec2>,
+    /// Linear RGB in [0, 1] that multiplies kd, one per vertex; empty where the mesh has none.
+    pub colors: Vec<Vec3>,
+    /// In [0, 1], multiplies opacity, one per vertex; empty where all are 1, and where there are no colours.
+    pub alphas: Vec<f32>,
 }

@@ -16,7 +16,8 @@
 
 use super::TracedView;
 use crate::scene::{
-    DirectionalLamp, ParallelogramLamp, Phong, PhongMaps, PointLamp, SegmentLamp, UsesMaterial,
+    Alpha, DirectionalLamp, ParallelogramLamp, Phong, PhongMap, PhongMaps, PointLamp, SegmentLamp,
+    UsesMaterial,
 };
 use bevy::asset::{Asset, Assets, Handle, embedded_asset};
 use bevy::camera::Exposure;
@@ -126,29 +127,25 @@ pub struct RasterTwin(Entity);
 
 /// Ours to Bevy's.
 pub fn standard_material(phong: &Phong, maps: Option<&PhongMaps>) -> StandardMaterial {
-    let diffuse = maps.and_then(|maps| maps.diffuse.clone());
-    let mirror = luminance(phong.specular).clamp(0.0, 1.0);
-    let kd = if diffuse.is_some() {
-        LinearRgba::WHITE
-    } else {
-        phong.diffuse
-    };
+    let map = |of: PhongMap| maps.and_then(|maps| of.loaded(maps).cloned());
+    let mirror = luminance(phong.mirror).clamp(0.0, 1.0);
     let base = LinearRgba {
         alpha: phong.opacity.clamp(0.0, 1.0),
-        ..kd
+        ..phong.diffuse
     };
     let roughness = (2.0 / (phong.shininess.max(1.0) + 2.0)).powf(0.25);
     StandardMaterial {
         base_color: Color::LinearRgba(base),
-        base_color_texture: diffuse,
+        base_color_texture: map(PhongMap::Diffuse),
         emissive: phong.emission,
+        emissive_texture: map(PhongMap::Emission),
         perceptual_roughness: roughness.clamp(0.089, 1.0),
         metallic: if mirror > 0.5 { mirror } else { 0.0 },
-        reflectance: 0.5 * mirror,
-        alpha_mode: if phong.opacity < 1.0 {
-            AlphaMode::Blend
-        } else {
-            AlphaMode::Opaque
+        reflectance: 0.5 * luminance(phong.specular).clamp(0.0, 1.0),
+        alpha_mode: match phong.alpha {
+            Alpha::Mask { cutoff } => AlphaMode::Mask(cutoff),
+            Alpha::Blend if phong.opacity < 1.0 => AlphaMode::Blend,
+            Alpha::Blend | Alpha::Opaque => AlphaMode::Opaque,
         },
         double_sided: true,
         cull_mode: None,

@@ -4,7 +4,7 @@
 //!
 //! | Bevy's | ours |
 //! |---|---|
-//! | `StandardMaterial` | [`Phong`] and [`PhongMaps`]: kd = base colour · (1 - metallic); ks = base colour · metallic + 0.16 · reflectance² · (1 - metallic); s = 2/α² - 2 with α = roughness² (Beckmann's, Walter et al. 2007), 1 to 10,000; d = the base colour's alpha, but 1 where the alpha mode is opaque; ke = emissive; the base colour's texture takes kd's place (it is not multiplied) |
+//! | `StandardMaterial` | [`Phong`] and [`PhongMaps`]: kd = base colour · (1 - metallic); ks = base colour · metallic + 0.16 · reflectance² · (1 - metallic); km = ks · (1 - roughness)², as a mirror is sharp; s = 2/α² - 2 with α = roughness² (Beckmann's, Walter et al. 2007), 1 to 10,000; d = the base colour's alpha; the alpha mode as it is, all that is not opaque or a mask blends; ke = emissive; the base colour's texture multiplies kd, and ks and km of what is metal by more than half; the emissive texture multiplies ke; normal maps; each texture with its sampler's wrap and filter, where it has one. Other textures, alphas of textures and second texture coordinates are left out |
 //! | `PointLight` | [`PointLamp`] of lumens / 4π · E |
 //! | `SpotLight` | the same, with its cone |
 //! | `DirectionalLight` | [`DirectionalLamp`] of lux · E |
@@ -18,11 +18,11 @@
 
 use super::raster::RasterTwin;
 use crate::scene::{
-    Cone, DirectionalLamp, NotTraced, ParallelogramLamp, Phong, PhongMaps, PointLamp,
+    Alpha, Cone, DirectionalLamp, NotTraced, ParallelogramLamp, Phong, PhongMaps, PointLamp,
 };
 use bevy::asset::{AssetEvent, Assets};
 use bevy::camera::Exposure;
-use bevy::color::{Alpha, ColorToComponents, LinearRgba};
+use bevy::color::{ColorToComponents, LinearRgba};
 use bevy::ecs::query::QueryFilter;
 use bevy::light::{DirectionalLight, PointLight, RectLight, SpotLight};
 use bevy::math::Vec3;
@@ -68,25 +68,34 @@ pub fn phong(material: &StandardMaterial) -> (Phong, PhongMaps) {
     let dielectric = 0.16 * material.reflectance * material.reflectance * (1.0 - metallic);
     let alpha = material.perceptual_roughness * material.perceptual_roughness;
     let shininess = 2.0 / (alpha * alpha).max(1e-8) - 2.0;
-    let opaque = matches!(material.alpha_mode, AlphaMode::Opaque);
     let color = |v: Vec3| LinearRgba::rgb(v.x, v.y, v.z);
     let kd = base.to_vec3() * (1.0 - metallic);
     let ks = base.to_vec3() * metallic + Vec3::splat(dielectric);
+    let gloss = (1.0 - material.perceptual_roughness)
+        .clamp(0.0, 1.0)
+        .powi(2);
     let phong = Phong {
         diffuse: color(kd.clamp(Vec3::ZERO, Vec3::ONE)),
         specular: color(ks.clamp(Vec3::ZERO, Vec3::ONE)),
+        mirror: color((gloss * ks).clamp(Vec3::ZERO, Vec3::ONE)),
         shininess: shininess.clamp(1.0, MOST_SHININESS),
-        opacity: if opaque {
-            1.0
-        } else {
-            base.alpha().clamp(0.0, 1.0)
+        opacity: base.alpha.clamp(0.0, 1.0),
+        alpha: match material.alpha_mode {
+            AlphaMode::Opaque => Alpha::Opaque,
+            AlphaMode::Mask(cutoff) => Alpha::Mask { cutoff },
+            _ => Alpha::Blend,
         },
         emission: material.emissive,
         ..Phong::default()
     };
+    let metal = (material.base_color_texture.as_ref()).filter(|_| metallic > 0.5);
     let maps = PhongMaps {
         diffuse: material.base_color_texture.clone(),
-        opacity: None,
+        specular: metal.cloned(),
+        mirror: metal.cloned(),
+        emission: material.emissive_texture.clone(),
+        normal: material.normal_map_texture.clone(),
+        ..PhongMaps::default()
     };
     (phong, maps)
 }
@@ -260,6 +269,7 @@ mod tests {
         });
         assert_eq!(matte.diffuse, LinearRgba::rgb(0.8, 0.1, 0.1));
         assert_eq!(matte.specular.to_vec3(), Vec3::ZERO);
+        assert_eq!(matte.mirror.to_vec3(), Vec3::ZERO);
         assert_eq!(matte.shininess, 1.0);
         let (metal, _) = phong(&StandardMaterial {
             base_color: red,
@@ -269,6 +279,14 @@ mod tests {
         });
         assert_eq!(metal.diffuse.to_vec3(), Vec3::ZERO);
         assert_eq!(metal.specular, LinearRgba::rgb(0.8, 0.1, 0.1));
+        let mirrored = metal.mirror.to_vec3() / metal.specular.to_vec3();
+        assert!((mirrored - 0.81).abs().max_element() < 1e-6, "{mirrored}");
+        let (rough, _) = phong(&StandardMaterial {
+            perceptual_roughness: 1.0,
+            metallic: 1.0,
+            ..StandardMaterial::default()
+        });
+        assert_eq!(rough.mirror.to_vec3(), Vec3::ZERO, "it is no mirror");
         assert_eq!(metal.shininess, MOST_SHININESS);
     }
 
@@ -296,12 +314,18 @@ mod tests {
             base_color: Color::LinearRgba(LinearRgba::new(1.0, 1.0, 1.0, 0.25)),
             ..StandardMaterial::default()
         };
-        assert_eq!(phong(&see_through).0.opacity, 1.0);
+        assert_eq!(phong(&see_through).0.alpha, Alpha::Opaque);
+        let masked = StandardMaterial {
+            alpha_mode: AlphaMode::Mask(0.3),
+            ..see_through.clone()
+        };
+        assert_eq!(phong(&masked).0.alpha, Alpha::Mask { cutoff: 0.3 });
         let blended = StandardMaterial {
             alpha_mode: AlphaMode::Blend,
             ..see_through
         };
-        assert_eq!(phong(&blended).0.opacity, 0.25);
+        let blended = phong(&blended).0;
+        assert_eq!((blended.opacity, blended.alpha), (0.25, Alpha::Blend));
     }
 
     #[test]

@@ -8,6 +8,7 @@ fn mirror(ks: f32) -> Material {
     Material {
         diffuse: Vec3::ZERO,
         specular: Vec3::splat(ks),
+        mirror: Vec3::splat(ks),
         // So narrow a highlight that none is seen: only what the mirror shows counts.
         shininess: 1e6,
         ..Material::default()

@@ -2,6 +2,7 @@
 
 mod irradiance;
 mod light_points;
+mod materials;
 mod mirrors;
 mod views;
 
@@ -60,6 +61,8 @@ pub fn object(id: u64, corners: &[Vec3], material: u32) -> (Instance, Object) {
         tree: tree.clone(),
         normals: vec![],
         uvs: vec![],
+        colors: Vec::new(),
+        alphas: Vec::new(),
     };
     let instance = Instance::new(tree, &glam::Affine3A::IDENTITY).unwrap();
     (

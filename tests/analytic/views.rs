@@ -76,6 +76,8 @@ fn sphere() -> World {
         tree: object.mesh.tree.clone(),
         normals,
         uvs: vec![],
+        colors: Vec::new(),
+        alphas: Vec::new(),
     });
     world(vec![(instance, object)], vec![Material::default()])
 }

@@ -65,11 +65,11 @@ fn a_value_where_a_component_belongs() {
 #[test]
 fn a_newer_version_even_with_components_that_are_unknown() {
     let (_folder, file) = scene_of(
-        "(resources: {\"glassbox::io::FileVersion\": (2)}, entities: {1: (components: {\"new\": Some((a: [1, 'x']))})})",
+        "(resources: {\"glassbox::io::FileVersion\": (3)}, entities: {1: (components: {\"new\": Some((a: [1, 'x']))})})",
     );
     says(
         &refused(&file),
-        &["a.scn.ron", "newer Glassbox", "file version 2", "up to 1"],
+        &["a.scn.ron", "newer Glassbox", "file version 3", "up to 2"],
     );
 }
 

@@ -176,9 +176,7 @@ fn what_was_saved_opens_again_although_something_in_it_cannot_be_loaded() {
     let floor = scene_entity(app.world(), floor).unwrap();
     let sphere = scene_entity(app.world(), sphere).unwrap();
     let world = app.world_mut();
-    world.get_mut::<Phong>(floor).unwrap().diffuse_map = Some(TextureSource {
-        path: "gone.png".into(),
-    });
+    world.get_mut::<Phong>(floor).unwrap().diffuse_map = Some(TextureSource::new("gone.png"));
     *world.get_mut::<MeshSource>(sphere).unwrap() = MeshSource::Shape(Shape::Quadrilateral {
         corners: [Vec3::ZERO; 4],
     });
@@ -308,9 +306,7 @@ fn a_texture_that_changes_on_disk_is_loaded_again_and_one_that_goes_stays() {
     app.world_mut()
         .get_mut::<Phong>(entity)
         .unwrap()
-        .diffuse_map = Some(TextureSource {
-        path: "t.png".into(),
-    });
+        .diffuse_map = Some(TextureSource::new("t.png"));
     wait(&mut app, Duration::from_millis(1500), |_| false);
     let red = traced(&app);
     paint([0.0, 0.0, 1.0]);

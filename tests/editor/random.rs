@@ -100,9 +100,8 @@ fn edit(app: &mut App, (kind, a, b, numbers): Edit) {
         13 | 14 => {
             if let Some(mut phong) = app.world_mut().get_mut::<Phong>(entity) {
                 phong.diffuse = color;
-                phong.diffuse_map = (kind > 128).then(|| TextureSource {
-                    path: ["builtin:checker", "builtin:uv"][b % 2].into(),
-                });
+                phong.diffuse_map = (kind > 128)
+                    .then(|| TextureSource::new(["builtin:checker", "builtin:uv"][b % 2]));
             }
         }
         15 => {

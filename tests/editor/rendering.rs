@@ -131,9 +131,7 @@ fn a_picture_that_the_scene_reads_or_has_read_is_not_rendered_over() {
     let before = fs::read(&file).unwrap();
     let mut app = editor("triangle");
     act(&mut app, Action::SaveAs(folder.path().join("a.scn.ron")));
-    let map = TextureSource {
-        path: folder.path().join("t.png").display().to_string(),
-    };
+    let map = TextureSource::new(folder.path().join("t.png").display().to_string());
     app.world_mut()
         .resource_mut::<SceneFiles>()
         .folder

@@ -168,6 +168,7 @@ const TASKS: &[Task] = &[
                 *phong.into_inner() = Phong {
                     diffuse: LinearRgba::BLACK,
                     specular: LinearRgba::rgb(0.9, 0.9, 0.9),
+                    mirror: LinearRgba::rgb(0.9, 0.9, 0.9),
                     shininess: 100.0,
                     ..Phong::default()
                 };
@@ -181,9 +182,7 @@ const TASKS: &[Task] = &[
         act: |app| {
             let floor = named(app, "Floor");
             change(app, floor, |phong: Mut<Phong>| {
-                phong.into_inner().diffuse_map = Some(TextureSource {
-                    path: "builtin:checker".into(),
-                });
+                phong.into_inner().diffuse_map = Some(TextureSource::new("builtin:checker"));
             });
             app.update();
         },

@@ -64,6 +64,7 @@ fn glossy_reflections_converge_to_the_mean_over_the_disc_also_where_the_surface_
         let material = Material {
             diffuse: Vec3::ZERO,
             specular: Vec3::ONE,
+            mirror: Vec3::ONE,
             shininess,
             ..Material::default()
         };
@@ -126,6 +127,7 @@ fn more_gloss_samples_cost_more_rays_and_less_variance_and_never_multiply_each_o
     let material = Material {
         diffuse: Vec3::ZERO,
         specular: Vec3::splat(0.5),
+        mirror: Vec3::splat(0.5),
         shininess: 2.0,
         opacity: 0.5,
         ..Material::default()

@@ -109,6 +109,7 @@ fn floor(velocity: Vec3) -> World {
     let polished = Material {
         diffuse: Vec3::ONE,
         specular: Vec3::splat(0.3),
+        mirror: Vec3::splat(0.3),
         shininess: 20.0,
         ..Material::default()
     };

@@ -130,6 +130,7 @@ fn a_hit_that_reflects_and_transmits_keeps_its_mean_however_deep_the_stack() {
     let material = Material {
         diffuse: Vec3::ZERO,
         specular: Vec3::splat(0.8),
+        mirror: Vec3::splat(0.8),
         shininess: 1e6,
         opacity: 0.5,
         ..Material::default()

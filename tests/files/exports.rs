@@ -77,20 +77,25 @@ fn each_kind_of_thing_that_a_format_cannot_say_is_one_note_with_its_number() {
 }
 
 #[test]
-fn vertex_colours_are_not_lost_without_a_word() {
+fn vertex_colours_come_back_from_what_was_exported() {
     let folder = tempfile::tempdir().unwrap();
     let text = "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\no leaf\nf 1 2 3\n";
     let file = super::app::write(folder.path(), "a.obj", text);
-    let (mut app, _) = super::app::opened(&file);
-    let world = app.world_mut();
-    let mut meshes = world.query::<&Mesh3d>();
-    let handle = meshes.single(world).unwrap().0.clone();
-    let mesh = world.resource::<Assets<Mesh>>().get(&handle).unwrap();
-    assert!(mesh.contains_attribute(Mesh::ATTRIBUTE_COLOR));
+    let colors = |file: &std::path::Path| {
+        let (mut app, _) = super::app::opened(file);
+        let world = app.world_mut();
+        let mut meshes = world.query::<&Mesh3d>();
+        let handle = meshes.single(world).unwrap().0.clone();
+        let mesh = world.resource::<Assets<Mesh>>().get(&handle).unwrap();
+        let colors = format!("{:?}", mesh.attribute(Mesh::ATTRIBUTE_COLOR).unwrap());
+        (app, colors)
+    };
+    let (mut app, before) = colors(&file);
     for name in ["b.obj", "b.glb"] {
-        let notes = save(app.world_mut(), &folder.path().join(name));
-        let lines = notes.unwrap().lines();
-        let is_it = |line: &&String| line.contains("vertex colours of `leaf`; left out");
-        assert_eq!(lines.iter().filter(is_it).count(), 1, "{name}: {lines:?}");
+        let file = folder.path().join(name);
+        let notes = save(app.world_mut(), &file).unwrap().lines();
+        let is_it = |line: &String| line.contains("colours");
+        assert!(!notes.iter().any(is_it), "{name}: {notes:?}");
+        assert_eq!(colors(&file).1, before, "{name}");
     }
 }

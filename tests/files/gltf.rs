@@ -174,6 +174,7 @@ fn metal_and_roughness_become_phong_by_the_rule() {
     let base = LinearRgba::rgb(0.5, 0.25, 1.0);
     let mirror = material(1.0, 0.0);
     assert_eq!((mirror.diffuse, mirror.specular), (LinearRgba::BLACK, base));
+    assert_eq!(mirror.mirror, base);
     assert_eq!(mirror.shininess, 10_000.0);
     assert_eq!(
         mirror.opacity, 1.0,
@@ -340,19 +341,20 @@ fn materials_of_extensions_become_phong() {
     }));
     assert_eq!(unlit.emission, LinearRgba::rgb(0.5, 0.25, 0.0));
     assert_eq!(
-        (unlit.diffuse, unlit.specular),
-        (LinearRgba::BLACK, LinearRgba::BLACK)
+        (unlit.diffuse, unlit.specular, unlit.mirror),
+        (LinearRgba::BLACK, LinearRgba::BLACK, LinearRgba::BLACK)
     );
-    for (mode, cutoff, opacity) in [
-        ("OPAQUE", 0.9, 1.0),
-        ("MASK", 0.5, 1.0),
-        ("MASK", 0.7, 0.0),
-        ("BLEND", 0.9, 0.6),
+    for (mode, cutoff, opacity, alpha) in [
+        ("OPAQUE", 0.9, 1.0, Alpha::Opaque),
+        ("MASK", 0.5, 0.6, Alpha::Mask { cutoff: 0.5 }),
+        ("MASK", 0.7, 0.6, Alpha::Mask { cutoff: 0.7 }),
+        ("BLEND", 0.9, 0.6, Alpha::Blend),
     ] {
         let (phong, _) = material(json!({
             "pbrMetallicRoughness": color, "alphaMode": mode, "alphaCutoff": cutoff,
         }));
-        assert_eq!(phong.opacity, opacity, "{mode} at {cutoff}");
+        let found = (phong.opacity, phong.alpha);
+        assert_eq!(found, (opacity, alpha), "{mode} at {cutoff}");
     }
     let glass = json!({ "KHR_materials_transmission": { "transmissionFactor": 0.75 } });
     let (glass, notes) = material(json!({ "extensions": glass }));
@@ -383,4 +385,75 @@ fn materials_of_extensions_become_phong() {
     let (mut app, _) = document(plain(), |_| {});
     let none = objects(app.world_mut())[0].1.clone();
     assert_eq!(none.diffuse, LinearRgba::WHITE, "without a material");
+}
+
+/// The material of a document with one picture, of several textures with these samplers.
+fn pictured(material: Value, samplers: Value) -> (Phong, Vec<String>) {
+    let (mut app, notes) = document(plain(), |d| {
+        d["images"] = json!([{ "uri": "a%20b.png" }]);
+        d["textures"] = json!([{ "source": 0 }, { "source": 0, "sampler": 0 }]);
+        d["samplers"] = samplers;
+        d["materials"] = json!([material]);
+        d["meshes"][0]["primitives"][0]["material"] = json!(0);
+    });
+    (objects(app.world_mut())[0].1.clone(), notes)
+}
+
+#[test]
+fn every_picture_that_phong_has_a_place_for_is_taken_with_its_factor_and_sampler() {
+    let (phong, notes) = pictured(
+        json!({
+            "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 }, "metallicFactor": 0.0,
+                "baseColorFactor": [0.5, 0.25, 1.0, 0.75] },
+            "emissiveTexture": { "index": 1 }, "emissiveFactor": [1.0, 0.5, 0.25],
+            "normalTexture": { "index": 1, "scale": 0.5 },
+            "alphaMode": "MASK", "alphaCutoff": 0.25,
+        }),
+        json!([{ "wrapS": 33071, "wrapT": 33648, "magFilter": 9728, "minFilter": 9987 }]),
+    );
+    // One of the picture that was not opaque in a file of before.
+    assert!(
+        notes.iter().all(|note| note.contains("was added")),
+        "{notes:?}"
+    );
+    let plain = TextureSource::new("a b.png");
+    let sampled = TextureSource {
+        wrap_u: Wrap::Clamp,
+        wrap_v: Wrap::Mirror,
+        filter: MapFilter::Nearest,
+        ..plain.clone()
+    };
+    assert_eq!(phong.diffuse, LinearRgba::rgb(0.5, 0.25, 1.0));
+    assert_eq!(phong.diffuse_map, Some(plain));
+    assert_eq!(phong.emission, LinearRgba::rgb(1.0, 0.5, 0.25));
+    assert_eq!(phong.emission_map, Some(sampled.clone()));
+    assert_eq!((phong.normal_map, phong.normal_scale), (Some(sampled), 0.5));
+    assert_eq!(
+        (phong.opacity, phong.alpha),
+        (0.75, Alpha::Mask { cutoff: 0.25 })
+    );
+    let cut_out = phong.opacity_map.map(|map| map.path);
+    assert_eq!(cut_out.as_deref(), Some("a b.png#alpha"));
+}
+
+#[test]
+fn a_metal_reflects_in_its_picture_and_what_is_unlit_shows_it() {
+    let base = json!({ "baseColorTexture": { "index": 0 }, "roughnessFactor": 0.0 });
+    let (metal, _) = pictured(json!({ "pbrMetallicRoughness": base }), json!([]));
+    let picture = Some(TextureSource::new("a b.png"));
+    assert_eq!(
+        (&metal.specular_map, &metal.mirror_map),
+        (&picture, &picture)
+    );
+    assert_eq!(metal.mirror, LinearRgba::WHITE);
+    let extensions = json!({ "KHR_materials_unlit": {} });
+    let unlit = json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 },
+        "baseColorFactor": [0.5, 0.25, 1.0, 1.0], "metallicFactor": 0.0 }, "extensions": extensions });
+    let (unlit, notes) = pictured(unlit, json!([]));
+    assert!(
+        notes.iter().all(|note| note.contains("was added")),
+        "{notes:?}"
+    );
+    assert_eq!((unlit.emission_map, unlit.diffuse_map), (picture, None));
+    assert_eq!(unlit.emission, LinearRgba::rgb(0.5, 0.25, 1.0));
 }

@@ -4,8 +4,8 @@ use bevy::color::LinearRgba;
 use bevy::ecs::hierarchy::ChildOf;
 use bevy::ecs::name::Name;
 use bevy::math::{Quat, Vec3};
-use bevy::mesh::Mesh3d;
-use bevy::prelude::{Entity, World};
+use bevy::mesh::{Mesh, Mesh3d, VertexAttributeValues};
+use bevy::prelude::{App, Assets, Entity, World};
 use bevy::transform::components::Transform;
 use glassbox::io::{SceneFiles, save};
 use glassbox::scene::*;
@@ -103,13 +103,12 @@ fn hierarchy(world: &mut World) {
             Phong {
                 diffuse: LinearRgba::rgb(0.1, 0.2, 1.0 / 3.0),
                 specular: LinearRgba::rgb(0.7, 0.6, 0.5),
+                mirror: LinearRgba::rgb(0.2, 0.3, 0.25),
                 shininess: 77.7,
                 opacity: 0.3,
                 emission: LinearRgba::rgb(5.0, 0.0, 0.1),
-                diffuse_map: Some(TextureSource {
-                    path: "builtin:checker".into(),
-                }),
-                opacity_map: None,
+                diffuse_map: Some(TextureSource::new("builtin:checker")),
+                ..Phong::default()
             },
         ))
         .id();
@@ -208,13 +207,9 @@ fn a_glb_gives_back_the_same_triangles_places_materials_lights_and_cameras() {
     assert_eq!(a.get::<Transform>(x), b.get::<Transform>(y));
     let (x, y) = (named(a, "gold"), named(b, "gold"));
     let expected = Phong {
-        diffuse_map: Some(TextureSource {
-            path: "a.glb#texture0".into(),
-        }),
+        diffuse_map: Some(TextureSource::new("a.glb#texture0")),
         // Its alpha channel stands for opacity because the material is blended.
-        opacity_map: Some(TextureSource {
-            path: "a.glb#texture0.alpha".into(),
-        }),
+        opacity_map: Some(TextureSource::new("a.glb#texture0.alpha")),
         ..a.get::<Phong>(x).cloned().unwrap()
     };
     assert_eq!(b.get::<Phong>(y), Some(&expected));
@@ -313,9 +308,7 @@ fn a_picture_that_an_obj_brings_along_replaces_none_that_is_there() {
     let mut materials = world.query::<&mut Phong>();
     for mut phong in materials.iter_mut(world) {
         if phong.diffuse_map.is_none() {
-            phong.diffuse_map = Some(TextureSource {
-                path: "builtin:uv".into(),
-            });
+            phong.diffuse_map = Some(TextureSource::new("builtin:uv"));
         }
     }
     app.update();
@@ -359,5 +352,136 @@ fn a_large_object_is_read_in_parts_and_is_one_mesh() {
             [[0.0; 3], [1.0, y, 0.0], [1.0, y + 1.0, 0.0]],
             "{i}"
         );
+    }
+}
+
+#[test]
+fn an_obj_says_whether_a_material_mirrors_and_has_one_colour_for_it() {
+    let color = LinearRgba::rgb(0.25, 0.5, 0.75);
+    let other = LinearRgba::rgb(0.5, 0.5, 0.5);
+    let none = LinearRgba::BLACK;
+    for (written, read, is_noted) in [
+        ((none, none), (none, none), false),
+        ((color, none), (color, none), false),
+        ((color, color), (color, color), false),
+        ((none, color), (color, color), true),
+        ((color, other), (color, color), true),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut first = app();
+        first.world_mut().spawn((
+            SceneId(1),
+            Transform::default(),
+            MeshSource::Shape(Shape::Cuboid { size: Vec3::ONE }),
+            Phong {
+                specular: written.0,
+                mirror: written.1,
+                ..Phong::default()
+            },
+        ));
+        first.update();
+        let file = folder.path().join("a.obj");
+        let notes = save(first.world_mut(), &file).unwrap_or_else(|error| panic!("{error}"));
+        let noted = notes.iter().any(|note| note.contains("mirror"));
+        assert_eq!(noted, is_noted, "{written:?}: {notes:?}");
+        let (mut second, _) = opened(&file);
+        let phong = &objects(second.world_mut())[0].1;
+        assert_eq!((phong.specular, phong.mirror), read, "{written:?}");
+    }
+}
+
+#[test]
+fn a_glb_keeps_cutoffs_samplers_normals_glow_and_the_colours_of_vertices() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut first = app();
+    let source = |path: &str| TextureSource {
+        wrap_u: Wrap::Mirror,
+        wrap_v: Wrap::Clamp,
+        filter: MapFilter::Linear,
+        ..TextureSource::new(path)
+    };
+    let phong = Phong {
+        diffuse: LinearRgba::rgb(0.25, 0.5, 1.0),
+        specular: LinearRgba::rgb(0.5, 0.25, 0.125),
+        mirror: LinearRgba::rgb(0.125, 0.25, 0.5),
+        emission: LinearRgba::rgb(4.0, 2.0, 1.0),
+        alpha: Alpha::Mask { cutoff: 0.375 },
+        normal_scale: 0.75,
+        diffuse_map: Some(source("builtin:checker")),
+        emission_map: Some(TextureSource::new("builtin:uv")),
+        normal_map: Some(TextureSource::new("builtin:uv")),
+        specular_map: Some(TextureSource::new("builtin:uv")),
+        ..Phong::default()
+    };
+    first.world_mut().spawn((
+        SceneId(1),
+        Name::new("box"),
+        Transform::default(),
+        MeshSource::Shape(Shape::Cuboid { size: Vec3::ONE }),
+        phong.clone(),
+    ));
+    first.update();
+    // An app of ours paints its vertices.
+    let painted = |app: &mut App| {
+        let world = app.world_mut();
+        let mut objects = world.query::<&Mesh3d>();
+        objects.iter(world).next().unwrap().0.clone()
+    };
+    let handle = painted(&mut first);
+    let mut meshes = first.world_mut().resource_mut::<Assets<Mesh>>();
+    let mut mesh = meshes.get_mut(&handle).unwrap();
+    let count = mesh.count_vertices();
+    let colors: Vec<[f32; 4]> = (0..count)
+        .map(|i| [0.5, i as f32 / count as f32, 1.0, 0.75])
+        .collect();
+    mesh.insert_attribute(Mesh::ATTRIBUTE_COLOR, colors.clone());
+    drop(mesh);
+    let file = folder.path().join("a.glb");
+    let notes = save(first.world_mut(), &file).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(notes, ["material `box`: its specular map was left out"]);
+    let (mut second, opened) = opened(&file);
+    assert!(opened.notes.is_empty(), "{:?}", opened.notes);
+    let found = objects(second.world_mut())[0].1.clone();
+    // Pictures are numbered as they are met.
+    let expected = Phong {
+        diffuse_map: Some(source("a.glb#texture0")),
+        emission_map: Some(TextureSource::new("a.glb#texture1")),
+        normal_map: Some(TextureSource::new("a.glb#texture2")),
+        opacity_map: Some(source("a.glb#texture0.alpha")),
+        specular_map: None,
+        ..phong
+    };
+    assert_eq!(found, expected);
+    let handle = painted(&mut second);
+    let meshes = second.world().resource::<Assets<Mesh>>();
+    let read = meshes
+        .get(&handle)
+        .unwrap()
+        .attribute(Mesh::ATTRIBUTE_COLOR);
+    let Some(VertexAttributeValues::Float32x4(read)) = read else {
+        panic!("no colours");
+    };
+    assert_eq!(*read, colors);
+}
+
+#[test]
+fn an_obj_keeps_its_pictures_their_clamping_and_the_colours_of_vertices() {
+    let folder = tempfile::tempdir().unwrap();
+    glassbox::io::write_picture(&folder.path().join("a.png"), 2, 1, &[[0.5; 3], [1.0; 3]]).unwrap();
+    let mtl = "newmtl m\nKd 1 0.5 0.25\nKs 0.1 0.2 0.3\nNs 20\nillum 3\nKe 1 2 3\nmap_Kd -clamp on a.png\n\
+               map_Ks a.png\nmap_Ke a.png\nnorm -bm 0.5 a.png\n";
+    write(folder.path(), "m.mtl", mtl);
+    let obj = "mtllib m.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 0.5 0\nv 0 1 0 0 0 0.25\nvt 0 0\nvt 1 0\nvt 0 1\n\
+               usemtl m\nf 1/1 2/2 3/3\n";
+    let (mut first, _) = opened(&write(folder.path(), "m.obj", obj));
+    let before = objects(first.world_mut());
+    let file = folder.path().join("again.obj");
+    save(first.world_mut(), &file).unwrap_or_else(|error| panic!("{error}"));
+    let (mut second, _) = opened(&file);
+    let after = objects(second.world_mut());
+    assert_eq!(after[0].1, before[0].1);
+    let text = std::fs::read_to_string(&file).unwrap();
+    for line in ["v 0 0 0 1 0 0", "v 1 0 0 0 0.5 0", "v 0 1 0 0 0 0.25"] {
+        assert!(text.contains(line), "{text}");
     }
 }

@@ -143,7 +143,7 @@ fn a_picture_of_any_name_goes_through_every_format() {
             glassbox::io::Folder::of(&folder.join("x"), false).name_of(&folder.join(&picture));
         let mut materials = world.query::<&mut Phong>();
         for mut phong in materials.iter_mut(world) {
-            phong.diffuse_map = Some(glassbox::scene::TextureSource { path: path.clone() });
+            phong.diffuse_map = Some(glassbox::scene::TextureSource::new(path.clone()));
         }
         app.update();
         for file in ["s.scn.ron", "s.obj", "s.glb"] {

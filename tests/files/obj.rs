@@ -6,7 +6,7 @@ use bevy::color::LinearRgba;
 use bevy::math::Vec3;
 use bevy::mesh::{Mesh, Mesh3d, VertexAttributeValues};
 use bevy::prelude::{App, Assets};
-use glassbox::scene::Phong;
+use glassbox::scene::{Phong, TextureSource, Wrap};
 use tempfile::TempDir;
 
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
@@ -165,31 +165,154 @@ fn a_picture_is_placed_by_its_options() {
     // v counts downwards here.
     assert_eq!(uvs, [[0.5, 0.75], [2.5, 0.75], [2.5, -2.25]]);
     let (_, told) = material("map_Kd -clamp on -imfchan r wall.png");
-    assert_eq!(told.len(), 2, "{told:?}");
+    assert_eq!(told.len(), 1, "{told:?}");
 }
 
 #[test]
-fn a_factor_does_not_outlive_its_picture() {
-    for (lines, of) in [
-        ("Ke 1 1 1\nmap_Ke wall.png", "map_Ke"),
-        ("Ks 1 1 1\nmap_Ks gone.png", "map_Ks"),
+fn a_factor_and_its_picture_are_multiplied_and_go_together() {
+    let (glow, half) = (
+        LinearRgba::rgb(3.0, 2.0, 1.0),
+        LinearRgba::rgb(0.5, 0.5, 0.5),
+    );
+    let path = |source: Option<&TextureSource>| source.map(|source| source.path.clone());
+    for (lines, emission, picture) in [
+        ("Ke 3 2 1\nmap_Ke wall.png", glow, Some("wall.png")),
+        ("Ke 3 2 1\nmap_Ke gone.png", LinearRgba::BLACK, None),
+        ("Ke 3 2 1", glow, None),
+        ("map_Ke wall.png", LinearRgba::WHITE, Some("wall.png")),
     ] {
         let (phong, told) = material(lines);
-        assert_eq!(phong.emission, LinearRgba::BLACK);
-        assert_eq!(phong.specular, LinearRgba::BLACK);
-        assert!(told.iter().any(|line| line.contains(of)), "{told:?}");
+        assert_eq!(phong.emission, emission, "{lines}");
+        assert_eq!(
+            path(phong.emission_map.as_ref()).as_deref(),
+            picture,
+            "{lines}"
+        );
+        assert_eq!(told.len(), usize::from(lines.contains("gone")), "{told:?}");
+    }
+    for (lines, specular, mirror, picture) in [
+        (
+            "Ks .5 .5 .5\nmap_Ks wall.png",
+            half,
+            LinearRgba::BLACK,
+            Some("wall.png"),
+        ),
+        (
+            "illum 3\nKs .5 .5 .5\nmap_Ks wall.png",
+            half,
+            half,
+            Some("wall.png"),
+        ),
+        (
+            "illum 3\nKs .5 .5 .5\nmap_Ks gone.png",
+            LinearRgba::BLACK,
+            LinearRgba::BLACK,
+            None,
+        ),
+        (
+            "illum 1\nKs .5 .5 .5\nmap_Ks wall.png",
+            LinearRgba::BLACK,
+            LinearRgba::BLACK,
+            None,
+        ),
+    ] {
+        let (phong, _) = material(lines);
+        assert_eq!(
+            (phong.specular, phong.mirror),
+            (specular, mirror),
+            "{lines}"
+        );
+        assert_eq!(
+            path(phong.specular_map.as_ref()).as_deref(),
+            picture,
+            "{lines}"
+        );
+        let mirrored = picture.filter(|_| mirror != LinearRgba::BLACK);
+        assert_eq!(
+            path(phong.mirror_map.as_ref()).as_deref(),
+            mirrored,
+            "{lines}"
+        );
+    }
+    for (lines, diffuse) in [
+        ("Kd .5 .5 .5\nmap_Kd wall.png", half),
+        ("Kd 0 0 0\nmap_Kd wall.png", LinearRgba::WHITE),
+        ("map_Kd wall.png", LinearRgba::WHITE),
+        ("Kd 0 0 0", LinearRgba::BLACK),
+    ] {
+        let (phong, _) = material(lines);
+        assert_eq!(phong.diffuse, diffuse, "{lines}");
     }
 }
 
 #[test]
-fn without_highlights_means_without_and_a_very_wide_one_fades() {
-    for illum in [0, 1] {
-        let (phong, _) = material(&format!("illum {illum}\nKs 1 1 1"));
-        assert_eq!(phong.specular, LinearRgba::BLACK);
+fn a_normal_map_and_clamped_pictures_are_read() {
+    let (phong, told) = material("norm -bm 0.5 wall.png\nmap_Kd -clamp on wall.png");
+    assert!(told.is_empty(), "{told:?}");
+    assert_eq!(phong.normal_scale, 0.5);
+    assert_eq!(phong.normal_map, Some(TextureSource::new("wall.png")));
+    let clamped = TextureSource {
+        wrap_u: Wrap::Clamp,
+        wrap_v: Wrap::Clamp,
+        ..TextureSource::new("wall.png")
+    };
+    assert_eq!(phong.diffuse_map, Some(clamped));
+}
+
+#[test]
+fn colours_of_vertices_without_a_material_are_shown_as_they_are() {
+    let (mut app, _) = obj("v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nf 1 2 3\n");
+    assert_eq!(objects(app.world_mut())[0].1.diffuse, LinearRgba::WHITE);
+    let (mut app, _) = obj(&format!("{SQUARE}f 1 2 3\n"));
+    let default = Phong::default().diffuse;
+    assert_eq!(objects(app.world_mut())[0].1.diffuse, default);
+}
+
+#[test]
+fn an_opacity_picture_in_half_floats_counts_with_its_alpha_where_it_has_any() {
+    use exr::prelude::{f16, write_rgba_file};
+    for (alpha, expected) in [(0.5, "leaf.exr#alpha"), (1.0, "leaf.exr")] {
+        let folder = tempfile::tempdir().unwrap();
+        let [r, g, b, a] = [0.25, 0.5, 0.125, alpha].map(f16::from_f32);
+        let file = folder.path().join("leaf.exr");
+        write_rgba_file(file, 2, 2, |_, _| (r, g, b, a)).unwrap();
+        write(folder.path(), "a.mtl", "newmtl a\nmap_d leaf.exr\n");
+        let text = format!("mtllib a.mtl\nusemtl a\n{SQUARE}f 1/1 2/2 3/3\n");
+        let (mut app, _) = opened(&write(folder.path(), "a.obj", text));
+        let map = objects(app.world_mut())[0].1.opacity_map.clone();
+        assert_eq!(map.map(|map| map.path).as_deref(), Some(expected));
     }
+}
+
+#[test]
+fn illum_says_whether_there_is_a_highlight_and_whether_there_is_a_mirror() {
+    let highlight = LinearRgba::rgb(0.25, 0.5, 0.75);
+    for (illum, specular, mirror) in [
+        ("illum 0", LinearRgba::BLACK, LinearRgba::BLACK),
+        ("illum 1", LinearRgba::BLACK, LinearRgba::BLACK),
+        ("illum 2", highlight, LinearRgba::BLACK),
+        ("", highlight, LinearRgba::BLACK),
+        ("illum 3", highlight, highlight),
+        ("illum 5", highlight, highlight),
+        ("illum 8", highlight, highlight),
+        ("illum 10", highlight, LinearRgba::BLACK),
+    ] {
+        let (phong, _) = material(&format!("{illum}\nKs 0.25 0.5 0.75"));
+        assert_eq!(
+            (phong.specular, phong.mirror),
+            (specular, mirror),
+            "{illum}"
+        );
+    }
+}
+
+#[test]
+fn a_very_wide_highlight_fades_and_the_mirror_does_not() {
     let (phong, _) = material("illum 2\nKs 0.5 0.5 0.5\nNs 0.25");
     assert_eq!(phong.shininess, 1.0);
     assert_eq!(phong.specular, LinearRgba::rgb(0.125, 0.125, 0.125));
+    let (phong, _) = material("illum 3\nKs 0.5 0.5 0.5\nNs 0.25");
+    assert_eq!(phong.mirror, LinearRgba::rgb(0.5, 0.5, 0.5));
 }
 
 #[test]

@@ -145,9 +145,7 @@ fn a_16_bit_alpha_keeps_its_levels() {
         let mut materials = app.world_mut().query::<&mut glassbox::scene::Phong>();
         for mut phong in materials.iter_mut(app.world_mut()) {
             if phong.opacity_map.is_some() {
-                phong.opacity_map = Some(TextureSource {
-                    path: source.into(),
-                });
+                phong.opacity_map = Some(TextureSource::new(source));
             }
         }
         app.update();
@@ -190,8 +188,7 @@ fn what_light_cannot_have_is_noted_once_for_each_picture_whatever_it_is_used_for
         found[1]
     );
     let picture = |app: &mut App, path: &str| {
-        app.world_mut().resource_mut::<Environment>().map =
-            Some(TextureSource { path: path.into() });
+        app.world_mut().resource_mut::<Environment>().map = Some(TextureSource::new(path));
         app.update();
         problems(app)
     };

@@ -62,8 +62,7 @@ fn binary_of_both_orders_of_bytes_says_the_same_as_text() {
         ascii(text, numbers).into_bytes(),
     ] {
         let (mut app, told) = open(content);
-        assert_eq!(told.len(), 1, "{told:?}");
-        assert!(told[0].contains("vertex colours"), "{told:?}");
+        assert_eq!(told, [""; 0]);
         let triangles = objects(app.world_mut())[0].2.clone();
         assert_eq!(
             triangles.len(),

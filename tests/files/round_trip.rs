@@ -24,13 +24,26 @@ fn rich_scene(world: &mut World, picture: &str) {
             Phong {
                 diffuse: color(0.25),
                 specular: color(0.5),
+                mirror: color(0.375),
                 shininess: 33.3,
                 opacity: 0.9,
                 emission: color(2.0),
-                diffuse_map: Some(TextureSource {
-                    path: picture.into(),
+                alpha: Alpha::Mask { cutoff: 0.3 },
+                normal_scale: 0.7,
+                diffuse_map: Some(TextureSource::new(picture)),
+                specular_map: Some(TextureSource {
+                    wrap_u: Wrap::Clamp,
+                    wrap_v: Wrap::Mirror,
+                    filter: MapFilter::Nearest,
+                    ..TextureSource::new(picture)
                 }),
-                opacity_map: None,
+                mirror_map: Some(TextureSource::new("builtin:uv")),
+                emission_map: Some(TextureSource::new("builtin:checker")),
+                opacity_map: Some(TextureSource::new(picture)),
+                normal_map: Some(TextureSource {
+                    filter: MapFilter::Linear,
+                    ..TextureSource::new(picture)
+                }),
             },
         ))
         .id();
@@ -105,9 +118,7 @@ fn rich_scene(world: &mut World, picture: &str) {
     });
     world.insert_resource(Environment {
         rotation: 1.25,
-        map: Some(TextureSource {
-            path: picture.into(),
-        }),
+        map: Some(TextureSource::new(picture)),
         ..Default::default()
     });
 }
@@ -383,4 +394,42 @@ fn every_built_in_scene_can_be_saved_and_opened_again() {
             scene.name
         );
     }
+}
+
+/// The material of a scene file of this version that says this about its only one.
+fn material_of_version(version: u32, phong: &str) -> Phong {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.scn.ron");
+    let text = format!(
+        "(resources: {{\"glassbox::io::FileVersion\": ({version})}}, entities: {{1: (components: {{\
+         \"glassbox::scene::SceneId\": (1), \"glassbox::scene::Phong\": ({phong})}})}})"
+    );
+    fs::write(&file, text).unwrap();
+    let (mut app, _) = opened(&file);
+    let material = by_id(app.world_mut(), 1);
+    app.world().get::<Phong>(material).cloned().unwrap()
+}
+
+#[test]
+fn a_picture_of_the_first_version_takes_the_place_of_the_colour() {
+    let text = "diffuse: (red: 0.25, green: 0.5, blue: 0.75, alpha: 1.0), \
+                diffuse_map: Some((path: \"builtin:uv\"))";
+    let color = LinearRgba::rgb(0.25, 0.5, 0.75);
+    let old = material_of_version(1, text);
+    assert_eq!(old.diffuse, LinearRgba::WHITE);
+    assert_eq!(old.diffuse_map, Some(TextureSource::new("builtin:uv")));
+    let new = material_of_version(2, text);
+    assert_eq!(new.diffuse, color);
+    let without = material_of_version(1, text.split(", diffuse_map").next().unwrap());
+    assert_eq!(without.diffuse, color);
+}
+
+#[test]
+fn a_material_of_the_first_version_mirrors_what_it_highlights() {
+    let text = "specular: (red: 0.25, green: 0.5, blue: 0.75, alpha: 1.0)";
+    let color = LinearRgba::rgb(0.25, 0.5, 0.75);
+    let old = material_of_version(1, text);
+    assert_eq!((old.specular, old.mirror), (color, color));
+    let new = material_of_version(2, text);
+    assert_eq!((new.specular, new.mirror), (color, LinearRgba::BLACK));
 }

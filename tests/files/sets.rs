@@ -44,9 +44,7 @@ fn scene(folder: &Path, name: &str, height: f32, red: f32, picture: &str) {
     let (mut app, _) = opened(&write(folder, &format!("{name}.obj"), text));
     let mut materials = app.world_mut().query::<&mut Phong>();
     for mut phong in materials.iter_mut(app.world_mut()) {
-        phong.diffuse_map = Some(TextureSource {
-            path: picture.into(),
-        });
+        phong.diffuse_map = Some(TextureSource::new(picture));
     }
     app.update();
     save(app.world_mut(), &folder.join(format!("{name}.scn.ron"))).unwrap();
@@ -159,7 +157,7 @@ fn exporting_again_and_again_leaves_no_more_files_than_once() {
         let mut materials = app.world_mut().query::<&mut Phong>();
         for mut phong in materials.iter_mut(app.world_mut()) {
             phong.diffuse.red = red;
-            phong.diffuse_map = Some(TextureSource { path: path.into() });
+            phong.diffuse_map = Some(TextureSource::new(path));
         }
         app.update();
         // As long as names may be.

@@ -21,6 +21,8 @@ fn s7_normals_stand_on_the_vertices_and_between_them() {
         tree: plain.mesh.tree.clone(),
         normals: vec![Vec3::Y * 3.0; 6],
         uvs: vec![],
+        colors: Vec::new(),
+        alphas: Vec::new(),
     });
     let world = world(
         vec![(instance, Object { mesh, ..plain })],

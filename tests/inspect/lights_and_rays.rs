@@ -4,9 +4,9 @@ use super::{RED, Scene, WHITE, expect, is_color, is_near, segment};
 use crate::analytic::{object, quad, world};
 use glam::{Vec2, Vec3};
 use glassbox::inspect::{InspectSettings, LineSet, MissColor, RaySettings, System};
-use glassbox::scene::{PixelSampling, Projection};
+use glassbox::scene::{PhongMap, PixelSampling, Projection};
 use glassbox::trace::{
-    Camera, Environment, Lights, Material, Mesh, Object, ParallelogramLight, PointLight,
+    Camera, Environment, Lights, Map, Material, Mesh, Object, ParallelogramLight, PointLight,
     SegmentLight, Texels, Texture,
 };
 use std::f32::consts::PI;
@@ -73,6 +73,7 @@ fn s1_the_camera_ray_has_the_colour_of_what_it_hits_shaded_or_not() {
 fn s2_each_bounce_has_the_colour_that_it_carries_and_a_miss_is_red_or_the_backgrounds() {
     let mirror = Material {
         specular: Vec3::splat(0.5),
+        mirror: Vec3::splat(0.5),
         shininess: 1e6,
         ..matt(Vec3::ZERO)
     };
@@ -226,6 +227,8 @@ fn s8_the_camera_ray_takes_the_texels_colour() {
         tree: plain.mesh.tree.clone(),
         normals: vec![],
         uvs: uvs.to_vec(),
+        colors: Vec::new(),
+        alphas: Vec::new(),
     });
     let texels = vec![
         [0.9, 0.1, 0.1],
@@ -234,7 +237,8 @@ fn s8_the_camera_ray_takes_the_texels_colour() {
         [0.6, 0.6, 0.1],
     ];
     let material = Material {
-        diffuse_map: Some(0),
+        diffuse: Vec3::ONE,
+        maps: vec![Map::new(PhongMap::Diffuse, 0)],
         ..Material::default()
     };
     let mut world = world(vec![(instance, Object { mesh, ..plain })], vec![material]);
@@ -294,6 +298,7 @@ fn s13_all_camera_rays_of_the_pixel_are_drawn_one_in_each_cell_of_the_grid() {
 fn s14_every_ray_of_a_blurred_reflection_passes_its_disc() {
     let shiny = Material {
         specular: Vec3::ONE,
+        mirror: Vec3::ONE,
         shininess: 10.0,
         ..matt(Vec3::ZERO)
     };

@@ -80,7 +80,7 @@ impl Recomputed {
             let of = &self.json["rays"][child];
             let share = 1.0 / (number(&of["count"]) * number(&of["chance"]));
             sum += match of["kind"].as_str().unwrap() {
-                "mirror" | "gloss" => d * vector(&hit["specular"]) * share * self.radiance(child),
+                "mirror" | "gloss" => d * vector(&hit["mirror"]) * share * self.radiance(child),
                 "transmission" | "translucency" => (1.0 - d) * share * self.radiance(child),
                 "shadow" | "light-sample" => d * share * self.direct(of, hit),
                 other => panic!("a {other} ray leaves a surface"),

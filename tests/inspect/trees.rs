@@ -33,6 +33,8 @@ fn of_mesh(corners: Vec<Vec3>, builder: Builder) -> World {
         tree,
         normals: vec![],
         uvs: vec![],
+        colors: Vec::new(),
+        alphas: Vec::new(),
     };
     let object = Object {
         id: 5,

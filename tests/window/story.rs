@@ -49,7 +49,7 @@ fn a_first_session_from_opening_to_reopening() {
 
         Select(["Sphere"]),
         Set(of: Some("Sphere"), path: "Phong.diffuse", to: [0, 0, 0, 1]),
-        Set(of: Some("Sphere"), path: "Phong.specular", to: [0.9, 0.9, 0.9, 1]),
+        Set(of: Some("Sphere"), path: "Phong.mirror", to: [0.9, 0.9, 0.9, 1]),
         Action(SelectNone),
         Wait(Samples(1e9)),
         Screenshot("mirror.png"),
@@ -62,7 +62,7 @@ fn a_first_session_from_opening_to_reopening() {
     display.plays(folder.path(), &["cornell-box"], script);
     let reopen = r#"[
         Exists("Sphere"),
-        Assert(of: Some("Sphere"), path: "Phong.specular.red", is: 0.9, within: 1e-6),
+        Assert(of: Some("Sphere"), path: "Phong.mirror.red", is: 0.9, within: 1e-6),
         Wait(Samples(1e9)),
         Screenshot("reopened.png"),
         Quit,

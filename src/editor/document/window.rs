@@ -101,7 +101,7 @@ pub(in crate::editor) fn typed_picture(world: &mut World, path: String) -> Textu
     {
         files.folder.allow_outside = true;
     }
-    TextureSource { path }
+    TextureSource::new(path)
 }
 
 fn drop_picture(world: &mut World, file: &Path, on_objects: bool) {

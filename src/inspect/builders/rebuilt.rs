@@ -26,6 +26,8 @@ pub fn rebuilt(world: &World, options: &BuildOptions) -> World {
                     tree: Arc::new(MeshTree::build(triangles, &mesh_options)),
                     normals: object.mesh.normals.clone(),
                     uvs: object.mesh.uvs.clone(),
+                    colors: object.mesh.colors.clone(),
+                    alphas: object.mesh.alphas.clone(),
                 })
             });
             Object {

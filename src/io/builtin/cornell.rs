@@ -168,6 +168,7 @@ fn room(world: &mut World) -> Stage<'_> {
     stage.add("Short block", (short, paint(WHITE, 0.05)));
     let mirror = Phong {
         specular: LinearRgba::rgb(0.9, 0.9, 0.9),
+        mirror: LinearRgba::rgb(0.9, 0.9, 0.9),
         shininess: 400.0,
         ..matte(0.02, 0.02, 0.02)
     };

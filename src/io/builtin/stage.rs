@@ -90,12 +90,13 @@ pub(super) fn matte(r: f32, g: f32, b: f32) -> Phong {
     }
 }
 
-/// A material that scatters and mirrors: `specular` is also how much of its surroundings it shows.
+/// A material that scatters and mirrors: it shows its surroundings in the colour of its highlight.
 pub(super) fn glossy(diffuse: [f32; 3], specular: [f32; 3], shininess: f32) -> Phong {
     let rgb = |[r, g, b]: [f32; 3]| LinearRgba::rgb(r, g, b);
     Phong {
         diffuse: rgb(diffuse),
         specular: rgb(specular),
+        mirror: rgb(specular),
         shininess,
         ..Phong::default()
     }
@@ -104,7 +105,8 @@ pub(super) fn glossy(diffuse: [f32; 3], specular: [f32; 3], shininess: f32) -> P
 /// A matte material that wears a generated picture.
 pub(super) fn pictured(name: &'static str) -> Phong {
     Phong {
-        diffuse_map: Some(TextureSource { path: name.into() }),
+        diffuse: LinearRgba::WHITE,
+        diffuse_map: Some(TextureSource::new(name)),
         ..Phong::default()
     }
 }
@@ -127,9 +129,7 @@ pub(super) fn plain_background(r: f32, g: f32, b: f32) -> Environment {
 pub(super) fn sky() -> Environment {
     Environment {
         background: LinearRgba::rgb(0.45, 0.60, 0.85),
-        map: Some(TextureSource {
-            path: "builtin:sky".into(),
-        }),
+        map: Some(TextureSource::new("builtin:sky")),
         ..Environment::default()
     }
 }

@@ -3,8 +3,8 @@
 use super::*;
 use crate::io::shapes;
 use crate::scene::{
-    DirectionalLamp, Environment, MeshSource, ParallelogramLamp, Phong, PointLamp, RenderSettings,
-    SceneCamera, SceneId, SegmentLamp, Shape, TextureSource,
+    DirectionalLamp, Environment, MeshSource, ParallelogramLamp, Phong, PhongMap, PointLamp,
+    RenderSettings, SceneCamera, SceneId, SegmentLamp, Shape, TextureSource,
 };
 use bevy::ecs::entity::Entity;
 use bevy::ecs::name::Name;
@@ -106,8 +106,11 @@ fn every_mesh_and_picture_can_be_made_and_every_place_is_finite() {
         }
         let mut sources: Vec<TextureSource> = Vec::new();
         for phong in world.query::<&Phong>().iter(&world) {
-            sources.extend(phong.diffuse_map.clone());
-            sources.extend(phong.opacity_map.clone());
+            sources.extend(
+                PhongMap::ALL
+                    .iter()
+                    .filter_map(|map| map.source(phong).cloned()),
+            );
         }
         sources.extend(world.resource::<Environment>().map.clone());
         for source in sources {

@@ -5,29 +5,28 @@
 //!
 //! | Phong | from |
 //! |---|---|
-//! | gloss | `g = (1 - r)²`: Phong's ks mirrors sharply, which a rough surface does not |
+//! | gloss | `g = (1 - r)²`: a mirror is sharp, and a rough surface is none |
 //! | `diffuse` | `b · (1 - m·g)`: what a rough metal does not mirror it scatters |
-//! | `specular` | `lerp(F0, b, m) · g` |
+//! | `specular`, `mirror` | `lerp(F0, b, m) · g`; times the base colour's picture where `m` is above ½ |
 //! | `shininess` | `2/r⁴ - 2`, within 1 to 10,000: the lobe of the same width (Walter et al. 2007, section 5.2, with α = r²) |
-//! | `opacity` | base alpha where `alphaMode` is `BLEND`; 0 or 1 where it is `MASK`; else 1; times 1 - transmission |
-//! | `emission` | emissive factor · `KHR_materials_emissive_strength` |
+//! | `opacity`, `alpha` | base alpha where `alphaMode` is `BLEND` or `MASK`, with its cutoff; else 1; times 1 - transmission |
+//! | `emission`, `emission_map` | emissive factor · `KHR_materials_emissive_strength`, and its picture |
 //! | `diffuse_map`, `opacity_map` | the base colour's picture, and its alpha where opacity counts |
+//! | `normal_map`, `normal_scale` | the normals' picture |
 //!
 //! A picture of metalness and roughness counts with its mean. `KHR_materials_pbrSpecularGlossiness`: `diffuse` and
-//! `specular` as they are there, `specular` times the gloss of `r = 1 - glossiness`. `KHR_materials_unlit`: what would
+//! `specular` as they are there, `specular` times the gloss of `r = 1 - glossiness`, which is `mirror`, too. `KHR_materials_unlit`: what would
 //! be `diffuse` is `emission`, and reflects nothing.
 //!
 //! Out: `b = diffuse`, `m = 0`, `r` from `shininess`, and the exact Phong numbers in the material's
-//! `extras` as `glassbox_phong`, which are preferred on the way in. Pictures replace `diffuse`, as
-//! they do in Phong; a factor on a picture is left out, with a note.
+//! `extras` as `glassbox_phong`, which are preferred on the way in.
 
-use super::super::error::FileError;
 use super::super::file_name::{encoded, of_file, split_fragment};
 use super::super::picture::PictureUse;
 use super::document::{Document, Picture};
 use super::json::Json;
 use super::read::read_texture;
-use crate::scene::{Phong, TextureSource};
+use crate::scene::{Alpha, MapFilter, Phong, TextureSource, Wrap};
 use bevy::color::LinearRgba;
 use bevy::math::{Affine2, Vec2};
 use serde::{Deserialize, Serialize};
@@ -45,13 +44,17 @@ pub(super) const EXTRAS: &str = "glassbox_phong";
 struct Numbers {
     diffuse: [f32; 3],
     specular: [f32; 3],
+    /// The same as `specular` in files that are older than it.
+    mirror: Option<[f32; 3]>,
     shininess: f32,
     opacity: f32,
     emission: [f32; 3],
+    /// As glTF's `alphaMode`, which is `OPAQUE` where nothing fades. Files without it blend.
+    alpha: Option<String>,
 }
 
 /// How a material uses a texture.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq)]
 pub(super) struct TextureInfo {
     pub texture: usize,
     /// Which set of texture coordinates.
@@ -86,17 +89,46 @@ impl TextureInfo {
     }
 }
 
-/// The picture of a material's colour, whose texture coordinates meshes take.
-pub(super) fn base_texture(document: &Document, material: Option<usize>) -> Option<TextureInfo> {
+/// The pictures of a material, as far as they are read.
+struct Pictures {
+    base: Option<TextureInfo>,
+    emissive: Option<TextureInfo>,
+    normal: Option<TextureInfo>,
+}
+
+impl Pictures {
+    fn of(material: Json) -> Self {
+        let base = match material.extension(SPECULAR_GLOSSINESS) {
+            Some(glossy) => glossy.get("diffuseTexture"),
+            None => {
+                (material.get("pbrMetallicRoughness")).and_then(|pbr| pbr.get("baseColorTexture"))
+            }
+        };
+        let own = |key| material.get(key).and_then(TextureInfo::of);
+        Self {
+            base: base.and_then(TextureInfo::of),
+            emissive: own("emissiveTexture"),
+            normal: own("normalTexture"),
+        }
+    }
+
+    fn all(&self) -> impl Iterator<Item = TextureInfo> {
+        [self.base, self.emissive, self.normal]
+            .into_iter()
+            .flatten()
+    }
+}
+
+/// The picture of a material whose texture coordinates meshes take: that of its colour, where it has one.
+pub(super) fn placing_texture(document: &Document, material: Option<usize>) -> Option<TextureInfo> {
     let material = document.json().element("materials", material?)?;
-    let glossy = material.extension(SPECULAR_GLOSSINESS);
-    let json = match glossy {
-        Some(glossy) => glossy.get("diffuseTexture"),
-        None => material
-            .get("pbrMetallicRoughness")?
-            .get("baseColorTexture"),
-    };
-    TextureInfo::of(json?)
+    Pictures::of(material).all().next()
+}
+
+/// Whether a material shows its colour as it is.
+pub(super) fn is_unlit(document: &Document, material: Option<usize>) -> bool {
+    let material = material.and_then(|index| document.json().element("materials", index));
+    material.is_some_and(|material| material.has_extension("KHR_materials_unlit"))
 }
 
 const SPECULAR_GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
@@ -117,6 +149,8 @@ pub(super) fn phong_of(document: &Document, index: usize, material: Json, name: 
     let extras = material.get("extras").and_then(|extras| extras.get(EXTRAS));
     let exact = extras.and_then(exact_phong);
     let is_exact = exact.is_some();
+    // Pictures took the place of colours before there was a mirror of its own.
+    let is_of_old = is_exact && extras.is_some_and(|extras| extras.get("mirror").is_none());
     let pbr = material.get("pbrMetallicRoughness");
     let glossy = material.extension(SPECULAR_GLOSSINESS);
     let base = match glossy {
@@ -126,21 +160,32 @@ pub(super) fn phong_of(document: &Document, index: usize, material: Json, name: 
     let [red, green, blue, alpha] = base.unwrap_or([1.0; 4]).map(unit);
     let base = [red, green, blue];
     // Read in any case: what stands beside the exact numbers is not passed over.
-    let mapped = match glossy {
-        Some(glossy) => specular_glossiness(glossy, base),
+    let (mapped, metal) = match glossy {
+        Some(glossy) => (specular_glossiness(glossy, base), 0.0),
         None => metallic_roughness(document, material, base, &note),
     };
     let mut phong = exact.unwrap_or(mapped);
-    let texture = base_texture(document, Some(index));
+    let pictures = Pictures::of(material);
+    let placement = |picture: TextureInfo| (picture.set, picture.transform.unwrap_or_default());
+    let mut placed = pictures.all().map(placement);
+    let first = placed.next();
+    if placed.any(|other| Some(other) != first) {
+        let what = "pictures with different texture coordinates of";
+        note(what, "all are placed as the first");
+    }
+    let source = |picture: Option<TextureInfo>| texture_source(document, picture?.texture);
+    let base_picture = source(pictures.base);
     let has_alpha = opacity(
         material,
         alpha,
-        texture.is_some(),
+        base_picture.is_some(),
         &note,
         &mut phong,
         is_exact,
     );
-    let emissive_picture = material.get("emissiveTexture").and_then(TextureInfo::of);
+    if has_alpha {
+        phong.opacity_map = base_picture.as_ref().map(alpha_of);
+    }
     let emissive = material.numbers("emissiveFactor").unwrap_or([0.0; 3]);
     let strength = material.extension("KHR_materials_emissive_strength");
     let strength = strength.and_then(|strength| strength.number("emissiveStrength"));
@@ -148,31 +193,46 @@ pub(super) fn phong_of(document: &Document, index: usize, material: Json, name: 
         let strength = strength.unwrap_or(1.0);
         phong.emission = color(emissive.map(|e| at_least_0(e * strength)));
     }
-    if emissive_picture.is_some() && phong.emission != LinearRgba::BLACK {
-        note("an emissive picture, of", "left out, and what it scales");
+    phong.emission_map = source(pictures.emissive);
+    if pictures.emissive.is_some() && phong.emission_map.is_none() {
         phong.emission = LinearRgba::BLACK;
     }
+    phong.normal_map = source(pictures.normal);
+    let scale = material
+        .get("normalTexture")
+        .and_then(|json| json.number("scale"));
+    phong.normal_scale = scale.unwrap_or(1.0);
     if material.extension("KHR_materials_unlit").is_some() {
-        if texture.is_some() {
-            note("an unlit picture, of", "lit as others are");
-        } else {
-            phong.emission = phong.diffuse;
-            phong.diffuse = LinearRgba::BLACK;
-        }
+        phong.emission = phong.diffuse;
+        phong.emission_map = base_picture;
+        phong.diffuse = LinearRgba::BLACK;
         phong.specular = LinearRgba::BLACK;
+        phong.mirror = LinearRgba::BLACK;
+        return phong;
     }
-    if let Some(texture) = texture {
-        pictures(document, texture, has_alpha, &note, base, &mut phong);
+    // A metal reflects in its colour.
+    if metal > 0.5 && !is_exact {
+        phong.specular_map.clone_from(&base_picture);
+        phong.mirror_map.clone_from(&base_picture);
     }
+    if base_picture.is_some() && metal > 0.0 && metal < 1.0 && !is_exact {
+        let what = "a picture on what is partly metal, of";
+        note(what, "highlights take its colour where more than half is");
+    }
+    if is_of_old && base_picture.is_some() {
+        phong.diffuse = LinearRgba::WHITE;
+    }
+    phong.diffuse_map = base_picture;
     phong
 }
 
+/// The material, and how much of it is metal.
 fn metallic_roughness(
     document: &Document,
     material: Json,
     base: [f32; 3],
     note: &impl Fn(&str, &'static str),
-) -> Phong {
+) -> (Phong, f32) {
     let pbr = material.get("pbrMetallicRoughness");
     let factor = |key| {
         let number = pbr.and_then(|pbr| pbr.number(key));
@@ -209,21 +269,25 @@ fn metallic_roughness(
         let dielectric = unit(F0 * factor * tint[i]);
         unit((dielectric + metal * (base[i] - dielectric)) * gloss)
     });
-    Phong {
+    let phong = Phong {
         diffuse: color(base.map(|b| b * (1.0 - metal * gloss))),
         specular: color(specular),
+        mirror: color(specular),
         shininess: shininess(rough),
         ..Phong::default()
-    }
+    };
+    (phong, metal)
 }
 
 fn specular_glossiness(json: Json, base: [f32; 3]) -> Phong {
     let rough = 1.0 - unit(json.number("glossinessFactor").unwrap_or(1.0));
     let gloss = (1.0 - rough) * (1.0 - rough);
     let specular = json.numbers("specularFactor").unwrap_or([1.0; 3]);
+    let specular = color(specular.map(|s| unit(s) * gloss));
     Phong {
         diffuse: color(base),
-        specular: color(specular.map(|s| unit(s) * gloss)),
+        specular,
+        mirror: specular,
         shininess: shininess(rough),
         ..Phong::default()
     }
@@ -233,7 +297,7 @@ fn shininess(rough: f32) -> f32 {
     (2.0 / rough.powi(4) - 2.0).clamp(1.0, MOST_SHININESS)
 }
 
-/// Opacity without the picture's; true where the alpha of the picture counts too.
+/// Opacity without the picture's, and what it means; true where the alpha of the picture counts too.
 fn opacity(
     material: Json,
     alpha: f32,
@@ -243,100 +307,128 @@ fn opacity(
     is_exact: bool,
 ) -> bool {
     let mode = material.text("alphaMode").unwrap_or("OPAQUE");
-    let cutoff = material.number("alphaCutoff").unwrap_or(0.5);
-    let mut has_alpha = true;
-    let opacity = match mode {
-        "BLEND" => alpha,
-        "MASK" if has_picture => {
-            note("a picture that cuts out (MASK), of", "it fades there");
-            alpha
-        }
-        "MASK" => f32::from(alpha >= cutoff),
-        _ => {
-            has_alpha = false;
-            1.0
-        }
+    let cutoff = at_least_0(material.number("alphaCutoff").unwrap_or(0.5));
+    let mode = match mode {
+        "BLEND" => Alpha::Blend,
+        "MASK" => Alpha::Mask { cutoff },
+        _ => Alpha::Opaque,
     };
     let transmission = material.extension("KHR_materials_transmission");
     let transmission = transmission.map(|json| json.number("transmissionFactor").unwrap_or(0.0));
     let through = unit(transmission.unwrap_or(0.0));
+    let is_cut_out = matches!(mode, Alpha::Mask { .. }) && has_picture;
     if through > 0.0 {
-        note(
-            "transmission, of",
-            "it is opacity, and light goes straight through",
-        );
+        let instead = if is_cut_out {
+            "left out, as it is cut out"
+        } else {
+            "it is opacity, and light goes straight through"
+        };
+        note("transmission, of", instead);
     }
-    if !is_exact {
-        phong.opacity = opacity * (1.0 - through);
-    }
-    has_alpha
-}
-
-fn pictures(
-    document: &Document,
-    texture: TextureInfo,
-    has_alpha: bool,
-    note: &impl Fn(&str, &'static str),
-    base: [f32; 3],
-    phong: &mut Phong,
-) {
-    let source = match texture_source(document, texture.texture) {
-        Ok(source) => source,
-        Err(error) => {
-            let what = error.problem.to_string();
-            let instead = "its materials have no picture there";
-            let mut notes = document.notes.borrow_mut();
-            notes.add(&error.file, error.place, what, instead);
-            return;
+    if is_exact {
+        // A file of ours is opaque for others where nothing fades.
+        if phong.alpha != Alpha::Blend {
+            phong.alpha = mode;
         }
+        return mode != Alpha::Opaque;
+    }
+    (phong.opacity, phong.alpha) = match mode {
+        Alpha::Opaque if through > 0.0 => (1.0 - through, Alpha::Blend),
+        Alpha::Opaque => (1.0, Alpha::Opaque),
+        Alpha::Mask { cutoff } if through > 0.0 && !is_cut_out => {
+            (f32::from(alpha >= cutoff) * (1.0 - through), Alpha::Blend)
+        }
+        Alpha::Mask { .. } => (alpha, mode),
+        Alpha::Blend => (alpha * (1.0 - through), mode),
     };
-    if base.iter().any(|&factor| factor != 1.0) {
-        note("the colour on a picture of", "the picture takes its place");
-    }
-    if has_alpha {
-        let has_part = !split_fragment(&source).1.is_empty();
-        let separator = if has_part { "." } else { "#" };
-        let path = format!("{source}{separator}alpha");
-        phong.opacity_map = Some(TextureSource { path });
-    }
-    phong.diffuse_map = Some(TextureSource { path: source });
-    sampling(document, texture.texture, note);
+    mode != Alpha::Opaque
 }
 
-/// Says what of a texture's sampler is not read.
-fn sampling(document: &Document, texture: usize, note: &impl Fn(&str, &'static str)) {
-    const NEAREST: usize = 9728;
-    const REPEAT: usize = 10_497;
+/// The alpha channel of a picture.
+fn alpha_of(picture: &TextureSource) -> TextureSource {
+    let has_part = !split_fragment(&picture.path).1.is_empty();
+    let separator = if has_part { "." } else { "#" };
+    TextureSource {
+        path: format!("{}{separator}alpha", picture.path),
+        ..picture.clone()
+    }
+}
+
+const NEAREST: usize = 9728;
+const LINEAR: usize = 9729;
+const REPEAT: usize = 10_497;
+const CLAMP_TO_EDGE: usize = 33_071;
+const MIRRORED_REPEAT: usize = 33_648;
+
+/// How a texture is read beyond its edges and between its pixels.
+fn sampled(document: &Document, texture: usize, path: String) -> TextureSource {
     let json = document.json();
     let sampler = json
         .element("textures", texture)
         .and_then(|texture| texture.index("sampler"))
         .and_then(|sampler| json.element("samplers", sampler));
-    let Some(sampler) = sampler else { return };
-    let is_other = |key| sampler.index(key).is_some_and(|mode| mode != REPEAT);
-    // Both are read, so that neither counts as passed over.
-    if is_other("wrapS") | is_other("wrapT") {
-        note("a picture that does not repeat, of", "it repeats here");
-    }
+    let Some(sampler) = sampler else {
+        return TextureSource::new(path);
+    };
+    let wrap = |key| match sampler.index(key) {
+        Some(CLAMP_TO_EDGE) => Wrap::Clamp,
+        Some(MIRRORED_REPEAT) => Wrap::Mirror,
+        _ => Wrap::Repeat,
+    };
     // How a picture is made smaller is a setting of the render.
     sampler.index("minFilter");
-    if sampler.index("magFilter") == Some(NEAREST) {
-        note(
-            "a picture with hard pixels, of",
-            "the render's filter smooths it",
-        );
+    TextureSource {
+        path,
+        wrap_u: wrap("wrapS"),
+        wrap_v: wrap("wrapT"),
+        filter: match sampler.index("magFilter") {
+            Some(NEAREST) => MapFilter::Nearest,
+            Some(LINEAR) => MapFilter::Linear,
+            _ => MapFilter::Setting,
+        },
     }
 }
 
-/// How scenes name the picture of a texture.
-fn texture_source(document: &Document, texture: usize) -> Result<String, FileError> {
-    match document.texture(texture)? {
-        Picture::Beside(path) => Ok(of_file(path)),
-        Picture::Inside(_) => {
-            let file = document.file.file_name().unwrap_or_default();
-            Ok(format!("{}#texture{texture}", encoded(file)))
-        }
+/// The sampler of such a texture; `None` where it is what a texture without one has.
+pub(super) fn sampler_json(source: &TextureSource) -> Option<serde_json::Value> {
+    let wrap = |wrap| match wrap {
+        Wrap::Repeat => REPEAT,
+        Wrap::Clamp => CLAMP_TO_EDGE,
+        Wrap::Mirror => MIRRORED_REPEAT,
+    };
+    let TextureSource {
+        wrap_u,
+        wrap_v,
+        filter,
+        ..
+    } = source;
+    let mut json = serde_json::json!({ "wrapS": wrap(*wrap_u), "wrapT": wrap(*wrap_v) });
+    match filter {
+        MapFilter::Setting if (*wrap_u, *wrap_v) == (Wrap::Repeat, Wrap::Repeat) => return None,
+        MapFilter::Setting => {}
+        MapFilter::Nearest => json["magFilter"] = NEAREST.into(),
+        MapFilter::Linear => json["magFilter"] = LINEAR.into(),
     }
+    Some(json)
+}
+
+/// How scenes name the picture of a texture. One that is not there is noted.
+fn texture_source(document: &Document, texture: usize) -> Option<TextureSource> {
+    let path = match document.texture(texture) {
+        Ok(Picture::Beside(path)) => of_file(path),
+        Ok(Picture::Inside(_)) => {
+            let file = document.file.file_name().unwrap_or_default();
+            format!("{}#texture{texture}", encoded(file))
+        }
+        Err(error) => {
+            let what = error.problem.to_string();
+            let instead = "its materials have no picture there";
+            let mut notes = document.notes.borrow_mut();
+            notes.add(&error.file, error.place, what, instead);
+            return None;
+        }
+    };
+    Some(sampled(document, texture, path))
 }
 
 /// The mean of a picture's red, green and blue as numbers.
@@ -371,9 +463,16 @@ fn exact_phong(json: Json) -> Option<Phong> {
     Some(Phong {
         diffuse: color(numbers.diffuse.map(unit)),
         specular: color(numbers.specular.map(unit)),
+        mirror: color(numbers.mirror.unwrap_or(numbers.specular).map(unit)),
         shininess: numbers.shininess.clamp(1.0, f32::MAX),
         opacity: unit(numbers.opacity),
         emission: color(numbers.emission.map(at_least_0)),
+        // The cutoff stands where other programs read it.
+        alpha: match numbers.alpha.as_deref() {
+            Some("MASK") => Alpha::Mask { cutoff: 0.5 },
+            Some("OPAQUE") => Alpha::Opaque,
+            _ => Alpha::Blend,
+        },
         ..Phong::default()
     })
 }
@@ -384,9 +483,11 @@ pub(super) fn material_json(name: &str, phong: &Phong) -> serde_json::Value {
     let numbers = Numbers {
         diffuse: rgb(phong.diffuse),
         specular: rgb(phong.specular),
+        mirror: Some(rgb(phong.mirror)),
         shininess: phong.shininess,
         opacity: phong.opacity,
         emission: rgb(phong.emission),
+        alpha: Some(alpha_mode(phong.alpha).to_owned()),
     };
     let rough = (2.0 / (phong.shininess + 2.0)).powf(0.25);
     let emission = rgb(phong.emission);
@@ -408,9 +509,21 @@ pub(super) fn material_json(name: &str, phong: &Phong) -> serde_json::Value {
         json["extensions"] = serde_json::json!({ "KHR_materials_emissive_strength": strength });
     }
     if phong.opacity < 1.0 || phong.opacity_map.is_some() {
-        json["alphaMode"] = "BLEND".into();
+        json["alphaMode"] = alpha_mode(phong.alpha).into();
+    }
+    if let Alpha::Mask { cutoff } = phong.alpha {
+        json["alphaMode"] = "MASK".into();
+        json["alphaCutoff"] = cutoff.into();
     }
     json
+}
+
+fn alpha_mode(alpha: Alpha) -> &'static str {
+    match alpha {
+        Alpha::Blend => "BLEND",
+        Alpha::Mask { .. } => "MASK",
+        Alpha::Opaque => "OPAQUE",
+    }
 }
 
 fn color([red, green, blue]: [f32; 3]) -> LinearRgba {

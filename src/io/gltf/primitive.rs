@@ -6,7 +6,7 @@ use super::super::model::triangle_mesh;
 use super::accessors::{colors, floats, indices};
 use super::document::Document;
 use super::json::Json;
-use super::material::{TextureInfo, base_texture};
+use super::material::{TextureInfo, is_unlit, placing_texture};
 use super::rest::Pose;
 use bevy::math::Vec2;
 use bevy::mesh::Mesh;
@@ -59,7 +59,8 @@ fn triangles(
     let count = positions.len();
     let mut normals: Vec<[f32; 3]> = attribute(document, attributes, "NORMAL", name, count, floats);
     pose.apply(document, primitive, name, &mut positions, &mut normals);
-    let texture = base_texture(document, primitive.index("material"));
+    let material = primitive.index("material");
+    let texture = placing_texture(document, material);
     let set = texture.map_or(0, |texture| texture.set);
     let set = format!("TEXCOORD_{set}");
     let mut uvs: Vec<[f32; 2]> = attribute(document, attributes, &set, name, count, floats);
@@ -109,7 +110,10 @@ fn triangles(
     }
     let mut mesh = triangle_mesh(positions, normals, uvs, corners);
     if colors.iter().any(|&color| color != [1.0; 4]) {
-        document.note(name, "vertex colours", "kept, and not traced");
+        if is_unlit(document, material) {
+            let what = "vertex colours of what is unlit";
+            document.note(name, what, "kept, and not seen");
+        }
         mesh.insert_attribute(Mesh::ATTRIBUTE_COLOR, colors);
     }
     Ok(Some(mesh))

@@ -7,8 +7,8 @@ use super::super::picture::encode_png;
 use super::super::replace::{check_space, replace_file};
 use super::glb::Bytes;
 use super::lamps::{camera_json, directional_json, point_json};
-use super::material::material_json;
-use crate::scene::{DirectionalLamp, PointLamp, SceneCamera};
+use super::material::{material_json, sampler_json};
+use crate::scene::{DirectionalLamp, MapFilter, PhongMap, PointLamp, SceneCamera, Wrap};
 use bevy::asset::{AssetId, Assets};
 use bevy::ecs::hierarchy::ChildOf;
 use bevy::ecs::name::Name;
@@ -32,6 +32,7 @@ pub(crate) fn write_glb(world: &mut World, file: &Path) -> Result<Notes, FileErr
         bytes: Bytes::default(),
         lists: Map::new(),
         meshes: HashMap::new(),
+        images: HashMap::new(),
         textures: HashMap::new(),
         notes: exported.notes.clone(),
     };
@@ -55,7 +56,9 @@ struct Glb<'a> {
     lists: Map<String, Value>,
     /// Primitives that are written: their attributes and indices, without a material.
     meshes: HashMap<AssetId<Mesh>, Value>,
-    textures: HashMap<AssetId<Image>, usize>,
+    images: HashMap<AssetId<Image>, usize>,
+    /// By image and how it is read.
+    textures: HashMap<(usize, (Wrap, Wrap, MapFilter)), usize>,
     notes: Notes,
 }
 
@@ -81,40 +84,81 @@ impl Glb<'_> {
     fn material(&mut self, material: &Material) -> Value {
         let phong = &material.phong;
         let mut json = material_json(&material.name, phong);
-        if let (Some(source), Some(loaded)) = (&phong.diffuse_map, &material.maps.diffuse) {
-            match self.texture(loaded.id()) {
-                Some(texture) => {
-                    let pbr = &mut json["pbrMetallicRoughness"];
-                    pbr["baseColorTexture"] = json!({ "index": texture });
-                    pbr["baseColorFactor"] = json!([1.0, 1.0, 1.0, phong.opacity]);
+        let mut left_out = Vec::new();
+        for map in PhongMap::ALL {
+            let Some(source) = map.source(phong) else {
+                continue;
+            };
+            let is_said = match map {
+                PhongMap::Diffuse => {
+                    let place = &mut json["pbrMetallicRoughness"];
+                    self.texture(material, map, place, "baseColorTexture")
                 }
-                None => self.note("a picture that cannot be embedded:", &source.path),
+                PhongMap::Emission => self.texture(material, map, &mut json, "emissiveTexture"),
+                PhongMap::Normal => {
+                    let is_said = self.texture(material, map, &mut json, "normalTexture");
+                    if is_said {
+                        json["normalTexture"]["scale"] = json!(phong.normal_scale);
+                    }
+                    is_said
+                }
+                PhongMap::Opacity => {
+                    let diffuse = phong.diffuse_map.as_ref();
+                    let is_said = is_alpha_of(&source.path, diffuse.map(|map| map.path.as_str()));
+                    if !is_said && phong.opacity >= 1.0 {
+                        json["alphaMode"] = json!("OPAQUE");
+                    }
+                    is_said
+                }
+                PhongMap::Specular | PhongMap::Mirror => false,
+            };
+            if !is_said {
+                left_out.push(map.name());
             }
         }
-        if let Some(source) = &phong.opacity_map {
-            let diffuse = phong
-                .diffuse_map
-                .as_ref()
-                .map(|diffuse| diffuse.path.as_str());
-            if !is_alpha_of(&source.path, diffuse) {
-                json["alphaMode"] = json!(if phong.opacity < 1.0 {
-                    "BLEND"
-                } else {
-                    "OPAQUE"
-                });
-                self.note(
-                    "an opacity picture of its own of the material",
-                    &material.name,
-                );
-            }
+        for map in left_out {
+            self.note(&format!("the {map} of the material"), &material.name);
         }
         json
     }
 
+    /// Says under a key which texture a map is; false where it cannot be said.
+    fn texture(
+        &mut self,
+        material: &Material,
+        map: PhongMap,
+        place: &mut Value,
+        key: &str,
+    ) -> bool {
+        let source = map.source(&material.phong);
+        let Some((source, loaded)) = source.zip(map.loaded(&material.maps)) else {
+            return false;
+        };
+        let Some(image) = self.image(loaded.id()) else {
+            self.note("a picture that cannot be embedded:", &source.path);
+            return false;
+        };
+        let sampler = (source.wrap_u, source.wrap_v, source.filter);
+        let texture = match self.textures.get(&(image, sampler)) {
+            Some(&texture) => texture,
+            None => {
+                let mut texture = json!({ "source": image });
+                if let Some(json) = sampler_json(source) {
+                    texture["sampler"] = json!(self.push("samplers", json));
+                }
+                let texture = self.push("textures", texture);
+                self.textures.insert((image, sampler), texture);
+                texture
+            }
+        };
+        place[key] = json!({ "index": texture });
+        true
+    }
+
     /// Embeds a loaded picture as a PNG; `None` where it does not hold colours in 8 or 16 bits.
-    fn texture(&mut self, image: AssetId<Image>) -> Option<usize> {
-        if let Some(&texture) = self.textures.get(&image) {
-            return Some(texture);
+    fn image(&mut self, image: AssetId<Image>) -> Option<usize> {
+        if let Some(&image) = self.images.get(&image) {
+            return Some(image);
         }
         let pixels = pixels_of(self.world, image)?;
         use DynamicImage as D;
@@ -123,10 +167,9 @@ impl Glb<'_> {
         }
         let view = self.bytes.push(&encode_png(&pixels).ok()?);
         let image_json = json!({ "bufferView": view, "mimeType": "image/png" });
-        let source = self.push("images", image_json);
-        let texture = self.push("textures", json!({ "source": source }));
-        self.textures.insert(image, texture);
-        Some(texture)
+        let index = self.push("images", image_json);
+        self.images.insert(image, index);
+        Some(index)
     }
 
     fn nodes(&mut self, exported: &Exported) {
@@ -213,6 +256,9 @@ impl Glb<'_> {
             }
             if !parts.uvs.is_empty() {
                 attributes["TEXCOORD_0"] = json!(self.bytes.push_vectors(parts.uvs));
+            }
+            if !parts.colors.is_empty() {
+                attributes["COLOR_0"] = json!(self.bytes.push_vectors(parts.colors));
             }
             // Fits: they were 32 bits wide.
             let corners = parts.triangles().flatten().map(|corner| corner as u32);

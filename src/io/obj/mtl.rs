@@ -19,6 +19,10 @@ pub(super) struct Map {
     /// From the OBJ's folder.
     pub path: String,
     pub placement: Placement,
+    /// It ends at its edges.
+    pub is_clamped: bool,
+    /// How far it bends.
+    pub bump: f32,
 }
 
 /// A picture that was named, found or not.
@@ -44,6 +48,7 @@ pub(super) struct MtlMaterial {
     pub opacity_map: Option<NamedMap>,
     pub specular_map: Option<NamedMap>,
     pub emission_map: Option<NamedMap>,
+    pub normal_map: Option<NamedMap>,
 }
 
 const LEFT_OUT: &str = "left out";
@@ -133,6 +138,7 @@ impl Reader<'_, '_> {
             b"map_d" | b"map_opacity" => material.opacity_map = self.map("map_d", rest),
             b"map_ks" => material.specular_map = self.map("map_Ks", rest),
             b"map_ke" | b"map_emissive" => material.emission_map = self.map("map_Ke", rest),
+            b"norm" => material.normal_map = self.map("norm", rest),
             b"tf" => {
                 let mut filter = None;
                 self.color("Tf", rest, &mut filter);
@@ -197,15 +203,20 @@ impl Reader<'_, '_> {
 
     /// The picture that a `map_` names.
     fn map(&mut self, word: &str, rest: &[u8]) -> Option<NamedMap> {
-        let mut placement = Placement::default();
+        let mut map = Map {
+            path: String::new(),
+            placement: Placement::default(),
+            is_clamped: false,
+            bump: 1.0,
+        };
         let rest = text(rest);
-        let name = self.options(&rest, word, &mut placement);
+        let name = self.options(&rest, word, &mut map);
         if name.is_empty() {
             self.note(&format!("`{word}` without a picture"), LEFT_OUT);
             return None;
         }
         let path = self.picture(name);
-        Some(path.map(|path| Map { path, placement }))
+        Some(path.map(|path| Map { path, ..map }))
     }
 
     /// The picture of this name, or of what stands before a comment.
@@ -238,7 +249,7 @@ impl Reader<'_, '_> {
     }
 
     /// What follows a picture's options, each with its values.
-    fn options<'t>(&mut self, rest: &'t str, word: &str, placement: &mut Placement) -> &'t str {
+    fn options<'t>(&mut self, rest: &'t str, word: &str, map: &mut Map) -> &'t str {
         let mut rest = rest;
         while let Some(option) = rest.strip_prefix('-') {
             let (option, mut after) = option
@@ -269,7 +280,7 @@ impl Reader<'_, '_> {
                 *slot = parsed;
                 after = then;
             }
-            self.option(&option, first, numbers, word, placement);
+            self.option(&option, first, numbers, word, map);
             rest = after.trim_start();
         }
         rest
@@ -281,7 +292,7 @@ impl Reader<'_, '_> {
         first: &str,
         numbers: [Option<f32>; 3],
         word: &str,
-        placement: &mut Placement,
+        map: &mut Map,
     ) {
         let vector = |otherwise: f32| {
             let [u, v, _] = numbers;
@@ -289,16 +300,24 @@ impl Reader<'_, '_> {
         };
         let says_nothing = match option {
             "s" => {
-                placement.scale = vector(1.0);
+                map.placement.scale = vector(1.0);
                 true
             }
             "o" => {
-                placement.offset = vector(0.0);
+                map.placement.offset = vector(0.0);
                 true
             }
             "t" => vector(0.0) == Vec2::ZERO && numbers[2].unwrap_or(0.0) == 0.0,
             "mm" => numbers[0] == Some(0.0) && matches!(numbers[1], None | Some(1.0)),
-            "clamp" | "cc" => first.eq_ignore_ascii_case("off"),
+            "clamp" => {
+                map.is_clamped = first.eq_ignore_ascii_case("on");
+                true
+            }
+            "cc" => first.eq_ignore_ascii_case("off"),
+            "bm" if word == "norm" => {
+                map.bump = numbers[0].unwrap_or(1.0);
+                true
+            }
             "bm" => numbers[0] == Some(1.0),
             "boost" => numbers[0] == Some(0.0),
             // How a picture is smoothed is a setting of the render.

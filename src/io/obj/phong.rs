@@ -2,23 +2,28 @@
 //!
 //! | MTL | Phong |
 //! |---|---|
-//! | `Kd`, `map_Kd` | `diffuse`, `diffuse_map` |
-//! | `Ks` | `specular`; black where `illum` is 0 or 1 |
+//! | `Kd`, `map_Kd` | `diffuse`, `diffuse_map`; 0 0 0 with a picture counts as 1 1 1 |
+//! | `Ks`, `map_Ks` | `specular`, but where `illum` is 0 or 1; `mirror`, where it is 3 to 9; their maps |
 //! | `Ns` | `shininess`; below 1 it is 1, and `specular` fades with it |
 //! | `d`, `Tr` | `opacity`; `Tr` is 1 - `d`, and `d` wins |
 //! | `map_d` | `opacity_map`: its alpha where any of that is below 1, else its brightness |
-//! | `Ke` | `emission` |
+//! | `Ke`, `map_Ke` | `emission`, `emission_map` |
+//! | `norm`, its `-bm` | `normal_map`, `normal_scale` |
+//!
+//! A colour that is not given is 1 1 1 where its picture is, and 0 0 0 where that cannot be found. `-clamp on` clamps.
 
 use super::super::error::Place;
 use super::super::file_name::of_file;
 use super::super::folder::Folder;
 use super::super::notes::Notes;
 use super::super::picture::{PictureUse, read_picture};
-use super::mtl::{Map, MtlMaterial};
+use super::mtl::{Map, MtlMaterial, NamedMap};
 use super::parts::{Pictured, Placement};
 use crate::io::Limits;
-use crate::scene::{Phong, TextureSource};
+use crate::scene::{Phong, PhongMap, TextureSource, Wrap};
 use bevy::color::LinearRgba;
+use exr::prelude::f16;
+use wgpu_types::TextureFormat;
 
 /// What is missing takes Phong's default; numbers outside Phong's ranges are clamped, with a note.
 pub(super) fn phong_of(
@@ -45,22 +50,29 @@ pub(super) fn phong_of(
         emission: color(material.emission, default.emission),
         ..default
     };
-    if matches!(material.illum, Some(0 | 1)) {
+    if matches!(material.specular_map, Some(None)) {
         exact.specular = LinearRgba::BLACK;
+    } else if material.specular.is_none() && material.specular_map.is_some() {
+        exact.specular = LinearRgba::WHITE;
     }
-    if material.specular_map.is_some() && exact.specular != LinearRgba::BLACK {
-        note(
-            "map_Ks, which Phong has no place for, of",
-            "left out, and Ks with it",
-        );
-        exact.specular = LinearRgba::BLACK;
+    match material.illum {
+        Some(0 | 1) => exact.specular = LinearRgba::BLACK,
+        Some(3..=9) => exact.mirror = exact.specular,
+        // 2 and no model at all mean a highlight alone.
+        _ => {}
     }
-    if material.emission_map.is_some() && exact.emission != LinearRgba::BLACK {
-        note(
-            "map_Ke, which Phong has no place for, of",
-            "left out, and Ke with it",
-        );
+    // What a picture scales goes with it, and is whole where only the picture is named.
+    let goes = |map: &Option<NamedMap>| matches!(map, Some(None));
+    let is_whole = |given: Option<[f32; 3]>, map: &Option<NamedMap>| {
+        given.is_none() && matches!(map, Some(Some(_)))
+    };
+    if is_whole(material.diffuse, &material.diffuse_map) || is_black_under_a_map(material) {
+        exact.diffuse = LinearRgba::WHITE;
+    }
+    if goes(&material.emission_map) {
         exact.emission = LinearRgba::BLACK;
+    } else if is_whole(material.emission, &material.emission_map) {
+        exact.emission = LinearRgba::WHITE;
     }
     if material.refraction.is_some_and(|index| index != 1.0) && exact.opacity < 1.0 {
         note("refraction (Ni) of", "light goes straight through");
@@ -78,37 +90,68 @@ pub(super) fn phong_of(
             phong.specular.blue * fade,
         );
     }
-    let diffuse_map = material.diffuse_map.clone().flatten();
-    let opacity_map = material.opacity_map.clone().flatten();
-    let placements: Vec<Placement> = [&diffuse_map, &opacity_map]
-        .into_iter()
-        .flatten()
-        .map(|map| map.placement)
-        .collect();
+    let named = |map: &Option<NamedMap>| map.clone().flatten();
+    let maps = [
+        (PhongMap::Diffuse, named(&material.diffuse_map)),
+        (PhongMap::Specular, named(&material.specular_map)),
+        (PhongMap::Emission, named(&material.emission_map)),
+        (PhongMap::Opacity, named(&material.opacity_map)),
+        (PhongMap::Normal, named(&material.normal_map)),
+    ];
+    let placements = maps.iter().filter_map(|(_, map)| map.as_ref());
+    let placements: Vec<Placement> = placements.map(|map| map.placement).collect();
     if placements.windows(2).any(|pair| pair[0] != pair[1]) {
         note(
             "pictures with different -s and -o of",
             "all are placed as the first",
         );
     }
-    if let Some(map) = opacity_map {
-        let is_diffuse = diffuse_map.as_ref().is_some_and(|d| d.path == map.path);
-        match opacity_source(&map, is_diffuse, folder, limits) {
-            Some(path) => phong.opacity_map = Some(TextureSource { path }),
-            None => note(
+    let diffuse_path = named(&material.diffuse_map).map(|map| map.path);
+    for (of, map) in maps {
+        let Some(map) = map else { continue };
+        let is_diffuse = diffuse_path.as_ref() == Some(&map.path);
+        let path = match of {
+            PhongMap::Opacity => opacity_source(&map, is_diffuse, folder, limits),
+            _ => Some(of_file(map.path)),
+        };
+        let Some(path) = path else {
+            note(
                 "a map_d that is the colours' picture and has no alpha, of",
                 "left out",
-            ),
+            );
+            continue;
+        };
+        let wrap = if map.is_clamped {
+            Wrap::Clamp
+        } else {
+            Wrap::Repeat
+        };
+        if of == PhongMap::Normal {
+            phong.normal_scale = map.bump;
         }
+        *of.source_mut(&mut phong) = Some(TextureSource {
+            wrap_u: wrap,
+            wrap_v: wrap,
+            ..TextureSource::new(path)
+        });
     }
-    phong.diffuse_map = diffuse_map.map(|map| TextureSource {
-        path: of_file(map.path),
-    });
+    if phong.mirror != LinearRgba::BLACK {
+        phong.mirror_map.clone_from(&phong.specular_map);
+    }
+    if phong.specular == LinearRgba::BLACK {
+        phong.specular_map = None;
+    }
     let pictured = Pictured {
         placement: placements.first().copied().unwrap_or_default(),
-        has_pictures: phong.diffuse_map.is_some() || phong.opacity_map.is_some(),
+        has_pictures: PhongMap::ALL.iter().any(|map| map.source(&phong).is_some()),
     };
     (phong, pictured)
+}
+
+/// Some programs write `Kd 0 0 0` where they mean that all colour comes from the picture; and where that is missing,
+/// something has to be seen.
+fn is_black_under_a_map(material: &MtlMaterial) -> bool {
+    material.diffuse == Some([0.0; 3]) && material.diffuse_map.is_some()
 }
 
 /// What of a picture means opacity: its alpha where it has any, else its brightness; nothing where it is `is_diffuse`
@@ -118,6 +161,7 @@ fn opacity_source(map: &Map, is_diffuse: bool, folder: &Folder, limits: &Limits)
     // One that cannot be read is noted where it is loaded.
     let picture = file.and_then(|file| read_picture(&file, PictureUse::Data, limits).ok());
     let has_alpha = picture.is_some_and(|picture| {
+        let is_half = picture.texture_descriptor.format == TextureFormat::Rgba16Float;
         let pixels = picture.width() as usize * picture.height() as usize;
         let data = picture.data.unwrap_or_default();
         match data.len().checked_div(pixels) {
@@ -126,6 +170,11 @@ fn opacity_source(map: &Map, is_diffuse: bool, folder: &Folder, limits: &Limits)
                 .0
                 .iter()
                 .any(|pixel| pixel[3] < u8::MAX),
+            Some(8) if is_half => data
+                .as_chunks::<8>()
+                .0
+                .iter()
+                .any(|&[.., low, high]| f16::from_ne_bytes([low, high]) < f16::ONE),
             Some(8) => data
                 .as_chunks::<8>()
                 .0
@@ -135,7 +184,7 @@ fn opacity_source(map: &Map, is_diffuse: bool, folder: &Folder, limits: &Limits)
                 .as_chunks::<16>()
                 .0
                 .iter()
-                .any(|&[.., a, b, c, d]| f32::from_le_bytes([a, b, c, d]) < 1.0),
+                .any(|&[.., a, b, c, d]| f32::from_ne_bytes([a, b, c, d]) < 1.0),
             _ => false,
         }
     });
@@ -157,6 +206,7 @@ fn clamp(phong: Phong) -> Phong {
     Phong {
         diffuse: each(phong.diffuse, 1.0),
         specular: each(phong.specular, 1.0),
+        mirror: each(phong.mirror, 1.0),
         shininess: phong.shininess.max(1.0),
         opacity: phong.opacity.clamp(0.0, 1.0),
         emission: each(phong.emission, f32::MAX),

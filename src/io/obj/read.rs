@@ -1,6 +1,6 @@
 use super::super::error::{FileError, Place, Problem};
 use super::super::folder::Folder;
-use super::super::model::{FreeNames, Model, Node};
+use super::super::model::{ColoredMaterial, FreeNames, Model, Node};
 use super::super::names::Names;
 use super::super::notes::Notes;
 use super::content::{Content, Part};
@@ -10,6 +10,7 @@ use super::phong::phong_of;
 use super::statements::read_content;
 use super::text::unquoted;
 use crate::io::Limits;
+use bevy::mesh::Mesh;
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -61,6 +62,7 @@ pub(crate) fn read_obj(file: &Path, folder: &Folder, limits: &Limits) -> Result<
     let several = materials_of_objects(&groups);
     let (keys, parts): (Vec<_>, Vec<_>) = groups.into_iter().unzip();
     let mut free_names = FreeNames::default();
+    let mut colored = ColoredMaterial::default();
     let mut builder = Builder::new(file, &content, &parts, &mut model.notes);
     for (key, part) in keys.into_iter().zip(parts) {
         let object = &content.objects[key.object as usize];
@@ -80,10 +82,14 @@ pub(crate) fn read_obj(file: &Path, folder: &Folder, limits: &Limits) -> Result<
         for (name, mesh) in [(name, meshes.mesh), (plain, meshes.without_picture)] {
             let Some(mesh) = mesh else { continue };
             let name = free_names.free(name, &model.meshes);
+            let is_colored = mesh.contains_attribute(Mesh::ATTRIBUTE_COLOR);
+            let material = key
+                .material
+                .or_else(|| is_colored.then(|| colored.place(&mut model.materials)));
             model.nodes.push(Node {
                 name: name.clone(),
                 mesh: Some(name.clone()),
-                material: key.material,
+                material,
                 ..Node::default()
             });
             model.meshes.insert(name, mesh);

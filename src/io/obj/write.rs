@@ -133,6 +133,10 @@ impl<'a> Drawn<'a> {
                 (exported.notes).add_named(file, Place::Whole, what, &object.name, "left out");
                 continue;
             };
+            if parts.colors.iter().any(|color| color[3] != 1.0) {
+                let what = "the alpha of the vertices' colours of";
+                (exported.notes).add_named(file, Place::Whole, what, &object.name, "left out");
+            }
             objects.push(DrawnObject {
                 name: object.name,
                 material: exported.materials[object.material].name.clone(),
@@ -171,11 +175,16 @@ fn write_object(
     counts: &mut Counts,
 ) -> io::Result<()> {
     let linear = world_from_object.matrix3;
+    let mut colors = parts.colors.iter();
     for &position in parts.positions {
         let [x, y, z] = world_from_object
             .transform_point3(position.into())
             .to_array();
-        writeln!(out, "v {x} {y} {z}")?;
+        write!(out, "v {x} {y} {z}")?;
+        if let Some([r, g, b, _]) = colors.next() {
+            write!(out, " {r} {g} {b}")?;
+        }
+        writeln!(out)?;
     }
     for &[u, v] in parts.uvs {
         writeln!(out, "vt {u} {}", 1.0 - v)?;

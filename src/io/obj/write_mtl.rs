@@ -9,7 +9,7 @@ use super::super::scene_file::Rebase;
 use super::super::sources::SceneFiles;
 use super::stem_of;
 use crate::io::Limits;
-use crate::scene::TextureSource;
+use crate::scene::{Alpha, MapFilter, Phong, PhongMap, TextureSource, Wrap};
 use bevy::asset::Handle;
 use bevy::color::LinearRgba;
 use bevy::image::Image;
@@ -76,21 +76,60 @@ pub(super) fn library(
     for material in &exported.materials {
         let (phong, loaded) = (&material.phong, &material.maps);
         let notes = &mut exported.notes;
-        let diffuse = pictures.name(phong.diffuse_map.as_ref(), loaded.diffuse.as_ref(), notes)?;
-        let opacity = pictures.name(phong.opacity_map.as_ref(), loaded.opacity.as_ref(), notes)?;
         let rgb = |c: LinearRgba| format!("{} {} {}", c.red, c.green, c.blue);
         // Writing to a string cannot fail.
         let _ = writeln!(text, "newmtl {}", material.name);
         let _ = writeln!(text, "Kd {}", rgb(phong.diffuse));
-        let _ = writeln!(text, "Ks {}", rgb(phong.specular));
+        let (highlight, illum) = highlight(phong);
+        if phong.mirror != LinearRgba::BLACK && phong.mirror != phong.specular {
+            let what =
+                "highlight and mirror have one colour in an MTL, that of the material's highlight:";
+            notes.add_named(file, Place::Whole, what, &material.name, "written so");
+        }
+        let _ = writeln!(text, "Ks {}", rgb(highlight));
+        let _ = writeln!(text, "illum {illum}");
         let _ = writeln!(text, "Ns {}", phong.shininess);
         let _ = writeln!(text, "d {}", phong.opacity);
         let _ = writeln!(text, "Ke {}", rgb(phong.emission));
-        if let Some(picture) = diffuse {
-            let _ = writeln!(text, "map_Kd {picture}");
+        let cannot_say = |notes: &mut Notes, what: &str| {
+            let what = format!("{what} an MTL: the material");
+            notes.add_named(file, Place::Whole, &what, &material.name, "left out");
+        };
+        match phong.alpha {
+            Alpha::Blend => {}
+            Alpha::Mask { .. } => cannot_say(notes, "its cutoff has no place in"),
+            Alpha::Opaque => cannot_say(notes, "that it is opaque in any case has no place in"),
         }
-        if let Some(picture) = opacity {
-            let _ = writeln!(text, "map_d {picture}");
+        for (map, word) in map_words(phong) {
+            let Some(source) = map.source(phong) else {
+                continue;
+            };
+            let is_odd = source.wrap_u != source.wrap_v || source.wrap_u == Wrap::Mirror;
+            if is_odd || source.filter != MapFilter::Setting {
+                let what = format!(
+                    "how its {} is wrapped and filtered has no place in",
+                    map.name()
+                );
+                cannot_say(notes, &what);
+            }
+            let Some(picture) = pictures.name(Some(source), map.loaded(loaded), notes)? else {
+                continue;
+            };
+            let clamp = if !is_odd && source.wrap_u == Wrap::Clamp {
+                CLAMPED
+            } else {
+                ""
+            };
+            let scale = match map {
+                PhongMap::Normal if phong.normal_scale != 1.0 => {
+                    format!("-bm {} ", phong.normal_scale)
+                }
+                _ => String::new(),
+            };
+            let _ = writeln!(text, "{word} {clamp}{scale}{picture}");
+        }
+        if phong.mirror_map.is_some() && phong.mirror_map != phong.specular_map {
+            cannot_say(notes, "a mirror map of its own has no place in");
         }
         text.push('\n');
     }
@@ -99,6 +138,36 @@ pub(super) fn library(
         replaced: pictures.replaced(&old),
         pictures: pictures.created,
     })
+}
+
+/// How an MTL says that a picture ends at its edges.
+const CLAMPED: &str = "-clamp on ";
+
+/// The maps that an MTL has, and what it calls them.
+fn map_words(phong: &Phong) -> impl Iterator<Item = (PhongMap, &'static str)> {
+    let highlight = match phong.specular {
+        LinearRgba::BLACK if phong.specular_map.is_none() => PhongMap::Mirror,
+        _ => PhongMap::Specular,
+    };
+    [
+        (PhongMap::Diffuse, "map_Kd"),
+        (highlight, "map_Ks"),
+        (PhongMap::Emission, "map_Ke"),
+        (PhongMap::Opacity, "map_d"),
+        (PhongMap::Normal, "norm"),
+    ]
+    .into_iter()
+}
+
+/// The one colour that an MTL has for highlight and mirror, and the model that says which of them there are.
+fn highlight(phong: &Phong) -> (LinearRgba, u8) {
+    const NONE: LinearRgba = LinearRgba::BLACK;
+    match (phong.specular, phong.mirror) {
+        (NONE, NONE) => (NONE, 1),
+        (specular, NONE) => (specular, 2),
+        (NONE, mirror) => (mirror, 3),
+        (specular, _) => (specular, 3),
+    }
 }
 
 /// The content of a file that is there.
@@ -139,7 +208,7 @@ impl Pictures<'_> {
     /// Notes the names that no picture may be written under.
     fn take_names(&mut self, exported: &Exported) {
         let materials = exported.materials.iter().map(|material| &material.phong);
-        let maps = materials.flat_map(|phong| [&phong.diffuse_map, &phong.opacity_map]);
+        let maps = materials.flat_map(|phong| PhongMap::ALL.map(|map| map.source(phong)));
         let named = maps.flatten().filter_map(|map| self.named(&map.path));
         self.taken = named.collect();
     }
@@ -175,7 +244,7 @@ impl Pictures<'_> {
         loaded: Option<&Handle<Image>>,
         notes: &mut Notes,
     ) -> Result<Option<String>, FileError> {
-        let Some(TextureSource { path }) = source else {
+        let Some(TextureSource { path, .. }) = source else {
             return Ok(None);
         };
         if let Some(named) = self.named(path) {
@@ -224,7 +293,13 @@ impl Pictures<'_> {
         let old = String::from_utf8_lossy(old);
         let names = old.lines().filter_map(|line| {
             let (word, name) = line.split_once(' ')?;
-            word.starts_with("map_").then_some(name.trim())
+            let is_map = word.starts_with("map_") || word == "norm";
+            let name = name.strip_prefix(CLAMPED).unwrap_or(name);
+            let after_scale = name
+                .strip_prefix("-bm ")
+                .and_then(|rest| rest.split_once(' '));
+            let name = after_scale.map_or(name, |(_, name)| name);
+            is_map.then_some(name.trim())
         });
         let files = self.world.get_resource::<SceneFiles>();
         let is_used = |name: &&str| {

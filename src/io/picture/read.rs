@@ -3,7 +3,7 @@ use super::super::open_to_read;
 use super::content::{HEAD, recognised};
 use super::{claim_picture, decoder_bytes, open_exr, radiance};
 use crate::io::Limits;
-use crate::scene::SRGB_16_BITS;
+use crate::scene::{PhongMap, SRGB_16_BITS};
 use crate::trace::srgb::decode_table_16;
 use bevy::asset::RenderAssetUsages;
 use bevy::image::Image;
@@ -24,6 +24,17 @@ pub(crate) enum PictureUse {
     Data,
     /// Only the alpha channel, spread over red, green and blue as numbers.
     Alpha,
+}
+
+impl PictureUse {
+    /// What a material's picture is read for.
+    pub fn of(map: PhongMap) -> Self {
+        if map.is_of_colors() {
+            Self::Color
+        } else {
+            Self::Data
+        }
+    }
 }
 
 /// A picture as its file has it.

@@ -104,8 +104,6 @@ impl Content {
         let is_colored = self.colors.iter().any(|&color| color != [1.0; 4]);
         let mut mesh = triangle_mesh(self.positions, self.normals, self.uvs, self.indices);
         if is_colored {
-            let what = "vertex colours";
-            (work.notes).add(work.file, Place::Whole, what, "kept, and not traced");
             let linear = |[r, g, b, a]: [f32; 4]| {
                 let [r, g, b] = [r, g, b].map(Srgba::gamma_function);
                 [r, g, b, a]

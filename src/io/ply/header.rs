@@ -7,6 +7,7 @@ use super::super::names::Names;
 use super::super::text::{keyword, shown, text};
 use super::content::Work;
 use crate::scene::{Phong, TextureSource};
+use bevy::color::LinearRgba;
 use std::io::{BufRead, Read};
 
 /// No head is longer.
@@ -242,9 +243,8 @@ impl Header {
             notes.add_named(file, Place::Whole, what, &found.path, instead);
         }
         let phong = Phong {
-            diffuse_map: Some(TextureSource {
-                path: of_file(found.path),
-            }),
+            diffuse: LinearRgba::WHITE,
+            diffuse_map: Some(TextureSource::new(of_file(found.path))),
             ..Phong::default()
         };
         vec![(name.clone(), phong)]

@@ -12,8 +12,9 @@ mod vertices;
 
 use super::error::{FileError, Place, Problem};
 use super::folder::Folder;
-use super::model::{Model, Node};
+use super::model::{ColoredMaterial, Model, Node};
 use super::{Limits, open_to_read};
+use bevy::mesh::Mesh;
 use body::{Body, Fault};
 use content::{Content, Work};
 use header::{Element, read_header};
@@ -70,6 +71,10 @@ pub(crate) fn read_ply(file: &Path, folder: &Folder, limits: &Limits) -> Result<
     };
     let has_uvs = !content.uvs.is_empty();
     model.materials = header.material(has_uvs, folder, &mut work);
+    let mesh = content.into_mesh(&mut work);
+    if model.materials.is_empty() && mesh.contains_attribute(Mesh::ATTRIBUTE_COLOR) {
+        ColoredMaterial::default().place(&mut model.materials);
+    }
     let stem = file.file_stem().map(PathBuf::from).unwrap_or_default();
     model.nodes.push(Node {
         name: stem.display().to_string(),
@@ -77,9 +82,7 @@ pub(crate) fn read_ply(file: &Path, folder: &Folder, limits: &Limits) -> Result<
         material: (!model.materials.is_empty()).then_some(0),
         ..Node::default()
     });
-    model
-        .meshes
-        .insert(MESH.to_owned(), content.into_mesh(&mut work));
+    model.meshes.insert(MESH.to_owned(), mesh);
     model.notes = work.notes;
     Ok(model)
 }

@@ -3,7 +3,7 @@
 
 use super::super::error::Problem;
 use crate::scene::{
-    Cone, DirectionalLamp, Environment, Lens, Motion, ParallelogramLamp, Phong, PointLamp,
+    Alpha, Cone, DirectionalLamp, Environment, Lens, Motion, ParallelogramLamp, Phong, PointLamp,
     Projection, RenderSettings, SceneCamera, SegmentLamp, setting_problems,
 };
 use bevy::reflect::{PartialReflect, ReflectRef};
@@ -71,10 +71,16 @@ fn phong(p: &Phong) -> Checked {
     for value in channels(p.specular) {
         within("Phong.specular", value, 0.0, 1.0, UNIT)?;
     }
+    for value in channels(p.mirror) {
+        within("Phong.mirror", value, 0.0, 1.0, UNIT)?;
+    }
     for value in channels(p.emission) {
         at_least_0("Phong.emission", value)?;
     }
     within("Phong.shininess", p.shininess, 1.0, f32::MAX, "at least 1")?;
+    if let Alpha::Mask { cutoff } = p.alpha {
+        at_least_0("Phong.alpha.cutoff", cutoff)?;
+    }
     within("Phong.opacity", p.opacity, 0.0, 1.0, UNIT)
 }
 

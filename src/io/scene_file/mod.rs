@@ -6,6 +6,7 @@
 
 mod check;
 mod kept;
+mod migrate;
 mod read;
 mod write;
 
@@ -33,8 +34,9 @@ use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 pub(crate) struct FileVersion(pub u32);
 
 impl FileVersion {
-    /// The rules that this program writes.
-    const CURRENT: Self = Self(1);
+    /// The rules that this program writes. What version 1 calls `specular` is
+    /// the mirror, too, and its diffuse maps take the place of the colour.
+    const CURRENT: Self = Self(2);
 }
 
 /// Every entity that belongs to the scene: what carries one of its components, and the ancestors

@@ -5,6 +5,7 @@ use super::super::on_disk::OnDisk;
 use super::FileVersion;
 use super::check::check_value;
 use super::kept::{is_kept_component, kept_types};
+use super::migrate::migrate;
 use crate::io::Limits;
 use crate::scene::{Environment, MeshSource, Phong, RenderSettings, SceneId, UsesMaterial};
 use bevy::asset::{AssetPath, Handle, LoadFromPath, UntypedHandle};
@@ -53,7 +54,7 @@ pub(crate) fn read_scene_text(
     (limits.memory)
         .claim(4 * bytes.len() as u64)
         .map_err(|problem| FileError::new(file, problem))?;
-    check_version(file, text)?;
+    let version = check_version(file, text)?;
     let registry = kept_types();
     let mut deserializer =
         ron::de::Deserializer::from_str(text).map_err(|error| ron_error(file, &error))?;
@@ -72,6 +73,7 @@ pub(crate) fn read_scene_text(
         .content
         .resources
         .retain(|resource| resource.try_downcast_ref::<FileVersion>().is_none());
+    migrate(&mut scene.content, version);
     scene.check(file, limits)?;
     Ok(scene)
 }
@@ -315,7 +317,7 @@ impl LoadFromPath for NoAssets {
 
 /// Looks for the version before anything else is understood: a newer file may hold what this
 /// program does not know, and "newer" is then the helpful answer.
-fn check_version(file: &Path, text: &str) -> Result<(), FileError> {
+fn check_version(file: &Path, text: &str) -> Result<FileVersion, FileError> {
     let found = Cell::new(None);
     let mut deserializer =
         ron::de::Deserializer::from_str(text).map_err(|error| ron_error(file, &error))?;
@@ -333,7 +335,7 @@ fn check_version(file: &Path, text: &str) -> Result<(), FileError> {
                 known: FileVersion::CURRENT.0,
             },
         )),
-        (Some(_), _) => Ok(()),
+        (Some(version), _) => Ok(FileVersion(version)),
         (None, Ok(())) => Err(FileError::new(file, Problem::NoVersion)),
         (None, Err(error)) => Err(ron_error(file, &deserializer.span_error(error))),
     }

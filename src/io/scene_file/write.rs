@@ -8,7 +8,9 @@ use super::super::replace::{check_space, replace_file};
 use super::super::sources::SceneFiles;
 use super::kept::{kept_only, kept_types};
 use super::{FileVersion, scene_entities};
-use crate::scene::{Environment, MeshSource, Phong, SceneId, TextureSource, UsesMaterial};
+use crate::scene::{
+    Environment, MeshSource, Phong, PhongMap, SceneId, TextureSource, UsesMaterial,
+};
 use bevy::ecs::entity::EntityHashMap;
 use bevy::ecs::hierarchy::ChildOf;
 use bevy::mesh::Mesh3d;
@@ -200,15 +202,16 @@ impl Rebase {
 
     pub fn apply(&self, value: &mut dyn PartialReflect, notes: &mut Notes) {
         let mut texture = |source: &mut Option<TextureSource>| {
-            if let Some(TextureSource { path }) = source {
+            if let Some(TextureSource { path, .. }) = source {
                 *path = self.path(path, notes);
             }
         };
         if let Some(MeshSource::File { path, .. }) = value.try_downcast_mut::<MeshSource>() {
             *path = self.path(path, notes);
         } else if let Some(phong) = value.try_downcast_mut::<Phong>() {
-            texture(&mut phong.diffuse_map);
-            texture(&mut phong.opacity_map);
+            for map in PhongMap::ALL {
+                texture(map.source_mut(phong));
+            }
         } else if let Some(environment) = value.try_downcast_mut::<Environment>() {
             texture(&mut environment.map);
         }

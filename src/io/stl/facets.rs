@@ -3,7 +3,7 @@
 use super::super::Limits;
 use super::super::budget::Growing;
 use super::super::error::{FileError, Place, Problem};
-use super::super::model::{FreeNames, Model, Node, triangle_mesh};
+use super::super::model::{ColoredMaterial, FreeNames, Model, Node, triangle_mesh};
 use super::super::notes::Notes;
 use bevy::math::Vec3;
 use bevy::mesh::Mesh;
@@ -139,7 +139,7 @@ impl<'a> Facets<'a> {
         };
         let stem = self.file.file_stem().map(PathBuf::from);
         let stem = stem.unwrap_or_default().display().to_string();
-        let mut is_colored = false;
+        let mut colored = ColoredMaterial::default();
         let mut free_names = FreeNames::default();
         for solid in self.solids {
             if solid.indices.is_empty() {
@@ -155,18 +155,17 @@ impl<'a> Facets<'a> {
                 let colors = solid.colors.iter().map(|&[r, g, b]| [r, g, b, 1.0]);
                 let colors: Vec<[f32; 4]> = colors.collect();
                 mesh.insert_attribute(Mesh::ATTRIBUTE_COLOR, colors);
-                is_colored = true;
             }
+            let material = solid
+                .is_colored
+                .then(|| colored.place(&mut model.materials));
             model.nodes.push(Node {
                 name: name.clone(),
                 mesh: Some(name.clone()),
+                material,
                 ..Node::default()
             });
             model.meshes.insert(name, mesh);
-        }
-        if is_colored {
-            let what = "vertex colours";
-            (model.notes).add(self.file, Place::Whole, what, "kept, and not traced");
         }
         if model.meshes.is_empty() {
             let nothing = || FileError::new(self.file, Problem::NoTriangles);

@@ -145,7 +145,10 @@ pub static EFFECTS: [Effect; 15] = [
 ];
 
 fn shine(specimen: &mut Specimen) {
-    specimen.material(|material| material.specular = Vec3::splat(0.3));
+    specimen.material(|material| {
+        material.specular = Vec3::splat(0.3);
+        material.mirror = Vec3::splat(0.3);
+    });
 }
 
 fn let_through(specimen: &mut Specimen) {

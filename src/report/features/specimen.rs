@@ -5,10 +5,10 @@ use crate::app::headless_app;
 use crate::bvh::{Aggregate, BuildOptions, Instance, MeshTree};
 use crate::film::{Picture, Rendered, develop, render};
 use crate::io::builtin;
-use crate::scene::RenderSettings;
+use crate::scene::{PhongMap, RenderSettings};
 use crate::sync::{Traced, TracedCameras};
 use crate::trace::{
-    Camera, Lights, Material, Mesh, Object, ParallelogramLight, Texels, Texture, World,
+    Camera, Lights, Map, Material, Mesh, Object, ParallelogramLight, Texels, Texture, World,
 };
 use glam::Vec3;
 use std::sync::Arc;
@@ -105,7 +105,29 @@ impl Specimen {
     /// Every material wears a picture.
     pub fn texture(&mut self) {
         self.world.textures = Arc::new(vec![Self::checks()]);
-        self.material(|material| material.diffuse_map = Some(0));
+        self.material(|material| {
+            material.maps = vec![Map::new(PhongMap::Diffuse, 0)];
+        });
+    }
+
+    /// Every mesh's vertices have colours.
+    pub fn vertex_colors(&mut self) {
+        let painted = |object: &Object| {
+            let count = object.mesh.tree.triangles().positions().len();
+            let color = |i: usize| Vec3::new(0.5, 1.0 / (1 + i % 3) as f32, 0.75);
+            Object {
+                mesh: Arc::new(Mesh {
+                    tree: object.mesh.tree.clone(),
+                    normals: object.mesh.normals.clone(),
+                    uvs: object.mesh.uvs.clone(),
+                    colors: (0..count).map(color).collect(),
+                    alphas: Vec::new(),
+                }),
+                ..object.clone()
+            }
+        };
+        self.world.objects = Arc::new(self.world.objects.iter().map(painted).collect());
+        self.needs_again();
     }
 
     /// A map around the scene.
@@ -135,6 +157,8 @@ impl Specimen {
                 tree: object.mesh.tree.clone(),
                 normals: Vec::new(),
                 uvs: object.mesh.uvs.clone(),
+                colors: object.mesh.colors.clone(),
+                alphas: object.mesh.alphas.clone(),
             }),
             ..object.clone()
         };
@@ -160,6 +184,8 @@ impl Specimen {
                     tree,
                     normals: object.mesh.normals.clone(),
                     uvs: object.mesh.uvs.clone(),
+                    colors: object.mesh.colors.clone(),
+                    alphas: object.mesh.alphas.clone(),
                 }),
                 ..object.clone()
             });

@@ -53,6 +53,7 @@ fn phong(random: &mut Random) -> Phong {
     Phong {
         diffuse: LinearRgba::rgb(color.x, color.y, color.z),
         specular: LinearRgba::rgb(0.2, 0.2, 0.2),
+        mirror: LinearRgba::rgb(0.2, 0.2, 0.2),
         ..Phong::default()
     }
 }

@@ -11,10 +11,10 @@ use super::{Effort, Outcome};
 use crate::bvh::{Aggregate, BuildOptions, Instance, MeshTree, Triangles};
 use crate::film::render;
 use crate::report::table::digits;
-use crate::scene::{PixelSampling, Projection, RenderSettings, TextureFilter};
+use crate::scene::{PhongMap, PixelSampling, Projection, RenderSettings, TextureFilter};
 use crate::trace::{
-    Camera, Lights, Material, Mesh, Object, Optics, ParallelogramLight, PointLight, SegmentLight,
-    SpotCone, Texels, Texture, World,
+    Camera, Lights, Map, Material, Mesh, Object, Optics, ParallelogramLight, PointLight,
+    SegmentLight, SpotCone, Texels, Texture, World,
 };
 use glam::{Affine3A, UVec2, Vec2, Vec3};
 use std::f32::consts::{SQRT_2, TAU};
@@ -41,6 +41,8 @@ fn scene(at: Vec3, velocity: Vec3) -> World {
         tree: tree.clone(),
         normals: Vec::new(),
         uvs,
+        colors: Vec::new(),
+        alphas: Vec::new(),
     };
     let instance = Instance::new(tree, &Affine3A::from_translation(at))
         .and_then(|instance| instance.moving(velocity))
@@ -61,7 +63,8 @@ fn scene(at: Vec3, velocity: Vec3) -> World {
         aggregate: Arc::new(Aggregate::build(vec![instance], &BuildOptions::default())),
         objects: Arc::new(vec![object]),
         materials: Arc::new(vec![Material {
-            diffuse_map: Some(0),
+            diffuse: Vec3::ONE,
+            maps: vec![Map::new(PhongMap::Diffuse, 0)],
             ..Material::default()
         }]),
         textures: Arc::new(map.into_iter().map(Arc::new).collect()),

@@ -7,10 +7,10 @@ use crate::film::render;
 use crate::io::check_picture;
 use crate::report::table::digits;
 use crate::scene::{
-    EnvironmentMap, Features, Phong, PhongMaps, RenderSettings, SceneId, TextureFilter,
+    EnvironmentMap, Features, Phong, PhongMap, PhongMaps, RenderSettings, SceneId, TextureFilter,
 };
 use crate::sync::Traced;
-use crate::trace::{Camera, Environment, Material, Mesh, Texels, Texture};
+use crate::trace::{Camera, Environment, Map, Material, Mesh, Texels, Texture};
 use bevy::asset::{Assets, RenderAssetUsages};
 use bevy::image::Image;
 use glam::{UVec2, Vec2, Vec3};
@@ -41,10 +41,18 @@ pub(super) fn cut_outs(effort: &Effort) -> Outcome {
             .to_vec(),
         tree: square.mesh.tree.clone(),
         normals: Vec::new(),
+        colors: Vec::new(),
+        alphas: Vec::new(),
     });
     let material = Material {
-        diffuse_map: Some(0),
-        opacity_map: Some(0),
+        diffuse: Vec3::ONE,
+        maps: vec![
+            Map {
+                is_cut_out: true,
+                ..Map::new(PhongMap::Diffuse, 0)
+            },
+            Map::new(PhongMap::Opacity, 0),
+        ],
         ..Material::default()
     };
     let mut scene = world(vec![(instance, square)], vec![material]);
@@ -110,6 +118,7 @@ pub(super) fn not_light(_: &Effort) -> Outcome {
     let maps = PhongMaps {
         diffuse: Some(diffuse),
         opacity: Some(opacity),
+        ..PhongMaps::default()
     };
     let mesh = crate::scene::MeshSource::Shape(crate::scene::Shape::default());
     let transform = bevy::transform::components::Transform::default();

@@ -169,6 +169,7 @@ fn kinds() -> [Kind; 2] {
     let mirror = Material {
         diffuse: Vec3::ZERO,
         specular: Vec3::ONE,
+        mirror: Vec3::ONE,
         shininess: 1e6,
         ..Material::default()
     };

@@ -36,6 +36,8 @@ pub(super) fn placed(
         tree,
         normals,
         uvs: Vec::new(),
+        colors: Vec::new(),
+        alphas: Vec::new(),
     });
     let object = Object {
         id,

@@ -84,6 +84,7 @@ pub(super) fn mirrors(_: &Effort) -> Outcome {
     let material = Material {
         diffuse: Vec3::ZERO,
         specular: Vec3::splat(0.9),
+        mirror: Vec3::splat(0.9),
         // So narrow a highlight that none is seen: only what the mirror shows counts.
         shininess: 1e6,
         emission: Vec3::ONE,
@@ -177,6 +178,7 @@ fn behind_nothing(sheet: bool) -> World {
     }
     let mirror = Material {
         specular: Vec3::splat(0.5),
+        mirror: Vec3::splat(0.5),
         ..Material::default()
     };
     // There is glass in both, so that both are traced in the same way.

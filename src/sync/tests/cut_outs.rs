@@ -1,7 +1,7 @@
 //! A diffuse map and the opacity map that cuts it out are one texture to the tracer.
 
 use super::*;
-use crate::scene::{PhongMaps, TextureFilter};
+use crate::scene::{PhongMap, PhongMaps, TextureFilter};
 
 /// Two texels side by side.
 fn pair(left: [u8; 4], right: [u8; 4]) -> Image {
@@ -21,7 +21,7 @@ fn pair(left: [u8; 4], right: [u8; 4]) -> Image {
 /// Half-way between the texels of the first object's diffuse map.
 fn middle(app: &App) -> f32 {
     let world = world(app);
-    let map = world.materials[0].diffuse_map.unwrap() as usize;
+    let map = world.materials[0].map(PhongMap::Diffuse).unwrap().texture as usize;
     let uv = bevy::math::Vec2::splat(0.5);
     world.textures[map]
         .sample_cut_out(uv, 0.0, TextureFilter::Bilinear, false)
@@ -39,6 +39,7 @@ fn a_diffuse_map_follows_the_opacity_map_that_cuts_it_out() {
     let maps = |opacity: Option<Handle<Image>>| PhongMaps {
         diffuse: Some(diffuse.clone()),
         opacity,
+        ..PhongMaps::default()
     };
     let object = small.objects[0];
     let with = maps(Some(opacity.clone()));

@@ -53,6 +53,7 @@ impl Dice {
         Phong {
             diffuse: self.color(),
             specular: self.color(),
+            mirror: self.color(),
             shininess: 2.0 + self.number(),
             ..Phong::default()
         }

@@ -195,7 +195,7 @@ impl Edited {
                         let diffuse = Some(image);
                         entity.insert(PhongMaps {
                             diffuse,
-                            opacity: None,
+                            ..PhongMaps::default()
                         });
                     }
                 }
@@ -285,7 +285,7 @@ impl Edited {
                 });
                 world.entity_mut(twin).insert(PhongMaps {
                     diffuse,
-                    opacity: None,
+                    ..PhongMaps::default()
                 });
             }
         }

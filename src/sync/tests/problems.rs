@@ -129,9 +129,7 @@ fn a_picture_that_is_not_there_is_named_and_the_object_drawn_without_it() {
         app.world_mut()
             .get_mut::<Phong>(broken)
             .unwrap()
-            .diffuse_map = Some(TextureSource {
-            path: "wood.png".into(),
-        });
+            .diffuse_map = Some(TextureSource::new("wood.png"));
     });
     assert_eq!(problems.len(), 1, "{problems:?}");
     assert!(problems[0].contains("`wood.png`"), "{}", problems[0]);

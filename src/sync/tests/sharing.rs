@@ -1,7 +1,9 @@
 //! Only what changed is redone, and the rest is shared with the snapshot before.
 
 use super::*;
-use crate::scene::{Builder, Environment, EnvironmentMap, PhongMaps, RenderSettings, UsesMaterial};
+use crate::scene::{
+    Builder, Environment, EnvironmentMap, PhongMap, PhongMaps, RenderSettings, UsesMaterial,
+};
 use bevy::camera::visibility::Visibility;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::hierarchy::ChildOf;
@@ -209,7 +211,7 @@ fn an_object_that_is_enabled_brings_its_mesh_and_its_picture_along() {
     let mesh = add_mesh(&mut small.app, 9);
     let maps = PhongMaps {
         diffuse: Some(add_image(&mut small.app, 7)),
-        opacity: None,
+        ..PhongMaps::default()
     };
     let place = Transform::default();
     let object = (Mesh3d(mesh), place, grey(0.4), maps, Disabled);
@@ -382,7 +384,7 @@ fn a_picture_is_shared_by_materials_and_environment_and_follows_its_asset() {
     for object in small.objects {
         let maps = PhongMaps {
             diffuse: Some(picture.clone()),
-            opacity: None,
+            ..PhongMaps::default()
         };
         small.app.world_mut().entity_mut(object).insert(maps);
     }
@@ -394,7 +396,8 @@ fn a_picture_is_shared_by_materials_and_environment_and_follows_its_asset() {
     assert!(changes.textures && changes.materials && changes.environment && !changes.top_level);
     let before = world(&small.app);
     assert_eq!(before.textures.len(), 1);
-    assert!(before.materials.iter().all(|m| m.diffuse_map == Some(0)));
+    let texture = |m: &crate::trace::Material| m.map(PhongMap::Diffuse).map(|map| map.texture);
+    assert!(before.materials.iter().all(|m| texture(m) == Some(0)));
     assert!(Arc::ptr_eq(
         before.environment.map.as_ref().unwrap(),
         &before.textures[0]

@@ -7,7 +7,7 @@ use crate::editor::document::{picture_at, typed_picture};
 use crate::editor::edits::scene_entity;
 use crate::io::PICTURE_EXTENSIONS;
 use crate::io::shapes::PICTURES;
-use crate::scene::{Environment, Phong, SceneId, TextureSource};
+use crate::scene::{Environment, Phong, PhongMap, SceneId, TextureSource};
 use bevy::asset::{AssetId, Assets, Handle};
 use bevy::color::ColorToPacked;
 use bevy::ecs::world::World;
@@ -37,15 +37,12 @@ pub(super) struct Map<'a> {
     pub owner: Owner,
 }
 
-/// A material's picture.
-pub(super) type MapOf = fn(&mut Phong) -> &mut Option<TextureSource>;
-
 /// Whose picture a field is. What is chosen for it may come when something else is selected.
 #[derive(Clone)]
 pub(super) enum Owner {
     Environment,
     /// The materials of these numbers, which outlive undo.
-    Materials(Arc<[SceneId]>, MapOf),
+    Materials(Arc<[SceneId]>, PhongMap),
 }
 
 impl Owner {
@@ -76,7 +73,8 @@ impl Owner {
                         continue;
                     };
                     let mut after = before.clone();
-                    *map(&mut after) = picture.cloned();
+                    let source = map.source_mut(&mut after);
+                    *source = picture.map(|picture| in_place_of(source.as_ref(), &picture.path));
                     if after != *before
                         && let Some(mut phong) = world.get_mut::<Phong>(entity)
                     {
@@ -125,6 +123,14 @@ pub(super) fn settle_pictures(
     if let Some((owner, path)) = thumbnails.left_field(context) {
         let picture = (!path.is_empty()).then(|| typed_picture(world, path));
         owner.give(world, picture.as_ref());
+    }
+}
+
+/// Another picture, read as the one before it.
+fn in_place_of(before: Option<&TextureSource>, path: &str) -> TextureSource {
+    TextureSource {
+        path: path.to_owned(),
+        ..before.cloned().unwrap_or_default()
     }
 }
 
@@ -184,7 +190,7 @@ pub(super) fn map_ui(
     let Some(chosen) = chosen else {
         return false;
     };
-    let chosen = chosen.map(|path| TextureSource { path });
+    let chosen = chosen.map(|path| in_place_of(value.as_ref(), &path));
     let changed = mixed || *value != chosen;
     *value = chosen;
     changed
@@ -317,8 +323,7 @@ mod tests {
         let world = app.world_mut();
         let ids = [1, 2, 3].map(SceneId);
         let materials = ids.map(|id| world.spawn((id, Phong::default())).id());
-        let map: MapOf = |phong| &mut phong.opacity_map;
-        let owner = Owner::Materials(Arc::from(&ids[..2]), map);
+        let owner = Owner::Materials(Arc::from(&ids[..2]), PhongMap::Opacity);
         let mut thumbnails = Thumbnails::default();
         let typed = |text: &str| Typed {
             field: owner.field("Opacity map"),

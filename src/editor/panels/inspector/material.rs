@@ -5,7 +5,7 @@ use super::super::outline::{Kind, Outline};
 use super::super::says::Says;
 use super::super::several::Several;
 use super::super::state::Panels;
-use super::maps::{Map, MapOf, Owner, map_ui};
+use super::material_maps::{alpha_ui, maps_ui};
 use super::presets::PRESETS;
 use crate::scene::{MeshSource, Phong, PhongMaps, SceneId, UsesMaterial};
 use bevy::ecs::entity::Entity;
@@ -54,29 +54,7 @@ pub(super) fn material_ui(
             .iter()
             .filter_map(|&owner| world.get::<SceneId>(owner));
         let numbers: Arc<[SceneId]> = numbers.copied().collect();
-        let mut map = |label, says, loaded, property: MapOf| {
-            let map = Map {
-                label,
-                says,
-                loaded,
-                owner: Owner::Materials(numbers.clone(), property),
-            };
-            several.field(property, |value, mixed| {
-                map_ui(ui, world, panels, &map, value, mixed)
-            });
-        };
-        map(
-            "Diffuse map",
-            "A picture that takes the place of the diffuse colour",
-            maps.diffuse.as_ref(),
-            |phong| &mut phong.diffuse_map,
-        );
-        map(
-            "Opacity map",
-            "A picture whose brightness multiplies the opacity",
-            maps.opacity.as_ref(),
-            |phong| &mut phong.opacity_map,
-        );
+        maps_ui(ui, world, panels, &mut several, &maps, &numbers);
     });
     several.write(world);
 }
@@ -84,14 +62,18 @@ pub(super) fn material_ui(
 fn fields_ui(ui: &mut Ui, several: &mut Several<Phong>) {
     let says = "kd: the colour of the body, lit from all sides alike";
     several.color(ui, "Diffuse", says, |phong| &mut phong.diffuse);
-    let says = "ks: the highlight's colour, and what a mirror reflects; black is no mirror";
+    let says = "ks: the highlight's colour, of lights alone; black is matt";
     several.color(ui, "Specular", says, |phong| &mut phong.specular);
+    let says =
+        "km: how much of its surroundings it reflects, and in which colour; black is no mirror";
+    several.color(ui, "Mirror", says, |phong| &mut phong.mirror);
     let says = "How narrow the highlight is; a glossy reflection blurs by one over it";
     let number = Number::logarithmic(1.0, 10_000.0, "");
     several.number(ui, "Shininess", says, number, |phong| &mut phong.shininess);
     let says = "1 is opaque; below it light goes on through the surface, tinted";
     let number = Number::slider(0.0, 1.0, "");
     several.number(ui, "Opacity", says, number, |phong| &mut phong.opacity);
+    alpha_ui(ui, several);
     let says = "ke: light that the surface sends out by itself; it is seen, but lights nothing";
     several.field(
         |phong| &mut phong.emission,

@@ -12,6 +12,7 @@ mod gizmos;
 mod lamps;
 mod maps;
 mod material;
+mod material_maps;
 mod measuring;
 mod motion;
 mod object;

@@ -9,6 +9,7 @@ pub(super) struct Preset {
     pub says: &'static str,
     diffuse: [f32; 3],
     specular: [f32; 3],
+    mirror: [f32; 3],
     shininess: f32,
     opacity: f32,
     emission: [f32; 3],
@@ -20,6 +21,7 @@ const PLAIN: Preset = Preset {
     says: "",
     diffuse: [0.8; 3],
     specular: [0.0; 3],
+    mirror: [0.0; 3],
     shininess: 10.0,
     opacity: 1.0,
     emission: [0.0; 3],
@@ -45,6 +47,7 @@ pub(super) const PRESETS: &[Preset] = &[
         says: "Like a porcelain glaze: a sharp highlight and a faint reflection",
         diffuse: [0.62, 0.64, 0.66],
         specular: [0.12; 3],
+        mirror: [0.12; 3],
         shininess: 400.0,
         ..PLAIN
     },
@@ -53,6 +56,7 @@ pub(super) const PRESETS: &[Preset] = &[
         says: "Reflects nearly everything; needs the switch Mirrors",
         diffuse: [0.0; 3],
         specular: [0.95; 3],
+        mirror: [0.95; 3],
         shininess: 10_000.0,
         ..PLAIN
     },
@@ -61,6 +65,7 @@ pub(super) const PRESETS: &[Preset] = &[
         says: "A coloured mirror with a little body",
         diffuse: [0.10, 0.06, 0.01],
         specular: [0.85, 0.60, 0.22],
+        mirror: [0.85, 0.60, 0.22],
         shininess: 300.0,
         ..PLAIN
     },
@@ -69,6 +74,7 @@ pub(super) const PRESETS: &[Preset] = &[
         says: "A grey mirror that blurs, with the switch Glossy",
         diffuse: [0.08; 3],
         specular: [0.6, 0.6, 0.62],
+        mirror: [0.6, 0.6, 0.62],
         shininess: 25.0,
         ..PLAIN
     },
@@ -77,6 +83,7 @@ pub(super) const PRESETS: &[Preset] = &[
         says: "Lets most light straight through, without bending it, and reflects a little",
         diffuse: [0.9, 0.95, 0.95],
         specular: [0.12; 3],
+        mirror: [0.12; 3],
         shininess: 1000.0,
         opacity: 0.15,
         ..PLAIN
@@ -106,11 +113,11 @@ impl Preset {
         *phong = Phong {
             diffuse: color(self.diffuse),
             specular: color(self.specular),
+            mirror: color(self.mirror),
             shininess: self.shininess,
             opacity: self.opacity,
             emission: color(self.emission),
-            diffuse_map: phong.diffuse_map.take(),
-            opacity_map: phong.opacity_map.take(),
+            ..phong.clone()
         };
     }
 }
@@ -124,9 +131,7 @@ mod tests {
     #[test]
     fn every_preset_is_within_the_ranges_of_a_material_and_keeps_the_maps() {
         for preset in PRESETS {
-            let map = Some(TextureSource {
-                path: "builtin:uv".into(),
-            });
+            let map = Some(TextureSource::new("builtin:uv"));
             let mut phong = Phong {
                 diffuse_map: map.clone(),
                 ..Phong::default()
@@ -138,7 +143,7 @@ mod tests {
                 [r, g, b].iter().all(|part| (0.0..=1.0).contains(part))
             };
             assert!(
-                within(phong.diffuse) && within(phong.specular),
+                within(phong.diffuse) && within(phong.specular) && within(phong.mirror),
                 "{}",
                 preset.name
             );

@@ -191,7 +191,8 @@ fn of_hit(lines: &mut Vec<Figure>, hit: &RayHit, names: &Names) {
             "Diffuse colour, texture included",
             color_text(hit.diffuse),
         ),
-        ("ks", "Specular colour", color_text(hit.specular)),
+        ("ks", "Highlight's colour", color_text(hit.specular)),
+        ("km", "Part that is mirrored", color_text(hit.mirror)),
         ("shininess", "s", hit.shininess.to_string()),
         ("opacity", "d, map included", hit.opacity.to_string()),
     ]);

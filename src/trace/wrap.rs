@@ -1,0 +1,128 @@
+//! What there is of a texture beyond its edges, and between its texels.
+
+use crate::scene::{MapFilter, TextureFilter, Wrap};
+use glam::Vec2;
+
+/// How a texture is read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    /// Between texels.
+    pub filter: TextureFilter,
+    /// Beyond its edges, across and down.
+    pub wrap: [Wrap; 2],
+}
+
+impl From<TextureFilter> for Reading {
+    /// It repeats.
+    fn from(filter: TextureFilter) -> Self {
+        Self {
+            filter,
+            wrap: [Wrap::Repeat; 2],
+        }
+    }
+}
+
+impl MapFilter {
+    /// What becomes of the render's setting.
+    pub fn with(self, setting: TextureFilter) -> TextureFilter {
+        match (self, setting) {
+            (Self::Nearest, _) => TextureFilter::Nearest,
+            (Self::Linear, TextureFilter::Nearest) => TextureFilter::Bilinear,
+            (Self::Setting | Self::Linear, setting) => setting,
+        }
+    }
+}
+
+/// The place inside the picture, each coordinate in [0, 1], that stands for this one. A coordinate that is
+/// not finite (a broken mesh) reads the first texel.
+pub(super) fn inside(uv: Vec2, wrap: [Wrap; 2]) -> Vec2 {
+    let uv = if uv.is_finite() { uv } else { Vec2::ZERO };
+    if wrap == [Wrap::Repeat; 2] {
+        return uv - uv.floor();
+    }
+    let along = |x: f32, wrap| match wrap {
+        Wrap::Repeat => x - x.floor(),
+        Wrap::Clamp => x.clamp(0.0, 1.0),
+        // Of every two, the second is reversed.
+        Wrap::Mirror => 1.0 - (x.rem_euclid(2.0) - 1.0).abs(),
+    };
+    Vec2::new(along(uv.x, wrap[0]), along(uv.y, wrap[1]))
+}
+
+/// The texel of `n` in a row that stands for this one, which lies one beyond them at most.
+pub(super) fn texel(i: i64, n: u32, wrap: Wrap) -> u32 {
+    match wrap {
+        Wrap::Repeat => i.rem_euclid(i64::from(n)) as u32,
+        // A mirrored picture begins with the texel that it ended with.
+        Wrap::Clamp | Wrap::Mirror => i.clamp(0, i64::from(n) - 1) as u32,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trace::{Texels, Texture};
+
+    #[test]
+    fn beyond_its_edge_a_texture_repeats_ends_or_turns_back() {
+        let texels = vec![[0.0; 3], [1.0; 3], [2.0; 3], [3.0; 3]];
+        let row = Texture::new(4, 1, Texels::Linear32(texels)).unwrap();
+        let found = |wrap, filter, from: f32| -> Vec<f32> {
+            let reading = Reading {
+                filter,
+                wrap: [wrap, Wrap::Repeat],
+            };
+            let at = |i: u8| Vec2::new(from + f32::from(i) / 4.0, 0.5);
+            (0..12)
+                .map(|i| row.sample(at(i), 0.0, reading, false).x)
+                .collect()
+        };
+        // Texels' middles, from one picture before the first to one behind it.
+        let middles = -1.0 + 0.125;
+        for filter in [TextureFilter::Nearest, TextureFilter::Bilinear] {
+            assert_eq!(
+                found(Wrap::Repeat, filter, middles),
+                [0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0]
+            );
+            assert_eq!(
+                found(Wrap::Clamp, filter, middles),
+                [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 3.0, 3.0, 3.0, 3.0]
+            );
+            assert_eq!(
+                found(Wrap::Mirror, filter, middles),
+                [3.0, 2.0, 1.0, 0.0, 0.0, 1.0, 2.0, 3.0, 3.0, 2.0, 1.0, 0.0]
+            );
+        }
+        // Texels' edges, where the two neighbours are mixed.
+        let edges = found(Wrap::Repeat, TextureFilter::Bilinear, 0.0);
+        assert_eq!(edges[..5], [1.5, 0.5, 1.5, 2.5, 1.5]);
+        let edges = found(Wrap::Clamp, TextureFilter::Bilinear, 0.0);
+        assert_eq!(edges[..5], [0.0, 0.5, 1.5, 2.5, 3.0]);
+        let edges = found(Wrap::Mirror, TextureFilter::Bilinear, 0.0);
+        assert_eq!(edges[..6], [0.0, 0.5, 1.5, 2.5, 3.0, 2.5]);
+    }
+
+    #[test]
+    fn a_map_can_ask_for_hard_pixels_and_for_none() {
+        use TextureFilter::{Bilinear, Mipmap, Nearest};
+        for (filter, expected) in [
+            (MapFilter::Setting, [Nearest, Bilinear, Mipmap]),
+            (MapFilter::Nearest, [Nearest, Nearest, Nearest]),
+            (MapFilter::Linear, [Bilinear, Bilinear, Mipmap]),
+        ] {
+            let found = [Nearest, Bilinear, Mipmap].map(|setting| filter.with(setting));
+            assert_eq!(found, expected, "{filter:?}");
+        }
+    }
+
+    #[test]
+    fn a_place_that_is_no_number_reads_the_first_texel_and_a_far_one_is_inside() {
+        for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
+            for x in [f32::NAN, f32::INFINITY, -1e30, 1e30, -1e-30, 0.999_999_94] {
+                let uv = inside(Vec2::splat(x), [wrap; 2]);
+                let range = Vec2::ZERO.cmple(uv).all() && uv.cmple(Vec2::ONE).all();
+                assert!(range, "{wrap:?} {x}: {uv}");
+            }
+        }
+    }
+}
