@@ -334,6 +334,14 @@ fn a_required_extension_that_is_not_supported() {
 }
 
 #[test]
+fn a_required_extension_of_looks_alone_is_shown_without() {
+    for name in ["KHR_techniques_webgl", "KHR_technique_webgl"] {
+        let (_folder, file) = changed(|d| d["extensionsRequired"] = json!([name]));
+        opens_and_says(&file, &[name, "shown without"]);
+    }
+}
+
+#[test]
 fn another_version_of_gltf() {
     let (_folder, file) = changed(|d| d["asset"]["version"] = json!("1.0"));
     says(&refused(&file), &["a.gltf", "glTF 1.0"]);

@@ -10,8 +10,9 @@ use bevy::math::{Affine3A, Vec3};
 use bevy::prelude::{Entity, World};
 use std::f32::consts::PI;
 
-/// Radiance of what is brightest below which a picture is nearly black: 8 bits have four levels there.
-const NEARLY_BLACK: f32 = 0.002;
+/// Radiance of what is brightest below which a picture is nearly black: most of it faces its lights less, or not at
+/// all.
+const NEARLY_BLACK: f32 = 0.05;
 /// What it is exposed to.
 const WANTED: f32 = 0.5;
 /// A surface of middle grey, of which nothing is known.

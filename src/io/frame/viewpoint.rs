@@ -27,7 +27,9 @@ const MOST_PIXELS: usize = 1 << 22;
 /// What a pixel with the back of a triangle counts, beside 1 for a front.
 const BACK: f32 = 0.5;
 /// By how much the usual view may show less and be taken all the same; less so the further a view is from it.
-const HABIT: f32 = 0.15;
+const HABIT: f32 = 0.25;
+/// What a view from below counts, beside 1: things stand on something.
+const BELOW: f32 = 0.8;
 /// From the middle of what is shown to the usual camera: from the front, a little from the right, above.
 const USUAL: Vec3 = Vec3::new(0.47, 0.34, 0.814);
 
@@ -61,7 +63,11 @@ pub(super) fn framing(surface: &Surface) -> Transform {
     let mut scores = Vec::new();
     let score = |&towards: &Vec3| {
         let habit = 1.0 + HABIT * towards.dot(USUAL);
-        shown(surface, &eye(towards), tangent) * habit
+        let below = if towards.y < 0.0 { BELOW } else { 1.0 };
+        let eye = eye(towards);
+        // As an area in the scene: a thing that is seen end on fills its picture too.
+        let scale = eye.translation.distance_squared(centre);
+        shown(surface, &eye, tangent) * scale * habit * below
     };
     views.par_iter().map(score).collect_into_vec(&mut scores);
     let best = (0..views.len()).max_by(|&a, &b| scores[a].total_cmp(&scores[b]).then(b.cmp(&a)));

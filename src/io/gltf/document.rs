@@ -28,9 +28,10 @@ const READ: [&str; 12] = [
 ];
 
 /// How the names of extensions begin that change how things look, not their shape: without them a model can be shown.
-const OF_LOOKS: [&str; 10] = [
+const OF_LOOKS: [&str; 11] = [
     "KHR_materials_",
     "KHR_texture_",
+    "KHR_technique",
     "KHR_lights_",
     "KHR_animation_",
     "KHR_xmp",
