@@ -18,9 +18,9 @@ use super::{
     triangle::{Crossing, Shear},
     triangles::REACH,
     wide::{
-        Answers, Eight, FEW, Found, InstructionSet, Lanes, Leaves, MANY, PacketLeaves, PacketRays,
-        Query, View, Ways, WideRay, answer, by_axis, few_hold, lanes_of, largest_size, walk,
-        walk_from, walk_packet,
+        Answers, Eight, FEW, Found, Group, InstructionSet, Lanes, Leaves, MANY, PacketLeaves,
+        PacketRays, Query, View, Ways, WideRay, answer, by_axis, few_hold, lanes_of, largest_size,
+        walk, walk_from, walk_packet,
     },
 };
 
@@ -41,10 +41,11 @@ pub(super) trait Arrangement: Copy {
         at: impl FnMut(Hit, f32) -> f32,
     );
 
-    /// Walks with a packet of rays, where there are such.
+    /// Walks with a group of a packet's rays, where there are packets.
     fn packet<S: InstructionSet, G: Goal>(
         self,
         packet: &Packet<S>,
+        group: &Group,
         found: &mut Found<S::Packet>,
         stack: &mut [u64],
     );
@@ -267,6 +268,10 @@ impl<'a, S: InstructionSet> Packet<'a, S> {
     }
 }
 
+/// Groups of no more than this part of a packet go on alone, ray by ray. Measured: diffuse rays, which should not have come
+/// in packets at all, fall into such.
+const SMALL_GROUP: u32 = 3;
+
 /// Answers a question of at most as many rays as there are lanes.
 #[inline(always)]
 fn trace_packet<Of: Arrangement, S: InstructionSet, G: Goal>(
@@ -276,12 +281,21 @@ fn trace_packet<Of: Arrangement, S: InstructionSet, G: Goal>(
     stack: &mut [u64],
 ) {
     let packet = Packet::<S>::new(rays);
-    let mut found = Found::nothing(packet.end, packet.lanes);
-    of.packet::<S, G>(&packet, &mut found, stack);
+    let mut found = Found::nothing(packet.end);
+    let ways = Ways::of(&packet.world);
+    let mut left = packet.lanes;
+    let mut alone = !left & ((1 << rays.len()) - 1);
+    while let Some(group) = ways.next_group(&mut left) {
+        if group.lanes.count_ones() * SMALL_GROUP <= S::Packet::COUNT as u32 {
+            alone |= group.lanes;
+        } else {
+            found.begin(group.lanes);
+            of.packet::<S, G>(&packet, &group, &mut found, stack);
+        }
+    }
     found.write(answers);
-    let all = (1 << rays.len()) - 1;
-    for lane in lanes_of(all & !packet.lanes) {
-        // A miss, or of a size out of the ordinary.
+    for lane in lanes_of(alone) {
+        // Otherwise a miss.
         if let Some(ray) = SafeRay::new(&rays[lane]) {
             let mut best = Best::NONE;
             let offer = |hit, limit| {
@@ -368,14 +382,11 @@ impl Arrangement for OneMesh<'_> {
     fn packet<S: InstructionSet, G: Goal>(
         self,
         packet: &Packet<S>,
+        group: &Group,
         found: &mut Found<S::Packet>,
         stack: &mut [u64],
     ) {
-        let ways = Ways::of(&packet.world);
-        let mut left = packet.lanes;
-        while let Some(group) = ways.next_group(&mut left) {
-            (self.0).walk_packet::<S, G>(&packet.world, &group, 0, found, stack);
-        }
+        (self.0).walk_packet::<S, G>(&packet.world, group, 0, found, stack);
     }
 }
 
@@ -414,30 +425,27 @@ impl Arrangement for TwoLevels<'_> {
     fn packet<S: InstructionSet, G: Goal>(
         self,
         packet: &Packet<S>,
+        group: &Group,
         found: &mut Found<S::Packet>,
         stack: &mut [u64],
     ) {
         let Self(scene, places) = self;
         let rays = packet.world.with_pad(scene.ray_pad);
-        let ways = Ways::of(&rays);
-        let mut left = packet.lanes;
-        while let Some(group) = ways.next_group(&mut left) {
-            let mut view = View::<S>::new(&rays, &group);
-            let mut leaves = PacketOfInstances::<S, G> {
-                scene,
-                places,
-                packet,
-                goal: PhantomData,
-            };
-            walk_packet::<S, G>(
-                &scene.wide,
-                stack,
-                &mut view,
-                group.lanes,
-                found,
-                &mut leaves,
-            );
-        }
+        let mut view = View::<S>::new(&rays, group);
+        let mut leaves = PacketOfInstances::<S, G> {
+            scene,
+            places,
+            packet,
+            goal: PhantomData,
+        };
+        walk_packet::<S, G>(
+            &scene.wide,
+            stack,
+            &mut view,
+            group.lanes,
+            found,
+            &mut leaves,
+        );
     }
 }
 
@@ -476,6 +484,7 @@ impl Arrangement for OneLevel<'_> {
     fn packet<S: InstructionSet, G: Goal>(
         self,
         _: &Packet<S>,
+        _: &Group,
         _: &mut Found<S::Packet>,
         _: &mut [u64],
     ) {
