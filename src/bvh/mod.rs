@@ -53,6 +53,7 @@ mod median;
 pub(crate) mod mesh_tree;
 mod options;
 mod order;
+mod packets;
 mod ploc;
 mod queries;
 mod ray;
