@@ -10,17 +10,16 @@ use super::{
     goal::{Any, Goal, Nearest},
     mesh_tree::{MeshTree, ObjectRay},
     order::Order,
+    packets::{Packet, PacketOfInstances, trace_packet},
     queries::Best,
     ray::{Hit, Ray},
-    safe_ray::{ORDINARY, SafeRay},
+    safe_ray::SafeRay,
     slab::SlabRay,
     traverse::STOP,
     triangle::{Crossing, Shear},
-    triangles::REACH,
     wide::{
-        Answers, Eight, FEW, Found, InstructionSet, Lanes, Leaves, MANY, PacketLeaves, PacketRays,
-        Query, View, Ways, WideRay, answer, by_axis, few_hold, lanes_of, largest_size, walk,
-        walk_from, walk_packet,
+        Answers, Eight, FEW, Found, Group, InstructionSet, Lanes, Leaves, MANY, Query, View,
+        WideRay, answer, few_hold, walk, walk_packet,
     },
 };
 
@@ -41,10 +40,11 @@ pub(super) trait Arrangement: Copy {
         at: impl FnMut(Hit, f32) -> f32,
     );
 
-    /// Walks with a packet of rays, where there are such.
+    /// Walks with a group of a packet's rays, where there are packets.
     fn packet<S: InstructionSet, G: Goal>(
         self,
         packet: &Packet<S>,
+        group: &Group,
         found: &mut Found<S::Packet>,
         stack: &mut [u64],
     );
@@ -218,82 +218,6 @@ impl<Of: Arrangement> Query for AnyOf<'_, Of> {
     }
 }
 
-/// Rays of a batch as a packet, a lane each.
-pub(super) struct Packet<'a, S: InstructionSet> {
-    rays: &'a [Ray],
-    world: PacketRays<S::Packet>,
-    time: S::Packet,
-    end: S::Packet,
-    /// Which rays can be traced together.
-    lanes: u32,
-}
-
-impl<'a, S: InstructionSet> Packet<'a, S> {
-    /// At most as many rays as there are lanes; what [`SafeRay::new`] does with one, where it needs no scale.
-    #[inline(always)]
-    fn new(rays: &'a [Ray]) -> Self {
-        let zero = S::Packet::splat(0.0);
-        let mut rows = [[0.0; 8]; 16];
-        for (row, ray) in rows.iter_mut().zip(rays) {
-            let (from, along) = (ray.origin, ray.direction);
-            *row = [
-                from.x, from.y, from.z, along.x, along.y, along.z, ray.t_max, ray.time,
-            ];
-        }
-        let columns = S::Packet::columns(&rows);
-        let [.., end, time] = columns;
-        // -0.0 becomes +0.0, so that both mean the same.
-        let origin = by_axis!(|i| columns[i].add(zero));
-        let direction = by_axis!(|i| columns[3 + i].add(zero));
-        let longest = largest_size(&direction);
-        let ordinary = S::Packet::splat(1.0 / ORDINARY);
-        let reach = S::Packet::splat(REACH);
-        let mut lanes = (1 << rays.len()) - 1;
-        for axis in 0..3 {
-            lanes &= S::Packet::bits(direction[axis].abs().le(ordinary));
-            lanes &= S::Packet::bits(origin[axis].abs().le(reach));
-        }
-        lanes &= S::Packet::bits(S::Packet::splat(ORDINARY).le(longest));
-        lanes &= S::Packet::bits(zero.lt(end));
-        lanes &= S::Packet::bits(zero.le(time));
-        lanes &= S::Packet::bits(time.le(S::Packet::splat(1.0)));
-        Self {
-            rays,
-            world: PacketRays::new(origin, direction, longest),
-            time,
-            end,
-            lanes,
-        }
-    }
-}
-
-/// Answers a question of at most as many rays as there are lanes.
-#[inline(always)]
-fn trace_packet<Of: Arrangement, S: InstructionSet, G: Goal>(
-    of: Of,
-    rays: &[Ray],
-    answers: &mut Answers,
-    stack: &mut [u64],
-) {
-    let packet = Packet::<S>::new(rays);
-    let mut found = Found::nothing(packet.end, packet.lanes);
-    of.packet::<S, G>(&packet, &mut found, stack);
-    found.write(answers);
-    let all = (1 << rays.len()) - 1;
-    for lane in lanes_of(all & !packet.lanes) {
-        // A miss, or of a size out of the ordinary.
-        if let Some(ray) = SafeRay::new(&rays[lane]) {
-            let mut best = Best::NONE;
-            let offer = |hit, limit| {
-                let new = best.offer(hit, limit);
-                if G::ANY { STOP } else { new }
-            };
-            of.each_hit::<S::Eight, G>(&ray, stack, offer);
-            answers.set(lane, best.found(&ray));
-        }
-    }
-}
-
 /// Every hit of one ray up to a limit that may shrink.
 struct Every<'a, Of, At, G> {
     of: Of,
@@ -368,14 +292,11 @@ impl Arrangement for OneMesh<'_> {
     fn packet<S: InstructionSet, G: Goal>(
         self,
         packet: &Packet<S>,
+        group: &Group,
         found: &mut Found<S::Packet>,
         stack: &mut [u64],
     ) {
-        let ways = Ways::of(&packet.world);
-        let mut left = packet.lanes;
-        while let Some(group) = ways.next_group(&mut left) {
-            (self.0).walk_packet::<S, G>(&packet.world, &group, 0, found, stack);
-        }
+        (self.0).walk_packet::<S, G>(&packet.world, group, 0, found, stack);
     }
 }
 
@@ -414,30 +335,27 @@ impl Arrangement for TwoLevels<'_> {
     fn packet<S: InstructionSet, G: Goal>(
         self,
         packet: &Packet<S>,
+        group: &Group,
         found: &mut Found<S::Packet>,
         stack: &mut [u64],
     ) {
         let Self(scene, places) = self;
         let rays = packet.world.with_pad(scene.ray_pad);
-        let ways = Ways::of(&rays);
-        let mut left = packet.lanes;
-        while let Some(group) = ways.next_group(&mut left) {
-            let mut view = View::<S>::new(&rays, &group);
-            let mut leaves = PacketOfInstances::<S, G> {
-                scene,
-                places,
-                packet,
-                goal: PhantomData,
-            };
-            walk_packet::<S, G>(
-                &scene.wide,
-                stack,
-                &mut view,
-                group.lanes,
-                found,
-                &mut leaves,
-            );
-        }
+        let mut view = View::<S>::new(&rays, group);
+        let mut leaves = PacketOfInstances::<S, G> {
+            scene,
+            places,
+            packet,
+            goal: PhantomData,
+        };
+        walk_packet::<S, G>(
+            &scene.wide,
+            stack,
+            &mut view,
+            group.lanes,
+            found,
+            &mut leaves,
+        );
     }
 }
 
@@ -476,6 +394,7 @@ impl Arrangement for OneLevel<'_> {
     fn packet<S: InstructionSet, G: Goal>(
         self,
         _: &Packet<S>,
+        _: &Group,
         _: &mut Found<S::Packet>,
         _: &mut [u64],
     ) {
@@ -513,12 +432,12 @@ impl Aggregate {
 }
 
 /// Two levels: a leaf of the top tree is an instance, or several where they could not be told apart.
-struct InstanceLeaves<'a, At, G> {
-    goal: PhantomData<G>,
-    scene: &'a Aggregate,
-    places: &'a [u32],
-    ray: &'a SafeRay,
-    at: At,
+pub(super) struct InstanceLeaves<'a, At, G> {
+    pub(super) goal: PhantomData<G>,
+    pub(super) scene: &'a Aggregate,
+    pub(super) places: &'a [u32],
+    pub(super) ray: &'a SafeRay,
+    pub(super) at: At,
 }
 
 impl<E: Eight, At: FnMut(Hit, f32) -> f32, G: Goal> Leaves<E> for InstanceLeaves<'_, At, G> {
@@ -541,63 +460,6 @@ impl<E: Eight, At: FnMut(Hit, f32) -> f32, G: Goal> Leaves<E> for InstanceLeaves
             }
         }
         limit
-    }
-}
-
-/// Two levels, with a packet's rays.
-struct PacketOfInstances<'a, S: InstructionSet, G> {
-    scene: &'a Aggregate,
-    places: &'a [u32],
-    packet: &'a Packet<'a, S>,
-    goal: PhantomData<G>,
-}
-
-impl<S: InstructionSet, G: Goal> PacketLeaves<S> for PacketOfInstances<'_, S, G> {
-    #[inline(always)]
-    fn visit(
-        &mut self,
-        leaf: u32,
-        lanes: u32,
-        _: &mut View<S>,
-        found: &mut Found<S::Packet>,
-        stack: &mut [u64],
-    ) {
-        let packet = self.packet;
-        for &number in &self.places[self.scene.wide_leaves[leaf as usize].clone()] {
-            let instance = &self.scene.instances()[number as usize];
-            let (rays, in_range) = if instance.is_identity() {
-                (packet.world, lanes)
-            } else {
-                instance.to_object_packet(&packet.world, packet.time)
-            };
-            let ways = Ways::of(&rays);
-            let mut left = lanes & in_range;
-            while let Some(group) = ways.next_group(&mut left) {
-                (instance.mesh).walk_packet::<S, G>(&rays, &group, number, found, stack);
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn alone(&mut self, child: u32, lanes: u32, found: &mut Found<S::Packet>, stack: &mut [u64]) {
-        let (scene, places) = (self.scene, self.places);
-        for lane in lanes_of(lanes) {
-            let Some(ray) = &SafeRay::new(&self.packet.rays[lane]) else {
-                continue;
-            };
-            let mut alone = found.alone(lane);
-            let limit = alone.limit;
-            let mut leaves = InstanceLeaves::<_, G> {
-                scene,
-                places,
-                ray,
-                at: |hit, limit| alone.offer::<G>(hit, limit),
-                goal: PhantomData,
-            };
-            let top = WideRay::new(&scene.top_slab(&ray.world), 0.0);
-            walk_from::<S::Eight, G>(&scene.wide, child, stack, &top, limit, &mut leaves);
-            found.rejoin::<G>(alone);
-        }
     }
 }
 

@@ -17,6 +17,7 @@
 //! 5. A [`Ray`] asks it for the nearest hit ([`Aggregate::closest_hit`]), for any ([`Aggregate::occluded`]), for the next
 //!    one behind a hit, for all; one ray at a time or in batches. A [`Visitor`] may watch every node and triangle.
 //!    They walk a wide form of the trees, many boxes and triangles at once (`wide`); a visitor sees the binary form.
+//!    Of a batch whose [`Order`] says that its rays go the same way, many walk together (`wide::packet`).
 //! 6. [`Instance::surface_point`] tells where a [`Hit`] lies, and [`Aggregate::leave`] where a ray starts that leaves it.
 //!
 //! # What is promised
@@ -52,6 +53,7 @@ mod median;
 pub(crate) mod mesh_tree;
 mod options;
 mod order;
+mod packets;
 mod ploc;
 mod queries;
 mod ray;

@@ -2,7 +2,7 @@
 //!
 //! A [`Bvh2`](obvhs::bvh2::Bvh2) from any builder is [`collapse`]d into [`WideTree`]: nodes of up to eight children, in
 //! which the SAH says which levels to leave out. Its leaves are [`TriangleBlock`]s (or instances, in the top tree).
-//! [`walk`] takes a ray through it.
+//! [`walk`] takes a ray through it, and [`walk_packet`] many that go the same way.
 //!
 //! # The same hits as the binary tree, bit for bit
 //! Node boxes are those of the binary tree, unchanged, and the slab test is that of [`super::slab`]: the same

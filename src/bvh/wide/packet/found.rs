@@ -50,7 +50,7 @@ pub(crate) struct Found<L> {
     pub(super) instance: L,
     /// The rays that have hit something.
     pub(super) hit: u32,
-    /// The rays that go on: all, unless any hit is enough.
+    /// The rays that are on their way: all of a group, unless any hit is enough.
     pub(crate) active: u32,
     /// The largest limit of them.
     pub(super) farthest: f32,
@@ -76,22 +76,27 @@ impl Answers<'_> {
 }
 
 impl<L: Lanes> Found<L> {
-    /// Nothing, for rays that end there. Those that are not `active` are not asked for.
+    /// Nothing, for rays that end there.
     #[inline(always)]
-    pub(crate) fn nothing(end: L, active: u32) -> Self {
+    pub(crate) fn nothing(end: L) -> Self {
         let zero = L::splat(0.0);
-        let mut found = Self {
+        Self {
             end,
             limit: end,
             edges: [zero; 3],
             triangle: zero,
             instance: zero,
             hit: 0,
-            active,
+            active: 0,
             farthest: 0.0,
-        };
-        found.look_ahead();
-        found
+        }
+    }
+
+    /// A group of rays sets out that has not done so before.
+    #[inline(always)]
+    pub(crate) fn begin(&mut self, lanes: u32) {
+        self.active = lanes;
+        self.look_ahead();
     }
 
     /// Finds the largest limit anew.

@@ -1,0 +1,164 @@
+//! A batch's rays as packets: read into lanes, sorted by where they go, and traced together or alone.
+
+use std::marker::PhantomData;
+
+use super::{
+    aggregate::Aggregate,
+    goal::Goal,
+    levels::{Arrangement, InstanceLeaves},
+    queries::Best,
+    ray::Ray,
+    safe_ray::{ORDINARY, SafeRay},
+    traverse::STOP,
+    triangles::REACH,
+    wide::{
+        Answers, Found, InstructionSet, Lanes, PacketLeaves, PacketRays, View, Ways, WideRay,
+        by_axis, lanes_of, largest_size, walk_from,
+    },
+};
+
+/// Rays of a batch as a packet, a lane each.
+pub(super) struct Packet<'a, S: InstructionSet> {
+    rays: &'a [Ray],
+    pub(super) world: PacketRays<S::Packet>,
+    time: S::Packet,
+    end: S::Packet,
+    /// Which rays can be traced together.
+    lanes: u32,
+}
+
+impl<'a, S: InstructionSet> Packet<'a, S> {
+    /// At most as many rays as there are lanes; what [`SafeRay::new`] does with one, where it needs no scale.
+    #[inline(always)]
+    fn new(rays: &'a [Ray]) -> Self {
+        let zero = S::Packet::splat(0.0);
+        let mut rows = [[0.0; 8]; 16];
+        for (row, ray) in rows.iter_mut().zip(rays) {
+            let (from, along) = (ray.origin, ray.direction);
+            *row = [
+                from.x, from.y, from.z, along.x, along.y, along.z, ray.t_max, ray.time,
+            ];
+        }
+        let columns = S::Packet::columns(&rows);
+        let [.., end, time] = columns;
+        // -0.0 becomes +0.0, so that both mean the same.
+        let origin = by_axis!(|i| columns[i].add(zero));
+        let direction = by_axis!(|i| columns[3 + i].add(zero));
+        let longest = largest_size(&direction);
+        let ordinary = S::Packet::splat(1.0 / ORDINARY);
+        let reach = S::Packet::splat(REACH);
+        let mut lanes = (1 << rays.len()) - 1;
+        for axis in 0..3 {
+            lanes &= S::Packet::bits(direction[axis].abs().le(ordinary));
+            lanes &= S::Packet::bits(origin[axis].abs().le(reach));
+        }
+        lanes &= S::Packet::bits(S::Packet::splat(ORDINARY).le(longest));
+        lanes &= S::Packet::bits(zero.lt(end));
+        lanes &= S::Packet::bits(zero.le(time));
+        lanes &= S::Packet::bits(time.le(S::Packet::splat(1.0)));
+        Self {
+            rays,
+            world: PacketRays::new(origin, direction, longest),
+            time,
+            end,
+            lanes,
+        }
+    }
+}
+
+/// Groups of no more than this part of a packet go on alone, ray by ray. Measured: diffuse rays, which should not have come
+/// in packets at all, fall into such.
+const SMALL_GROUP: u32 = 3;
+
+/// Answers a question of at most as many rays as there are lanes.
+#[inline(always)]
+pub(super) fn trace_packet<Of: Arrangement, S: InstructionSet, G: Goal>(
+    of: Of,
+    rays: &[Ray],
+    answers: &mut Answers,
+    stack: &mut [u64],
+) {
+    let packet = Packet::<S>::new(rays);
+    let mut found = Found::nothing(packet.end);
+    let ways = Ways::of(&packet.world);
+    let mut left = packet.lanes;
+    let mut alone = !left & ((1 << rays.len()) - 1);
+    while let Some(group) = ways.next_group(&mut left) {
+        if group.lanes.count_ones() * SMALL_GROUP <= S::Packet::COUNT as u32 {
+            alone |= group.lanes;
+        } else {
+            found.begin(group.lanes);
+            of.packet::<S, G>(&packet, &group, &mut found, stack);
+        }
+    }
+    found.write(answers);
+    for lane in lanes_of(alone) {
+        // Otherwise a miss.
+        if let Some(ray) = SafeRay::new(&rays[lane]) {
+            let mut best = Best::NONE;
+            let offer = |hit, limit| {
+                let new = best.offer(hit, limit);
+                if G::ANY { STOP } else { new }
+            };
+            of.each_hit::<S::Eight, G>(&ray, stack, offer);
+            answers.set(lane, best.found(&ray));
+        }
+    }
+}
+
+/// Two levels, with a packet's rays.
+pub(super) struct PacketOfInstances<'a, S: InstructionSet, G> {
+    pub(super) scene: &'a Aggregate,
+    pub(super) places: &'a [u32],
+    pub(super) packet: &'a Packet<'a, S>,
+    pub(super) goal: PhantomData<G>,
+}
+
+impl<S: InstructionSet, G: Goal> PacketLeaves<S> for PacketOfInstances<'_, S, G> {
+    #[inline(always)]
+    fn visit(
+        &mut self,
+        leaf: u32,
+        lanes: u32,
+        _: &mut View<S>,
+        found: &mut Found<S::Packet>,
+        stack: &mut [u64],
+    ) {
+        let packet = self.packet;
+        for &number in &self.places[self.scene.wide_leaves[leaf as usize].clone()] {
+            let instance = &self.scene.instances()[number as usize];
+            let (rays, in_range) = if instance.is_identity() {
+                (packet.world, lanes)
+            } else {
+                instance.to_object_packet(&packet.world, packet.time)
+            };
+            let ways = Ways::of(&rays);
+            let mut left = lanes & in_range;
+            while let Some(group) = ways.next_group(&mut left) {
+                (instance.mesh).walk_packet::<S, G>(&rays, &group, number, found, stack);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn alone(&mut self, child: u32, lanes: u32, found: &mut Found<S::Packet>, stack: &mut [u64]) {
+        let (scene, places) = (self.scene, self.places);
+        for lane in lanes_of(lanes) {
+            let Some(ray) = &SafeRay::new(&self.packet.rays[lane]) else {
+                continue;
+            };
+            let mut alone = found.alone(lane);
+            let limit = alone.limit;
+            let mut leaves = InstanceLeaves::<_, G> {
+                scene,
+                places,
+                ray,
+                at: |hit, limit| alone.offer::<G>(hit, limit),
+                goal: PhantomData,
+            };
+            let top = WideRay::new(&scene.top_slab(&ray.world), 0.0);
+            walk_from::<S::Eight, G>(&scene.wide, child, stack, &top, limit, &mut leaves);
+            found.rejoin::<G>(alone);
+        }
+    }
+}
