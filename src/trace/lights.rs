@@ -18,10 +18,6 @@
 //! know nothing of them: a light that moves by `velocity · t` is, seen from x, what the same light
 //! standing still is, seen from `x - velocity · t` ([`Lights::in_rest_frame`]).
 
-use super::Surface;
-use super::parallelogram_frame::ParallelogramFrame;
-use super::receiver::Receivers;
-use super::segment_warp::SegmentFrame;
 use super::spot_cone::SpotCone;
 use super::sun_disc::SunDisc;
 use crate::scene::Lighting;
@@ -135,7 +131,7 @@ const LEAST_SQUARED_DISTANCE: f32 = 1e-30;
 ///
 /// A light's own corner or end comes first when the way is summed up, `(corner - from) + edge`: far from the origin a
 /// sum of positions loses the digits that their difference has.
-fn towards(offset: Vec3) -> Option<(Vec3, f32)> {
+pub(super) fn towards(offset: Vec3) -> Option<(Vec3, f32)> {
     // Scaled first: squares of tiny and huge offsets leave f32's range.
     let scale = offset.abs().max_element();
     if !(scale > 0.0 && scale < f32::INFINITY) {
@@ -145,7 +141,7 @@ fn towards(offset: Vec3) -> Option<(Vec3, f32)> {
     Some(((offset / scale) / length, length * scale))
 }
 
-fn inverse_square(distance: f32) -> f32 {
+pub(super) fn inverse_square(distance: f32) -> f32 {
     1.0 / (distance * distance).max(LEAST_SQUARED_DISTANCE)
 }
 
@@ -235,41 +231,6 @@ impl SegmentLight {
             density: 1.0,
         })
     }
-
-    /// What choosing its points for a surface needs to know of it; `None` where it has no length.
-    pub fn frame(&self) -> Option<SegmentFrame> {
-        SegmentFrame::new(self.ends, &self.colors)
-    }
-
-    /// The point that the number `u` in [0, 1) chooses for a surface at `from`, Physical; `None` where nothing can
-    /// arrive. The frame is the light's own.
-    pub fn point_for(
-        &self,
-        frame: &SegmentFrame,
-        surface: &Surface,
-        from: Vec3,
-        u: f32,
-    ) -> Option<LightPoint> {
-        let receivers = Receivers::of(surface, from);
-        let chosen = if surface.specular == Vec3::ZERO {
-            frame.matt_places(&receivers, &[u])
-        } else {
-            frame.glossy_places(&receivers, &[u])
-        };
-        let ([u], [arriving]) = (chosen.u, chosen.arriving);
-        if !(arriving > 0.0 && arriving < f32::INFINITY) {
-            return None;
-        }
-        let along = self.ends[1] - self.ends[0];
-        let (direction, distance) = towards((self.ends[0] - from) + u * along)?;
-        Some(LightPoint {
-            direction,
-            distance,
-            arriving: self.colors[0].lerp(self.colors[1], u) * arriving,
-            place: [u, MIDDLE[1]],
-            density: along.length() * inverse_square(distance) / arriving,
-        })
-    }
 }
 
 impl ParallelogramLight {
@@ -308,44 +269,6 @@ impl ParallelogramLight {
             arriving: color * (facing * inverse_square(distance)),
             place: u,
             density: 1.0,
-        })
-    }
-
-    /// What choosing its points for a place needs to know of it; `None` where it is so thin that its points are chosen
-    /// evenly.
-    pub fn frame(&self) -> Option<ParallelogramFrame> {
-        ParallelogramFrame::new(self.corner, self.edges, &self.colors, self.two_sided)
-    }
-
-    /// The point that the numbers `u` in [0, 1)² choose for a surface at `from`, Physical; `None` where nothing can arrive.
-    /// The frame is the light's own.
-    pub fn point_for(
-        &self,
-        frame: &ParallelogramFrame,
-        surface: &Surface,
-        from: Vec3,
-        u: [f32; 2],
-    ) -> Option<LightPoint> {
-        let receivers = Receivers::of(surface, from);
-        let numbers = u.map(|number| [number]);
-        let chosen = if surface.specular == Vec3::ZERO {
-            frame.matt_places(&receivers, &numbers)
-        } else {
-            frame.glossy_places(&receivers, &numbers)
-        };
-        let ([[u], [v]], [solid_angle]) = (chosen.uv, chosen.solid_angle);
-        if !(solid_angle > 0.0 && solid_angle < f32::INFINITY) {
-            return None;
-        }
-        let offset = (self.corner - from) + u * self.edges[0] + v * self.edges[1];
-        let (direction, distance) = towards(offset)?;
-        let facing = direction.dot(self.area_normal()).abs();
-        Some(LightPoint {
-            direction,
-            distance,
-            arriving: self.color(u, v) * solid_angle,
-            place: [u, v],
-            density: facing * inverse_square(distance) / solid_angle,
         })
     }
 
