@@ -308,7 +308,7 @@ pub enum Dimension {
     LensV,
     /// When the shutter is open.
     Time,
-    /// The first number of the place on a light.
+    /// The first of the numbers that choose a point of a light.
     LightU,
     /// The second one.
     LightV,

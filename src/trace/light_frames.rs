@@ -1,7 +1,12 @@
+//! Points of lights that are chosen for the surface that sees them: one at a time, from what is known of each light.
+
+use super::lights::{MIDDLE, inverse_square, towards};
 use super::parallelogram_frame::ParallelogramFrame;
+use super::receiver::Receivers;
 use super::segment_warp::SegmentFrame;
-use super::{Lights, ParallelogramLight, SegmentLight};
+use super::{LightPoint, Lights, ParallelogramLight, SegmentLight, Surface};
 use crate::scene::{Lighting, RenderSettings};
+use glam::Vec3;
 
 /// What choosing points of lights for the surfaces that see them needs to know of each, in the order of the lights;
 /// nothing where all points of a light are alike.
@@ -44,4 +49,94 @@ impl LightFrames {
 pub(super) enum Frame {
     Segment(SegmentFrame),
     Parallelogram(ParallelogramFrame),
+}
+
+impl SegmentLight {
+    /// What choosing its points for a surface needs to know of it; `None` where it has no length.
+    pub fn frame(&self) -> Option<SegmentFrame> {
+        SegmentFrame::new(self.ends, &self.colors)
+    }
+
+    /// The point that the number `u` in [0, 1) chooses for a surface at `from`, Physical; `None` where nothing can
+    /// arrive. The frame is the light's own.
+    pub fn point_for(
+        &self,
+        frame: &SegmentFrame,
+        surface: &Surface,
+        from: Vec3,
+        u: f32,
+    ) -> Option<LightPoint> {
+        let receivers = Receivers::of(surface, from);
+        let chosen = if surface.specular == Vec3::ZERO {
+            frame.matt_places(&receivers, &[u])
+        } else {
+            frame.glossy_places(&receivers, &[u])
+        };
+        self.chosen(from, chosen.u[0], chosen.arriving[0])
+    }
+
+    /// The point at that place, of which so much arrives at `from` per unit of its colour, for its density.
+    pub(super) fn chosen(&self, from: Vec3, u: f32, arriving: f32) -> Option<LightPoint> {
+        if !(arriving > 0.0 && arriving < f32::INFINITY) {
+            return None;
+        }
+        let along = self.ends[1] - self.ends[0];
+        let (direction, distance) = towards((self.ends[0] - from) + u * along)?;
+        Some(LightPoint {
+            direction,
+            distance,
+            arriving: self.colors[0].lerp(self.colors[1], u) * arriving,
+            place: [u, MIDDLE[1]],
+            density: along.length() * inverse_square(distance) / arriving,
+        })
+    }
+}
+
+impl ParallelogramLight {
+    /// What choosing its points for a place needs to know of it; `None` where it is so thin that its points are chosen
+    /// evenly.
+    pub fn frame(&self) -> Option<ParallelogramFrame> {
+        ParallelogramFrame::new(self.corner, self.edges, &self.colors, self.two_sided)
+    }
+
+    /// The point that the numbers `u` in [0, 1)² choose for a surface at `from`, Physical; `None` where nothing can arrive.
+    /// The frame is the light's own.
+    pub fn point_for(
+        &self,
+        frame: &ParallelogramFrame,
+        surface: &Surface,
+        from: Vec3,
+        u: [f32; 2],
+    ) -> Option<LightPoint> {
+        let receivers = Receivers::of(surface, from);
+        let numbers = u.map(|number| [number]);
+        let chosen = if surface.specular == Vec3::ZERO {
+            frame.matt_places(&receivers, &numbers)
+        } else {
+            frame.glossy_places(&receivers, &numbers)
+        };
+        self.chosen(from, chosen.uv.map(|[place]| place), chosen.solid_angle[0])
+    }
+
+    /// The point at that place, chosen with a density of one in `solid_angle` sr as `from` sees it.
+    pub(super) fn chosen(
+        &self,
+        from: Vec3,
+        [u, v]: [f32; 2],
+        solid_angle: f32,
+    ) -> Option<LightPoint> {
+        if !(solid_angle > 0.0 && solid_angle < f32::INFINITY) {
+            return None;
+        }
+        let offset = (self.corner - from) + u * self.edges[0] + v * self.edges[1];
+        let (direction, distance) = towards(offset)?;
+        let facing = direction.dot(self.area_normal()).abs();
+        Some(LightPoint {
+            direction,
+            distance,
+            arriving: self.color(u, v) * solid_angle,
+            place: [u, v],
+            density: facing * inverse_square(distance) / solid_angle,
+        })
+    }
 }

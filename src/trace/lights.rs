@@ -18,10 +18,6 @@
 //! know nothing of them: a light that moves by `velocity · t` is, seen from x, what the same light
 //! standing still is, seen from `x - velocity · t` ([`Lights::in_rest_frame`]).
 
-use super::Surface;
-use super::parallelogram_frame::ParallelogramFrame;
-use super::receiver::Receivers;
-use super::segment_warp::SegmentFrame;
 use super::spot_cone::SpotCone;
 use super::sun_disc::SunDisc;
 use crate::scene::Lighting;
@@ -135,7 +131,7 @@ const LEAST_SQUARED_DISTANCE: f32 = 1e-30;
 ///
 /// A light's own corner or end comes first when the way is summed up, `(corner - from) + edge`: far from the origin a
 /// sum of positions loses the digits that their difference has.
-fn towards(offset: Vec3) -> Option<(Vec3, f32)> {
+pub(super) fn towards(offset: Vec3) -> Option<(Vec3, f32)> {
     let squared = offset.length_squared();
     if (1e-20..1e30).contains(&squared) {
         let length = squared.sqrt();
@@ -150,7 +146,7 @@ fn towards(offset: Vec3) -> Option<(Vec3, f32)> {
     Some(((offset / scale) / length, length * scale))
 }
 
-fn inverse_square(distance: f32) -> f32 {
+pub(super) fn inverse_square(distance: f32) -> f32 {
     1.0 / (distance * distance).max(LEAST_SQUARED_DISTANCE)
 }
 
@@ -240,45 +236,6 @@ impl SegmentLight {
             density: 1.0,
         })
     }
-
-    /// What choosing its points for a surface needs to know of it; `None` where it has no length.
-    pub fn frame(&self) -> Option<SegmentFrame> {
-        SegmentFrame::new(self.ends, &self.colors)
-    }
-
-    /// The point that the number `u` in [0, 1) chooses for a surface at `from`, Physical; `None` where nothing can
-    /// arrive. The frame is the light's own.
-    pub fn point_for(
-        &self,
-        frame: &SegmentFrame,
-        surface: &Surface,
-        from: Vec3,
-        u: f32,
-    ) -> Option<LightPoint> {
-        let receivers = Receivers::of(surface, from);
-        let chosen = if surface.specular == Vec3::ZERO {
-            frame.matt_places(&receivers, &[u])
-        } else {
-            frame.glossy_places(&receivers, &[u])
-        };
-        self.chosen(from, chosen.u[0], chosen.arriving[0])
-    }
-
-    /// The point at that place, of which so much arrives at `from` per unit of its colour, for its density.
-    pub(super) fn chosen(&self, from: Vec3, u: f32, arriving: f32) -> Option<LightPoint> {
-        if !(arriving > 0.0 && arriving < f32::INFINITY) {
-            return None;
-        }
-        let along = self.ends[1] - self.ends[0];
-        let (direction, distance) = towards((self.ends[0] - from) + u * along)?;
-        Some(LightPoint {
-            direction,
-            distance,
-            arriving: self.colors[0].lerp(self.colors[1], u) * arriving,
-            place: [u, MIDDLE[1]],
-            density: along.length() * inverse_square(distance) / arriving,
-        })
-    }
 }
 
 impl ParallelogramLight {
@@ -317,53 +274,6 @@ impl ParallelogramLight {
             arriving: color * (facing * inverse_square(distance)),
             place: u,
             density: 1.0,
-        })
-    }
-
-    /// What choosing its points for a place needs to know of it; `None` where it is so thin that its points are chosen
-    /// evenly.
-    pub fn frame(&self) -> Option<ParallelogramFrame> {
-        ParallelogramFrame::new(self.corner, self.edges, &self.colors, self.two_sided)
-    }
-
-    /// The point that the numbers `u` in [0, 1)² choose for a surface at `from`, Physical; `None` where nothing can arrive.
-    /// The frame is the light's own.
-    pub fn point_for(
-        &self,
-        frame: &ParallelogramFrame,
-        surface: &Surface,
-        from: Vec3,
-        u: [f32; 2],
-    ) -> Option<LightPoint> {
-        let receivers = Receivers::of(surface, from);
-        let numbers = u.map(|number| [number]);
-        let chosen = if surface.specular == Vec3::ZERO {
-            frame.matt_places(&receivers, &numbers)
-        } else {
-            frame.glossy_places(&receivers, &numbers)
-        };
-        self.chosen(from, chosen.uv.map(|[place]| place), chosen.solid_angle[0])
-    }
-
-    /// The point at that place, chosen with a density of one in `solid_angle` sr as `from` sees it.
-    pub(super) fn chosen(
-        &self,
-        from: Vec3,
-        [u, v]: [f32; 2],
-        solid_angle: f32,
-    ) -> Option<LightPoint> {
-        if !(solid_angle > 0.0 && solid_angle < f32::INFINITY) {
-            return None;
-        }
-        let offset = (self.corner - from) + u * self.edges[0] + v * self.edges[1];
-        let (direction, distance) = towards(offset)?;
-        let facing = direction.dot(self.area_normal()).abs();
-        Some(LightPoint {
-            direction,
-            distance,
-            arriving: self.color(u, v) * solid_angle,
-            place: [u, v],
-            density: facing * inverse_square(distance) / solid_angle,
         })
     }
 

@@ -1,10 +1,10 @@
 //! By how much the light of lamps close by differs from what it has to be: what an error estimate needs
 //! that looks at samples alone.
 //!
-//! A point chosen uniformly on a large lamp close by misses the part that gives nearly all of the light.
-//! At height h below the middle of a lamp of area A the squared relative error of one such sample is about
-//! A/(3πh²), ∫ (h²/(ρ²+h²)²)² over the lamp against the square of the mean; along a segment of length l it
-//! is 3πl/(32h). All of a picture's samples may agree there and be far off. But what arrives where nothing is in the way
+//! A point chosen evenly on a large lamp close by misses the part that gives nearly all of the light: at height h below
+//! the middle of a lamp of area A the squared relative error of one such sample is about A/(3πh²),
+//! ∫ (h²/(ρ²+h²)²)² over the lamp against the square of the mean; along a segment of length l it is 3πl/(32h). Points are
+//! not chosen so (`parallelogram_warp`, `segment_warp`), and little of that is left. But what arrives where nothing is in the way
 //! is known in closed form: a polygon's by Lambert's formula (Baum, Rushmeier and Winget 1989, "Improving
 //! radiosity solutions through the use of analytically determined form factors", eq. 6), a segment's by
 //! integrating n·r/|r|³ along it. So where a lamp is close, the tracer tells by how much its points'

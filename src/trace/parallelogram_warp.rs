@@ -24,7 +24,7 @@ use super::parallelogram_frame::{Lines, ParallelogramFrame, Views};
 use super::piecewise::{choose, larger, smaller, within_one};
 use super::polynomials::{exp2, log2};
 use super::receiver::Receivers;
-use std::f32::consts::SQRT_2;
+use std::f32::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 /// Below this solid angle in sr digits of t and q get scarce.
 const LEAST_SOLID_ANGLE: f32 = 1e-4;
@@ -183,6 +183,10 @@ impl ParallelogramFrame {
     }
 
     /// What the density per q is to be at five places of the lines.
+    #[expect(
+        clippy::needless_range_loop,
+        reason = "every column is read at the same place"
+    )]
     #[inline(always)]
     fn nodes<const GLOSSY: bool, const EVEN: bool, const NODES: usize, const N: usize>(
         &self,
@@ -201,11 +205,11 @@ impl ParallelogramFrame {
                 let root = if GLOSSY {
                     larger(2.0 - square, 0.0).sqrt()
                 } else {
-                    1.414_2 - square * (0.353_6 + 0.060_6 * square)
+                    SQRT_2 - square * (0.353_6 + 0.060_6 * square)
                 };
                 let s = q * root;
                 // ds/dq is 2c over the root, and that is nearly this.
-                let stretch = c * (0.707_1 + square * (0.176_8 + 0.116_1 * square));
+                let stretch = c * (FRAC_1_SQRT_2 + square * (0.176_8 + 0.116_1 * square));
                 let cosine = c * lines.normal[i] + s * views.normal[2][i];
                 let mut node = larger(cosine, 0.0) * stretch;
                 if GLOSSY {

@@ -1,6 +1,8 @@
 //! Functions of a stated error that a loop over columns can compute for several items at once, which those of the
 //! platform's library cannot: plain operations on floats and their bits, the same on every machine.
 
+use std::f32::consts::LN_2;
+
 /// 1.5 · 2²³: a float of at most 2²² that this is added to is rounded to a whole number in its last bits.
 const ROUNDS: f32 = 12_582_912.0;
 
@@ -26,7 +28,7 @@ pub(super) fn exp2(x: f32) -> f32 {
     let x = x.max(-126.0);
     let shifted = x + ROUNDS;
     let f = x - (shifted - ROUNDS);
-    let p = 1.0 + f * (0.693_147 + f * (0.240_227 + f * (0.055_504 + f * 0.009_618)));
+    let p = 1.0 + f * (LN_2 + f * (0.240_227 + f * (0.055_504 + f * 0.009_618)));
     // The whole number, as it stands in the last bits, times 2²³ is what an exponent adds.
     f32::from_bits(p.to_bits().wrapping_add(shifted.to_bits() << 23))
 }

@@ -216,6 +216,10 @@ impl SegmentFrame {
     }
 
     /// What the density is to be at places evenly spaced in w.
+    #[expect(
+        clippy::needless_range_loop,
+        reason = "every column is read at the same place"
+    )]
     #[inline(always)]
     fn nodes<const GLOSSY: bool, const N: usize>(
         &self,

@@ -4,7 +4,7 @@ use super::Numbers;
 use glam::{DVec3, Vec3};
 use glassbox::scene::Lighting;
 use glassbox::trace::shading::reflected;
-use glassbox::trace::{LightPoint, ParallelogramLight, SegmentLight, Surface};
+use glassbox::trace::{LightPoint, ParallelogramLight, Receivers, SegmentLight, Surface};
 
 fn panel(corner: Vec3, edges: [Vec3; 2], colors: [f32; 4]) -> ParallelogramLight {
     ParallelogramLight {
@@ -326,4 +326,59 @@ fn the_mean_over_a_segment_is_the_integral_over_it_whatever_its_colours_and_the_
         compared += 1;
     }
     assert!(worst < 1e-4, "{worst:e}");
+}
+
+#[test]
+fn points_for_many_receivers_together_are_those_for_each_alone() {
+    const N: usize = 64;
+    let mut numbers = Numbers(16);
+    let colors = [Vec3::ONE, Vec3::X, Vec3::Y, Vec3::Z];
+    let edges = [numbers.point(-1.0, 1.0), numbers.point(-1.0, 1.0)];
+    let light = ParallelogramLight {
+        colors,
+        ..panel(Vec3::ZERO, edges, [1.0; 4])
+    };
+    let line = segment([Vec3::ZERO, edges[0]], [1.0, 2.0]);
+    let (frame, line_frame) = (light.frame().unwrap(), line.frame().unwrap());
+    let mut columns = |low: f32, high: f32| [(); N].map(|()| numbers.between(low, high));
+    let many = Receivers {
+        from: [(); 3].map(|()| columns(-2.0, 2.0)),
+        normal: [(); 3].map(|()| columns(-0.6, 0.6)),
+        mirrored: [(); 3].map(|()| columns(-0.6, 0.6)),
+        diffuse: columns(0.0, 1.0),
+        specular: columns(0.0, 1.0),
+        shininess: columns(1.0, 100.0),
+    };
+    let u = [columns(0.0, 1.0), columns(0.0, 1.0)];
+    let panels = [frame.matt_places(&many, &u), frame.glossy_places(&many, &u)];
+    let lines = [
+        line_frame.matt_places(&many, &u[0]),
+        line_frame.glossy_places(&many, &u[0]),
+    ];
+    for i in 0..N {
+        let alone = |column: &[f32; N]| [column[i]];
+        let one = Receivers {
+            from: many.from.each_ref().map(alone),
+            normal: many.normal.each_ref().map(alone),
+            mirrored: many.mirrored.each_ref().map(alone),
+            diffuse: alone(&many.diffuse),
+            specular: alone(&many.specular),
+            shininess: alone(&many.shininess),
+        };
+        let u = u.each_ref().map(alone);
+        let of_one = [frame.matt_places(&one, &u), frame.glossy_places(&one, &u)];
+        for (many, one) in panels.iter().zip(&of_one) {
+            let found = [many.uv[0][i], many.uv[1][i], many.solid_angle[i]];
+            let expected = [one.uv[0][0], one.uv[1][0], one.solid_angle[0]];
+            assert_eq!(found.map(f32::to_bits), expected.map(f32::to_bits));
+        }
+        let of_one = [
+            line_frame.matt_places(&one, &u[0]),
+            line_frame.glossy_places(&one, &u[0]),
+        ];
+        for (many, one) in lines.iter().zip(&of_one) {
+            let found = [many.u[i], many.arriving[i]].map(f32::to_bits);
+            assert_eq!(found, [one.u[0], one.arriving[0]].map(f32::to_bits));
+        }
+    }
 }

@@ -4,7 +4,7 @@ use super::{RED, Scene, WHITE, expect, is_color, is_near, segment};
 use crate::analytic::{object, quad, world};
 use glam::{Vec2, Vec3};
 use glassbox::inspect::{InspectSettings, LineSet, MissColor, RaySettings, System};
-use glassbox::scene::{PhongMap, PixelSampling, Projection};
+use glassbox::scene::{Lighting, PhongMap, PixelSampling, Projection};
 use glassbox::trace::{
     Camera, Environment, Lights, Map, Material, Mesh, Object, ParallelogramLight, PointLight,
     SegmentLight, Texels, Texture,
@@ -169,9 +169,9 @@ fn s4_every_light_sample_has_its_ray_and_area_lights_show_their_gradients() {
         parallelograms: vec![area_light(16)],
         ..Lights::default()
     });
-    let scene = Scene::of(world, camera());
-    let set = rays(&scene);
-    let ends_at = |height: f32| {
+    let mut scene = Scene::of(world, camera());
+    let ends_at = |scene: &Scene, height: f32| {
+        let set = rays(scene);
         let from_origin = set
             .segments
             .iter()
@@ -181,18 +181,26 @@ fn s4_every_light_sample_has_its_ray_and_area_lights_show_their_gradients() {
             .filter(|end| (end.y - height).abs() < 1e-3)
             .collect::<Vec<Vec3>>()
     };
-    let (square, line) = (ends_at(2.0), ends_at(1.5));
-    assert_eq!((square.len(), line.len()), (16, 3));
-    assert!(square.iter().all(|p| p.x.abs() <= 0.5 && p.z.abs() <= 0.5));
-    // Stratified: one in each of the sixteen cells.
-    let mut cells: Vec<i32> = square
-        .iter()
-        .map(|p| ((p.x + 0.5) * 4.0) as i32 * 4 + ((p.z + 0.5) * 4.0) as i32)
-        .collect();
-    cells.sort_unstable();
-    cells.dedup();
-    assert_eq!(cells.len(), 16);
-    assert!(line.iter().all(|p| p.x.abs() <= 1.0 && p.z.abs() < 1e-3));
+    for lighting in [Lighting::Physical, Lighting::Classic] {
+        scene.settings.lighting = lighting;
+        let (square, line) = (ends_at(&scene, 2.0), ends_at(&scene, 1.5));
+        assert_eq!((square.len(), line.len()), (16, 3), "{lighting:?}");
+        assert!(square.iter().all(|p| p.x.abs() <= 0.5 && p.z.abs() <= 0.5));
+        assert!(line.iter().all(|p| p.x.abs() <= 1.0 && p.z.abs() < 1e-3));
+        let mut cells: Vec<i32> = square
+            .iter()
+            .map(|p| ((p.x + 0.5) * 4.0) as i32 * 4 + ((p.z + 0.5) * 4.0) as i32)
+            .collect();
+        cells.sort_unstable();
+        cells.dedup();
+        // Chosen evenly there is one in each of the sixteen cells; else brighter cells have more.
+        let is_even = cells.len() == 16;
+        assert_eq!(
+            is_even,
+            lighting == Lighting::Classic,
+            "{lighting:?}: {cells:?}"
+        );
+    }
 
     let lights = scene.lines(System::Lights, &InspectSettings::default());
     let color_at = |place: Vec3| {

@@ -168,6 +168,8 @@ impl Recomputed {
         // As seen by one who moves with the light.
         let from = vector(&hit["position"]) - self.way(ray, &sample["id"]);
         let physical = self.physical();
+        // A likelier place counts less.
+        let density = number(&sample["density"]);
         // What would arrive inside the cone, or from straight before the light.
         let mut full = 0.0_f64;
         let arriving = match kind {
@@ -191,7 +193,7 @@ impl Recomputed {
                 let way = a.lerp(b, u) - from;
                 let color = vector(&light["colors"][0]).lerp(vector(&light["colors"][1]), u);
                 if physical {
-                    color * (b - a).length() / way.length_squared()
+                    color * (b - a).length() / (way.length_squared() * density)
                 } else {
                     color
                 }
@@ -201,14 +203,15 @@ impl Recomputed {
                 let way = vector(&light["corner"]) + u * a + v * b - from;
                 let color = bilinear(light, u, v);
                 if physical {
-                    full = color.max_element() * a.cross(b).length() / way.length_squared();
+                    let squared = way.length_squared() * density;
+                    full = color.max_element() * a.cross(b).length() / squared;
                     let cosine = -way.normalize().dot(a.cross(b));
                     let cosine = if light["two_sided"] == true {
                         cosine.abs()
                     } else {
                         cosine
                     };
-                    color * cosine / way.length_squared()
+                    color * cosine / squared
                 } else {
                     color
                 }

@@ -189,15 +189,6 @@ impl Lamp {
         scene.with_needs()
     }
 
-    /// How many times the true error may be told. Few bright points along a segment move the mean of a pixel
-    /// by more than they leave it off by: what is known is less there than what the moves say.
-    fn most_told(self) -> f64 {
-        match self {
-            Self::Panel(_) => 2.0,
-            Self::Segment(_) => 3.0,
-        }
-    }
-
     /// Radiance of a place of the floor. A panel's by the form factor of a parallel rectangle, from its
     /// four quarters (Siegel and Howell, "Thermal Radiation Heat Transfer", configuration B-3).
     fn radiance(self, x: f64, z: f64) -> f64 {
@@ -271,7 +262,7 @@ pub(super) fn near_lamps(effort: &Effort) -> Outcome {
                 (least, most) = (least.min(factor), most.max(factor));
                 samples += truth.len() * spp as usize;
             }
-            if least < 0.5 || most > lamp.most_told() {
+            if least < 0.5 || most > 2.0 {
                 faults.push(format!("{name}, {spp} spp: {least:.2} to {most:.2}"));
             }
             factors.push(format!("{least:.2}–{most:.2}"));

@@ -306,7 +306,7 @@ pub(super) static CASES: &[Case] = &[
     case(
         37,
         "lamps close up: a panel and a segment 1 mm to 10 cm above a floor",
-        "told / true error 0.5 to 2 at 16, 64, 256 spp; to 3 at a segment",
+        "told / true error 0.5 to 2 at 16, 64, 256 spp",
         errors::near_lamps,
     ),
     case(
