@@ -15,6 +15,7 @@ mod nodes;
 mod primitive;
 mod read;
 mod rest;
+mod texture;
 mod uri;
 mod write;
 

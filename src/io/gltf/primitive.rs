@@ -6,8 +6,9 @@ use super::super::model::triangle_mesh;
 use super::accessors::{colors, floats, indices};
 use super::document::Document;
 use super::json::Json;
-use super::material::{TextureInfo, is_unlit, placing_texture};
+use super::material::{is_unlit, placing_texture};
 use super::rest::Pose;
+use super::texture::TextureInfo;
 use bevy::math::Vec2;
 use bevy::mesh::Mesh;
 

@@ -9,6 +9,7 @@ use super::super::place::world_from;
 use super::super::replace::Staged;
 use super::stem_of;
 use super::write_mtl::{Library, library, text_of};
+use crate::trace::srgb;
 use bevy::asset::Assets;
 use bevy::math::{Affine3A, Mat3A, Vec3};
 use bevy::mesh::Mesh;
@@ -181,7 +182,8 @@ fn write_object(
             .transform_point3(position.into())
             .to_array();
         write!(out, "v {x} {y} {z}")?;
-        if let Some([r, g, b, _]) = colors.next() {
+        if let Some(&[r, g, b, _]) = colors.next() {
+            let [r, g, b] = [r, g, b].map(srgb::encode);
             write!(out, " {r} {g} {b}")?;
         }
         writeln!(out)?;

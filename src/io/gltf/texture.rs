@@ -1,0 +1,159 @@
+//! How materials use pictures: which, where they lie on a mesh, and how they are read.
+
+use super::super::file_name::{encoded, of_file, split_fragment};
+use super::super::picture::PictureUse;
+use super::document::{Document, Picture};
+use super::json::Json;
+use super::read::read_texture;
+use crate::scene::{MapFilter, TextureSource, Wrap};
+use bevy::math::{Affine2, Vec2};
+
+/// How a material uses a texture.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct TextureInfo {
+    pub texture: usize,
+    /// Which set of texture coordinates.
+    pub set: usize,
+    /// Moves them.
+    pub transform: Option<Affine2>,
+}
+
+impl TextureInfo {
+    pub fn of(json: Json) -> Option<Self> {
+        let texture = json.index("index")?;
+        let set = json.index("texCoord").unwrap_or(0);
+        let Some(transform) = json.extension("KHR_texture_transform") else {
+            return Some(Self {
+                texture,
+                set,
+                transform: None,
+            });
+        };
+        let pair = |key, otherwise| transform.numbers::<2>(key).unwrap_or(otherwise);
+        // It turns counter-clockwise as seen in a picture whose v points down.
+        let affine = Affine2::from_scale_angle_translation(
+            pair("scale", [1.0; 2]).into(),
+            -transform.number("rotation").unwrap_or(0.0),
+            Vec2::from(pair("offset", [0.0; 2])),
+        );
+        Some(Self {
+            texture,
+            set: transform.index("texCoord").unwrap_or(set),
+            transform: Some(affine),
+        })
+    }
+}
+
+/// The alpha channel of a picture.
+pub(super) fn alpha_of(picture: &TextureSource) -> TextureSource {
+    let has_part = !split_fragment(&picture.path).1.is_empty();
+    let separator = if has_part { "." } else { "#" };
+    TextureSource {
+        path: format!("{}{separator}alpha", picture.path),
+        ..picture.clone()
+    }
+}
+
+const NEAREST: usize = 9728;
+const LINEAR: usize = 9729;
+const REPEAT: usize = 10_497;
+const CLAMP_TO_EDGE: usize = 33_071;
+const MIRRORED_REPEAT: usize = 33_648;
+
+/// How a texture is read beyond its edges and between its pixels.
+fn sampled(document: &Document, texture: usize, path: String) -> TextureSource {
+    let json = document.json();
+    let sampler = json
+        .element("textures", texture)
+        .and_then(|texture| texture.index("sampler"))
+        .and_then(|sampler| json.element("samplers", sampler));
+    let Some(sampler) = sampler else {
+        return TextureSource::new(path);
+    };
+    let wrap = |key| match sampler.index(key) {
+        Some(CLAMP_TO_EDGE) => Wrap::Clamp,
+        Some(MIRRORED_REPEAT) => Wrap::Mirror,
+        _ => Wrap::Repeat,
+    };
+    // How a picture is made smaller is a setting of the render.
+    sampler.index("minFilter");
+    TextureSource {
+        path,
+        wrap_u: wrap("wrapS"),
+        wrap_v: wrap("wrapT"),
+        filter: match sampler.index("magFilter") {
+            Some(NEAREST) => MapFilter::Nearest,
+            Some(LINEAR) => MapFilter::Linear,
+            _ => MapFilter::Setting,
+        },
+    }
+}
+
+/// The sampler of such a texture; `None` where it is what a texture without one has.
+pub(super) fn sampler_json(source: &TextureSource) -> Option<serde_json::Value> {
+    let wrap = |wrap| match wrap {
+        Wrap::Repeat => REPEAT,
+        Wrap::Clamp => CLAMP_TO_EDGE,
+        Wrap::Mirror => MIRRORED_REPEAT,
+    };
+    let TextureSource {
+        wrap_u,
+        wrap_v,
+        filter,
+        ..
+    } = source;
+    let mut json = serde_json::json!({ "wrapS": wrap(*wrap_u), "wrapT": wrap(*wrap_v) });
+    match filter {
+        MapFilter::Setting if (*wrap_u, *wrap_v) == (Wrap::Repeat, Wrap::Repeat) => return None,
+        MapFilter::Setting => {}
+        MapFilter::Nearest => json["magFilter"] = NEAREST.into(),
+        MapFilter::Linear => json["magFilter"] = LINEAR.into(),
+    }
+    Some(json)
+}
+
+/// How scenes name the picture of a texture. One that is not there is noted.
+pub(super) fn texture_source(document: &Document, texture: usize) -> Option<TextureSource> {
+    let path = match document.texture(texture) {
+        Ok(Picture::Beside(path)) => of_file(path),
+        Ok(Picture::Inside(_)) => {
+            let file = document.file.file_name().unwrap_or_default();
+            format!("{}#texture{texture}", encoded(file))
+        }
+        Err(error) => {
+            let what = error.problem.to_string();
+            let instead = "its materials have no picture there";
+            let mut notes = document.notes.borrow_mut();
+            notes.add(&error.file, error.place, what, instead);
+            return None;
+        }
+    };
+    Some(sampled(document, texture, path))
+}
+
+/// The mean of a picture's red, green and blue as numbers.
+pub(super) fn mean(document: &Document, texture: usize) -> Option<[f32; 3]> {
+    let image = read_texture(
+        document,
+        &format!("texture{texture}"),
+        PictureUse::Data,
+        &mut Vec::new(),
+    )
+    .ok()?;
+    let pixels = image.width() as usize * image.height() as usize;
+    let data = image.data?;
+    let mut sums = [0_u64; 3];
+    let pixel_bytes = data.len().checked_div(pixels)?;
+    // The upper bytes of 16 bits are near enough.
+    let step = match pixel_bytes {
+        4 => 1,
+        8 => 2,
+        _ => return None,
+    };
+    for pixel in data.chunks_exact(pixel_bytes) {
+        for (channel, sum) in sums.iter_mut().enumerate() {
+            *sum += u64::from(pixel[channel * step + step - 1]);
+        }
+    }
+    Some(sums.map(|sum| (sum as f64 / pixels as f64 / 255.0) as f32))
+}
