@@ -50,10 +50,11 @@ impl Dice {
     }
 
     pub fn phong(&mut self) -> Phong {
+        let (diffuse, specular) = (self.color(), self.color());
         Phong {
-            diffuse: self.color(),
-            specular: self.color(),
-            mirror: self.color(),
+            diffuse,
+            specular,
+            mirror: specular,
             shininess: 2.0 + self.number(),
             ..Phong::default()
         }
