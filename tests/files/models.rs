@@ -382,7 +382,7 @@ fn an_obj_says_whether_a_material_mirrors_and_has_one_colour_for_it() {
         first.update();
         let file = folder.path().join("a.obj");
         let notes = save(first.world_mut(), &file).unwrap_or_else(|error| panic!("{error}"));
-        let noted = notes.iter().any(|note| note.contains("mirror"));
+        let noted = notes.iter().any(|note| note.what.contains("mirror"));
         assert_eq!(noted, is_noted, "{written:?}: {notes:?}");
         let (mut second, _) = opened(&file);
         let phong = &objects(second.world_mut())[0].1;
@@ -438,7 +438,11 @@ fn a_glb_keeps_cutoffs_samplers_normals_glow_and_the_colours_of_vertices() {
     drop(mesh);
     let file = folder.path().join("a.glb");
     let notes = save(first.world_mut(), &file).unwrap_or_else(|error| panic!("{error}"));
-    assert_eq!(notes, ["material `box`: its specular map was left out"]);
+    let notes = notes.lines();
+    assert!(
+        notes.len() == 1 && notes[0].contains("the specular map of the material `box`; left out"),
+        "{notes:?}"
+    );
     let (mut second, opened) = opened(&file);
     let told = opened.notes.lines();
     assert!(
