@@ -63,7 +63,10 @@ fn materials(bencher: Bencher, name: &str) {
     bencher.bench_local(|| specimen.picture());
 }
 
-const MATERIALS: [(&str, fn(&mut Specimen)); 6] = [
+/// What is done to a scene.
+type Change = fn(&mut Specimen);
+
+const MATERIALS: [(&str, Change); 6] = [
     ("plain", |_| {}),
     ("diffuse map", Specimen::texture),
     ("normal map", |specimen| {

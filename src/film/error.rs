@@ -193,10 +193,10 @@ const INDEPENDENT: f64 = 0.5;
 /// The least r that is believed: a smooth light has 0.16 (its error falls like N^-1.3).
 const LEAST: f64 = 0.125;
 /// What r is before anything is measured. Edges have 2^-1.5 = 0.35, edges behind a lens, in motion or
-/// in a penumbra up to 0.5. Over the built-in scenes, six seeds and 16 to 64 samples (64 × 64 pixels,
+/// in a penumbra up to 0.5. Over the built-in scenes, four seeds and 16 to 64 samples (64 × 64 pixels,
 /// against the mean of the other seeds' 256 samples) this puts the middle of the estimated error at
 /// 1.1 times the true one.
-const USUAL: f64 = 0.44;
+const USUAL: f64 = 0.43;
 /// The exponent of the measured r in the geometric mean of both. A few pixels make most of a picture's
 /// error, so the measured r is noisy: with 1, many more estimates are too small than with 0.2.
 const MEASURED: f64 = 0.2;

@@ -109,15 +109,6 @@ pub(crate) fn gather(world: &mut World, file: &Path) -> Exported {
     let settings = world.get_resource::<RenderSettings>();
     let is_set = settings.is_some_and(|settings| *settings != RenderSettings::default());
     note(is_set.into(), "the render settings");
-    let meshes = world.get_resource::<Assets<Mesh>>();
-    let is_colored = |object: &&Object| {
-        let mesh = meshes.and_then(|meshes| meshes.get(object.mesh));
-        mesh.is_some_and(|mesh| mesh.contains_attribute(Mesh::ATTRIBUTE_COLOR))
-    };
-    for object in out.objects.iter().filter(is_colored) {
-        let what = "vertex colours of";
-        (out.notes).add_named(file, Place::Whole, what, &object.name, LEFT_OUT);
-    }
     out.entities = entities
         .into_iter()
         .filter(|&entity| !is_only_a_material(world, entity))

@@ -11,7 +11,7 @@ use crate::instruction_sets::vectorized;
 use glam::Vec3;
 
 /// Vertices that are done together: what fills the widest vectors.
-const LANES: usize = 16;
+const LANES: usize = 32;
 
 /// A place of a light, chosen for a vertex.
 #[derive(Clone, Copy, Debug, Default)]

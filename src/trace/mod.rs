@@ -2,8 +2,9 @@
 //!
 //! [`World`] is everything a ray may ask for, as flat arrays. [`Camera`] turns a place in the
 //! picture into a ray. [`radiance`](radiance()) takes a batch of [`SampleId`]s and gives each its
-//! value, going bounce by bounce: all rays of a bounce are handed to the trees together, then all
-//! hits are shaded, then all their shadow rays are handed over together.
+//! value, going bounce by bounce, and in each stage by stage: all rays are handed to the trees together, all hits become
+//! vertices, and for one light after another all of them get points of it, and the trees their shadow rays together.
+//! Where a stage costs much it is a loop over columns, compiled for each instruction set.
 //!
 //! A sample's randomness depends on its pixel, its index and the seed alone ([`Sampler`]), so a
 //! sample can be evaluated again by itself, in any order, on any thread, with the same result.

@@ -57,6 +57,9 @@ vectorized! {
     }
 }
 
+/// Fills two columns, for a purpose, from those of [`Asking`].
+type OfSobol = fn(u32, &[u32], &[u32], &[u64], &mut [f32], &mut [f32]);
+
 /// Two numbers in [0, 1) for each who asked.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pairs {
@@ -98,7 +101,7 @@ impl Pairs {
         asking: &Asking,
         purpose: Purpose,
         settings: &RenderSettings,
-        sobol: fn(u32, &[u32], &[u32], &[u64], &mut [f32], &mut [f32]),
+        sobol: OfSobol,
         of_block: fn([f32; 4]) -> [f32; 2],
     ) {
         let Asking {

@@ -272,8 +272,10 @@ impl<R: Recorder> Batch<'_, R> {
     fn find_nearest(&self, paths: &Paths, hits: &mut Vec<Option<Hit>>, behind: &mut Behind) {
         let aggregate = &self.world.aggregate;
         if paths.straight.is_empty() {
-            // Neighbouring pixels' rays start out as neighbours; after a bounce they may go anywhere.
-            let order = if paths.states.is_empty() {
+            let features = &self.settings.features;
+            let is_scattered = features.glossy || features.translucency;
+            // Rays of neighbouring pixels are neighbours, and their mirrored ones often are.
+            let order = if paths.states.is_empty() || !is_scattered {
                 Order::Tile
             } else {
                 Order::None

@@ -5,6 +5,7 @@ mod exports;
 mod framing;
 mod gltf;
 mod gltf_rest;
+mod materials;
 pub mod models;
 mod names;
 mod obj;

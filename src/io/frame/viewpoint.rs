@@ -7,7 +7,7 @@
 
 use super::surface::Surface;
 use crate::scene::Projection;
-use bevy::math::{Affine3A, Vec3};
+use bevy::math::Vec3;
 use bevy::transform::components::Transform;
 use rayon::prelude::*;
 use std::f32::consts::FRAC_PI_3;
@@ -76,7 +76,7 @@ pub(super) fn framing(surface: &Surface) -> Transform {
 
 /// What a camera sees of everything, in pixels.
 fn shown(surface: &Surface, eye: &Transform, tangent: f32) -> f32 {
-    let view_from_world = Affine3A::from(eye.compute_affine().inverse());
+    let view_from_world = eye.compute_affine().inverse();
     // 1 / distance of the nearest so far, and what it counts.
     let mut pixels = vec![(0.0_f32, 0.0_f32); SIDE * SIDE];
     let mut left = MOST_PIXELS;

@@ -1,0 +1,155 @@
+#!/usr/bin/env python3
+"""Time and error of one scene, by Glassbox and, where it is installed, by Mitsuba 3 on the same machine in turns.
+
+    python3 -m venv v && v/bin/pip install numpy OpenEXR mitsuba     # and LLVM's library, for Mitsuba's fast variant
+    v/bin/python benches/peers.py target/release/glassbox model.obj [--size 800] [--threads 2] [--runs 5]
+
+The scene is a model scaled to a cube of edge 1, matt, all of one grey, under one square lamp of radiance 10 that faces down and
+is not seen itself; direct light only, a box filter, no denoiser. Errors are the root of the mean squared difference to the
+renderer's own picture of 1024 samples a pixel.
+"""
+import argparse, json, os, subprocess, sys, tempfile, time
+import numpy as np
+import OpenEXR
+
+EYE, UP, FIELD_OF_VIEW = np.array([-0.964, 1.026, -2.649]), np.array([0.117, 0.94, 0.321]), 50.0
+CORNER, EDGES, RADIANCE, GREY = (-0.2, 0.55, -0.2), ((0.4, 0.0, 0.0), (0.0, 0.0, 0.4)), 10.0, 0.8
+
+
+def triangles(path):
+    """The corners of an OBJ's triangles, polygons as fans, scaled to the unit cube about the origin."""
+    vertices, faces = [], []
+    for line in open(path, errors="replace"):
+        words = line.split()
+        if words[:1] == ["v"]:
+            vertices.append([float(word) for word in words[1:4]])
+        elif words[:1] == ["f"]:
+            corners = [int(word.split("/")[0]) for word in words[1:]]
+            corners = [corner - 1 if corner > 0 else len(vertices) + corner for corner in corners]
+            faces += [[corners[0], corners[i], corners[i + 1]] for i in range(1, len(corners) - 1)]
+    corners = np.array(vertices)[np.array(faces)]
+    low, high = corners.min((0, 1)), corners.max((0, 1))
+    return (corners - 0.5 * (low + high)) / (high - low).max()
+
+
+def write_glassbox(folder, corners, size):
+    with open(os.path.join(folder, "model.obj"), "w") as out:
+        out.writelines("v %.9g %.9g %.9g\n" % tuple(corner) for corner in corners.reshape(-1, 3))
+        out.write("o model\n")
+        out.writelines(f"f {3 * i + 1} {3 * i + 2} {3 * i + 3}\n" for i in range(len(corners)))
+    back = EYE / np.linalg.norm(EYE)
+    right = np.cross(UP, back)
+    right /= np.linalg.norm(right)
+    m = np.stack([right, np.cross(back, right), back], 1)
+    w = 0.5 * np.sqrt(max(0.0, 1.0 + np.trace(m)))
+    turn = [(m[2, 1] - m[1, 2]) / (4 * w), (m[0, 2] - m[2, 0]) / (4 * w), (m[1, 0] - m[0, 1]) / (4 * w), w]
+
+    def tuple_of(numbers):
+        return "(" + ", ".join("%.9g" % number for number in numbers) + ")"
+
+    def entity(number, at, rotation, components):
+        transform = f"(translation: {tuple_of(at)}, rotation: {tuple_of(rotation)}, scale: (1.0, 1.0, 1.0))"
+        return (f'{number}: (components: {{"glassbox::scene::SceneId": ({number}), '
+                f'"bevy_transform::components::transform::Transform": {transform}, {components}}}),\n')
+
+    still = (0, 0, 0, 1)
+    grey = f"(red: {GREY}, green: {GREY}, blue: {GREY}, alpha: 1.0)"
+    black = "(red: 0.0, green: 0.0, blue: 0.0, alpha: 1.0)"
+    edges = ", ".join(tuple_of(edge) for edge in EDGES)
+    entities = entity(1, EYE, turn, '"glassbox::scene::SceneCamera": (projection: Perspective(fov_y: %.9g))'
+                      % np.radians(FIELD_OF_VIEW))
+    entities += entity(2, (0, 0, 0), still, f'"glassbox::scene::ParallelogramLamp": (corner: {tuple_of(CORNER)}, '
+                       f'edges: ({edges}), intensity: {RADIANCE}, visible: false)')
+    entities += entity(3, (0, 0, 0), still, '"glassbox::scene::MeshSource": File(path: "model.obj", name: "model"), '
+                       f'"glassbox::scene::Phong": (diffuse: {grey}, specular: {black}, mirror: {black})')
+    scene = os.path.join(folder, "scene.scn.ron")
+    with open(scene, "w") as out:
+        out.write('(resources: {"glassbox::io::FileVersion": (2), "glassbox::scene::RenderSettings": '
+                  f"(size: ({size}, {size}))}}, entities: {{{entities}}})")
+    return scene
+
+
+class Glassbox:
+    def __init__(self, program, folder, corners, size, threads):
+        self.program, self.threads = program, threads
+        self.scene, self.picture = write_glassbox(folder, corners, size), os.path.join(folder, "picture.exr")
+        self.name = "Glassbox"
+
+    def render(self, spp, seed):
+        words = [self.program, "render", self.scene, "-o", self.picture, "--spp", str(spp), "--seed", str(seed)]
+        words += ["--threads", str(self.threads), "--stats", self.picture + ".json", "--quiet"]
+        subprocess.run(words, check=True)
+        seconds = json.load(open(self.picture + ".json"))["render_ms"] / 1e3
+        return OpenEXR.File(self.picture).channels()["RGB"].pixels.astype("f4"), seconds
+
+
+class Mitsuba:
+    def __init__(self, corners, size, threads):
+        import drjit as dr, mitsuba as mi
+        variant = "llvm_ad_rgb" if "llvm_ad_rgb" in mi.variants() else "scalar_rgb"
+        mi.set_variant(variant)
+        dr.set_thread_count(threads)
+        mesh = mi.Mesh("model", 3 * len(corners), len(corners))
+        parameters = mi.traverse(mesh)
+        parameters["vertex_positions"] = corners.reshape(-1).astype("f4")
+        parameters["faces"] = np.arange(3 * len(corners), dtype="u4")
+        parameters.update()
+        file = os.path.join(tempfile.mkdtemp(), "model.ply")
+        mesh.write_ply(file)
+        first, second = map(np.array, EDGES)
+        to_world = np.eye(4)
+        to_world[:3, 0], to_world[:3, 1] = first / 2, second / 2
+        normal = np.cross(first, second)
+        to_world[:3, 2], to_world[:3, 3] = normal / np.linalg.norm(normal), np.array(CORNER) + (first + second) / 2
+        transform = mi.ScalarTransform4f
+        film = {"type": "hdrfilm", "width": size, "height": size, "rfilter": {"type": "box"}, "pixel_format": "rgb",
+                "component_format": "float32"}
+        lamp = {"type": "area", "radiance": {"type": "rgb", "value": RADIANCE}}
+        matt = {"type": "twosided", "matt": {"type": "diffuse", "reflectance": {"type": "rgb", "value": GREY}}}
+        self.scene = mi.load_dict({
+            "type": "scene",
+            "integrator": {"type": "direct", "emitter_samples": 1, "bsdf_samples": 0},
+            "sensor": {"type": "perspective", "fov": FIELD_OF_VIEW, "fov_axis": "y", "film": film,
+                       "to_world": transform().look_at(EYE.tolist(), [0, 0, 0], UP.tolist()),
+                       "sampler": {"type": "multijitter"}},
+            "model": {"type": "ply", "filename": file, "face_normals": True, "bsdf": matt},
+            "lamp": {"type": "rectangle", "to_world": transform(to_world), "emitter": lamp}})
+        self.mi, self.name = mi, f"Mitsuba {mi.__version__} {variant}"
+
+    def render(self, spp, seed):
+        start = time.time()
+        picture = np.array(self.mi.render(self.scene, spp=spp, seed=seed))
+        return picture, time.time() - start
+
+
+def main():
+    options = argparse.ArgumentParser()
+    options.add_argument("glassbox")
+    options.add_argument("model")
+    options.add_argument("--size", type=int, default=800)
+    options.add_argument("--threads", type=int, default=os.cpu_count())
+    options.add_argument("--runs", type=int, default=5)
+    options = options.parse_args()
+    corners = triangles(options.model)
+    with tempfile.TemporaryDirectory() as folder:
+        renderers = [Glassbox(options.glassbox, folder, corners, options.size, options.threads)]
+        try:
+            renderers.append(Mitsuba(corners, options.size, options.threads))
+        except ImportError as error:
+            print(f"without Mitsuba: {error}", file=sys.stderr)
+        references = []
+        for renderer in renderers:
+            renderer.render(1, 0)
+            references.append(renderer.render(1024, 99)[0])
+            print(f"{renderer.name}: mean {references[-1].mean():.5f}")
+        for spp in (1, 4, 16, 64):
+            runs = [[renderer.render(spp, 1 + run) for renderer in renderers] for run in range(options.runs)]
+            for i, renderer in enumerate(renderers):
+                seconds = np.median([run[i][1] for run in runs])
+                error = np.sqrt(np.mean([((run[i][0] - references[i]) ** 2).mean() for run in runs]))
+                print(f"{spp:4} spp  {renderer.name:28} {seconds:8.4f} s  rmse {error:.5f}  "
+                      f"{options.size ** 2 * spp / seconds / 1e6:7.1f} million samples/s")
+
+
+if __name__ == "__main__":
+    main()
