@@ -105,6 +105,8 @@ pub(super) struct Scratch {
     /// The same as `values`.
     colors: Vec<[f32; 3]>,
     workspace: Workspace,
+    /// When others last had the core for the asking.
+    gave_way: Option<Instant>,
     /// `TILE_PIXELS` for each segment of the chunk.
     pub sums: Vec<Sum>,
     /// As many, of what lamps close by add too much; none where no sample met one.
@@ -122,6 +124,7 @@ impl Default for Scratch {
             values: Vec::new(),
             colors: Vec::new(),
             workspace: Workspace::default(),
+            gave_way: None,
             sums: Vec::new(),
             near: Vec::new(),
             octaves: NO_OCTAVES,
@@ -279,10 +282,15 @@ impl Scratch {
             &mut self.values,
             &mut self.workspace,
         );
-        batch.learn(self.samples.len(), start.elapsed());
+        let end = Instant::now();
+        batch.learn(self.samples.len(), end - start);
         // Whoever waits for this core, a frame or the thread that develops pictures, has it now and not
         // when the system thinks that it was enough: 4 ms later on Linux, and an edit waits several times.
-        std::thread::yield_now();
+        // Small batches would ask the system more often than it takes to notice.
+        if self.gave_way.is_none_or(|last| end - last > SHORT) {
+            std::thread::yield_now();
+            self.gave_way = Some(end);
+        }
         rays
     }
 

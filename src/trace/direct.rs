@@ -1,7 +1,7 @@
 //! Direct light, one light after another: points of it for all vertices of a batch, shadow rays there, and what arrives.
 
 use super::chosen_places::{ChosenPlace, ChosenPlaces};
-use super::light_frames::{Frame, LightFrames};
+use super::light_frames::Frame;
 use super::lights::{
     DirectionalLight, LightPoint, MIDDLE, ParallelogramLight, PointLight, SegmentLight,
     sample_count,
@@ -90,11 +90,11 @@ impl Lamp<'_> {
     }
 
     /// What choosing its points for a surface needs to know of it; nothing where all points are alike.
-    fn frame(self, frames: &LightFrames) -> Option<Frame> {
+    fn frame(self) -> Option<Frame> {
         match self {
             Self::Point(_) | Self::Directional(_) => None,
-            Self::Segment(i, _) => frames.segment(i),
-            Self::Parallelogram(i, _) => frames.parallelogram(i),
+            Self::Segment(_, light) => light.frame().map(Frame::Segment),
+            Self::Parallelogram(_, light) => light.frame().map(Frame::Parallelogram),
         }
     }
 
@@ -142,11 +142,15 @@ impl<R: Recorder> Batch<'_, R> {
     pub(super) fn add_direct_light(
         &mut self,
         vertices: &[Vertex],
-        frames: &LightFrames,
         shadow_rays: &mut ShadowRays,
         near: &mut NearLights,
     ) {
         shadow_rays.points = 0;
+        if vertices.is_empty() {
+            return;
+        }
+        let is_even =
+            self.settings.lighting == Lighting::Classic || !self.settings.features.soft_shadows;
         let lights = &*self.world.lights;
         let points = lights.points.iter().map(Lamp::Point);
         let directionals = lights.directionals.iter().map(Lamp::Directional);
@@ -156,7 +160,7 @@ impl<R: Recorder> Batch<'_, R> {
             .chain(segments.map(|(i, light)| Lamp::Segment(i, light)))
             .chain(parallelograms.map(|(i, light)| Lamp::Parallelogram(i, light)));
         for lamp in lamps {
-            let frame = lamp.frame(frames);
+            let frame = if is_even { None } else { lamp.frame() };
             self.gather(lamp, frame.as_ref(), vertices, shadow_rays, near);
             self.add_arriving_light(shadow_rays);
             near.compare(&shadow_rays.shadows, &shadow_rays.occluded);

@@ -286,12 +286,16 @@ impl ParallelogramLight {
         }
         let to_corner = self.corner - origin;
         let t = to_corner.dot(normal) / slope;
+        // Half of all rays go the other way.
+        if t.is_nan() || t <= 0.0 {
+            return None;
+        }
         let at = t * direction - to_corner;
         let area_squared = normal.length_squared();
         let u = at.cross(self.edges[1]).dot(normal) / area_squared;
         let v = self.edges[0].cross(at).dot(normal) / area_squared;
         let inside = (0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v);
-        (t > 0.0 && inside).then(|| (t, self.color(u, v)))
+        inside.then(|| (t, self.color(u, v)))
     }
 }
 

@@ -11,7 +11,6 @@
 
 use super::camera_rays::CameraRays;
 use super::direct::ShadowRays;
-use super::light_frames::LightFrames;
 use super::near_lights::NearLights;
 use super::recorder::{Adding, Recorder};
 use super::sampler::Sampler;
@@ -68,7 +67,6 @@ pub struct Workspace {
     vertices: Vec<Vertex>,
     shadow_rays: ShadowRays,
     near_lights: NearLights,
-    light_frames: LightFrames,
 }
 
 impl Workspace {
@@ -210,10 +208,8 @@ pub(super) fn radiance_with<R: Recorder>(
         vertices,
         shadow_rays,
         near_lights,
-        light_frames,
     } = workspace;
     near_lights.begin(&world.lights, settings);
-    light_frames.begin(&world.lights, settings);
     let cone = Cone::of_pixel(camera, settings.size);
     paths.clear();
     let plane = camera.image_plane(settings.size);
@@ -236,7 +232,7 @@ pub(super) fn radiance_with<R: Recorder>(
         next.clear();
         batch.find_vertices(paths, cone, hits, vertices, next);
         if settings.features.shading {
-            batch.add_direct_light(vertices, light_frames, shadow_rays, near_lights);
+            batch.add_direct_light(vertices, shadow_rays, near_lights);
         }
         batch.continue_paths(vertices, next);
         std::mem::swap(paths, next);
