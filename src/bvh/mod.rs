@@ -48,6 +48,7 @@ pub(crate) mod hard_cases;
 mod instance;
 mod layout;
 mod leave;
+mod leaves;
 mod levels;
 mod median;
 pub(crate) mod mesh_tree;

@@ -5,7 +5,8 @@ use std::marker::PhantomData;
 use super::{
     aggregate::Aggregate,
     goal::Goal,
-    levels::{Arrangement, InstanceLeaves},
+    leaves::InstanceLeaves,
+    levels::Arrangement,
     queries::Best,
     ray::Ray,
     safe_ray::{ORDINARY, SafeRay},

@@ -73,8 +73,38 @@ fn scrambled(reversed: u32, seed: u32, key: u32) -> f32 {
     u32_to_f32_norm(owen_scramble_rev(reversed, scramble).reverse_bits())
 }
 
+/// Two numbers of a block, the last or the first: of `pixels` their seeds, of `indices` the points.
+#[inline(always)]
+fn fill<const LAST: bool>(
+    key: u32,
+    pixels: &[u32],
+    paths: &[u32],
+    indices: &[u64],
+    u: &mut [f32],
+    v: &mut [f32],
+) {
+    let count = u.len();
+    let (pixels, paths, indices) = (&pixels[..count], &paths[..count], &indices[..count]);
+    let v = &mut v[..count];
+    for i in 0..count {
+        let seed = block_seed(pixels[i], key, paths[i], indices[i]);
+        let place = shuffled(indices[i], seed);
+        (u[i], v[i]) = if LAST {
+            (
+                scrambled(by_directions(place, &DIRECTIONS[0]), seed, KEYS[2]),
+                scrambled(by_directions(place, &DIRECTIONS[1]), seed, KEYS[3]),
+            )
+        } else {
+            (
+                scrambled(place, seed, KEYS[0]),
+                scrambled(second(place), seed, KEYS[1]),
+            )
+        };
+    }
+}
+
 vectorized! {
-    /// The first two numbers of a block: of `pixels` their seeds, of `indices` the points.
+    /// The first two numbers of a block.
     pub(super) fn pairs(
         key: u32,
         pixels: &[u32],
@@ -83,15 +113,7 @@ vectorized! {
         u: &mut [f32],
         v: &mut [f32],
     ) {
-        let count = u.len();
-        let (pixels, paths, indices) = (&pixels[..count], &paths[..count], &indices[..count]);
-        let v = &mut v[..count];
-        for i in 0..count {
-            let seed = block_seed(pixels[i], key, paths[i], indices[i]);
-            let place = shuffled(indices[i], seed);
-            u[i] = scrambled(place, seed, KEYS[0]);
-            v[i] = scrambled(second(place), seed, KEYS[1]);
-        }
+        fill::<false>(key, pixels, paths, indices, u, v);
     }
 
     /// The last two numbers of a block.
@@ -103,15 +125,7 @@ vectorized! {
         u: &mut [f32],
         v: &mut [f32],
     ) {
-        let count = u.len();
-        let (pixels, paths, indices) = (&pixels[..count], &paths[..count], &indices[..count]);
-        let v = &mut v[..count];
-        for i in 0..count {
-            let seed = block_seed(pixels[i], key, paths[i], indices[i]);
-            let place = shuffled(indices[i], seed);
-            u[i] = scrambled(by_directions(place, &DIRECTIONS[0]), seed, KEYS[2]);
-            v[i] = scrambled(by_directions(place, &DIRECTIONS[1]), seed, KEYS[3]);
-        }
+        fill::<true>(key, pixels, paths, indices, u, v);
     }
 }
 

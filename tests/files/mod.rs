@@ -4,6 +4,7 @@ pub mod app;
 mod exports;
 mod framing;
 mod gltf;
+mod gltf_pictures;
 mod gltf_rest;
 mod materials;
 pub mod models;
