@@ -13,10 +13,9 @@ use crate::inspect::{
     aligned, draw_over, draw_pattern, explanation, lines, pattern, sources,
 };
 use crate::io::{PictureFormat, check_picture, check_writable, write_picture};
-use crate::scene::{RenderSettings, SceneId};
+use crate::scene::RenderSettings;
 use crate::sync::TracedCamera;
 use crate::trace::{Camera, RayTree, Samples, World, probe};
-use bevy::ecs::name::Name;
 use bevy::math::{UVec2, Vec3};
 use clap::Args;
 use std::collections::BTreeMap;
@@ -135,7 +134,7 @@ fn inspect(args: &Inspect, gizmos: &InspectSettings) -> Result<(), Failure> {
         stage.check_film(size)?;
     }
     let world = stage.sync().world.clone();
-    let names = names(&mut stage);
+    let names = stage.names();
     let camera = stage.camera(args.camera.as_deref())?;
     let usage = |error: crate::trace::ProbeError| {
         Failure::Usage(format!("{}: {error}", args.scene.scene.display()))
@@ -303,16 +302,6 @@ fn watching(camera: &Camera, eye: Vec3, target: Vec3) -> Camera {
         projection: camera.projection,
         ..Camera::looking_at(eye, target, Vec3::Y, 1.0)
     }
-}
-
-/// Names of everything that has a number.
-fn names(stage: &mut Stage) -> BTreeMap<u64, String> {
-    let world = stage.app.world_mut();
-    let mut named = world.query::<(&SceneId, &Name)>();
-    named
-        .iter(world)
-        .map(|(id, name)| (id.0, name.to_string()))
-        .collect()
 }
 
 fn draw(

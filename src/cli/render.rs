@@ -10,11 +10,11 @@ use super::stats::{Stats, mrays_per_second, triangles};
 use super::stop::{SampleRange, StopArgs};
 use super::view::ViewArgs;
 use crate::film::views::View;
-use crate::film::{FirstHits, render_samples};
+use crate::film::{FirstHits, Status, render_lights, render_samples};
 use crate::inspect::build_time;
 use crate::io::{
     FileError, Part, PictureFormat, check_outputs, check_picture, check_writable, picture_notes,
-    replace_file, write_part, write_rendered,
+    replace_file, write_lights, write_part, write_rendered,
 };
 use crate::sync::TracedCamera;
 use crate::trace::{RayCounts, digest, samples_per_pixel};
@@ -38,6 +38,9 @@ pub(super) struct Render {
     pub stop: StopArgs,
     #[command(flatten)]
     pub view: ViewArgs,
+    /// Besides the picture write what each light adds to it, as layers of the .exr named after the lights
+    #[arg(long, conflicts_with = "samples")]
+    pub lights_separately: bool,
     /// Camera to render from, by its name; may be given several times (default: the first)
     #[arg(long, value_name = "NAME", conflicts_with = "all_cameras")]
     pub camera: Vec<String>,
@@ -69,6 +72,12 @@ pub(super) fn run(args: Render) -> Result<(), Failure> {
         return Err(Failure::Usage(format!(
             "--samples writes parts of shaded pictures, not of the view `{}`",
             args.view.view
+        )));
+    }
+    if args.lights_separately && (format != PictureFormat::Exr || args.view.view != View::Shaded) {
+        return Err(Failure::Usage(format!(
+            "{}: --lights-separately writes layers of a shaded picture, and only an .exr has layers",
+            args.output.display()
         )));
     }
     args.view.check(&args.output)?;
@@ -133,15 +142,15 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
             Some(SampleRange(samples)) => samples.clone(),
             None => 0..samples_per_pixel(&world, &camera.camera, &settings).into(),
         };
-        let rendered = render_samples(
-            &world,
-            &camera.camera,
-            &settings,
-            samples.clone(),
-            &|status| {
-                progress.show_status(status);
-            },
-        );
+        let show = |status: &Status| progress.show_status(status);
+        let (rendered, lights) = if args.lights_separately {
+            let (rendered, lights) = render_lights(&world, &camera.camera, &settings, &show);
+            (rendered, Some(lights))
+        } else {
+            let rendered =
+                render_samples(&world, &camera.camera, &settings, samples.clone(), &show);
+            (rendered, None)
+        };
         drop(progress);
         // Fewer than asked for where an error or a time ended it.
         let spp = rendered.status.samples.round() as u32;
@@ -156,7 +165,14 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
             write_part(file, &part)?;
         } else if args.view.view == View::Shaded {
             let notes = picture_notes(&camera.name, &settings, &rendered.status);
-            write_rendered(file, &rendered.picture, &settings.output, &notes)?;
+            match &lights {
+                Some(lights) => {
+                    let names = stage.names();
+                    let name = |id: u64| names.get(&id).cloned().unwrap_or(format!("light {id}"));
+                    write_lights(file, &rendered.picture, lights, name, &notes)?;
+                }
+                None => write_rendered(file, &rendered.picture, &settings.output, &notes)?,
+            }
         } else {
             args.view
                 .write_rendered(file, &rendered, &settings.output)?;

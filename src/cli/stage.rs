@@ -7,11 +7,13 @@ use crate::app::headless_app;
 use crate::io::{
     LoadProblems, OpenOptions, SceneFiles, SceneSource, check_film, check_outputs, open,
 };
-use crate::scene::RenderSettings;
+use crate::scene::{RenderSettings, SceneId};
 use crate::sync::{Traced, TracedCamera, TracedCameras};
 use bevy::app::App;
+use bevy::ecs::name::Name;
 use bevy::math::UVec2;
 use clap::Args;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Which scene a command opens, and how.
@@ -36,6 +38,14 @@ pub(super) struct Stage {
 }
 
 impl Stage {
+    /// Names of everything that has a number.
+    pub fn names(&mut self) -> BTreeMap<u64, String> {
+        let world = self.app.world_mut();
+        let mut named = world.query::<(&SceneId, &Name)>();
+        let named = named.iter(world);
+        named.map(|(id, name)| (id.0, name.to_string())).collect()
+    }
+
     /// Opens the scene. What was left out or added is told on standard error, unless `quiet`.
     pub fn open(args: &SceneArgs, quiet: bool) -> Result<Self, Failure> {
         Self::open_with(args, quiet, OpenOptions::default())

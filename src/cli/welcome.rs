@@ -102,6 +102,7 @@ fn show(scene: Option<PathBuf>, memory: MemoryArgs) -> Result<(), Failure> {
         },
         stop: StopArgs::default(),
         view: ViewArgs::default(),
+        lights_separately: false,
         camera: Vec::new(),
         all_cameras: false,
         builder: None,

@@ -3,11 +3,9 @@
 use super::engine::Engine;
 use super::preview::{Preview, first_divider, lattice, lattice_squares, time_samples};
 use super::sample_chunk::with_scratch;
-use super::tile_state::TILE_PIXELS;
-use super::tiles::Tile;
 use super::{Ending, TILE, lock};
-use crate::trace::SampleId;
-use glam::{UVec2, Vec3};
+use crate::trace::{PlaneSet, SampleId};
+use glam::UVec2;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -15,17 +13,18 @@ impl Engine {
     /// The coarse pictures, as far as they come before the one of full resolution.
     pub fn start_coarse(&self) -> Option<Ending> {
         let area = self.area;
+        let subject = self.subject();
         let focus = lock(&self.queue).focus();
         let preview = Arc::new(Preview::new(area));
-        let ((seconds, rays), threads) = self.on_threads(|| {
-            let timed = time_samples(&self.subject, &preview, focus, &self.batch);
+        let (seconds, threads) = self.on_threads(|| {
+            let timed = time_samples(&subject, &preview, focus, &self.batch);
             (timed, rayon::current_num_threads())
         });
         let coarsest = first_divider(area.extent, seconds / threads as f64);
-        self.note_rays(rays);
         *lock(&self.preview) = Some(preview.clone());
         let mut divider = coarsest;
-        while divider > 1 {
+        // Its samples are not kept: a lattice of every second pixel would take a quarter of the time that they all do.
+        while divider > 2 {
             preview.begin(divider);
             let mut squares = lattice_squares(area.extent, divider);
             while !squares.is_empty() {
@@ -51,6 +50,7 @@ impl Engine {
         let pixels: Vec<_> = lattice(self.area, square, TILE, divider)
             .filter(|pixel| preview.get(*pixel).is_none())
             .collect();
+        let subject = self.subject();
         let mut rest = &pixels[..];
         while !rest.is_empty() {
             if self.must_stop() {
@@ -58,16 +58,11 @@ impl Engine {
             }
             let (some, others) = rest.split_at(self.batch.get().min(rest.len()));
             rest = others;
-            let rays = with_scratch(|scratch| {
+            with_scratch(|scratch| {
                 let ids = some.iter().map(|&pixel| SampleId { pixel, index: 0 });
-                let rays = scratch.evaluate(&self.subject, ids, &self.batch);
+                scratch.evaluate(&subject, PlaneSet::ALL, ids, &self.batch);
                 preview.take(some, scratch.values());
-                if scratch.is_near_lamps() {
-                    preview.meet_near_lamps();
-                }
-                rays
             });
-            self.note_rays(rays);
         }
         true
     }
@@ -75,22 +70,5 @@ impl Engine {
     /// There is one from the first samples on until every pixel has one.
     pub fn preview(&self) -> Option<Arc<Preview>> {
         lock(&self.preview).clone()
-    }
-
-    /// First samples of the tile's pixels that the preview has.
-    pub fn known(&self, tile: Tile) -> Vec<Option<Vec3>> {
-        let sampling = &self.subject.settings.sampling;
-        if sampling.adaptive && sampling.error > 0.0 {
-            // Where samples go depends on what they cost, and must not depend on how far a preview came.
-            return Vec::new();
-        }
-        let Some(preview) = self.preview().filter(|preview| preview.is_enough()) else {
-            return Vec::new();
-        };
-        let mut known = vec![None; TILE_PIXELS];
-        for (pixel, at) in tile.pixels() {
-            known[at] = preview.get(pixel);
-        }
-        known
     }
 }

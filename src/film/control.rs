@@ -74,6 +74,13 @@ impl Control {
         lock(&self.watch).since.get_or_insert_with(Instant::now);
     }
 
+    /// Sets it to zero; it goes on if it ran.
+    pub fn restart_watch(&self) {
+        let mut watch = lock(&self.watch);
+        watch.before = Duration::ZERO;
+        watch.since = watch.since.map(|_| Instant::now());
+    }
+
     /// Stops it.
     pub fn stop_watch(&self) {
         let mut watch = lock(&self.watch);

@@ -1,6 +1,7 @@
 //! A render: what it reads, what it has, and the passes that add samples until a rule ends it.
 
 use super::control::{Control, Signal};
+use super::edit::Edit;
 use super::error::{Decline, ErrorEstimate, Moves};
 use super::lock;
 use super::preview::Preview;
@@ -11,13 +12,14 @@ use super::tile_state::{Chunk, TileState};
 use super::tiles::{Tile, TileGrid};
 use super::unmet::Unmet;
 use crate::trace::RayCounts;
+use crate::trace::planes::OWN;
 use bevy::math::URect;
 use glam::{UVec2, Vec2};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, OnceLock, PoisonError, RwLock};
 use std::time::Duration;
 
 /// How a render goes about it. The samples are the same.
@@ -25,6 +27,8 @@ use std::time::Duration;
 pub(super) struct Mode {
     /// Someone looks on: coarse pictures come first, then one sample of each pixel, then two.
     pub watched: bool,
+    /// Its lights may be edited: their planes stay apart.
+    pub editable: bool,
     /// Which samples of each pixel.
     pub samples: Range<u64>,
     /// Only the tiles that this touches, in pixels.
@@ -33,7 +37,7 @@ pub(super) struct Mode {
 
 /// A render. Its methods may be called from any thread while one thread is in [`Self::run`].
 pub(super) struct Engine {
-    pub subject: Subject,
+    subject: RwLock<Arc<Subject>>,
     pub mode: Mode,
     /// Whose threads trace; without one those of the caller's pool.
     pub pool: Option<Arc<ThreadPool>>,
@@ -52,8 +56,26 @@ pub(super) struct Engine {
     progress: Mutex<Progress>,
     ended: Condvar,
     done: AtomicU64,
-    /// Tells this render from all others of the process.
-    pub number: u64,
+    /// Tells this render, as it is since its last edit, from all others of the process.
+    number: AtomicU64,
+    /// What it shall render from now on, as soon as nothing is traced.
+    pub(super) edits: Mutex<Option<Edit>>,
+    pub(super) edit_waits: AtomicBool,
+    /// Its coarse pictures are behind it.
+    begun: AtomicBool,
+    pace: OnceLock<f64>,
+}
+
+/// Why threads stop before the queue is empty.
+enum Interruption {
+    End(Ending),
+    Edit,
+}
+
+/// Another number for each render and each of its edits.
+fn next_number() -> u64 {
+    static COUNT: AtomicU64 = AtomicU64::new(0);
+    COUNT.fetch_add(1, Ordering::Relaxed) + 1
 }
 
 /// What the threads report.
@@ -66,13 +88,12 @@ struct Progress {
 
 impl Engine {
     pub fn new(subject: Subject, mode: Mode, pool: Option<Arc<ThreadPool>>) -> Self {
-        static COUNT: AtomicU64 = AtomicU64::new(0);
         let grid = TileGrid::new(subject.settings.size);
         let (rendered, area) = grid.within(mode.region);
         Self {
             tiles: grid
                 .tiles()
-                .map(|tile| Mutex::new(TileState::new(tile)))
+                .map(|tile| Mutex::new(TileState::new(tile, mode.editable)))
                 .collect(),
             preview: Mutex::default(),
             queue: Mutex::default(),
@@ -83,14 +104,44 @@ impl Engine {
             progress: Mutex::default(),
             ended: Condvar::new(),
             done: AtomicU64::new(0),
-            number: COUNT.fetch_add(1, Ordering::Relaxed) + 1,
+            number: AtomicU64::new(next_number()),
             rendered,
             area,
-            subject,
+            subject: RwLock::new(Arc::new(subject)),
+            edits: Mutex::default(),
+            edit_waits: AtomicBool::new(false),
+            begun: AtomicBool::new(false),
+            pace: OnceLock::new(),
             mode,
             pool,
             grid,
         }
+    }
+
+    /// What is rendered now.
+    pub fn subject(&self) -> Arc<Subject> {
+        let subject = self.subject.read();
+        subject.unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Another subject from now on.
+    pub(super) fn set_subject(&self, subject: Subject) {
+        let mut now = (self.subject.write()).unwrap_or_else(PoisonError::into_inner);
+        *now = Arc::new(subject);
+        self.number.store(next_number(), Ordering::Relaxed);
+        self.unmet.forget_emitters();
+    }
+
+    pub fn number(&self) -> u64 {
+        self.number.load(Ordering::Relaxed)
+    }
+
+    /// A tile with the tints that it has now.
+    pub(super) fn tile(&self, number: usize) -> MutexGuard<'_, TileState> {
+        let subject = self.subject();
+        let mut state = lock(&self.tiles[number]);
+        state.retint(&subject);
+        state
     }
 
     pub fn size(&self) -> UVec2 {
@@ -114,6 +165,11 @@ impl Engine {
 
     /// Renders until a rule, or a cancel, ends it. `told` hears of progress, from any thread.
     pub fn run(&self, told: &(dyn Fn(&Self) + Sync)) -> Ending {
+        self.reopen();
+        self.take_edit();
+        if self.has_begun() {
+            self.note_error();
+        }
         self.control.start_watch();
         let ending = self.run_passes(told);
         self.end(ending);
@@ -131,7 +187,9 @@ impl Engine {
     pub fn wait(&self) -> Ending {
         let mut progress = lock(&self.progress);
         loop {
-            if let Some(ending) = progress.ending {
+            if let Some(ending) = progress.ending
+                && !self.edit_waits.load(Ordering::Relaxed)
+            {
                 return ending;
             }
             progress = (self.ended.wait(progress)).unwrap_or_else(PoisonError::into_inner);
@@ -140,22 +198,27 @@ impl Engine {
 
     fn run_passes(&self, told: &(dyn Fn(&Self) + Sync)) -> Ending {
         if self.mode.watched
+            && !self.has_begun()
             && let Some(ending) = self.start_coarse()
         {
             return ending;
         }
-        let mut level = self.mode.samples.start;
+        self.begun.store(true, Ordering::Release);
         loop {
-            let chunks = match self.next_pass(&mut level) {
+            let chunks = match self.next_pass() {
                 Ok(chunks) => chunks,
                 Err(ending) => return ending,
             };
             {
                 let mut queue = lock(&self.queue);
+                queue.clear();
                 chunks.into_iter().for_each(|chunk| queue.push(chunk));
             }
-            if let Some(ending) = self.run_queue(told) {
-                return ending;
+            match self.run_queue(told) {
+                Some(Interruption::End(ending)) => return ending,
+                // What comes next is another question now.
+                Some(Interruption::Edit) => continue,
+                None => {}
             }
             self.set_divider(1);
             *lock(&self.preview) = None;
@@ -174,7 +237,7 @@ impl Engine {
     }
 
     /// Works on what is queued until nothing is left, or something else ends the render.
-    fn run_queue(&self, told: &(dyn Fn(&Self) + Sync)) -> Option<Ending> {
+    fn run_queue(&self, told: &(dyn Fn(&Self) + Sync)) -> Option<Interruption> {
         loop {
             let waiting = lock(&self.queue).len();
             let next_chunk = |_| {
@@ -195,7 +258,11 @@ impl Engine {
                 chunks.for_each(next_chunk);
             });
             if let Some(ending) = self.interrupted() {
-                return Some(ending);
+                return Some(Interruption::End(ending));
+            }
+            if self.edit_waits.load(Ordering::Relaxed) {
+                self.take_edit();
+                return Some(Interruption::Edit);
             }
             if lock(&self.queue).len() == 0 {
                 return None;
@@ -205,11 +272,13 @@ impl Engine {
 
     /// Whether work has to stop, for good or for a while.
     pub(super) fn must_stop(&self) -> bool {
-        self.control.signal() != Signal::Go || self.time_is_up()
+        self.control.signal() != Signal::Go
+            || self.edit_waits.load(Ordering::Relaxed)
+            || self.time_is_up()
     }
 
     fn time_is_up(&self) -> bool {
-        let limit = self.subject.settings.sampling.time;
+        let limit = self.subject().settings.sampling.time;
         limit > 0.0
             && self.divider.load(Ordering::Relaxed) == 1
             && self.control.elapsed() >= Duration::try_from_secs_f32(limit).unwrap_or(Duration::MAX)
@@ -232,29 +301,26 @@ impl Engine {
     /// Does a chunk. False where it had to stop: then nothing of it counts.
     fn run_chunk(&self, chunk: &Chunk) -> bool {
         let tile = self.grid.tile(chunk.tile);
-        let known = if chunk.range.start == 0 {
-            self.known(tile)
-        } else {
-            Vec::new()
-        };
+        let subject = self.subject();
         with_scratch(|scratch| {
             let stopped = || self.must_stop();
-            let rays = scratch.sum_chunk(&self.subject, tile, chunk, &known, &self.batch, &stopped);
+            let rays = scratch.sum_chunk(&subject, tile, chunk, &self.batch, &stopped);
             let Some(rays) = rays else { return false };
             self.unmet.met(&scratch.octaves);
             let pixels = {
-                let mut state = lock(&self.tiles[chunk.tile as usize]);
-                state.absorb(chunk, &scratch.sums, &scratch.near, rays.total());
+                // Its tints may be others by now.
+                let mut state = self.tile(chunk.tile as usize);
+                state.absorb(&self.subject(), chunk, &scratch.sums, rays.total());
                 state
                     .tile
                     .pixels()
                     .filter(|(_, at)| chunk.pixels.has(*at))
                     .count() as u64
             };
-            self.done.fetch_add(
-                pixels * (chunk.range.end - chunk.range.start),
-                Ordering::Relaxed,
-            );
+            if chunk.planes.has(OWN) {
+                let samples = pixels * (chunk.range.end - chunk.range.start);
+                self.done.fetch_add(samples, Ordering::Relaxed);
+            }
             self.note_rays(rays);
             true
         })
@@ -271,7 +337,7 @@ impl Engine {
             return Some(measured);
         }
         // Samples that all agree say no more than what none of them has met.
-        ErrorEstimate::of(&moves, self.unmet.hidden(&self.subject, 1))
+        ErrorEstimate::of(&moves, self.unmet.hidden(&self.subject(), 1))
     }
 
     /// The squared error that unmet features may leave in a pixel, per reach of a sample, if they lie in all
@@ -279,7 +345,7 @@ impl Engine {
     pub fn hidden_in_a_pixel(&self) -> f64 {
         match self.error() {
             Some(error) if error.is_bound => {
-                self.unmet.hidden(&self.subject, 1) / self.pixels().max(1.0)
+                self.unmet.hidden(&self.subject(), 1) / self.pixels().max(1.0)
             }
             _ => 0.0,
         }
@@ -292,8 +358,9 @@ impl Engine {
 
     /// Of each half of each tile.
     pub(super) fn moves(&self) -> Vec<Moves> {
-        let tiles = self.tiles.iter();
-        tiles.flat_map(|tile| lock(tile).moves).collect()
+        (0..self.tiles.len())
+            .flat_map(|tile| self.tile(tile).moves)
+            .collect()
     }
 
     fn note_error(&self) {
@@ -303,13 +370,39 @@ impl Engine {
             seconds: self.control.elapsed().as_secs_f64(),
             error,
         };
-        lock(&self.progress).trend.push(point);
+        let trend = &mut lock(&self.progress).trend;
+        // The same samples in other tints.
+        trend.pop_if(|last| last.samples == point.samples);
+        trend.push(point);
     }
 
     /// Samples of a pixel, on average.
     fn samples(&self) -> f64 {
         let pixels = self.pixels();
         self.done.load(Ordering::Relaxed) as f64 / pixels.max(1.0)
+    }
+
+    /// Whether its coarse pictures are behind it, and what it has can be edited.
+    pub(super) fn has_begun(&self) -> bool {
+        self.begun.load(Ordering::Acquire)
+    }
+
+    /// How long a sample of every pixel took before the first edit that sets the clock back.
+    pub(super) fn seconds_a_sample(&self) -> f64 {
+        let now = || self.control.elapsed().as_secs_f64() / self.samples().max(f64::MIN_POSITIVE);
+        self.pace.get().copied().unwrap_or_else(now)
+    }
+
+    /// An edit has work for it: its clock begins anew, and what was told of its errors is of another picture.
+    pub(super) fn start_over(&self) {
+        let _ = self.pace.set(self.seconds_a_sample());
+        self.control.restart_watch();
+        lock(&self.progress).trend.clear();
+    }
+
+    /// It goes on.
+    pub(super) fn reopen(&self) {
+        lock(&self.progress).ending = None;
     }
 
     /// The picture is complete at every such pixel of every such row.
@@ -325,9 +418,9 @@ impl Engine {
         let progress = lock(&self.progress).clone();
         let seconds = self.control.elapsed().as_secs_f64();
         let state = match (progress.ending, self.control.signal()) {
-            (Some(ending), _) => State::Ended(ending),
-            (None, Signal::Pause) => State::Paused,
-            (None, _) => State::Running,
+            (Some(ending), _) if !self.edit_waits.load(Ordering::Relaxed) => State::Ended(ending),
+            (_, Signal::Pause) => State::Paused,
+            _ => State::Running,
         };
         let mut status = Status {
             state,
@@ -339,7 +432,7 @@ impl Engine {
             seconds_left: None,
             divider: Some(self.divider.load(Ordering::Relaxed)).filter(|divider| *divider > 0),
         };
-        status.seconds_left = seconds_left(&status, &self.subject.settings.sampling);
+        status.seconds_left = seconds_left(&status, &self.subject().settings.sampling);
         status
     }
 }

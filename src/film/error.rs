@@ -9,14 +9,11 @@
 //! D² varies much by chance, r is mostly what pictures usually have ([`Decline`]).
 //!
 //! With that, the estimate of the picture's error is 0.8 to 1.5 times the true one, from 16 samples on, but
-//! for three things that no move shows:
+//! for two things that no move shows:
 //!
 //! - What no sample has found: a bright spot that one sample in a thousand meets is missing at 16 samples.
 //!   What such spots may hide at most is known ([`unmet`](super::unmet)): where no pixel moved at all, that
 //!   bound is told, and said to be one. (Where some did, it would be many times the error of ordinary pictures.)
-//! - A lamp so close that few of its points give nearly all of its light. There the tracer knows what
-//!   the light has to be, and so the error itself ([`Workspace::deviations`](crate::trace::Workspace)): it is
-//!   told where it is more than what the moves say.
 //! - An edge that runs exactly along a row (or column) of pixels and covers the same part p of each, where
 //!   it is so strong that this row makes most of the picture's error. N stratified samples have one stratum
 //!   that the edge cuts, at the same fraction f of it in every pixel, f = frac(pN): e²(N) = J²·f(1-f)/N²
@@ -27,7 +24,7 @@
 //!   has such a scene, a lamp 470 times as bright as the ceiling around it, and says what was measured.
 
 use super::TILE;
-use super::tiles::{FilmPixel, NearError};
+use super::tiles::FilmPixel;
 use super::unmet::Reach;
 use glam::UVec2;
 use std::fmt;
@@ -83,8 +80,6 @@ pub(super) struct Moves {
     pub count: u32,
     /// How many pixels.
     pub pixels: u32,
-    /// Sums over the pixels of what lamps close by leave them off by: known, and not estimated.
-    pub near: Expected,
     /// Sums over the pixels of how much they err by light that no sample has met.
     pub reach: Reach,
 }
@@ -92,26 +87,19 @@ pub(super) struct Moves {
 /// A tile's pixels with their means.
 pub(super) struct Means<'a> {
     pixels: &'a [FilmPixel],
-    /// What lamps close by leave each off by; empty where none is close.
-    near: &'a [NearError],
     /// How much of the tile lies in the picture.
     extent: UVec2,
-    /// Averaged over the channels, less what lamps close by leave them off by.
+    /// Averaged over the channels.
     means: Vec<f64>,
 }
 
 impl<'a> Means<'a> {
-    pub fn of(pixels: &'a [FilmPixel], near: &'a [NearError], extent: UVec2) -> Self {
+    pub fn of(pixels: &'a [FilmPixel], extent: UVec2) -> Self {
         let mean = |pixel: &FilmPixel| f64::from(pixel.sum.mean(pixel.count).element_sum()) / 3.0;
-        let mut means: Vec<f64> = pixels.iter().map(mean).collect();
-        for (mean, near) in means.iter_mut().zip(near) {
-            *mean -= f64::from(near.mean);
-        }
         Self {
             pixels,
-            near,
             extent,
-            means,
+            means: pixels.iter().map(mean).collect(),
         }
     }
 
@@ -125,10 +113,6 @@ impl<'a> Means<'a> {
             for (i, moved) in pixel.moved.into_iter().enumerate() {
                 moves.absolute[i] += f64::from(moved);
                 moves.relative[i] += f64::from(moved) * weight;
-            }
-            if let Some(near) = self.near.get(at) {
-                moves.near.absolute += f64::from(near.squared);
-                moves.near.relative += f64::from(near.squared) * weight;
             }
             let reach = Reach::of(self.means[at]);
             moves.reach.absolute += reach.absolute;
@@ -252,8 +236,8 @@ impl Moves {
             ratio / (1.0 - ratio) * moved * since
         };
         Some(Expected {
-            absolute: of(self.absolute[0], decline.absolute).max(self.near.absolute),
-            relative: of(self.relative[0], decline.relative).max(self.near.relative),
+            absolute: of(self.absolute[0], decline.absolute),
+            relative: of(self.relative[0], decline.relative),
         })
     }
 
@@ -327,9 +311,8 @@ mod tests {
             }
             pixel.count = 16;
         }
-        let moves = |tile: &[FilmPixel], size| {
-            Means::of(tile, &[], UVec2::splat(size)).moves(0..tile.len())
-        };
+        let moves =
+            |tile: &[FilmPixel], size| Means::of(tile, UVec2::splat(size)).moves(0..tile.len());
         tile[100].sum.add(Vec3::splat(160.0));
         tile[100].moved = [100.0; 3];
         // Its mean is 10.1, which has moved by 10.

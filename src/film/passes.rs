@@ -3,9 +3,11 @@
 use super::adaptive::{self, Cell};
 use super::engine::Engine;
 use super::error::{ErrorEstimate, LEAST_SAMPLES};
-use super::tile_state::{Chunk, Pixels, TILE_PIXELS};
+use super::tile_state::{Chunk, Pixels, TILE_PIXELS, TileState};
 use super::unmet::OFTEN;
 use super::{Ending, lock};
+use crate::trace::PlaneSet;
+use glam::UVec2;
 use std::ops::Range;
 
 /// Rays of a chunk, about: a pause throws away what the chunks under way have done so far, and at the
@@ -15,23 +17,28 @@ const CHUNK_RAYS: u64 = 1 << 17;
 const UNWATCHED_START: u64 = LEAST_SAMPLES as u64;
 
 impl Engine {
-    /// The chunks of the next pass; or why there is none.
-    pub fn next_pass(&self, level: &mut u64) -> Result<Vec<Chunk>, Ending> {
-        let settings = &self.subject.settings;
+    /// The chunks of the next pass; or why there is none. They follow from what the tiles have.
+    pub fn next_pass(&self) -> Result<Vec<Chunk>, Ending> {
+        let subject = self.subject();
+        if let Some(chunks) = self.catch_up() {
+            return Ok(chunks);
+        }
+        let settings = &subject.settings;
         let Range { start, end } = self.mode.samples;
-        if *level >= end {
+        let level = start + self.least_count().unwrap_or(end - start);
+        if level >= end {
             return Err(Ending::Samples);
         }
         let goal = f64::from(settings.sampling.error);
-        let judged = start == 0 && *level >= u64::from(LEAST_SAMPLES);
+        let judged = start == 0 && level >= u64::from(LEAST_SAMPLES);
         let mut hidden = 0.0;
         if goal > 0.0 && judged {
             let moves = self.moves();
             let measured = ErrorEstimate::of(&moves, 0.0).unwrap_or_default();
             hidden = if measured.relative_mse > 0.0 {
-                self.unmet.hidden_by_emitters(&self.subject, OFTEN)
+                self.unmet.hidden_by_emitters(&subject, OFTEN)
             } else {
-                self.unmet.hidden(&self.subject, OFTEN)
+                self.unmet.hidden(&subject, OFTEN)
             };
             let estimate = ErrorEstimate::of(&moves, hidden).unwrap_or_default();
             if estimate.relative() <= goal {
@@ -48,7 +55,7 @@ impl Engine {
             }
             return Ok(chosen
                 .into_iter()
-                .flat_map(|task| self.chunks(task.tile, task.pixels, task.range))
+                .flat_map(|task| self.chunks(task.tile, task.pixels, PlaneSet::ALL, task.range))
                 .collect());
         }
         let in_time = settings.sampling.time > 0.0;
@@ -57,20 +64,73 @@ impl Engine {
         } else {
             UNWATCHED_START
         };
-        let next = match (start, *level) {
+        let next = match (start, level) {
             (0, 0) => first.min(end),
             (0, level) => (2 * level).min(end),
             _ => end,
         };
-        let range = *level..next;
-        *level = next;
-        Ok((self.rendered.iter())
-            .flat_map(|&tile| self.chunks(tile, Pixels::All, range.clone()))
-            .collect())
+        let missing = |state: &TileState, half: usize| {
+            let from = start + u64::from(state.count(half)?);
+            (from < next).then_some((PlaneSet::ALL, from..next))
+        };
+        Ok(self.pass(missing))
+    }
+
+    /// The samples that lights lack which are another than before: twice as many as they have in each tile.
+    fn catch_up(&self) -> Option<Vec<Chunk>> {
+        let chunks = self.pass(|state, half| {
+            state.count(half)?;
+            let (planes, has, goal) = state.behind(half)?;
+            Some((
+                planes,
+                u64::from(has)..u64::from(goal.min((2 * has).max(1))),
+            ))
+        });
+        (!chunks.is_empty()).then_some(chunks)
+    }
+
+    /// Samples that every pixel has; `None` where there is no pixel.
+    fn least_count(&self) -> Option<u64> {
+        let counts = self.rendered.iter().filter_map(|&tile| {
+            let state = lock(&self.tiles[tile as usize]);
+            let counts = [state.count(0), state.count(1)];
+            counts.into_iter().flatten().min()
+        });
+        counts.min().map(u64::from)
+    }
+
+    /// What every half of a tile lacks.
+    fn pass(
+        &self,
+        missing: impl Fn(&TileState, usize) -> Option<(PlaneSet, Range<u64>)>,
+    ) -> Vec<Chunk> {
+        let mut chunks = Vec::new();
+        for &tile in &self.rendered {
+            let halves = {
+                let state = lock(&self.tiles[tile as usize]);
+                [0, 1].map(|half| missing(&state, half))
+            };
+            let has_one_half = self.grid.tile(tile).extent == UVec2::ONE;
+            match halves {
+                [Some((planes, range)), other]
+                    if has_one_half || other.as_ref() == Some(&(planes, range.clone())) =>
+                {
+                    chunks.extend(self.chunks(tile, Pixels::All, planes, range));
+                }
+                halves => {
+                    for (half, missing) in halves.into_iter().enumerate() {
+                        if let Some((planes, range)) = missing {
+                            chunks.extend(self.chunks(tile, Pixels::Half(half), planes, range));
+                        }
+                    }
+                }
+            }
+        }
+        chunks
     }
 
     /// One pass over a tile, in pieces of about [`CHUNK_RAYS`].
-    fn chunks(&self, tile: u32, pixels: Pixels, range: Range<u64>) -> Vec<Chunk> {
+    fn chunks(&self, tile: u32, pixels: Pixels, planes: PlaneSet, range: Range<u64>) -> Vec<Chunk> {
         let of = range.end - range.start;
         let (rays, samples) = {
             let state = lock(&self.tiles[tile as usize]);
@@ -88,6 +148,7 @@ impl Engine {
             .map(|i| Chunk {
                 tile,
                 pixels,
+                planes,
                 range: range.start + i * step..(range.start + (i + 1) * step).min(range.end),
                 of,
             })

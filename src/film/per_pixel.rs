@@ -2,7 +2,7 @@
 
 use super::error::{Decline, Means, Moves};
 use super::tile_state::half_of;
-use super::tiles::{FilmPixel, NearError, Tile, TileGrid};
+use super::tiles::{FilmPixel, Tile, TileGrid};
 use super::{Film, TILE};
 
 /// Edge in pixels of the square whose pixels are estimated together: the means of a single pixel
@@ -49,10 +49,7 @@ impl Film {
         TileGrid::new(self.size())
             .tiles()
             .enumerate()
-            .flat_map(|(number, tile)| {
-                let (pixels, near) = self.tile(number);
-                HalfTile::both(tile, pixels, near)
-            })
+            .flat_map(|(number, tile)| HalfTile::both(tile, self.tile(number)))
             .collect()
     }
 
@@ -97,8 +94,8 @@ struct HalfTile {
 }
 
 impl HalfTile {
-    fn both(tile: Tile, pixels: &[FilmPixel], near: &[NearError]) -> [Self; 2] {
-        let means = Means::of(pixels, near, tile.extent);
+    fn both(tile: Tile, pixels: &[FilmPixel]) -> [Self; 2] {
+        let means = Means::of(pixels, tile.extent);
         let moves = |half: usize, which: &dyn Fn(usize) -> bool| {
             let places = tile.pixels().map(|(_, at)| at);
             means.moves(places.filter(|&at| half_of(at) == half && which(at)))
@@ -125,14 +122,8 @@ fn square_errors(
                 return PixelError::UNKNOWN;
             };
             let square = &half.squares[i];
-            let is_near = half.whole.near.relative >= expected.relative;
-            let (part, of) = if is_near {
-                (square.near.relative, half.whole.near.relative)
-            } else {
-                (square.relative[0], half.whole.relative[0])
-            };
-            if part > 0.0 {
-                sum += expected.relative * part / of;
+            if square.relative[0] > 0.0 {
+                sum += expected.relative * square.relative[0] / half.whole.relative[0];
             }
             let in_square = f64::from(square.pixels);
             unmet += hidden * square.reach_with(square.count).relative * in_square;

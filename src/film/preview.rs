@@ -1,14 +1,14 @@
 //! The first pictures: sample 0 of every d-th pixel of every d-th row, then of every d/2-th, and so
-//! on. The pixels of a coarser picture are among those of a finer one, and all of them are samples
-//! that the film will want, so a coarse start costs no ray.
+//! on. The pixels of a coarser picture are among those of a finer one, so those down to every fourth cost a fifteenth of a
+//! sample of all. The film takes them again: it keeps lights apart, and sums each sample exactly.
 
 use super::TILE;
 use super::sample_chunk::{BatchSize, Subject, with_scratch};
 use super::tiles::Tile;
-use crate::trace::{RayCounts, SampleId};
+use crate::trace::{PlaneSet, SampleId};
 use glam::{UVec2, Vec2, Vec3};
 use std::sync::OnceLock;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
 /// Tracing the first picture should take this long, in seconds: two frames of a screen, 33 ms, have
@@ -32,8 +32,6 @@ pub(super) struct Preview {
     divider: AtomicU32,
     /// Counts how often it has changed.
     version: AtomicU32,
-    /// A sample met a lamp close by, of which its value alone does not tell all that the film keeps.
-    near_lamps: AtomicBool,
 }
 
 /// Its pixels row by row, but for those that were known before it began: they are in a coarser one.
@@ -47,7 +45,6 @@ impl Preview {
             lattices: Default::default(),
             divider: AtomicU32::new(1),
             version: AtomicU32::new(0),
-            near_lamps: AtomicBool::new(false),
         };
         preview.begin(coarsest_divider(area.extent));
         preview
@@ -93,16 +90,6 @@ impl Preview {
             }
         }
         self.version.fetch_add(1, Ordering::Release);
-    }
-
-    /// A sample met a lamp close by.
-    pub fn meet_near_lamps(&self) {
-        self.near_lamps.store(true, Ordering::Relaxed);
-    }
-
-    /// Whether the values are all that the film wants to know of these samples.
-    pub fn is_enough(&self) -> bool {
-        !self.near_lamps.load(Ordering::Relaxed)
     }
 
     /// Is another one after every change, and 0 before the first.
@@ -183,14 +170,13 @@ pub(super) fn lattice_squares(size: UVec2, divider: u32) -> Vec<UVec2> {
         .collect()
 }
 
-/// Seconds that a sample takes on one thread, from some of the coarsest lattice's near `focus`,
-/// which are kept, and the rays that they took.
+/// Seconds that a sample takes on one thread, from some of the coarsest lattice's near `focus`, which are kept.
 pub(super) fn time_samples(
     subject: &Subject,
     preview: &Preview,
     focus: Vec2,
     batch: &BatchSize,
-) -> (f64, RayCounts) {
+) -> f64 {
     let area = preview.area;
     let divider = coarsest_divider(area.extent);
     let mut pixels: Vec<_> = lattice(area, UVec2::ZERO, u32::MAX, divider).collect();
@@ -200,23 +186,19 @@ pub(super) fn time_samples(
         pixels.truncate(TIMED);
     }
     let start = Instant::now();
-    let mut rays = RayCounts::default();
     let mut timed = 0;
     with_scratch(|scratch| {
         for some in pixels.chunks(BATCH) {
             let ids = some.iter().map(|&pixel| SampleId { pixel, index: 0 });
-            rays += scratch.evaluate(subject, ids, batch);
+            scratch.evaluate(subject, PlaneSet::ALL, ids, batch);
             preview.take(some, scratch.values());
-            if scratch.is_near_lamps() {
-                preview.meet_near_lamps();
-            }
             timed += some.len();
             if start.elapsed() > LONG_ENOUGH {
                 break;
             }
         }
     });
-    (start.elapsed().as_secs_f64() / timed.max(1) as f64, rays)
+    start.elapsed().as_secs_f64() / timed.max(1) as f64
 }
 
 #[cfg(test)]

@@ -24,7 +24,7 @@ use std::thread;
 pub struct Progressive {
     // Dropped in this order, so that it is the worker that lets go of the film last.
     engine: Arc<Engine>,
-    _lets_worker_go: Sender<()>,
+    edited: Sender<()>,
 }
 
 impl Progressive {
@@ -65,34 +65,42 @@ impl Progressive {
         region: Option<URect>,
     ) -> io::Result<Self> {
         let samples = 0..u64::from(samples_per_pixel(&world, &camera, &settings));
-        let subject = Subject {
-            world,
-            camera,
-            settings,
-        };
+        let subject = Subject::new(world, camera, settings);
         let mode = Mode {
             watched: true,
+            editable: purpose == Purpose::View,
             samples,
             region,
         };
         let engine = Arc::new(Engine::new(subject, mode, Some(shared_pool(purpose)?)));
         engine.set_focus(engine.area.center());
-        let (lets_worker_go, told) = channel::<()>();
+        let (edited, edits) = channel::<()>();
         let worker = Worker(engine.clone());
         thread::Builder::new().name("film".into()).spawn(move || {
             worker.0.run(&|_| {});
             // Until the other end is dropped.
-            let _ = told.recv();
+            while edits.recv().is_ok() {
+                worker.0.run(&|_| {});
+            }
         })?;
-        Ok(Self {
-            engine,
-            _lets_worker_go: lets_worker_go,
-        })
+        Ok(Self { engine, edited })
     }
 
-    /// Tells this render from all others of the process.
+    /// Renders another world from now on, which differs in its lights alone: the colour of one costs no ray, and one that
+    /// moved its own. Samples and error are those that there are; the last picture is that of a render of this world, but
+    /// for the rounding of f32. False, and nothing done, where another render would show its first picture sooner.
+    pub fn edit(&self, world: World) -> bool {
+        let edited = self.engine.edit(world);
+        if edited {
+            // It fails only where the thread is gone by a bug that has been reported.
+            let _ = self.edited.send(());
+        }
+        edited
+    }
+
+    /// Tells this render, as it is since its last edit, from all others of the process.
     pub fn number(&self) -> u64 {
-        self.engine.number
+        self.engine.number()
     }
 
     /// What is around this place of the picture, in pixels, comes first from now on.

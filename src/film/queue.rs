@@ -47,6 +47,11 @@ impl Queue {
         self.chunks.pop()
     }
 
+    /// Nothing waits any more.
+    pub fn clear(&mut self) {
+        self.chunks.clear();
+    }
+
     pub fn len(&self) -> usize {
         self.chunks.len()
     }
@@ -56,6 +61,7 @@ impl Queue {
 mod tests {
     use super::super::tile_state::Pixels;
     use super::*;
+    use crate::trace::PlaneSet;
     use glam::UVec2;
 
     #[test]
@@ -66,6 +72,7 @@ mod tests {
             queue.push(Chunk {
                 tile,
                 pixels: Pixels::All,
+                planes: PlaneSet::ALL,
                 range: 0..1,
                 of: 1,
             });

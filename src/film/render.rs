@@ -80,20 +80,21 @@ fn run(
     samples: Range<u64>,
     told: &(dyn Fn(&Engine) + Sync),
 ) -> Rendered {
-    let subject = Subject {
-        world: world.clone(),
-        camera: camera.clone(),
-        settings: settings.clone(),
-    };
     let engine = Engine::new(
-        subject,
+        Subject::new(world.clone(), camera.clone(), settings.clone()),
         Mode {
             watched: false,
+            editable: false,
             samples,
             region: None,
         },
         None,
     );
+    finish(&engine, told)
+}
+
+/// Renders to the end.
+pub(super) fn finish(engine: &Engine, told: &(dyn Fn(&Engine) + Sync)) -> Rendered {
     let ending = engine.run(told);
     let status = engine.status();
     Rendered {

@@ -7,7 +7,10 @@ use super::tiles::Tile;
 use super::unmet::{NO_OCTAVES, Octaves, octave};
 use crate::scene::RenderSettings;
 use crate::trace::lights::sample_count;
-use crate::trace::{Camera, RayCounts, SampleId, Workspace, World, radiance};
+use crate::trace::planes::OWN;
+use crate::trace::{
+    Camera, PlaneSet, RayCounts, SampleId, Untinted, Workspace, World, radiance_in_planes,
+};
 use glam::{UVec2, Vec3};
 use std::cell::RefCell;
 use std::ops::Range;
@@ -15,10 +18,48 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 /// What samples depend on.
+#[derive(Clone)]
 pub(super) struct Subject {
     pub world: World,
     pub camera: Camera,
     pub settings: RenderSettings,
+    /// The same world as it is traced: its lights without the tints that can be changed afterwards.
+    pub light: Untinted,
+    /// Counts its edits.
+    pub edit: u32,
+}
+
+/// How many lights of a picture of this size have a plane each; the others share one. At most eight, and no more than fit
+/// into 1 GB: a pixel of a plane that stays apart takes 60 bytes.
+fn lights_apart(size: UVec2) -> usize {
+    let plane = 60.0 * size.as_dvec2().element_product();
+    ((1e9 / plane.max(1.0)) as usize).min(8)
+}
+
+impl Subject {
+    /// Of a world, seen in some way.
+    pub fn new(world: World, camera: Camera, settings: RenderSettings) -> Self {
+        Self {
+            light: Untinted::of(&world, lights_apart(settings.size)),
+            edit: 0,
+            world,
+            camera,
+            settings,
+        }
+    }
+
+    /// The same of another world, seen in the same way.
+    pub fn edited(&self, world: World) -> Self {
+        Self {
+            edit: self.edit + 1,
+            ..Self::new(world, self.camera.clone(), self.settings.clone())
+        }
+    }
+
+    /// How many planes the light has.
+    pub fn planes(&self) -> usize {
+        self.light.planes.count()
+    }
 }
 
 /// How many samples go into a batch. Many, so that the trees get long lists of rays; so few that
@@ -101,16 +142,17 @@ pub(super) struct Scratch {
     places: Vec<(UVec2, usize)>,
     columns: SumColumns,
     samples: Vec<SampleId>,
+    /// Plane by plane.
     values: Vec<Vec3>,
-    /// The same as `values`.
+    /// Those of one plane.
     colors: Vec<[f32; 3]>,
+    /// The values of the samples, all planes together.
+    folded: Vec<Vec3>,
     workspace: Workspace,
     /// When others last had the core for the asking.
     gave_way: Option<Instant>,
-    /// `TILE_PIXELS` for each segment of the chunk.
+    /// `TILE_PIXELS` for each plane of each segment of the chunk.
     pub sums: Vec<Sum>,
-    /// As many, of what lamps close by add too much; none where no sample met one.
-    pub near: Vec<Sum>,
     /// How bright the chunk's samples are.
     pub octaves: Octaves,
 }
@@ -123,10 +165,10 @@ impl Default for Scratch {
             samples: Vec::new(),
             values: Vec::new(),
             colors: Vec::new(),
+            folded: Vec::new(),
             workspace: Workspace::default(),
             gave_way: None,
             sums: Vec::new(),
-            near: Vec::new(),
             octaves: NO_OCTAVES,
         }
     }
@@ -145,50 +187,43 @@ pub(super) fn with_scratch<R>(work: impl FnOnce(&mut Scratch) -> R) -> R {
 }
 
 impl Scratch {
-    /// Sums the chunk's samples into [`Self::sums`]. `known` are the first samples of pixels that
-    /// were evaluated before, by their place in the tile. `None` where `stopped` became true.
+    /// Sums the chunk's samples into [`Self::sums`]. `None` where `stopped` became true.
     pub fn sum_chunk(
         &mut self,
         subject: &Subject,
         tile: Tile,
         chunk: &Chunk,
-        known: &[Option<Vec3>],
         batch: &BatchSize,
         stopped: &dyn Fn() -> bool,
     ) -> Option<RayCounts> {
         let mut rays = RayCounts::default();
         self.sums.clear();
-        self.near.clear();
         self.octaves.fill(0);
         let mut places = std::mem::take(&mut self.places);
         let complete = chunk.segments().all(|segment| {
             let first = self.sums.len();
-            self.sums.resize(first + TILE_PIXELS, Sum::default());
+            let sums = first + subject.planes() * TILE_PIXELS;
+            self.sums.resize(sums, Sum::default());
             places.clear();
             places.extend(
                 tile.pixels_in_blocks()
                     .filter(|(_, at)| chunk.pixels.has(*at)),
             );
-            if segment.start == 0 && !known.is_empty() {
-                // The first segment is sample 0 alone.
-                for &(_, at) in &places {
-                    if let Some(value) = known[at] {
-                        self.octaves[octave(value)] += 1;
-                        self.sums[at].add(value);
-                    }
-                }
-                places.retain(|&(_, at)| known[at].is_none());
-            }
-            let sampled = self.sum_segment(subject, &places, segment, first, batch, stopped);
+            let sampled = self.sum_segment(
+                subject,
+                &places,
+                segment,
+                chunk.planes,
+                first,
+                batch,
+                stopped,
+            );
             rays += sampled.unwrap_or_default();
             sampled.is_some()
         });
         self.places = places;
         if !complete {
             return None;
-        }
-        if !self.near.is_empty() {
-            self.near.resize(self.sums.len(), Sum::default());
         }
         Some(rays)
     }
@@ -199,12 +234,14 @@ impl Scratch {
         subject: &Subject,
         places: &[(UVec2, usize)],
         segment: Range<u64>,
+        wanted: PlaneSet,
         first: usize,
         batch: &BatchSize,
         stopped: &dyn Fn() -> bool,
     ) -> Option<RayCounts> {
         let mut rays = RayCounts::default();
-        self.columns.reset(places.len());
+        let planes = subject.planes();
+        self.columns.reset(planes * places.len());
         // The next sample: of the pixel at that place, with that index.
         let (mut place, mut index) = (0, segment.start);
         let mut left = (segment.end - segment.start) * places.len() as u64;
@@ -222,32 +259,44 @@ impl Scratch {
                 }
                 id
             });
-            rays += self.evaluate(subject, ids, batch);
-            self.sum_batch(places, first_place, first);
+            rays += self.evaluate(subject, wanted, ids, batch);
+            self.sum_batch(planes, places.len(), first_place);
             left -= count;
             if stopped() {
                 return None;
             }
         }
-        for (i, &(_, at)) in places.iter().enumerate() {
-            self.sums[first + at].merge(&self.columns.get(i));
+        for plane in 0..planes {
+            let first = first + plane * TILE_PIXELS;
+            for (i, &(_, at)) in places.iter().enumerate() {
+                let sum = self.columns.get(plane * places.len() + i);
+                self.sums[first + at].merge(&sum);
+            }
         }
         Some(rays)
     }
 
-    /// Adds the batch's values to the pixels, the first of them to that at `first_place`.
-    fn sum_batch(&mut self, places: &[(UVec2, usize)], first_place: usize, first: usize) {
-        self.colors.clear();
-        (self.colors).extend(self.values.iter().map(|value| value.to_array()));
-        let (mut at, mut rest) = (first_place, &self.colors[..]);
-        while !rest.is_empty() {
-            let (run, others) = rest.split_at(rest.len().min(places.len() - at));
-            self.columns.add(at, run);
-            (at, rest) = (0, others);
+    /// Adds the batch's values to the pixels in turn, the first of them to that at `first_place`.
+    fn sum_batch(&mut self, planes: usize, pixels: usize, first_place: usize) {
+        for plane in 0..planes {
+            let count = self.samples.len();
+            let values = &self.values[plane * count..][..count];
+            if plane != OWN && values.iter().all(|value| *value == Vec3::ZERO) {
+                // Most batches of many pictures see no light.
+                continue;
+            }
+            self.colors.clear();
+            (self.colors).extend(values.iter().map(|value| value.to_array()));
+            let (mut at, mut rest) = (first_place, &self.colors[..]);
+            while !rest.is_empty() {
+                let (run, others) = rest.split_at(rest.len().min(pixels - at));
+                self.columns.add(plane * pixels + at, run);
+                (at, rest) = (0, others);
+            }
         }
         // Neighbours are often as bright as each other.
         let (mut same, mut samples) = (0, 0);
-        for value in &self.values {
+        for value in &self.folded {
             let octave = octave(*value);
             if octave != same {
                 self.octaves[same] += std::mem::take(&mut samples);
@@ -256,32 +305,43 @@ impl Scratch {
             samples += 1;
         }
         self.octaves[same] += samples;
-        for &(i, deviation) in self.workspace.deviations() {
-            let (_, at) = places[(first_place + i as usize) % places.len()];
-            self.near.resize(self.sums.len(), Sum::default());
-            self.near[first + at].add(deviation);
-        }
     }
 
     /// The radiance of samples, which stays in `self.values` until the next call.
     pub fn evaluate(
         &mut self,
         subject: &Subject,
+        wanted: PlaneSet,
         ids: impl Iterator<Item = SampleId>,
         batch: &BatchSize,
     ) -> RayCounts {
         let start = Instant::now();
         self.samples.clear();
         self.samples.extend(ids);
-        self.values.resize(self.samples.len(), Vec3::ZERO);
-        let rays = radiance(
-            &subject.world,
+        let Untinted {
+            world,
+            planes,
+            tints,
+        } = &subject.light;
+        let count = self.samples.len();
+        self.values.resize(planes.count() * count, Vec3::ZERO);
+        let rays = radiance_in_planes(
+            world,
             &subject.camera,
             &subject.settings,
             &self.samples,
+            planes,
+            wanted,
             &mut self.values,
             &mut self.workspace,
         );
+        self.folded.clear();
+        self.folded.extend_from_slice(&self.values[..count]);
+        for (values, tint) in self.values.chunks_exact(count).zip(tints).skip(OWN + 1) {
+            for (sum, value) in self.folded.iter_mut().zip(values) {
+                *sum += *tint * *value;
+            }
+        }
         let end = Instant::now();
         batch.learn(self.samples.len(), end - start);
         // Whoever waits for this core, a frame or the thread that develops pictures, has it now and not
@@ -294,13 +354,8 @@ impl Scratch {
         rays
     }
 
-    /// Whether a sample of the last [`Self::evaluate`] met a lamp close by.
-    pub fn is_near_lamps(&self) -> bool {
-        !self.workspace.deviations().is_empty()
-    }
-
-    /// What the last [`Self::evaluate`] found.
+    /// What the last [`Self::evaluate`] found, all planes together.
     pub fn values(&self) -> &[Vec3] {
-        &self.values
+        &self.folded
     }
 }

@@ -3,8 +3,8 @@
 use super::engine::Engine;
 use super::preview::Preview;
 use super::tile_state::{TILE_PIXELS, TileState};
-use super::tiles::{FilmPixel, NearError, Tile};
-use super::{Film, Picture, TILE, lock};
+use super::tiles::{FilmPixel, Tile};
+use super::{Film, Picture, TILE};
 use glam::{UVec2, Vec3};
 use rayon::prelude::*;
 
@@ -37,7 +37,7 @@ impl Engine {
         let mut picture = Picture::black(self.size());
         let width = picture.width as usize;
         for tile in &self.rendered {
-            let state = lock(&self.tiles[*tile as usize]);
+            let state = self.tile(*tile as usize);
             let above = state.tile.origin.y as usize * width;
             draw_means(&state, &mut picture.pixels[above..], width);
         }
@@ -51,8 +51,9 @@ impl Engine {
         if snapshot.picture.size() != self.size() {
             *snapshot = Snapshot::black(self.size());
         }
-        if snapshot.render != self.number {
-            snapshot.render = self.number;
+        let number = self.number();
+        if snapshot.render != number {
+            snapshot.render = number;
             snapshot.versions = vec![0; self.tiles.len()];
             snapshot.preview_version = 0;
         }
@@ -65,12 +66,14 @@ impl Engine {
         let row_of_tiles = (TILE as usize * width).max(1);
         let rows = snapshot.picture.pixels.par_chunks_mut(row_of_tiles);
         rows.zip(snapshot.versions.par_chunks_mut(columns))
-            .zip(self.tiles.par_chunks(columns))
-            .map(|((pixels, versions), tiles)| {
+            .enumerate()
+            .map(|(row, (pixels, versions))| {
                 let mut changed = false;
-                for (version, tile) in versions.iter_mut().zip(tiles) {
-                    let state = lock(tile);
-                    if *version != state.version {
+                for (column, version) in versions.iter_mut().enumerate() {
+                    let state = self.tile(row * columns + column);
+                    if state.lacks_light() {
+                        // What stood there before stays.
+                    } else if *version != state.version {
                         *version = state.version;
                         draw_means(&state, pixels, width);
                         changed = true;
@@ -88,23 +91,14 @@ impl Engine {
 
     pub fn film(&self) -> Film {
         let mut pixels = Vec::with_capacity(self.tiles.len() * TILE_PIXELS);
-        let mut near = Vec::new();
-        for state in &self.tiles {
-            let (start, end) = (pixels.len(), pixels.len() + TILE_PIXELS);
-            let state = lock(state);
+        for tile in 0..self.tiles.len() {
+            let end = pixels.len() + TILE_PIXELS;
+            let state = self.tile(tile);
             pixels.extend_from_slice(&state.pixels);
             // A tile that no pass has reached has none.
             pixels.resize(end, FilmPixel::default());
-            let errors = state.near_errors();
-            if !errors.is_empty() {
-                near.resize(start, NearError::default());
-                near.extend(errors);
-            }
         }
-        if !near.is_empty() {
-            near.resize(pixels.len(), NearError::default());
-        }
-        Film::from_tiles(self.size(), pixels, near, self.hidden_in_a_pixel())
+        Film::from_tiles(self.size(), pixels, self.hidden_in_a_pixel())
     }
 
     /// The film of the one tile that a pixel lies in, and the pixel's place there.
@@ -114,14 +108,13 @@ impl Engine {
         }
         let columns = self.size().x.div_ceil(TILE);
         let tile = (pixel.y / TILE) * columns + pixel.x / TILE;
-        let state = lock(self.tiles.get(tile as usize)?);
+        let state = self.tile(tile as usize);
         let mut pixels = state.pixels.to_vec();
         // A tile that no pass has reached has none.
         pixels.resize(TILE_PIXELS, FilmPixel::default());
-        let near = state.near_errors();
         let extent = state.tile.extent;
         drop(state);
-        let film = Film::from_tiles(extent, pixels, near, self.hidden_in_a_pixel());
+        let film = Film::from_tiles(extent, pixels, self.hidden_in_a_pixel());
         Some((film, pixel % TILE))
     }
 }
@@ -160,7 +153,7 @@ fn draw_preview(state: &TileState, preview: &Preview, rows: &mut [Vec3], width: 
 mod tests {
     use super::super::engine::Mode;
     use super::super::sample_chunk::Subject;
-    use super::super::test_scene;
+    use super::super::{lock, test_scene};
     use super::*;
     use std::sync::Arc;
 
@@ -168,13 +161,11 @@ mod tests {
     const OLD: Vec3 = Vec3::splat(7.0);
 
     fn engine() -> Engine {
-        let subject = Subject {
-            world: test_scene::world(),
-            camera: test_scene::camera(),
-            settings: test_scene::settings(SIZE, 2),
-        };
+        let settings = test_scene::settings(SIZE, 2);
+        let subject = Subject::new(test_scene::world(), test_scene::camera(), settings);
         let mode = Mode {
             watched: true,
+            editable: true,
             samples: 0..2,
             region: None,
         };

@@ -37,7 +37,7 @@ pub struct Status {
     pub samples: f64,
     /// Samples of each pixel after which it ends at the latest.
     pub samples_wanted: f64,
-    /// Rays traced so far.
+    /// Rays that the film's samples took so far.
     pub rays: RayCounts,
     /// How long it has been tracing, pauses not counted.
     pub seconds: f64,

@@ -1,4 +1,4 @@
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// The exact sum of colours, whatever the order in which they are added: 128-bit fixed point.
 ///
@@ -25,6 +25,18 @@ impl Sum {
     pub fn merge(&mut self, other: &Self) {
         for (sum, other) in self.0.iter_mut().zip(other.0) {
             *sum += other;
+        }
+    }
+
+    /// Adds what another sum holds times a factor for each channel: rounded to 53 bits, where that is not 1.
+    pub fn merge_scaled(&mut self, other: &Self, factor: DVec3) {
+        if factor == DVec3::ONE {
+            return self.merge(other);
+        }
+        for ((sum, other), factor) in self.0.iter_mut().zip(other.0).zip(factor.to_array()) {
+            if other != 0 {
+                *sum = sum.saturating_add((to_f64(other) * factor) as i128);
+            }
         }
     }
 

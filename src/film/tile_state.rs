@@ -2,8 +2,14 @@
 //! is known of its error.
 
 use super::error::{Means, Moves};
-use super::tiles::{FilmPixel, NOT_KNOWN, NearError, Tile};
+use super::sample_chunk::Subject;
+use super::tile_planes::TilePlanes;
+use super::tiles::{FilmPixel, NOT_KNOWN, Tile};
 use super::{Sum, TILE};
+use crate::trace::PlaneSet;
+use crate::trace::planes::OWN;
+use glam::{UVec2, Vec3};
+use std::borrow::Cow;
 use std::ops::Range;
 
 pub(super) const TILE_PIXELS: usize = (TILE * TILE) as usize;
@@ -37,6 +43,8 @@ pub(super) fn half_of(place: usize) -> usize {
 pub(super) struct Chunk {
     pub tile: u32,
     pub pixels: Pixels,
+    /// Of which planes.
+    pub planes: PlaneSet,
     /// Sample indices of this piece.
     pub range: Range<u64>,
     /// How many samples a pixel gets in this pass, all pieces together.
@@ -69,8 +77,12 @@ pub(super) struct TileState {
     pub tile: Tile,
     /// `TILE_PIXELS`, or none before the first pass: a render begins without waiting for memory.
     pub pixels: Box<[FilmPixel]>,
-    /// Of each pixel the sum of what lamps close by add too much; none where no sample met one.
-    near: Box<[Sum]>,
+    /// Whether the planes stay apart.
+    editable: bool,
+    /// What the pixels are the sum of, where they do.
+    planes: Option<Box<TilePlanes>>,
+    /// The edit by whose tints they are.
+    edit: u32,
     pending: Option<Box<Pending>>,
     /// How far the means moved, for each half of the pixels.
     pub moves: [Moves; 2],
@@ -83,19 +95,20 @@ pub(super) struct TileState {
 
 /// The pieces of a pass that have arrived; they enter the pixels when it is complete.
 struct Pending {
+    /// `TILE_PIXELS` for each plane.
     sums: Vec<Sum>,
-    /// The same of what lamps close by add too much; none where no sample met one.
-    near: Vec<Sum>,
     /// Samples a pixel of each half still waits for; 0 where no pass has begun.
     missing: [u64; 2],
 }
 
 impl TileState {
-    pub fn new(tile: Tile) -> Self {
+    pub fn new(tile: Tile, editable: bool) -> Self {
         Self {
             tile,
             pixels: Box::default(),
-            near: Box::default(),
+            editable,
+            planes: None,
+            edit: 0,
             pending: None,
             moves: [Moves::default(); 2],
             rays: 0,
@@ -104,9 +117,10 @@ impl TileState {
         }
     }
 
-    /// Takes the sums of a chunk, `TILE_PIXELS` for each of its segments, and as many of what lamps close by
-    /// add too much, or none. True where they complete the pass and so have entered the pixels.
-    pub fn absorb(&mut self, chunk: &Chunk, sums: &[Sum], near: &[Sum], rays: u64) -> bool {
+    /// Takes the sums of a chunk, `TILE_PIXELS` for each plane of each of its segments. True where they complete the pass
+    /// and so have entered the pixels.
+    pub fn absorb(&mut self, subject: &Subject, chunk: &Chunk, sums: &[Sum], rays: u64) -> bool {
+        let each = subject.planes() * TILE_PIXELS;
         let length = chunk.range.end - chunk.range.start;
         self.rays += rays;
         self.samples += length
@@ -116,32 +130,21 @@ impl TileState {
                 .filter(|(_, at)| chunk.pixels.has(*at))
                 .count() as u64;
         if chunk.is_whole() {
-            let mut near = near.chunks_exact(TILE_PIXELS);
-            for (segment, sums) in chunk.segments().zip(sums.chunks_exact(TILE_PIXELS)) {
-                let near = near.next().unwrap_or_default();
-                self.commit(chunk.pixels, sums, near, segment.end - segment.start);
+            for (segment, sums) in chunk.segments().zip(sums.chunks_exact(each)) {
+                self.commit(subject, chunk, sums, segment.end - segment.start);
             }
             self.note_moves(chunk.pixels);
             return true;
         }
         let mut pending = self.pending.take().unwrap_or_else(|| {
             Box::new(Pending {
-                sums: vec![Sum::default(); TILE_PIXELS],
-                near: Vec::new(),
+                sums: vec![Sum::default(); each],
                 missing: [0; 2],
             })
         });
         for (at, sum) in pending.sums.iter_mut().enumerate() {
-            if chunk.pixels.has(at) {
+            if chunk.pixels.has(at % TILE_PIXELS) {
                 sum.merge(&sums[at]);
-            }
-        }
-        if !near.is_empty() {
-            pending.near.resize(TILE_PIXELS, Sum::default());
-        }
-        for (at, (sum, near)) in pending.near.iter_mut().zip(near).enumerate() {
-            if chunk.pixels.has(at) {
-                sum.merge(near);
             }
         }
         for half in 0..2 {
@@ -153,14 +156,11 @@ impl TileState {
         let first = usize::from(!chunk.pixels.has_half(0));
         let complete = pending.missing[first] == 0;
         if complete {
-            self.commit(chunk.pixels, &pending.sums, &pending.near, chunk.of);
+            self.commit(subject, chunk, &pending.sums, chunk.of);
             self.note_moves(chunk.pixels);
-            let Pending { sums, near, .. } = &mut *pending;
-            for sums in [sums, near] {
-                for (at, sum) in sums.iter_mut().enumerate() {
-                    if chunk.pixels.has(at) {
-                        *sum = Sum::default();
-                    }
+            for (at, sum) in pending.sums.iter_mut().enumerate() {
+                if chunk.pixels.has(at % TILE_PIXELS) {
+                    *sum = Sum::default();
                 }
             }
         }
@@ -170,11 +170,17 @@ impl TileState {
         complete
     }
 
-    /// Adds `count` samples to every pixel, whose sums are given.
-    fn commit(&mut self, pixels: Pixels, sums: &[Sum], near: &[Sum], count: u64) {
+    /// Adds `count` samples to every pixel of the chunk, whose sums are given.
+    fn commit(&mut self, subject: &Subject, chunk: &Chunk, sums: &[Sum], count: u64) {
         if self.pixels.is_empty() {
             self.pixels = vec![FilmPixel::default(); TILE_PIXELS].into();
         }
+        if self.editable {
+            self.commit_apart(subject, chunk, sums, count);
+            return;
+        }
+        let pixels = chunk.pixels;
+        let sums = together(sums, &subject.light.tints);
         let doubles = |pixel: &FilmPixel| u64::from(pixel.count) == count;
         for (_, at) in self.tile.pixels().filter(|(_, at)| pixels.has(*at)) {
             let pixel = &mut self.pixels[at];
@@ -188,20 +194,93 @@ impl TileState {
             pixel.sum.merge(&sums[at]);
             pixel.count += count as u32;
         }
-        if !near.is_empty() && self.near.is_empty() {
-            self.near = vec![Sum::default(); TILE_PIXELS].into();
+    }
+
+    /// The same where light is kept apart.
+    fn commit_apart(&mut self, subject: &Subject, chunk: &Chunk, sums: &[Sum], count: u64) {
+        self.retint(subject);
+        let planes = self
+            .planes
+            .get_or_insert_with(|| Box::new(TilePlanes::new(subject.planes())));
+        planes.add(chunk.pixels, chunk.planes, sums, count as u32);
+        let is_more = chunk.planes.has(OWN);
+        for (_, at) in (self.tile.pixels()).filter(|(_, at)| chunk.pixels.has(*at)) {
+            let pixel = &mut self.pixels[at];
+            let (sum, moved) = planes.fold(at, &subject.light.tints);
+            if !is_more {
+                pixel.moved[0] = if pixel.moved[0].is_finite() {
+                    moved
+                } else {
+                    pixel.moved[0]
+                };
+            } else if u64::from(pixel.count) == count {
+                pixel.moved = [moved, pixel.moved[0], pixel.moved[1]];
+            } else if pixel.count == 0 && count > 1 {
+                pixel.moved = NOT_KNOWN;
+            }
+            pixel.sum = sum;
+            pixel.count += if is_more { count as u32 } else { 0 };
         }
-        for (at, (sum, near)) in self.near.iter_mut().zip(near).enumerate() {
-            if pixels.has(at) {
-                sum.merge(near);
+    }
+
+    /// The pixels are what they are with the subject's tints.
+    pub fn retint(&mut self, subject: &Subject) {
+        if self.edit == subject.edit {
+            return;
+        }
+        self.edit = subject.edit;
+        if let Some(planes) = &self.planes {
+            planes.retint(&mut self.pixels, &subject.light.tints);
+            for half in 0..2 {
+                if self.moves[half].pixels > 0 {
+                    self.note_moves(Pixels::Half(half));
+                }
             }
         }
     }
 
+    /// The planes of an edited scene are those of these numbers before. What has arrived of a pass is of no plane that
+    /// there is.
+    pub fn rearrange(&mut self, from: &[Option<usize>]) {
+        self.pending = None;
+        if let Some(planes) = &mut self.planes {
+            planes.rearrange(from);
+        }
+    }
+
+    /// Samples that each pixel of a half has; `None` where it has no pixel.
+    pub fn count(&self, half: usize) -> Option<u32> {
+        let UVec2 { x, y } = self.tile.extent;
+        let first = match half {
+            0 => 0,
+            _ if x > 1 => 1,
+            _ if y > 1 => TILE as usize,
+            _ => return None,
+        };
+        Some(self.pixels.get(first).map_or(0, |pixel| pixel.count))
+    }
+
+    /// The mean of a pixel's samples in one plane, without its tint; black where planes do not stay apart.
+    pub fn plane_mean(&self, plane: usize, at: usize) -> Vec3 {
+        let planes = self.planes.as_ref();
+        planes.map_or(Vec3::ZERO, |planes| planes.mean(plane, at))
+    }
+
+    /// Whether something that shines is missing in its pixels.
+    pub fn lacks_light(&self) -> bool {
+        self.planes
+            .as_ref()
+            .is_some_and(|planes| planes.lacks_light())
+    }
+
+    /// Planes of a half that have fewer samples than it: those with the fewest, how many they have, and how many it has.
+    pub fn behind(&self, half: usize) -> Option<(PlaneSet, u32, u32)> {
+        self.planes.as_ref()?.behind(half)
+    }
+
     /// The pixels have changed: says how far they moved.
     fn note_moves(&mut self, pixels: Pixels) {
-        let near = self.near_errors();
-        let means = Means::of(&self.pixels, &near, self.tile.extent);
+        let means = Means::of(&self.pixels, self.tile.extent);
         for half in 0..2 {
             if pixels.has_half(half) {
                 let places = self.tile.pixels().map(|(_, at)| at);
@@ -210,35 +289,55 @@ impl TileState {
         }
         self.version = self.version.wrapping_add(1);
     }
+}
 
-    /// What lamps close by leave each pixel off by; empty where none is close.
-    pub fn near_errors(&self) -> Vec<NearError> {
-        let pixels = self.near.iter().zip(&self.pixels);
-        pixels
-            .map(|(sum, pixel)| NearError::of(sum, pixel.count))
-            .collect()
+/// All planes of a tile's sums as one.
+fn together<'a>(sums: &'a [Sum], tints: &[Vec3]) -> Cow<'a, [Sum]> {
+    let (own, lights) = sums.split_at(TILE_PIXELS);
+    if lights.is_empty() {
+        return Cow::Borrowed(own);
     }
+    let mut folded = own.to_vec();
+    for (plane, tint) in lights.chunks_exact(TILE_PIXELS).zip(&tints[OWN + 1..]) {
+        for (sum, light) in folded.iter_mut().zip(plane) {
+            sum.merge_scaled(light, tint.as_dvec3());
+        }
+    }
+    Cow::Owned(folded)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::test_scene;
     use super::*;
-    use glam::{UVec2, Vec3};
+    use crate::trace::World;
+    use std::sync::Arc;
 
     fn tile() -> TileState {
-        TileState::new(Tile {
+        let tile = Tile {
             origin: UVec2::new(16, 32),
             extent: UVec2::new(16, 5),
-        })
+        };
+        TileState::new(tile, false)
     }
 
     fn chunk(range: Range<u64>, of: u64, pixels: Pixels) -> Chunk {
         Chunk {
             tile: 0,
             pixels,
+            planes: PlaneSet::ALL,
             range,
             of,
         }
+    }
+
+    fn subject() -> Subject {
+        let settings = test_scene::settings(UVec2::new(64, 64), 8);
+        let world = World {
+            lights: Arc::default(),
+            ..test_scene::world()
+        };
+        Subject::new(world, test_scene::camera(), settings)
     }
 
     fn sums(values: Range<u64>) -> Vec<Sum> {
@@ -269,10 +368,10 @@ mod tests {
         for segment in chunk(0..4, 4, Pixels::All).segments() {
             first.extend(sums(segment));
         }
-        assert!(whole.absorb(&chunk(0..4, 4, Pixels::All), &first, &[], 10));
+        assert!(whole.absorb(&subject(), &chunk(0..4, 4, Pixels::All), &first, 10));
         let mut pieces = tile();
-        assert!(pieces.absorb(&chunk(0..4, 4, Pixels::All), &first, &[], 10));
-        assert!(whole.absorb(&chunk(4..8, 4, Pixels::All), &sums(4..8), &[], 10));
+        assert!(pieces.absorb(&subject(), &chunk(0..4, 4, Pixels::All), &first, 10));
+        assert!(whole.absorb(&subject(), &chunk(4..8, 4, Pixels::All), &sums(4..8), 10));
         for (range, half, complete) in [
             (6..8, 1, false),
             (6..8, 0, false),
@@ -281,9 +380,9 @@ mod tests {
         ] {
             let before = pieces.pixels.clone();
             let done = pieces.absorb(
+                &subject(),
                 &chunk(range.clone(), 4, Pixels::Half(half)),
                 &sums(range),
-                &[],
                 0,
             );
             assert_eq!(done, complete);
@@ -304,7 +403,7 @@ mod tests {
         for segment in chunk(0..8, 8, Pixels::All).segments() {
             all.extend(sums(segment));
         }
-        tile.absorb(&chunk(0..8, 8, Pixels::All), &all, &[], 0);
+        tile.absorb(&subject(), &chunk(0..8, 8, Pixels::All), &all, 0);
         // Means of 0..1, 0..2, 0..4, 0..8 in thousands: 0, 0.5, 1.5, 3.5.
         assert_eq!(tile.pixels[0].moved, [4e6, 1e6, 0.25e6]);
     }

@@ -12,8 +12,6 @@ pub const TILE: u32 = 16;
 pub struct Film {
     size: UVec2,
     pixels: Vec<FilmPixel>,
-    /// What lamps close by leave each pixel off by; empty where none is close.
-    near: Vec<NearError>,
     /// The squared error that unmet features may leave in a pixel, per [`Reach`](super::unmet::Reach) of a
     /// sample, if they lie in all alike.
     pub(super) hidden: f64,
@@ -29,26 +27,6 @@ pub(super) struct FilmPixel {
     pub moved: [f32; 3],
 }
 
-/// What lamps close by leave a pixel's mean off by: known, and not estimated.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct NearError {
-    /// Averaged over the channels.
-    pub mean: f32,
-    /// Squared, then averaged over the channels.
-    pub squared: f32,
-}
-
-impl NearError {
-    /// From the sum over a pixel's samples of what is too much in them.
-    pub fn of(sum: &Sum, count: u32) -> Self {
-        let mean = sum.mean(count);
-        Self {
-            mean: mean.element_sum() / 3.0,
-            squared: mean.length_squared() / 3.0,
-        }
-    }
-}
-
 /// Of samples that did not arrive by doublings from the first one on. Infinite and not NaN, so that
 /// equal films are equal.
 pub(super) const NOT_KNOWN: [f32; 3] = [f32::INFINITY; 3];
@@ -60,7 +38,6 @@ impl Film {
         Self {
             size,
             pixels: vec![FilmPixel::default(); pixels],
-            near: Vec::new(),
             hidden: 0.0,
         }
     }
@@ -70,18 +47,12 @@ impl Film {
         self.size
     }
 
-    /// The film whose tiles' pixels are given, in the grid's order, and what lamps close by leave each of
-    /// them off by, or nothing. `hidden` is what unmet features may leave in a pixel, per reach of a sample.
-    pub(super) fn from_tiles(
-        size: UVec2,
-        pixels: Vec<FilmPixel>,
-        near: Vec<NearError>,
-        hidden: f64,
-    ) -> Self {
+    /// The film whose tiles' pixels are given, in the grid's order. `hidden` is what unmet features may leave in a
+    /// pixel, per reach of a sample.
+    pub(super) fn from_tiles(size: UVec2, pixels: Vec<FilmPixel>, hidden: f64) -> Self {
         Self {
             size,
             pixels,
-            near,
             hidden,
         }
     }
@@ -143,9 +114,6 @@ impl Film {
             pixel.count += other.count;
         }
         self.hidden = self.hidden.max(other.hidden);
-        if self.near.is_empty() {
-            self.near.clone_from(&other.near);
-        }
         true
     }
 
@@ -154,12 +122,10 @@ impl Film {
         self.pixels[self.place(x, y)].count
     }
 
-    /// The memory of the tile with this number, and what lamps close by leave its pixels off by.
-    pub(super) fn tile(&self, number: usize) -> (&[FilmPixel], &[NearError]) {
+    /// The memory of the tile with this number.
+    pub(super) fn tile(&self, number: usize) -> &[FilmPixel] {
         const PIXELS: usize = (TILE * TILE) as usize;
-        let range = number * PIXELS..(number + 1) * PIXELS;
-        let near = self.near.get(range.clone()).unwrap_or_default();
-        (&self.pixels[range], near)
+        &self.pixels[number * PIXELS..(number + 1) * PIXELS]
     }
 
     fn place(&self, x: u32, y: u32) -> usize {
@@ -276,7 +242,7 @@ mod tests {
                     pixel.count += 1;
                 }
             }
-            let film = Film::from_tiles(size, pixels, Vec::new(), 0.0);
+            let film = Film::from_tiles(size, pixels, 0.0);
             assert_eq!(film.pixels.len(), Film::new(size).pixels.len());
             let picture = film.picture();
             for y in 0..size.y {

@@ -18,10 +18,11 @@
 //! A scene in which nothing is random, an even background alone, is no exception: what its samples say is all
 //! that a picture knows.
 
+use super::lock;
 use super::sample_chunk::Subject;
 use crate::trace::emitters;
 use glam::Vec3;
-use std::sync::OnceLock;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// -ln 0.05.
@@ -55,14 +56,14 @@ pub(super) struct Unmet {
     met: [AtomicU64; OCTAVES],
     /// Of each octave that has an emitter the largest mean over the channels; looked for when first
     /// asked for.
-    emitters: OnceLock<Vec<(usize, f64)>>,
+    emitters: Mutex<Option<Vec<(usize, f64)>>>,
 }
 
 impl Default for Unmet {
     fn default() -> Self {
         Self {
             met: [const { AtomicU64::new(0) }; OCTAVES],
-            emitters: OnceLock::new(),
+            emitters: Mutex::default(),
         }
     }
 }
@@ -75,6 +76,11 @@ impl Unmet {
                 met.fetch_add(u64::from(samples), Ordering::Relaxed);
             }
         }
+    }
+
+    /// What shines is another now.
+    pub fn forget_emitters(&self) {
+        *lock(&self.emitters) = None;
     }
 
     /// What the largest [`Reach`] of a sample is multiplied by for the sum over all pixels of the squared error
@@ -90,7 +96,8 @@ impl Unmet {
 
     /// How bright emitters are at most that fewer samples have met, in the film's unit.
     fn brightness(&self, subject: &Subject, times: u64) -> f64 {
-        let found = self.emitters.get_or_init(|| {
+        let mut kept = lock(&self.emitters);
+        let found = kept.get_or_insert_with(|| {
             let found = emitters(&subject.world, &subject.camera, &subject.settings);
             let of = |radiance: Vec3| (octave(radiance), f64::from(radiance.element_sum()) / 3.0);
             let mut found: Vec<_> = found.into_iter().map(of).collect();

@@ -1,15 +1,12 @@
 //! Direct light, one light after another: points of it for all vertices of a batch, shadow rays there, and what arrives.
 
-use super::chosen_places::{ChosenPlace, ChosenPlaces};
+use super::chosen_places::ChosenPlaces;
+use super::lamp::Lamp;
 use super::light_frames::Frame;
-use super::lights::{
-    DirectionalLight, LightPoint, MIDDLE, ParallelogramLight, PointLight, SegmentLight,
-    sample_count,
-};
-use super::near_lights::NearLights;
+use super::lights::{LightPoint, sample_count};
 use super::numbers::{Asking, Pairs};
 use super::radiance::{Batch, Vertex};
-use super::recorder::{Adding, LightKind, LitPoint, Recorder};
+use super::recorder::{Adding, LitPoint, Recorder};
 use super::sampler::Purpose;
 use super::shading::reflected;
 use super::{Lights, SampleId, Surface};
@@ -40,111 +37,16 @@ pub(super) struct ShadowRays {
 
 /// What a shadow ray adds to which sample, if the light arrives.
 #[derive(Clone, Copy)]
-pub(super) struct Shadow {
-    pub sample: u32,
-    pub value: Vec3,
+struct Shadow {
+    sample: u32,
+    value: Vec3,
     /// The number of the light's point.
     point: u32,
 }
 
-/// A light of any kind, with its place in the array of its kind.
-#[derive(Clone, Copy)]
-enum Lamp<'a> {
-    Point(&'a PointLight),
-    Directional(&'a DirectionalLight),
-    Segment(usize, &'a SegmentLight),
-    Parallelogram(usize, &'a ParallelogramLight),
-}
-
-impl Lamp<'_> {
-    fn kind(self) -> LightKind {
-        match self {
-            Self::Point(_) => LightKind::Point,
-            Self::Directional(_) => LightKind::Directional,
-            Self::Segment(..) => LightKind::Segment,
-            Self::Parallelogram(..) => LightKind::Parallelogram,
-        }
-    }
-
-    fn id(self) -> u64 {
-        match self {
-            Self::Point(light) => light.id,
-            Self::Directional(light) => light.id,
-            Self::Segment(_, light) => light.id,
-            Self::Parallelogram(_, light) => light.id,
-        }
-    }
-
-    /// Shadow rays at a first hit, and what they are counted per (m, m² or sr); `None` of a light without extent.
-    fn samples(self) -> Option<(u32, f32)> {
-        match self {
-            Self::Point(_) => None,
-            Self::Directional(light) => {
-                (light.disc.is_some()).then(|| (light.samples, light.solid_angle()))
-            }
-            Self::Segment(_, light) => {
-                Some((light.samples, (light.ends[1] - light.ends[0]).length()))
-            }
-            Self::Parallelogram(_, light) => Some((light.samples, light.area_normal().length())),
-        }
-    }
-
-    /// What choosing its points for a surface needs to know of it; nothing where all points are alike.
-    fn frame(self) -> Option<Frame> {
-        match self {
-            Self::Point(_) | Self::Directional(_) => None,
-            Self::Segment(_, light) => light.frame().map(Frame::Segment),
-            Self::Parallelogram(_, light) => light.frame().map(Frame::Parallelogram),
-        }
-    }
-
-    /// The point that was chosen for a surface at `from`, in the frame that moves with the light.
-    fn chosen(self, from: Vec3, chosen: ChosenPlace) -> Option<LightPoint> {
-        let ChosenPlace { place, arriving } = chosen;
-        match self {
-            Self::Point(_) | Self::Directional(_) => None,
-            Self::Segment(_, light) => light.chosen(from, place[0], arriving),
-            Self::Parallelogram(_, light) => light.chosen(from, place, arriving),
-        }
-    }
-
-    /// The point that the numbers choose where all points are alike.
-    #[inline(always)]
-    fn point(self, from: Vec3, u: [f32; 2], lighting: Lighting) -> Option<LightPoint> {
-        match self {
-            Self::Point(light) => light.point(from, lighting),
-            Self::Directional(light) => Some(light.point(u, lighting)),
-            Self::Segment(_, light) => light.point(from, u[0], lighting),
-            Self::Parallelogram(_, light) => light.point(from, u, lighting),
-        }
-    }
-
-    /// The point that stands for the whole light where there are no soft shadows.
-    fn middle(self, from: Vec3, lighting: Lighting) -> Option<LightPoint> {
-        match self {
-            Self::Directional(light) => Some(light.middle()),
-            _ => self.point(from, MIDDLE, lighting),
-        }
-    }
-
-    /// What the points have to add on average, where the light is close by and that is known.
-    fn expected(self, near: &NearLights, surface: &Surface, from: Vec3) -> Option<Vec3> {
-        match self {
-            Self::Point(_) | Self::Directional(_) => None,
-            Self::Segment(i, light) => near.segment(i, light, surface, from),
-            Self::Parallelogram(i, light) => near.parallelogram(i, light, surface, from),
-        }
-    }
-}
-
 impl<R: Recorder> Batch<'_, R> {
     /// Adds what arrives at the vertices from the lights.
-    pub(super) fn add_direct_light(
-        &mut self,
-        vertices: &[Vertex],
-        shadow_rays: &mut ShadowRays,
-        near: &mut NearLights,
-    ) {
+    pub(super) fn add_direct_light(&mut self, vertices: &[Vertex], shadow_rays: &mut ShadowRays) {
         shadow_rays.points = 0;
         if vertices.is_empty() {
             return;
@@ -152,18 +54,14 @@ impl<R: Recorder> Batch<'_, R> {
         let is_even =
             self.settings.lighting == Lighting::Classic || !self.settings.features.soft_shadows;
         let lights = &*self.world.lights;
-        let points = lights.points.iter().map(Lamp::Point);
-        let directionals = lights.directionals.iter().map(Lamp::Directional);
-        let segments = lights.segments.iter().enumerate();
-        let parallelograms = lights.parallelograms.iter().enumerate();
-        let lamps = (points.chain(directionals))
-            .chain(segments.map(|(i, light)| Lamp::Segment(i, light)))
-            .chain(parallelograms.map(|(i, light)| Lamp::Parallelogram(i, light)));
-        for lamp in lamps {
+        for (i, lamp) in lights.all().enumerate() {
+            let plane = self.planes.of_light(i);
+            if !self.wanted.has(plane) {
+                continue;
+            }
             let frame = if is_even { None } else { lamp.frame() };
-            self.gather(lamp, frame.as_ref(), vertices, shadow_rays, near);
-            self.add_arriving_light(shadow_rays);
-            near.compare(&shadow_rays.shadows, &shadow_rays.occluded);
+            self.gather(lamp, plane, frame.as_ref(), vertices, shadow_rays);
+            self.add_arriving_light(plane, shadow_rays);
         }
     }
 
@@ -173,10 +71,10 @@ impl<R: Recorder> Batch<'_, R> {
     fn gather(
         &mut self,
         lamp: Lamp,
+        plane: usize,
         frame: Option<&Frame>,
         vertices: &[Vertex],
         shadow_rays: &mut ShadowRays,
-        near: &mut NearLights,
     ) {
         shadow_rays.rays.clear();
         shadow_rays.shadows.clear();
@@ -218,7 +116,6 @@ impl<R: Recorder> Batch<'_, R> {
                 continue;
             }
             let from = from(vertex);
-            let first = shadow_rays.rays.len();
             for _ in 0..count {
                 let point = match (samples, frame) {
                     (None, _) => lamp.middle(from, lighting),
@@ -245,7 +142,7 @@ impl<R: Recorder> Batch<'_, R> {
                     continue;
                 }
                 if !features.shadows {
-                    self.add(vertex.path.sample, Adding::Light(number), value);
+                    self.add(vertex.path.sample, plane, Adding::Light(number), value);
                     continue;
                 }
                 let ray = shadow_ray(&world.aggregate, surface, &point, vertex.ray.time);
@@ -257,18 +154,11 @@ impl<R: Recorder> Batch<'_, R> {
                     point: number,
                 });
             }
-            if samples.is_some_and(|(samples, _)| samples > 0)
-                && features.shadows
-                && let Some(expected) = lamp.expected(near, surface, from)
-            {
-                let shadows = first..shadow_rays.shadows.len();
-                near.found(vertex.path.sample, count, weight * expected, shadows);
-            }
         }
     }
 
     /// Traces the shadow rays and adds what arrives.
-    fn add_arriving_light(&mut self, shadow_rays: &mut ShadowRays) {
+    fn add_arriving_light(&mut self, plane: usize, shadow_rays: &mut ShadowRays) {
         let ShadowRays {
             rays,
             shadows,
@@ -277,13 +167,11 @@ impl<R: Recorder> Batch<'_, R> {
         } = shadow_rays;
         self.counts.shadow += rays.len() as u64;
         if self.settings.features.transparency && self.world.needs.transparency {
-            occluded.clear();
             for (shadow, ray) in shadows.iter().zip(rays) {
                 let transmittance = self.transmittance(ray, shadow.point);
                 self.recorder.arrived(shadow.point, transmittance);
                 let value = shadow.value * transmittance;
-                occluded.push(value == Vec3::ZERO);
-                self.add(shadow.sample, Adding::Light(shadow.point), value);
+                self.add(shadow.sample, plane, Adding::Light(shadow.point), value);
             }
             return;
         }
@@ -293,7 +181,12 @@ impl<R: Recorder> Batch<'_, R> {
         for (shadow, occluded) in shadows.iter().zip(occluded) {
             if !*occluded {
                 self.recorder.arrived(shadow.point, Vec3::ONE);
-                self.add(shadow.sample, Adding::Light(shadow.point), shadow.value);
+                self.add(
+                    shadow.sample,
+                    plane,
+                    Adding::Light(shadow.point),
+                    shadow.value,
+                );
             }
         }
     }
@@ -399,13 +292,5 @@ impl Lights {
             size,
             settings.features.scale_light_samples,
         ))
-    }
-
-    /// How many there are of all kinds.
-    pub fn count(&self) -> usize {
-        self.points.len()
-            + self.directionals.len()
-            + self.segments.len()
-            + self.parallelograms.len()
     }
 }

@@ -26,6 +26,17 @@ impl Environment {
         self.intensity * map.sample_sphere(equirectangular(direction, self.rotation))
     }
 
+    /// Whether both are the same: of the same map, not of one that is alike.
+    pub fn is_same(&self, other: &Self) -> bool {
+        let maps = match (&self.map, &other.map) {
+            (Some(map), Some(other)) => Arc::ptr_eq(map, other),
+            (None, None) => true,
+            _ => false,
+        };
+        maps && (self.background, self.rotation, self.intensity)
+            == (other.background, other.rotation, other.intensity)
+    }
+
     /// The largest radiance of any direction, channel by channel; of the background alone where the map
     /// is not in use.
     pub(super) fn brightest(&self, map_in_use: bool) -> Vec3 {

@@ -34,17 +34,18 @@ mod emitters;
 mod environment;
 mod first_hit;
 mod footprint;
+mod lamp;
 mod light_frames;
 pub mod lights;
 mod material;
 mod mipmap;
-mod near_lights;
 mod needs;
 mod normal_map;
 mod numbers;
 mod parallelogram_frame;
 mod parallelogram_warp;
 mod piecewise;
+pub mod planes;
 mod polynomials;
 mod probe;
 mod radiance;
@@ -72,6 +73,7 @@ pub use emitters::emitters;
 pub use environment::Environment;
 pub use first_hit::{FirstHit, central_hits, central_ray, first_hits};
 pub use footprint::Cone;
+pub use lamp::Lamp;
 pub use lights::{
     DirectionalLight, LightPoint, Lights, MovingLight, ParallelogramLight, PointLight, SegmentLight,
 };
@@ -79,8 +81,9 @@ pub use material::{Map, Material};
 pub use needs::{Needs, samples_per_pixel};
 pub use parallelogram_frame::ParallelogramFrame;
 pub use parallelogram_warp::Places;
+pub use planes::{PlaneSet, Planes, Untinted};
 pub use probe::{MOST_RAYS, ProbeError, Samples, probe};
-pub use radiance::{RayCounts, SampleId, Workspace, radiance};
+pub use radiance::{RayCounts, SampleId, Workspace, radiance, radiance_in_planes};
 pub use ray_tree::{
     Crossing, LightSample, ProbedSample, RayCost, RayEnd, RayHit, RayKind, RayTree, TracedRay,
 };

@@ -11,10 +11,10 @@
 
 use super::camera_rays::CameraRays;
 use super::direct::ShadowRays;
-use super::near_lights::NearLights;
+use super::planes::{OWN, PlaneSet, Planes};
 use super::recorder::{Adding, Recorder};
 use super::sampler::Sampler;
-use super::{Camera, Cone, Surface, World};
+use super::{Camera, Cone, ParallelogramLight, Surface, World};
 use crate::bvh::{Hit, Order, Ray};
 use crate::scene::{Lighting, RenderSettings};
 use glam::{UVec2, Vec3};
@@ -66,16 +66,6 @@ pub struct Workspace {
     behind: Behind,
     vertices: Vec<Vertex>,
     shadow_rays: ShadowRays,
-    near_lights: NearLights,
-}
-
-impl Workspace {
-    /// Of which samples of the last batch the light of a lamp close by differs by how much from what it has
-    /// to be on average, where that is known: the index into the batch and linear RGB. A sample may be
-    /// named several times. The mean over a pixel's samples is the error that those lamps leave in it.
-    pub fn deviations(&self) -> &[(u32, Vec3)] {
-        self.near_lights.deviations()
-    }
 }
 
 /// Paths on their way: the next ray of each, and what is known of it besides.
@@ -187,6 +177,38 @@ pub fn radiance(
     radiance_with(world, camera, settings, samples, values, workspace, &mut ())
 }
 
+/// The same kept apart: `values` holds the samples' values in plane 0, then those in plane 1, and so on. Those of planes
+/// that are not `wanted` are not complete, and lights whose planes are not are not asked.
+///
+/// # Panics
+/// If there is not exactly one value for each sample and plane.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "all that a sample depends on, and where it goes"
+)]
+pub fn radiance_in_planes(
+    world: &World,
+    camera: &Camera,
+    settings: &RenderSettings,
+    samples: &[SampleId],
+    planes: &Planes,
+    wanted: PlaneSet,
+    values: &mut [Vec3],
+    workspace: &mut Workspace,
+) -> RayCounts {
+    let kept = (planes, wanted);
+    evaluate(
+        world,
+        camera,
+        settings,
+        samples,
+        kept,
+        values,
+        workspace,
+        &mut (),
+    )
+}
+
 /// The same, watched: what [`probe`](super::probe()) reads is what happened.
 pub(super) fn radiance_with<R: Recorder>(
     world: &World,
@@ -197,7 +219,32 @@ pub(super) fn radiance_with<R: Recorder>(
     workspace: &mut Workspace,
     recorder: &mut R,
 ) -> RayCounts {
-    assert_eq!(samples.len(), values.len(), "one value for each sample");
+    let kept = (&Planes::together(), PlaneSet::ALL);
+    evaluate(
+        world, camera, settings, samples, kept, values, workspace, recorder,
+    )
+}
+
+#[expect(
+    clippy::too_many_arguments,
+    reason = "all that a sample depends on, and where it goes"
+)]
+fn evaluate<R: Recorder>(
+    world: &World,
+    camera: &Camera,
+    settings: &RenderSettings,
+    samples: &[SampleId],
+    (planes, wanted): (&Planes, PlaneSet),
+    values: &mut [Vec3],
+    workspace: &mut Workspace,
+    recorder: &mut R,
+) -> RayCounts {
+    let expected = planes.count() * samples.len();
+    assert_eq!(
+        expected,
+        values.len(),
+        "one value for each sample and plane"
+    );
     values.fill(Vec3::ZERO);
     let Workspace {
         camera_rays,
@@ -207,18 +254,18 @@ pub(super) fn radiance_with<R: Recorder>(
         behind,
         vertices,
         shadow_rays,
-        near_lights,
     } = workspace;
-    near_lights.begin(&world.lights, settings);
     let cone = Cone::of_pixel(camera, settings.size);
     paths.clear();
-    let plane = camera.image_plane(settings.size);
-    camera_rays.of(world, &plane, settings, samples, &mut paths.rays);
+    let image_plane = camera.image_plane(settings.size);
+    camera_rays.of(world, &image_plane, settings, samples, &mut paths.rays);
     let mut batch = Batch {
         world,
         settings,
         samples,
         pixels: camera_rays.asking().pixels(),
+        planes,
+        wanted,
         values,
         counts: RayCounts::default(),
         recorder,
@@ -232,7 +279,7 @@ pub(super) fn radiance_with<R: Recorder>(
         next.clear();
         batch.find_vertices(paths, cone, hits, vertices, next);
         if settings.features.shading {
-            batch.add_direct_light(vertices, shadow_rays, near_lights);
+            batch.add_direct_light(vertices, shadow_rays);
         }
         batch.continue_paths(vertices, next);
         std::mem::swap(paths, next);
@@ -248,6 +295,9 @@ pub(super) struct Batch<'a, R> {
     pub samples: &'a [SampleId],
     /// Of each sample what its pixel's random numbers come from.
     pub pixels: &'a [u32],
+    pub planes: &'a Planes,
+    pub wanted: PlaneSet,
+    /// Plane by plane, one for each sample.
     values: &'a mut [Vec3],
     pub counts: RayCounts,
     pub recorder: &'a mut R,
@@ -320,22 +370,26 @@ impl<R: Recorder> Batch<'_, R> {
                 // Most rays of most pictures.
                 let background = self.background(ray.direction);
                 self.recorder.met_background(number, background);
-                self.add(number, Adding::Path(number), background);
+                self.add(number, OWN, Adding::Path(number), background);
                 continue;
             }
             let path = paths.get(i, cone);
             if lights_are_visible
-                && let Some((id, t, light)) = self.visible_light(&path, ray, hit.as_ref())
+                && let Some((i, t, light)) = self.visible_light(&path, ray, hit.as_ref())
             {
-                self.recorder.met_light(number, id, t, light);
-                self.add(path.sample, Adding::Path(number), path.throughput * light);
+                let lights = &self.world.lights;
+                self.recorder
+                    .met_light(number, lights.parallelograms[i].id, t, light);
+                let plane = self.planes.of_light(lights.first_parallelogram() + i);
+                let value = path.throughput * light;
+                self.add(path.sample, plane, Adding::Path(number), value);
                 continue;
             }
             let Some(hit) = *hit else {
                 let background = self.background(ray.direction);
                 self.recorder.met_background(number, background);
                 let value = path.throughput * background;
-                self.add(path.sample, Adding::Path(number), value);
+                self.add(path.sample, OWN, Adding::Path(number), value);
                 continue;
             };
             let width = path.cone.width_at(hit.t);
@@ -372,11 +426,11 @@ impl<R: Recorder> Batch<'_, R> {
         };
         self.recorder.shines(*number, surface.opacity * radiance);
         let value = path.throughput * surface.opacity * radiance;
-        self.add(path.sample, Adding::Path(*number), value);
+        self.add(path.sample, OWN, Adding::Path(*number), value);
     }
 
-    pub(super) fn add(&mut self, sample: u32, by: Adding, value: Vec3) {
-        self.values[sample as usize] += value;
+    pub(super) fn add(&mut self, sample: u32, plane: usize, by: Adding, value: Vec3) {
+        self.values[plane * self.samples.len() + sample as usize] += value;
         self.recorder.added(by, value);
     }
 
@@ -388,20 +442,27 @@ impl<R: Recorder> Batch<'_, R> {
         }
     }
 
-    /// The nearest visible light that a path's ray meets before its hit: its id, where, and its radiance.
-    fn visible_light(&self, path: &Path, ray: &Ray, hit: Option<&Hit>) -> Option<(u64, f32, Vec3)> {
+    /// The nearest visible light that a path's ray meets before its hit: its number among the parallelograms, where, and
+    /// its radiance.
+    fn visible_light(
+        &self,
+        path: &Path,
+        ray: &Ray,
+        hit: Option<&Hit>,
+    ) -> Option<(usize, f32, Vec3)> {
         let behind = path.after.map_or(0.0, |hit| hit.t);
         let mut nearest = hit.map_or(f32::INFINITY, |hit| hit.t * LIGHT_BEFORE_SURFACE);
         let mut met = None;
         let lights = &self.world.lights;
-        for light in lights.parallelograms.iter().filter(|l| l.visible) {
+        let visible = |(_, light): &(usize, &ParallelogramLight)| light.visible;
+        for (i, light) in lights.parallelograms.iter().enumerate().filter(visible) {
             let origin = lights.in_rest_frame(light.id, ray.origin, ray.time);
             if let Some((t, radiance)) = light.meet(origin, ray.direction)
                 && t > behind
                 && t < nearest
             {
                 nearest = t;
-                met = Some((light.id, t, radiance));
+                met = Some((i, t, radiance));
             }
         }
         met

@@ -242,25 +242,32 @@ impl Developer {
             }
             Task::Develop(render, subject, order) => {
                 let now = Instant::now();
+                let seen = Seen {
+                    world: Arc::downgrade(&subject.world),
+                    camera: subject.camera.clone(),
+                };
                 let same = self
                     .job
                     .as_mut()
                     .filter(|job| Arc::ptr_eq(&job.render, &render));
                 if let Some(job) = same {
+                    if !Arc::ptr_eq(&job.subject.world, &subject.world) {
+                        // What an edit changes is shown as soon as a new render is.
+                        job.started = now;
+                        self.seen = Some(seen);
+                    }
+                    job.subject = subject;
                     job.order = order;
                     job.ended = false;
                     job.printed = false;
                     job.next = now;
                 } else {
-                    let seen = self.seen.take().filter(|seen| seen.is_of(&subject));
-                    if subject.region.is_some() && seen.is_none() {
+                    let before = self.seen.take().filter(|seen| seen.is_of(&subject));
+                    if subject.region.is_some() && before.is_none() {
                         // Around the region there would be another scene, or another view of it.
                         self.snapshot = Snapshot::black(subject.settings.size);
                     }
-                    self.seen = Some(Seen {
-                        world: Arc::downgrade(&subject.world),
-                        camera: subject.camera.clone(),
-                    });
+                    self.seen = Some(seen);
                     self.job = Some(Job {
                         render,
                         subject,
@@ -292,6 +299,7 @@ impl Job {
             self.next = Instant::now() + wait;
             return None;
         }
+        let of = self.render.number();
         let changed = self.render.refresh(snapshot);
         let Subject {
             world,
@@ -328,7 +336,7 @@ impl Job {
             bytes: shown,
             depths,
             scale,
-            of: self.render.number(),
+            of,
         })
     }
 

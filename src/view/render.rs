@@ -156,9 +156,21 @@ impl TracedRender {
         }
     }
 
-    /// Renders this instead of what was rendered before.
+    /// Renders this instead of what was rendered before: edits that render where what it has stays true for the most
+    /// part, and begins another one elsewhere.
     pub(super) fn begin(&mut self, wanted: Wanted) {
         let started = Instant::now();
+        if let Self {
+            running: Some(running),
+            darkroom: Some(darkroom),
+            ..
+        } = self
+            && running.takes(&wanted)
+        {
+            running.started = started;
+            darkroom.develop(&running.render, &running.subject(), wanted.order);
+            return;
+        }
         self.retire();
         let Wanted {
             world,
@@ -195,6 +207,19 @@ impl TracedRender {
 }
 
 impl Running {
+    /// Makes the render one of what is wanted, where it can be edited so.
+    fn takes(&mut self, wanted: &Wanted) -> bool {
+        let same_view = self.camera == wanted.camera
+            && self.settings == wanted.settings
+            && self.region == wanted.region;
+        if !(same_view && self.render.edit((*wanted.world).clone())) {
+            return false;
+        }
+        self.world = wanted.world.clone();
+        self.order = wanted.order.clone();
+        true
+    }
+
     fn subject(&self) -> Subject {
         Subject {
             world: self.world.clone(),

@@ -231,3 +231,38 @@ fn without_a_command_it_says_what_it_can_do_and_renders_the_default_scene() {
     }
     assert_eq!(files(folder.path()), ["cornell-box.png"]);
 }
+
+#[test]
+fn with_lights_separately_an_exr_has_a_layer_for_each_light_and_they_add_up_to_the_picture() {
+    use exr::prelude::*;
+    let folder = tempfile::tempdir().unwrap();
+    render(folder.path(), "showcase", "a.exr", &["--lights-separately"]);
+    render(folder.path(), "showcase", "b.exr", &[]);
+    assert_eq!(bits(folder.path(), "a.exr"), bits(folder.path(), "b.exr"));
+    let file = read_first_flat_layer_from_file(folder.path().join("a.exr")).unwrap();
+    let channels = &file.layer_data.channel_data.list;
+    let values = |name: &str| {
+        let channel = channels
+            .iter()
+            .find(|channel| channel.name.to_string() == name);
+        let channel = channel.unwrap_or_else(|| panic!("no channel {name}"));
+        channel.sample_data.values_as_f32().collect::<Vec<f32>>()
+    };
+    let names = channels.iter().map(|channel| channel.name.to_string());
+    let layers: Vec<String> = names.filter(|name| name.ends_with(".R")).collect();
+    assert!(layers.contains(&"Combined_Own.R".to_owned()), "{layers:?}");
+    assert!(layers.len() > 2, "{layers:?}");
+    let parts: Vec<Vec<f32>> = layers.iter().map(|name| values(name)).collect();
+    for (i, whole) in values("R").into_iter().enumerate() {
+        let sum: f32 = parts.iter().map(|part| part[i]).sum();
+        assert!(
+            (sum - whole).abs() <= 1e-5 * whole.max(1e-3),
+            "pixel {i}: {sum}, {whole}"
+        );
+    }
+    let refused = glassbox(
+        folder.path(),
+        &["render", "showcase", "-o", "a.png", "--lights-separately"],
+    );
+    assert_eq!(refused.status.code(), Some(2));
+}

@@ -14,7 +14,7 @@ mod write;
 pub(crate) use exr_blocks::block_bytes;
 pub(crate) use jpeg::cut_short;
 pub(crate) use read::{PictureUse, decode_picture, read_picture};
-pub use rendered::{Note, picture_notes, write_rendered};
+pub use rendered::{Note, picture_notes, write_lights, write_rendered};
 pub(crate) use write::{encode_png, stage_picture};
 pub use write::{write_picture, write_picture_with_notes};
 

@@ -1,8 +1,9 @@
 //! Rendered pictures as files that say how they came about.
 
 use super::super::error::FileError;
+use super::write::write_exr_layers;
 use super::{PictureFormat, write_picture_with_notes};
-use crate::film::{Picture, Status, develop};
+use crate::film::{LightPictures, Picture, Status, develop};
 use crate::scene::{Output, RenderSettings, SETTINGS};
 use std::path::Path;
 
@@ -27,6 +28,35 @@ pub fn write_rendered(
         develop(picture, output)
     };
     write_picture_with_notes(file, picture.width, picture.height, &pixels, notes)
+}
+
+/// Writes a picture as OpenEXR with a layer for what each light adds and one for what shines by itself, `Combined_NAME` with
+/// the light's name and `Combined_Own`: as Blender calls the passes of its light groups.
+pub fn write_lights(
+    file: &Path,
+    picture: &Picture,
+    lights: &LightPictures,
+    name: impl Fn(u64) -> String,
+    notes: &[Note],
+) -> Result<(), FileError> {
+    let mut layers = vec![("Combined_Own".to_owned(), &lights.own)];
+    for light in &lights.lights {
+        // A dot parts a layer's name from its channel's.
+        let names: Vec<String> = light
+            .ids
+            .iter()
+            .map(|id| name(*id).replace('.', "_"))
+            .collect();
+        let mut layer = match &names[..] {
+            [name] => format!("Combined_{name}"),
+            _ => "Combined_Others".to_owned(),
+        };
+        if layers.iter().any(|(taken, _)| *taken == layer) {
+            layer = format!("{layer}-{}", light.ids[0]);
+        }
+        layers.push((layer, &light.picture));
+    }
+    write_exr_layers(file, picture, &layers, notes)
 }
 
 /// What a file says about itself: enough to render the same picture again. The same render says the

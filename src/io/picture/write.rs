@@ -1,6 +1,7 @@
 use super::super::error::{FileError, Problem};
 use super::super::replace::Staged;
 use super::{PictureFormat, check_format_size};
+use crate::film::Picture;
 use image::codecs::jpeg::JpegEncoder;
 use image::{DynamicImage, ImageBuffer, ImageResult};
 use std::io;
@@ -116,6 +117,82 @@ fn write_png(
         })
 }
 
+/// Writes a picture and parts of it, each with its name, as an OpenEXR file: channels `R`, `G`, `B`, and `NAME.R` and so on
+/// for each part. All are of one size.
+pub(super) fn write_exr_layers(
+    path: &Path,
+    picture: &Picture,
+    layers: &[(String, &Picture)],
+    notes: &[(&str, String)],
+) -> Result<(), FileError> {
+    use exr::prelude::*;
+    let (width, height) = (picture.width, picture.height);
+    check_format_size(path, PictureFormat::Exr, width.into(), height.into())?;
+    let whole = std::iter::once((None, picture));
+    let named = layers.iter().map(|(name, layer)| (Some(name), *layer));
+    let channels = whole.chain(named).flat_map(|(name, layer)| {
+        ["R", "G", "B"]
+            .into_iter()
+            .enumerate()
+            .map(move |(i, channel)| {
+                let name = match name {
+                    Some(name) => format!("{name}.{channel}"),
+                    None => channel.to_owned(),
+                };
+                let samples = layer.pixels.iter().map(|pixel| pixel[i]).collect();
+                AnyChannel::new(latin(&name).unwrap_or_default(), FlatSamples::F32(samples))
+            })
+    });
+    let channels = AnyChannels::sort(channels.collect());
+    let size = (width as usize, height as usize);
+    let layer = Layer::new(size, attributes(notes), exr_encoding(), channels);
+    let staged = Staged::new(path, |writer| {
+        exr_result(Image::from_layer(layer).write().to_buffered(writer))
+    })?;
+    staged.commit()
+}
+
+/// The format's letters are those of Latin-1.
+fn latin(text: &str) -> Option<exr::meta::attribute::Text> {
+    let known = |letter: char| {
+        if u32::from(letter) < 256 { letter } else { '?' }
+    };
+    exr::meta::attribute::Text::new_or_none(text.chars().map(known).collect::<String>())
+}
+
+/// In this order however many threads compress the tiles, so that the same picture is the same file.
+fn exr_encoding() -> exr::image::Encoding {
+    use exr::prelude::*;
+    Encoding {
+        line_order: LineOrder::Increasing,
+        ..Encoding::FAST_LOSSLESS
+    }
+}
+
+fn exr_result(result: exr::error::UnitResult) -> io::Result<()> {
+    result.map_err(|error| match error {
+        exr::error::Error::Io(error) => error,
+        other => io::Error::other(other.to_string()),
+    })
+}
+
+/// Attributes of other names would stand in an order of chance, and no two files be the same.
+fn attributes(notes: &[(&str, String)]) -> exr::meta::header::LayerAttributes {
+    let mut attributes = exr::meta::header::LayerAttributes::default();
+    let mut lines = Vec::new();
+    for (name, note) in notes {
+        if *name == "Software" {
+            attributes.software_name = latin(note);
+        } else {
+            lines.push(format!("{name}: {note}"));
+        }
+    }
+    if !lines.is_empty() {
+        attributes.comments = latin(&lines.join("\n"));
+    }
+    attributes
+}
+
 fn write_exr(
     writer: impl io::Write + io::Seek,
     width: u32,
@@ -124,42 +201,18 @@ fn write_exr(
     notes: &[(&str, String)],
 ) -> io::Result<()> {
     use exr::prelude::*;
-    // Attributes of other names would stand in an order of chance, and no two files be the same.
-    let text = |text: &str| {
-        // The format's letters are those of Latin-1.
-        let known = |letter: char| {
-            if u32::from(letter) < 256 { letter } else { '?' }
-        };
-        Text::new_or_none(text.chars().map(known).collect::<String>())
-    };
-    let mut attributes = LayerAttributes::default();
-    let mut lines = Vec::new();
-    for (name, note) in notes {
-        if *name == "Software" {
-            attributes.software_name = text(note);
-        } else {
-            lines.push(format!("{name}: {note}"));
-        }
-    }
-    if !lines.is_empty() {
-        attributes.comments = text(&lines.join("\n"));
-    }
     let size = (width as usize, height as usize);
     let pixel = |at: Vec2<usize>| {
         let [r, g, b] = pixels[at.y() * size.0 + at.x()];
         (r, g, b)
     };
-    // In this order however many threads compress the tiles, so that the same picture is the same file.
-    let encoding = Encoding {
-        line_order: LineOrder::Increasing,
-        ..Encoding::FAST_LOSSLESS
-    };
-    let layer = Layer::new(size, attributes, encoding, SpecificChannels::rgb(pixel));
-    let written = Image::from_layer(layer).write().to_buffered(writer);
-    written.map_err(|error| match error {
-        exr::error::Error::Io(error) => error,
-        other => io::Error::other(other.to_string()),
-    })
+    let layer = Layer::new(
+        size,
+        attributes(notes),
+        exr_encoding(),
+        SpecificChannels::rgb(pixel),
+    );
+    exr_result(Image::from_layer(layer).write().to_buffered(writer))
 }
 
 /// Encodes a picture as a PNG in memory, with as many bits as it has,, to embed it in a model file.

@@ -1,0 +1,402 @@
+//! An edit of the lights while a picture is rendered: what of the picture stays true, and what is rendered again.
+//!
+//! Another tint of a light that has a plane of its own is no work at all; a light that moved, changed its shape or is new
+//! needs that plane again; one that went takes its plane with it. Whatever else changes the paths themselves, and lights
+//! that are seen are in the way of paths: nothing is kept then, and another render begins.
+
+use super::engine::Engine;
+use super::lock;
+use super::sample_chunk::Subject;
+use crate::scene::Lighting;
+use crate::trace::planes::OWN;
+use crate::trace::{Lamp, World, samples_per_pixel};
+use glam::Vec3;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+
+/// A light's plane is rendered again where its first sample takes no longer than this; else a coarse picture of
+/// everything is there sooner.
+const LONGEST_SAMPLE: Duration = Duration::from_millis(100);
+
+/// What a render shall be of, and of each of its planes the number of the one that has the same light now.
+pub(super) struct Edit {
+    subject: Subject,
+    from: Vec<Option<usize>>,
+}
+
+impl Edit {
+    /// From what is rendered to another world. `None` where nothing of the picture stays true.
+    pub fn between(old: &Subject, world: World) -> Option<Self> {
+        let same_paths = Arc::ptr_eq(&old.world.aggregate, &world.aggregate)
+            && Arc::ptr_eq(&old.world.objects, &world.objects)
+            && Arc::ptr_eq(&old.world.materials, &world.materials)
+            && Arc::ptr_eq(&old.world.textures, &world.textures)
+            && old.world.environment.is_same(&world.environment)
+            && old.world.needs == world.needs
+            && samples_per_pixel(&old.world, &old.camera, &old.settings)
+                == samples_per_pixel(&world, &old.camera, &old.settings);
+        let is_shared = old.settings.lighting == Lighting::Classic
+            && old.world.lights.count() != world.lights.count();
+        if !same_paths || is_shared {
+            return None;
+        }
+        let subject = old.edited(world);
+        let from = same_planes(old, &subject)?;
+        Some(Self { subject, from })
+    }
+
+    /// This edit after another one, from where that began.
+    fn after(mut self, before: &Self) -> Self {
+        for from in &mut self.from {
+            *from = from.and_then(|plane| before.from[plane]);
+        }
+        self
+    }
+
+    /// Whether every plane stays what it is, and where: only tints are others.
+    fn is_of_tints(&self, old: &Subject) -> bool {
+        let stays = self
+            .from
+            .iter()
+            .enumerate()
+            .all(|(plane, from)| *from == Some(plane));
+        stays && self.from.len() == old.planes()
+    }
+
+    /// Whether some plane has to be rendered.
+    fn needs_rays(&self) -> bool {
+        self.from.contains(&None)
+    }
+}
+
+/// A light, and where it is kept.
+struct Kept<'a> {
+    lamp: Lamp<'a>,
+    velocity: Vec3,
+    plane: usize,
+}
+
+fn kept(subject: &Subject) -> Vec<Kept<'_>> {
+    let lights = &subject.light.world.lights;
+    (lights.all().enumerate())
+        .map(|(number, lamp)| Kept {
+            velocity: lights.velocity(lamp.id()),
+            plane: subject.light.planes.of_light(number),
+            lamp,
+        })
+        .collect()
+}
+
+/// Of each plane of the new subject the number of that which has the same light in the old one. `None` where a light that
+/// is seen differs.
+fn same_planes(old: &Subject, new: &Subject) -> Option<Vec<Option<usize>>> {
+    let (mut before, after) = (kept(old), kept(new));
+    before.sort_by_key(|kept| kept.lamp.id());
+    let find = |id: u64| {
+        let found = before.binary_search_by_key(&id, |kept| kept.lamp.id());
+        found.ok().map(|at| &before[at])
+    };
+    let mut from = vec![None; new.planes()];
+    from[OWN] = Some(OWN);
+    let mut stale = vec![false; new.planes()];
+    for kept in &after {
+        let same = find(kept.lamp.id())
+            .filter(|was| was.lamp == kept.lamp && was.velocity == kept.velocity);
+        if same.is_none() && kept.lamp.is_seen() {
+            return None;
+        }
+        let plane = same.map(|was| was.plane);
+        stale[kept.plane] |= plane.is_none() || from[kept.plane].is_some_and(|p| Some(p) != plane);
+        from[kept.plane] = plane;
+    }
+    let mut ids: Vec<u64> = after.iter().map(|kept| kept.lamp.id()).collect();
+    ids.sort_unstable();
+    for was in &before {
+        if ids.binary_search(&was.lamp.id()).is_err() {
+            if was.lamp.is_seen() {
+                return None;
+            }
+            // Those with whom it shared a plane stand there without it now.
+            for (from, stale) in from.iter().zip(&mut stale) {
+                *stale |= *from == Some(was.plane);
+            }
+        }
+    }
+    let shared = |planes: &[Kept], plane| planes.iter().filter(|kept| kept.plane == plane).count();
+    for (plane, (from, stale)) in from.iter_mut().zip(stale).enumerate().skip(OWN + 1) {
+        let as_many = from.is_some_and(|from| shared(&before, from) == shared(&after, plane));
+        if stale || !as_many {
+            *from = None;
+        }
+    }
+    Some(from)
+}
+
+impl Engine {
+    /// Renders another world from now on, and keeps what stays true of the picture. False, and nothing done, where that is
+    /// nothing, or where another render has its first picture sooner.
+    pub fn edit(&self, world: World) -> bool {
+        if !self.has_begun() {
+            return false;
+        }
+        let mut waiting = lock(&self.edits);
+        let now = self.subject();
+        let old = waiting.as_ref().map_or(&*now, |edit| &edit.subject);
+        let Some(mut edit) = Edit::between(old, world) else {
+            return false;
+        };
+        if let Some(before) = &*waiting {
+            edit = edit.after(before);
+        }
+        if edit.is_of_tints(&now) {
+            *waiting = None;
+            self.edit_waits.store(false, Ordering::Relaxed);
+            self.set_subject(edit.subject);
+            return true;
+        }
+        if edit.needs_rays() && self.seconds_a_sample() > LONGEST_SAMPLE.as_secs_f64() {
+            return false;
+        }
+        *waiting = Some(edit);
+        self.edit_waits.store(true, Ordering::Relaxed);
+        self.reopen();
+        true
+    }
+
+    /// Becomes what the edit that waits wants, while nothing is traced.
+    pub(super) fn take_edit(&self) {
+        let Some(edit) = lock(&self.edits).take() else {
+            return;
+        };
+        self.edit_waits.store(false, Ordering::Relaxed);
+        let needs_rays = edit.needs_rays();
+        self.set_subject(edit.subject);
+        for tile in &self.tiles {
+            lock(tile).rearrange(&edit.from);
+        }
+        if needs_rays {
+            // Until it has light everywhere again, what is seen stays.
+            self.set_divider(0);
+            self.start_over();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample_chunk::Subject;
+    use super::super::test_scene::{camera, settings, world};
+    use super::super::{Ending, Progressive};
+    use crate::trace::{
+        DirectionalLight, Lights, ParallelogramLight, PointLight, SegmentLight, Untinted, World,
+    };
+    use glam::{UVec2, Vec3};
+    use std::sync::Arc;
+
+    const SIZE: UVec2 = UVec2::new(37, 22);
+
+    fn start(world: &World, spp: u32) -> Progressive {
+        Progressive::start(world.clone(), camera(), settings(SIZE, spp)).unwrap()
+    }
+
+    /// The world with one light of each kind, and two of the last.
+    fn lit() -> World {
+        let panel = |id: u64, x: f32, colors| ParallelogramLight {
+            id,
+            corner: Vec3::new(x, 1.5, 0.2),
+            edges: [Vec3::X * 0.4, Vec3::Z * 0.3],
+            colors,
+            two_sided: true,
+            visible: false,
+            samples: 2,
+        };
+        let lights = Lights {
+            points: vec![PointLight {
+                id: 100,
+                position: Vec3::new(0.3, 1.2, 1.0),
+                color: Vec3::new(2.0, 1.0, 0.5),
+                cone: None,
+            }],
+            directionals: vec![DirectionalLight {
+                id: 101,
+                to_light: Vec3::new(0.3, 0.9, 0.2).normalize(),
+                color: Vec3::splat(0.4),
+                disc: None,
+                samples: 1,
+            }],
+            segments: vec![SegmentLight {
+                id: 102,
+                ends: [Vec3::new(-0.5, 1.0, 0.6), Vec3::new(0.5, 1.3, 0.4)],
+                colors: [Vec3::ONE, Vec3::Z],
+                samples: 1,
+            }],
+            parallelograms: vec![
+                panel(103, -0.6, [Vec3::ONE, Vec3::X, Vec3::splat(0.3), Vec3::Y]),
+                panel(104, 0.4, [Vec3::ONE; 4]),
+            ],
+            moving: Vec::new(),
+        };
+        World {
+            lights: Arc::new(lights),
+            ..world()
+        }
+        .with_needs()
+    }
+
+    fn edited(world: &World, edit: impl FnOnce(&mut Lights)) -> World {
+        let mut lights = (*world.lights).clone();
+        edit(&mut lights);
+        World {
+            lights: Arc::new(lights),
+            ..world.clone()
+        }
+        .with_needs()
+    }
+
+    #[test]
+    fn another_colour_of_a_light_takes_no_ray_and_is_the_picture_of_a_render_with_that_colour() {
+        let before = lit();
+        let render = start(&before, 16);
+        render.wait();
+        let rays = render.status().rays;
+        for factor in [Vec3::new(0.25, 3.0, 1.0), Vec3::ZERO, Vec3::splat(1e6)] {
+            let world = edited(&before, |lights| {
+                lights.points[0].color *= factor;
+                lights.directionals[0].color = factor;
+                for color in &mut lights.parallelograms[1].colors {
+                    *color *= factor.max_element();
+                }
+            });
+            assert!(render.edit(world.clone()));
+            assert_eq!(render.wait(), Ending::Samples);
+            assert_eq!(render.status().rays, rays, "no ray more");
+            let fresh = start(&world, 16);
+            fresh.wait();
+            assert_eq!(render.snapshot().picture, fresh.snapshot().picture);
+            assert_eq!(render.film().picture(), fresh.film().picture());
+            let errors = [&render, &fresh].map(|render| render.status().error().unwrap());
+            let ratio = errors[0].relative() / errors[1].relative();
+            assert!((0.2..5.0).contains(&ratio), "{errors:?}");
+        }
+    }
+
+    /// An edit of some light: its colour, its place, its being there.
+    fn change(lights: &mut Lights, numbers: &mut impl FnMut(u32) -> u32) {
+        let offset = Vec3::new(
+            numbers(9) as f32 - 4.0,
+            numbers(5) as f32,
+            numbers(9) as f32 - 4.0,
+        ) * 0.1;
+        let color = Vec3::new(numbers(4) as f32, numbers(4) as f32, numbers(4) as f32);
+        match numbers(9) {
+            0 => lights
+                .points
+                .iter_mut()
+                .for_each(|light| light.color = color),
+            1 => lights
+                .points
+                .iter_mut()
+                .for_each(|light| light.position += offset),
+            2 => lights
+                .segments
+                .iter_mut()
+                .for_each(|light| light.ends[0] += offset),
+            3 => lights
+                .segments
+                .iter_mut()
+                .for_each(|light| light.colors = [color; 2]),
+            4 => lights.parallelograms.truncate(1),
+            5 => lights
+                .parallelograms
+                .iter_mut()
+                .for_each(|light| light.edges[0] += offset),
+            6 => {
+                let fresh = lit();
+                lights.parallelograms = fresh.lights.parallelograms.clone();
+            }
+            7 => lights.points.clear(),
+            _ => {
+                let id = 200 + u64::from(numbers(50));
+                if lights.all().all(|light| light.id() != id) {
+                    lights.points.push(PointLight {
+                        id,
+                        position: Vec3::new(0.2, 1.0, 0.7) + offset,
+                        color,
+                        cone: None,
+                    });
+                    lights.points.sort_by_key(|light| light.id);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn after_any_edits_of_the_lights_at_any_moment_the_picture_is_that_of_a_fresh_render() {
+        let mut state = 7_u32;
+        let mut numbers = |below: u32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 16) % below
+        };
+        let (mut taken, mut kept) = (0, 0);
+        for spp in [1, 5, 16] {
+            let mut now = lit();
+            let mut render = start(&now, spp);
+            for step in 0..30 {
+                // Some edits find a render at work, some one that has ended.
+                if numbers(3) > 0 {
+                    render.wait();
+                }
+                now = edited(&now, |lights| change(lights, &mut numbers));
+                kept += 1;
+                if render.edit(now.clone()) {
+                    taken += 1;
+                } else {
+                    render = start(&now, spp);
+                }
+                if step % 5 == 4 {
+                    render.wait();
+                    let fresh = start(&now, spp);
+                    fresh.wait();
+                    let pictures = [&render, &fresh].map(|render| render.snapshot().picture);
+                    assert_eq!(pictures[0], pictures[1], "{spp} samples, step {step}");
+                    assert_eq!(render.film().counts(), fresh.film().counts());
+                }
+            }
+        }
+        assert!(2 * taken > kept, "only {taken} of {kept} edits were taken");
+    }
+
+    #[test]
+    fn lights_that_share_a_plane_are_rendered_again_together_and_a_light_that_is_seen_with_all() {
+        let before = lit();
+        let subject = |world: &World, lights| Subject {
+            light: Untinted::of(world, lights),
+            ..Subject::new(world.clone(), camera(), settings(SIZE, 1))
+        };
+        let planes = |world: &World, lights| {
+            super::same_planes(&subject(&before, lights), &subject(world, lights))
+        };
+        let moved = edited(&before, |lights| lights.parallelograms[1].corner.x += 0.1);
+        let all = [Some(0), Some(1), Some(2), Some(3), Some(4)];
+        assert_eq!(planes(&moved, 8).unwrap(), [&all[..], &[None]].concat());
+        assert_eq!(
+            planes(&moved, 2).unwrap(),
+            [Some(0), Some(1), Some(2), None]
+        );
+        assert_eq!(planes(&moved, 0).unwrap(), [Some(0), None]);
+        let gone = edited(&before, |lights| lights.points.clear());
+        assert_eq!(
+            planes(&gone, 8).unwrap(),
+            [Some(0), Some(2), Some(3), Some(4), Some(5)]
+        );
+        assert_eq!(planes(&gone, 2).unwrap(), [Some(0), Some(2), None, None]);
+        let seen = edited(&before, |lights| lights.parallelograms[0].visible = true);
+        assert_eq!(planes(&seen, 8), None);
+        let other = World {
+            materials: Arc::new((*before.materials).clone()),
+            ..before.clone()
+        };
+        assert!(super::Edit::between(&subject(&before, 8), other).is_none());
+    }
+}

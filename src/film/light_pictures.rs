@@ -1,0 +1,134 @@
+//! A picture's light kept apart, for those who mix it themselves.
+
+use super::engine::{Engine, Mode};
+use super::render::{Rendered, finish};
+use super::sample_chunk::Subject;
+use super::{Picture, Status};
+use crate::scene::RenderSettings;
+use crate::trace::planes::OWN;
+use crate::trace::{Camera, Planes, Untinted, World, samples_per_pixel};
+use std::ops::Range;
+
+/// What shines by itself, and what each light adds: together they are the picture, but for the rounding of f32.
+#[derive(Clone, Debug)]
+pub struct LightPictures {
+    /// Glowing surfaces and the background, and their mirror pictures.
+    pub own: Picture,
+    /// What lights add.
+    pub lights: Vec<LightPicture>,
+}
+
+/// What a light adds to a picture.
+#[derive(Clone, Debug)]
+pub struct LightPicture {
+    /// The `SceneId` of the light; of several where there are more lights than [`LightPictures::MOST`].
+    pub ids: Vec<u64>,
+    /// Linear, scene-referred.
+    pub picture: Picture,
+}
+
+impl LightPictures {
+    /// Pictures of one light each, at most; the others share one more.
+    pub const MOST: usize = Planes::MOST - 1;
+}
+
+/// What [`render`](super::render()) renders, and the same light by light.
+pub fn render_lights(
+    world: &World,
+    camera: &Camera,
+    settings: &RenderSettings,
+    progress: &(dyn Fn(&Status) + Sync),
+) -> (Rendered, LightPictures) {
+    let subject = Subject {
+        light: Untinted::of(world, LightPictures::MOST),
+        ..Subject::new(world.clone(), camera.clone(), settings.clone())
+    };
+    let samples: Range<u64> = 0..samples_per_pixel(world, camera, settings).into();
+    let mode = Mode {
+        watched: false,
+        editable: true,
+        samples,
+        region: None,
+    };
+    let engine = Engine::new(subject, mode, None);
+    let rendered = finish(&engine, &|engine| progress(&engine.status()));
+    let pictures = engine.light_pictures();
+    (rendered, pictures)
+}
+
+impl Engine {
+    fn light_pictures(&self) -> LightPictures {
+        let subject = self.subject();
+        let planes = &subject.light.planes;
+        let lights = (OWN + 1..planes.count()).map(|plane| {
+            let all = subject.world.lights.all().enumerate();
+            let here = all.filter(|(light, _)| planes.of_light(*light) == plane);
+            LightPicture {
+                ids: here.map(|(_, light)| light.id()).collect(),
+                picture: self.plane_picture(plane),
+            }
+        });
+        LightPictures {
+            own: self.plane_picture(OWN),
+            lights: lights.collect(),
+        }
+    }
+
+    fn plane_picture(&self, plane: usize) -> Picture {
+        let tint = self.subject().light.tints[plane];
+        let mut picture = Picture::black(self.size());
+        let width = picture.width as usize;
+        for tile in 0..self.tiles.len() {
+            let state = self.tile(tile);
+            for (pixel, at) in state.tile.pixels() {
+                let place = pixel.y as usize * width + pixel.x as usize;
+                picture.pixels[place] = tint * state.plane_mean(plane, at);
+            }
+        }
+        picture
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{render, test_scene};
+    use super::*;
+    use crate::trace::{Lights, PointLight};
+    use glam::{UVec2, Vec3};
+    use std::sync::Arc;
+
+    #[test]
+    fn the_lights_pictures_add_up_to_the_picture_and_each_is_that_of_its_light_alone() {
+        let size = UVec2::new(33, 20);
+        let (camera, settings) = (test_scene::camera(), test_scene::settings(size, 8));
+        let mut lights = (*test_scene::world().lights).clone();
+        lights.points.push(PointLight {
+            id: 77,
+            position: Vec3::new(0.5, 1.5, 0.5),
+            color: Vec3::new(0.5, 0.25, 2.0),
+            cone: None,
+        });
+        let with = |lights: Lights| World {
+            lights: Arc::new(lights),
+            ..test_scene::world()
+        };
+        let world = with(lights.clone()).with_needs();
+        let (rendered, apart) = render_lights(&world, &camera, &settings, &|_| {});
+        let whole = render(&world, &camera, &settings, &|_, _| {});
+        assert_eq!(rendered.picture, whole.picture);
+        let ids: Vec<_> = apart.lights.iter().map(|light| &light.ids[..]).collect();
+        assert_eq!(ids, [&[77][..], &[lights.parallelograms[0].id]]);
+        for (i, pixel) in whole.picture.pixels.iter().enumerate() {
+            let lights = apart.lights.iter().map(|light| light.picture.pixels[i]);
+            let sum = apart.own.pixels[i] + lights.sum::<Vec3>();
+            assert!(
+                (sum - *pixel).abs().max_element() <= 1e-6 * pixel.max_element(),
+                "{i}"
+            );
+        }
+        lights.points.clear();
+        lights.parallelograms[0].colors = [Vec3::ZERO; 4];
+        let dark = render(&with(lights).with_needs(), &camera, &settings, &|_, _| {});
+        assert_eq!(apart.own, dark.picture);
+    }
+}

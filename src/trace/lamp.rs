@@ -1,0 +1,123 @@
+//! Lights of all kinds as one list: what a stage that goes from light to light wants to know of each.
+
+use super::Lights;
+use super::chosen_places::ChosenPlace;
+use super::light_frames::Frame;
+use super::lights::{
+    DirectionalLight, LightPoint, MIDDLE, ParallelogramLight, PointLight, SegmentLight,
+};
+use super::recorder::LightKind;
+use crate::scene::Lighting;
+use glam::Vec3;
+
+/// A light of any kind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(missing_docs, reason = "the names say it all")]
+pub enum Lamp<'a> {
+    Point(&'a PointLight),
+    Directional(&'a DirectionalLight),
+    Segment(&'a SegmentLight),
+    Parallelogram(&'a ParallelogramLight),
+}
+
+impl Lamp<'_> {
+    pub(super) fn kind(self) -> LightKind {
+        match self {
+            Self::Point(_) => LightKind::Point,
+            Self::Directional(_) => LightKind::Directional,
+            Self::Segment(_) => LightKind::Segment,
+            Self::Parallelogram(_) => LightKind::Parallelogram,
+        }
+    }
+
+    /// The entity's `SceneId`.
+    pub fn id(self) -> u64 {
+        match self {
+            Self::Point(light) => light.id,
+            Self::Directional(light) => light.id,
+            Self::Segment(light) => light.id,
+            Self::Parallelogram(light) => light.id,
+        }
+    }
+
+    /// Shadow rays at a first hit, and what they are counted per (m, m² or sr); `None` of a light without extent.
+    pub(super) fn samples(self) -> Option<(u32, f32)> {
+        match self {
+            Self::Point(_) => None,
+            Self::Directional(light) => {
+                (light.disc.is_some()).then(|| (light.samples, light.solid_angle()))
+            }
+            Self::Segment(light) => Some((light.samples, (light.ends[1] - light.ends[0]).length())),
+            Self::Parallelogram(light) => Some((light.samples, light.area_normal().length())),
+        }
+    }
+
+    /// What choosing its points for a surface needs to know of it; nothing where all points are alike.
+    pub(super) fn frame(self) -> Option<Frame> {
+        match self {
+            Self::Point(_) | Self::Directional(_) => None,
+            Self::Segment(light) => light.frame().map(Frame::Segment),
+            Self::Parallelogram(light) => light.frame().map(Frame::Parallelogram),
+        }
+    }
+
+    /// The point that was chosen for a surface at `from`, in the frame that moves with the light.
+    pub(super) fn chosen(self, from: Vec3, chosen: ChosenPlace) -> Option<LightPoint> {
+        let ChosenPlace { place, arriving } = chosen;
+        match self {
+            Self::Point(_) | Self::Directional(_) => None,
+            Self::Segment(light) => light.chosen(from, place[0], arriving),
+            Self::Parallelogram(light) => light.chosen(from, place, arriving),
+        }
+    }
+
+    /// The point that the numbers choose where all points are alike.
+    #[inline(always)]
+    pub(super) fn point(self, from: Vec3, u: [f32; 2], lighting: Lighting) -> Option<LightPoint> {
+        match self {
+            Self::Point(light) => light.point(from, lighting),
+            Self::Directional(light) => Some(light.point(u, lighting)),
+            Self::Segment(light) => light.point(from, u[0], lighting),
+            Self::Parallelogram(light) => light.point(from, u, lighting),
+        }
+    }
+
+    /// The point that stands for the whole light where there are no soft shadows.
+    pub(super) fn middle(self, from: Vec3, lighting: Lighting) -> Option<LightPoint> {
+        match self {
+            Self::Directional(light) => Some(light.middle()),
+            _ => self.point(from, MIDDLE, lighting),
+        }
+    }
+
+    /// Whether camera and mirror rays see it, and so end at it.
+    pub fn is_seen(self) -> bool {
+        matches!(self, Self::Parallelogram(light) if light.visible)
+    }
+}
+
+impl Lights {
+    /// All of them, kind by kind.
+    pub fn all(&self) -> impl Iterator<Item = Lamp<'_>> {
+        let points = self.points.iter().map(Lamp::Point);
+        let directionals = self.directionals.iter().map(Lamp::Directional);
+        let segments = self.segments.iter().map(Lamp::Segment);
+        let parallelograms = self.parallelograms.iter().map(Lamp::Parallelogram);
+        (points.chain(directionals))
+            .chain(segments)
+            .chain(parallelograms)
+    }
+
+    /// How many there are of all kinds.
+    pub fn count(&self) -> usize {
+        self.points.len()
+            + self.directionals.len()
+            + self.segments.len()
+            + self.parallelograms.len()
+    }
+
+    /// The place in [`Self::all`] of the first parallelogram.
+    pub(super) fn first_parallelogram(&self) -> usize {
+        self.count() - self.parallelograms.len()
+    }
+}

@@ -1,0 +1,162 @@
+//! Light kept apart: which lights a picture has a plane of its own for, and what their colours multiply.
+//!
+//! Light adds up, and a light's colour is a factor of all that it adds. So a picture is
+//! `own + Σ tint · plane`: one plane for what shines by itself (surfaces, the background), and one for what each light
+//! adds at a tint of 1. Another tint is another sum of the same planes, without a ray.
+
+use super::{Lights, World};
+use glam::Vec3;
+use std::sync::Arc;
+
+/// The plane of what shines by itself, and of all where nothing is kept apart.
+pub const OWN: usize = 0;
+
+/// Which plane takes what each light adds.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Planes {
+    /// Of each light, in the order of [`Lights::all`]; none where everything is one plane.
+    of_light: Vec<u8>,
+    /// All planes but [`OWN`].
+    apart: u8,
+}
+
+/// Some of a picture's planes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PlaneSet(u64);
+
+/// A world whose lights that have a plane of their own shine at a tint of 1, and the tints that make it the world that it
+/// was.
+#[derive(Clone)]
+pub struct Untinted {
+    /// Its lights without their tints.
+    pub world: World,
+    /// Which plane is whose.
+    pub planes: Planes,
+    /// Of each plane: linear RGB, 1 of those that hold what is not tinted.
+    pub tints: Vec<Vec3>,
+}
+
+impl Planes {
+    /// Planes of lights in a picture, at the most: a [`PlaneSet`] and a pixel's memory have to hold them.
+    pub const MOST: usize = 32;
+
+    /// All in one.
+    pub fn together() -> Self {
+        Self::default()
+    }
+
+    /// The first `own` lights get a plane each; the others share the last.
+    pub fn of(lights: &Lights, own: usize) -> Self {
+        let own = own.min(Self::MOST - 1);
+        let count = lights.count();
+        Self {
+            of_light: (0..count).map(|light| 1 + light.min(own) as u8).collect(),
+            apart: count.min(own + 1) as u8,
+        }
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        1 + usize::from(self.apart)
+    }
+
+    /// The plane of the light with this place in [`Lights::all`].
+    #[inline(always)]
+    pub fn of_light(&self, light: usize) -> usize {
+        self.of_light
+            .get(light)
+            .map_or(OWN, |plane| usize::from(*plane))
+    }
+
+    /// Whether a plane is one light's alone.
+    fn is_of_one(&self, plane: usize) -> bool {
+        self.of_light
+            .iter()
+            .filter(|of| usize::from(**of) == plane)
+            .count()
+            == 1
+    }
+
+    /// All of them.
+    pub fn all(&self) -> PlaneSet {
+        PlaneSet((1 << self.count()) - 1)
+    }
+}
+
+impl PlaneSet {
+    /// None of them.
+    pub const NONE: Self = Self(0);
+    /// Every plane of any picture.
+    pub const ALL: Self = Self(u64::MAX);
+
+    /// With this plane.
+    pub fn with(self, plane: usize) -> Self {
+        Self(self.0 | 1 << plane)
+    }
+
+    /// Whether a plane is one of them.
+    #[inline(always)]
+    pub fn has(self, plane: usize) -> bool {
+        self.0 >> plane & 1 == 1
+    }
+
+    /// Whether it holds no plane.
+    pub fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+}
+
+impl Untinted {
+    /// The world as it is, in one plane.
+    pub fn together(world: &World) -> Self {
+        Self {
+            world: world.clone(),
+            planes: Planes::together(),
+            tints: vec![Vec3::ONE],
+        }
+    }
+
+    /// Takes the tints off the lights of a world that get a plane each: the first `own`. A light's tint is the brightest that
+    /// it is anywhere, channel by channel.
+    pub fn of(world: &World, own: usize) -> Self {
+        let planes = Planes::of(&world.lights, own);
+        let mut tints = vec![Vec3::ONE; planes.count()];
+        let mut lights = (*world.lights).clone();
+        for (light, colors) in lights.colors_mut().enumerate() {
+            let plane = planes.of_light(light);
+            if !planes.is_of_one(plane) {
+                continue;
+            }
+            let tint = colors.iter().copied().fold(Vec3::ZERO, Vec3::max);
+            tints[plane] = tint;
+            for color in colors {
+                *color = Vec3::select(tint.cmpgt(Vec3::ZERO), *color / tint, Vec3::ONE);
+            }
+        }
+        Self {
+            world: World {
+                lights: Arc::new(lights),
+                ..world.clone()
+            },
+            planes,
+            tints,
+        }
+    }
+}
+
+impl Lights {
+    /// The colours of every light, in the order of [`Self::all`].
+    fn colors_mut(&mut self) -> impl Iterator<Item = &mut [Vec3]> {
+        use std::slice::from_mut;
+        let points = self
+            .points
+            .iter_mut()
+            .map(|light| from_mut(&mut light.color));
+        let directionals = (self.directionals.iter_mut()).map(|light| from_mut(&mut light.color));
+        let segments = self.segments.iter_mut().map(|light| &mut light.colors[..]);
+        let parallelograms = (self.parallelograms.iter_mut()).map(|light| &mut light.colors[..]);
+        (points.chain(directionals))
+            .chain(segments)
+            .chain(parallelograms)
+    }
+}
