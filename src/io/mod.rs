@@ -23,6 +23,7 @@ mod budget;
 pub mod builtin;
 mod error;
 mod exported;
+mod far_off;
 pub(crate) mod file_name;
 mod folder;
 mod frame;

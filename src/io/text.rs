@@ -63,11 +63,13 @@ impl Lines {
             any = true;
             self.number += 1;
             let text = self.line.trim_ascii_end();
-            // A comment may end in the name of a folder.
-            if text.last() != Some(&b'\\') || has_comment(text) {
+            let Some((b'\\', before)) = text.split_last() else {
+                break;
+            };
+            if !goes_on(before) {
                 break;
             }
-            let end = text.len() - 1;
+            let end = before.len();
             self.line.truncate(end);
             self.line.push(b' ');
         }
@@ -129,8 +131,13 @@ fn encoding(start: &[u8]) -> (usize, Option<Unit>) {
     }
 }
 
-fn has_comment(line: &[u8]) -> bool {
-    words(line).any(|word| word.first() == Some(&b'#'))
+/// Whether a line goes on after the `\` behind it: not in a comment, and not where a name ends in it, which may be that
+/// of a folder.
+fn goes_on(line: &[u8]) -> bool {
+    let is_comment = words(line).any(|word| word.first() == Some(&b'#'));
+    let is_apart = line.last().is_none_or(u8::is_ascii_whitespace);
+    let is_number = |word: &[u8]| matches!(word.first(), Some(b'0'..=b'9' | b'+' | b'-' | b'.'));
+    !is_comment && (is_apart || words(line).skip(1).all(is_number))
 }
 
 /// The words of a line, without spaces and tabs.
@@ -139,9 +146,16 @@ pub(crate) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> + Clone {
         .filter(|word| !word.is_empty())
 }
 
-/// The words before a comment.
+/// The words before a comment, which may follow a number without a space. `1.#INF` has none in it: old programs wrote so
+/// what is no number.
 pub(crate) fn values(line: &[u8]) -> impl Iterator<Item = &[u8]> + Clone {
-    words(line).take_while(|word| word.first() != Some(&b'#'))
+    let mut before = b' ';
+    let comment = line.iter().position(|&byte| {
+        let begins = byte == b'#' && before != b'.';
+        before = byte;
+        begins
+    });
+    words(&line[..comment.unwrap_or(line.len())])
 }
 
 /// The first word, and what follows it without the spaces around.
@@ -185,10 +199,8 @@ pub(crate) fn number(word: &[u8]) -> Result<f32, Problem> {
 
 /// A name without the quotes around it.
 pub(crate) fn unquoted(name: &str) -> &str {
-    let inner = name
-        .strip_prefix('"')
-        .and_then(|name| name.strip_suffix('"'));
-    inner.map_or(name, str::trim)
+    let inner = |quote: char| name.strip_prefix(quote)?.strip_suffix(quote);
+    inner('"').or_else(|| inner('\'')).map_or(name, str::trim)
 }
 
 #[cfg(test)]
@@ -232,6 +244,18 @@ mod tests {
                 (5, "v 2 ")
             ])
         );
+        assert_eq!(
+            lines(b"o C:\\art\\\ng wall \\\nred\nf 1 2\\\n3\n"),
+            numbered(&[(1, "o C:\\art\\"), (3, "g wall  red"), (5, "f 1 2 3")])
+        );
+    }
+
+    #[test]
+    fn a_comment_may_follow_a_number_without_a_space() {
+        let found = |line: &'static [u8]| values(line).map(text).collect::<Vec<_>>();
+        assert_eq!(found(b"1 2#three 4"), ["1", "2"]);
+        assert_eq!(found(b"1 # 2"), ["1"]);
+        assert_eq!(found(b"-1.#IND 1.#QNAN 2"), ["-1.#IND", "1.#QNAN", "2"]);
     }
 
     #[test]

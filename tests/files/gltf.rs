@@ -384,3 +384,37 @@ fn materials_of_extensions_become_phong() {
     let none = objects(app.world_mut())[0].1.clone();
     assert_eq!(none.diffuse, LinearRgba::WHITE, "without a material");
 }
+
+#[test]
+fn data_and_paths_are_found_as_programs_write_them() {
+    let whole = POSITIONS[..3]
+        .iter()
+        .flatten()
+        .flat_map(|v: &f32| v.to_le_bytes());
+    let whole: Vec<u8> = whole.collect();
+    let text = base64(&whole);
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "a b.bin", &whole);
+    for uri in [
+        format!("DATA:application/octet-stream;BASE64,{text}"),
+        format!("data:;base64,\n{text}\n"),
+        format!("data:a/b;charset=utf-8;base64,{}", text.replace('=', "%3D")),
+        "a%20b.bin".to_owned(),
+        "a%20b.bin?version=2".to_owned(),
+        "a b.bin".to_owned(),
+        "file:///home/someone/a%20b.bin".to_owned(),
+    ] {
+        let document = json!({
+            "asset": { "version": "2.0" },
+            "nodes": [{ "mesh": 0 }],
+            "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 } }] }],
+            "buffers": [{ "byteLength": whole.len(), "uri": uri }],
+            "bufferViews": [{ "buffer": 0, "byteLength": whole.len() }],
+            "accessors": [{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" }],
+        });
+        // Some programs end a text with a zero.
+        let file = write(folder.path(), "a.gltf", format!("{document}\0"));
+        let (mut app, _) = opened(&file);
+        assert_eq!(objects(app.world_mut())[0].2.len(), 1, "{uri}");
+    }
+}

@@ -74,3 +74,87 @@ fn a_metal_reflects_in_its_picture_and_what_is_unlit_shows_it() {
     assert_eq!((unlit.emission_map, unlit.diffuse_map), (picture, None));
     assert_eq!(unlit.emission, LinearRgba::rgb(0.5, 0.25, 1.0));
 }
+
+#[test]
+fn pictures_of_reflections_are_taken_where_nothing_is_metal() {
+    let pbr = json!({ "metallicFactor": 0.0, "roughnessFactor": 0.0 });
+    let specular = |textures: Value| {
+        let extensions = json!({ "KHR_materials_specular": textures });
+        pictured(
+            json!({ "pbrMetallicRoughness": pbr, "extensions": extensions }),
+            json!([]),
+        )
+    };
+    let texture = json!({ "index": 0 });
+    for (textures, path) in [
+        (json!({ "specularColorTexture": texture }), "a b.png"),
+        (json!({ "specularTexture": texture }), "a b.png#alpha"),
+    ] {
+        let (phong, notes) = specular(textures);
+        let expected = Some(TextureSource::new(path));
+        assert_eq!(
+            (&phong.specular_map, &phong.mirror_map),
+            (&expected, &expected)
+        );
+        assert_eq!(notes, [""; 0]);
+    }
+    let both = json!({ "specularColorTexture": texture, "specularTexture": texture });
+    let (phong, notes) = specular(both);
+    assert_eq!(phong.specular_map, Some(TextureSource::new("a b.png")));
+    assert!(
+        notes.len() == 1 && notes[0].contains("strength"),
+        "{notes:?}"
+    );
+}
+
+#[test]
+fn a_picture_of_specular_and_glossiness_gives_reflections_their_colour() {
+    let glossy =
+        json!({ "specularGlossinessTexture": { "index": 0 }, "specularFactor": [0.5, 0.5, 0.5] });
+    let extensions = json!({ "KHR_materials_pbrSpecularGlossiness": glossy });
+    let (phong, notes) = pictured(json!({ "extensions": extensions }), json!([]));
+    let picture = Some(TextureSource::new("a b.png"));
+    assert_eq!(
+        (&phong.specular_map, &phong.mirror_map),
+        (&picture, &picture)
+    );
+    // The picture has no alpha: as glossy as the factor says.
+    assert_eq!(phong.mirror, LinearRgba::rgb(0.5, 0.5, 0.5));
+    assert_eq!(notes, [""; 0]);
+}
+
+#[test]
+fn what_refers_to_nothing_or_means_nothing_is_told() {
+    let lower = json!({ "alphaMode": "mask" });
+    let (phong, notes) = pictured(lower, json!([]));
+    assert_eq!(phong.alpha, Alpha::Opaque);
+    assert!(
+        notes.iter().any(|note| note.contains("alphaMode")),
+        "{notes:?}"
+    );
+    let texture = json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": 1 }, "metallicFactor": 0.0 } });
+    // The second texture has a sampler, and here there are none.
+    let (_, notes) = pictured(texture, json!([]));
+    assert!(
+        notes.iter().any(|note| note.contains("sampler 0")),
+        "{notes:?}"
+    );
+    let (_, notes) = document(plain(), |d| d["scene"] = json!(7));
+    assert!(
+        notes.iter().any(|note| note.contains("scene 7")),
+        "{notes:?}"
+    );
+    let (_, notes) = document(
+        json!({ "attributes": { "POSITION": 0 }, "indices": 2, "material": 0 }),
+        |d| {
+            d["images"] = json!([{ "uri": "a%20b.png" }]);
+            d["textures"] = json!([{ "source": 0 }]);
+            d["materials"] =
+                json!([{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }]);
+        },
+    );
+    assert!(
+        notes.iter().any(|note| note.contains("TEXCOORD_0")),
+        "{notes:?}"
+    );
+}

@@ -10,6 +10,7 @@ mod materials;
 pub mod models;
 mod names;
 mod obj;
+mod obj_unusual;
 mod pictures;
 mod ply;
 mod round_trip;

@@ -228,6 +228,66 @@ fn dds(color: u16) -> Vec<u8> {
     bytes
 }
 
+/// One pixel of a DDS without compression: flags of its pixel format, bits, masks, and what follows the head.
+fn plain_dds(flags: u32, bits: u32, masks: [u32; 4], code: &[u8; 4], rest: &[u8]) -> Vec<u8> {
+    let mut words = [0_u32; 31];
+    (words[0], words[1], words[2], words[3]) = (124, 0x1007, 1, 1);
+    (words[18], words[19], words[21]) = (32, flags, bits);
+    words[20] = u32::from_le_bytes(*code);
+    words[22..26].copy_from_slice(&masks);
+    let mut bytes = b"DDS ".to_vec();
+    bytes.extend(words.iter().flat_map(|word| word.to_le_bytes()));
+    bytes.extend(rest);
+    bytes
+}
+
+#[test]
+fn a_dds_without_compression_is_read_by_its_masks() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let newer = |format: u8| [&[format], &[0; 19][..], &[0, 0, 255, 255]].concat();
+    let (red, blue) = ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0]);
+    for (what, bytes, expected) in [
+        (
+            "24 bits",
+            plain_dds(
+                0x40,
+                24,
+                [0xff_0000, 0xff00, 0xff, 0],
+                &[0; 4],
+                &[255, 0, 0],
+            ),
+            blue,
+        ),
+        (
+            "32 bits",
+            plain_dds(
+                0x41,
+                32,
+                [0xff, 0xff00, 0xff_0000, 0xff00_0000],
+                &[0; 4],
+                &[255, 0, 0, 255],
+            ),
+            red,
+        ),
+        (
+            "16 bits",
+            plain_dds(0x40, 16, [0xf800, 0x7e0, 0x1f, 0], &[0; 4], &[0x1f, 0]),
+            blue,
+        ),
+        (
+            "brightness",
+            plain_dds(0x2_0000, 8, [0xff, 0, 0, 0], &[0; 4], &[255]),
+            [1.0; 3],
+        ),
+        ("RGBA", plain_dds(4, 0, [0; 4], b"DX10", &newer(28)), blue),
+        ("BGRA", plain_dds(4, 0, [0; 4], b"DX10", &newer(87)), red),
+    ] {
+        write(path, "a.dds", bytes);
+        assert_eq!(first_texel(path, "a.dds"), expected, "{what}");
+    }
+}
+
 #[test]
 fn a_picture_is_known_by_its_content_whatever_its_name() {
     let folder = tempfile::tempdir().unwrap();
@@ -295,6 +355,28 @@ mod open_exr {
             let image = Image::from_channels((4, 4), channels);
             image.write().to_file(&file).unwrap();
             assert_eq!(first_texel(path, "a.exr"), [0.5; 3], "{name}");
+        }
+    }
+
+    #[test]
+    fn luminance_and_chroma_become_colours() {
+        let folder = tempfile::tempdir().unwrap();
+        let [r, g, b] = [0.5_f32, 0.25, 0.125];
+        let y = 0.2126 * r + 0.7152 * g + 0.0722 * b;
+        let channels = SpecificChannels::build();
+        let channels = channels
+            .with_channel("BY")
+            .with_channel("RY")
+            .with_channel("Y");
+        let channels = channels.with_pixel_fn(|_| ((b - y) / y, (r - y) / y, y));
+        let image = Image::from_channels((4, 4), channels);
+        image.write().to_file(folder.path().join("a.exr")).unwrap();
+        for (found, expected) in first_texel(folder.path(), "a.exr")
+            .into_iter()
+            .zip([r, g, b])
+        {
+            // A few roundings of 32 bits.
+            assert!((found - expected).abs() < 1e-6, "{found} for {expected}");
         }
     }
 

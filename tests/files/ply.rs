@@ -229,3 +229,17 @@ fn what_cannot_be_used_of_a_ply_is_told_and_the_rest_is_shown() {
     assert!(told[0].contains("a corner that cannot be used"), "{told:?}");
     assert_eq!(objects(app.world_mut())[0].2.len(), 1);
 }
+
+#[test]
+fn vertices_in_doubles_that_lie_far_off_keep_their_digits_near_the_origin() {
+    let vertices = "element vertex 3\nproperty double x\nproperty double y\nproperty double z\n";
+    let elements = format!("{vertices}element face 1\n{FACES}");
+    let numbers = "500000 4500000 0\n500000.25 4500000 0\n500000 4500000.5 0\n3 0 1 2\n";
+    let (mut app, told) = open(ascii(&elements, numbers));
+    let triangle = objects(app.world_mut())[0].2[0];
+    assert_eq!(
+        triangle,
+        [[0.0, 0.0, 0.0], [0.25, 0.0, 0.0], [0.0, 0.5, 0.0]]
+    );
+    assert!(told.len() == 1 && told[0].contains("far off"), "{told:?}");
+}

@@ -181,3 +181,14 @@ fn what_cannot_be_used_of_an_stl_is_told_and_the_rest_is_shown() {
     );
     assert_eq!(objects(app.world_mut())[0].2.len(), 2);
 }
+
+#[test]
+fn a_count_of_0_facets_that_are_there_is_told_and_they_are_shown() {
+    let mut bytes = binary(b"", &TETRAHEDRON, |_| 0);
+    bytes[80..84].fill(0);
+    let folder = tempfile::tempdir().unwrap();
+    let (mut app, opened) = opened(&write(folder.path(), "a.stl", bytes));
+    assert_eq!(objects(app.world_mut())[0].2.len(), 4);
+    let told = opened.notes.lines().join("\n");
+    assert!(told.contains("a count of 0 facets"), "{told}");
+}

@@ -43,6 +43,10 @@ pub(crate) fn frame(world: &mut World, file: &Path, notes: &mut Notes) {
     let mut note = |what: &str, instead| notes.add(file, Place::Whole, what, instead);
     let has_lamps = count::<Lamp>(world) > 0;
     let surface = Surface::of(world);
+    if surface.is_without_area() {
+        let what = "triangles, and none of them has an area";
+        note(what, "nothing is to be seen of them");
+    }
     let mut added = Vec::new();
     let eye = match first_camera(world) {
         Some(eye) => eye,

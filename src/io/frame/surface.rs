@@ -73,6 +73,12 @@ impl Surface {
         surface
     }
 
+    /// Whether there are triangles, and all of them are lines or points.
+    pub fn is_without_area(&self) -> bool {
+        let area = |&[a, b, c]: &[Vec3; 3]| (b - a).cross(c - a).length_squared();
+        !self.triangles.is_empty() && self.triangles.iter().all(|t| area(t) == 0.0)
+    }
+
     fn add(&mut self, place: &Affine3A, points: impl IntoIterator<Item = Vec3>) {
         let points = points
             .into_iter()

@@ -62,6 +62,9 @@ impl Document {
         let bytes = super::super::read_bytes(file, limits.file_bytes, &limits.memory)?;
         let (text, blob) = glb::parts(&bytes).map_err(|problem| FileError::new(file, problem))?;
         let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+        // Some programs end it as they end a text in memory, or fill it up with zeros.
+        let end = text.iter().rposition(|&byte| byte != 0);
+        let text = &text[..end.map_or(0, |last| last + 1)];
         (limits.memory)
             .claim(json_bytes(text))
             .map_err(|problem| FileError::new(file, problem))?;
@@ -262,8 +265,12 @@ impl Document {
         let mut names = Names::new(&self.folder);
         let decoded = path_of(uri);
         let found = names.find("", &decoded);
-        // Some programs write names as they are.
+        // Some programs write names as they are, and some what a server would be asked for.
         let found = found.or_else(|missing| names.find("", uri).map_err(|_| missing));
+        let found = found.or_else(|missing| {
+            let (file, _) = uri.split_once('?').ok_or(missing)?;
+            names.find("", &path_of(file)).map_err(|_| missing)
+        });
         match found {
             Ok(found) => {
                 if found.is_guess {

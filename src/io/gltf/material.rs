@@ -1,7 +1,7 @@
 //! glTF's metallic–roughness material and Phong, in both directions.
 //!
 //! In: with base colour `b`, metalness `m`, roughness `r`, and `F0 = 0.04` (`KHR_materials_specular`
-//! scales and tints it):
+//! scales and tints it; its pictures are `specular_map` and `mirror_map` where no metal has them):
 //!
 //! | Phong | from |
 //! |---|---|
@@ -15,14 +15,15 @@
 //! | `normal_map`, `normal_scale` | the normals' picture |
 //!
 //! A picture of metalness and roughness counts with its mean. `KHR_materials_pbrSpecularGlossiness`: `diffuse` and
-//! `specular` as they are there, `specular` times the gloss of `r = 1 - glossiness`, which is `mirror`, too. `KHR_materials_unlit`: what would
-//! be `diffuse` is `emission`, and reflects nothing.
+//! `specular` as they are there with their pictures, `specular` times the gloss of `r = 1 - glossiness`, which is `mirror`, too; a picture
+//! of glossiness counts with its mean. `KHR_materials_unlit`: what would be `diffuse` is `emission`, and reflects nothing.
 //!
 //! Out: `b = diffuse`, `m = 0`, `r` from `shininess`, and the exact Phong numbers in the material's
 //! `extras` as `glassbox_phong`, which are preferred on the way in.
 
 use super::document::Document;
 use super::json::Json;
+use super::pictures::Pictures;
 use super::texture::{TextureInfo, alpha_of, mean, texture_source};
 use crate::scene::{Alpha, Phong};
 use bevy::color::LinearRgba;
@@ -50,49 +51,13 @@ struct Numbers {
     alpha: Option<String>,
 }
 
-/// The pictures of a material, as far as they are read.
-struct Pictures {
-    base: Option<TextureInfo>,
-    emissive: Option<TextureInfo>,
-    normal: Option<TextureInfo>,
-}
-
-impl Pictures {
-    fn of(material: Json) -> Self {
-        let base = match material.extension(SPECULAR_GLOSSINESS) {
-            Some(glossy) => glossy.get("diffuseTexture"),
-            None => {
-                (material.get("pbrMetallicRoughness")).and_then(|pbr| pbr.get("baseColorTexture"))
-            }
-        };
-        let own = |key| material.get(key).and_then(TextureInfo::of);
-        Self {
-            base: base.and_then(TextureInfo::of),
-            emissive: own("emissiveTexture"),
-            normal: own("normalTexture"),
-        }
-    }
-
-    fn all(&self) -> impl Iterator<Item = TextureInfo> {
-        [self.base, self.emissive, self.normal]
-            .into_iter()
-            .flatten()
-    }
-}
-
-/// The picture of a material whose texture coordinates meshes take: that of its colour, where it has one.
-pub(super) fn placing_texture(document: &Document, material: Option<usize>) -> Option<TextureInfo> {
-    let material = document.json().element("materials", material?)?;
-    Pictures::of(material).all().next()
-}
-
 /// Whether a material shows its colour as it is.
 pub(super) fn is_unlit(document: &Document, material: Option<usize>) -> bool {
     let material = material.and_then(|index| document.json().element("materials", index));
     material.is_some_and(|material| material.has_extension("KHR_materials_unlit"))
 }
 
-const SPECULAR_GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
+pub(super) const SPECULAR_GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
 
 /// The material that primitives without one have: white and rough.
 pub(super) fn default_phong() -> Phong {
@@ -122,7 +87,7 @@ pub(super) fn phong_of(document: &Document, index: usize, material: Json, name: 
     let base = [red, green, blue];
     // Read in any case: what stands beside the exact numbers is not passed over.
     let (mapped, metal) = match glossy {
-        Some(glossy) => (specular_glossiness(glossy, base), 0.0),
+        Some(glossy) => (specular_glossiness(document, glossy, base, &note), 0.0),
         None => metallic_roughness(document, material, base, &note),
     };
     let mut phong = exact.unwrap_or(mapped);
@@ -171,10 +136,17 @@ pub(super) fn phong_of(document: &Document, index: usize, material: Json, name: 
         phong.mirror = LinearRgba::BLACK;
         return phong;
     }
-    // A metal reflects in its colour.
-    if metal > 0.5 && !is_exact {
-        phong.specular_map.clone_from(&base_picture);
-        phong.mirror_map.clone_from(&base_picture);
+    if metal > 0.5 && pictures.have_reflections() {
+        note("pictures of reflections, on a metal, of", "left out");
+    }
+    if !is_exact {
+        let map = match metal > 0.5 {
+            // A metal reflects in its colour.
+            true => base_picture.clone(),
+            false => pictures.of_reflections(document, &note),
+        };
+        phong.specular_map.clone_from(&map);
+        phong.mirror_map = map;
     }
     if base_picture.is_some() && metal > 0.0 && metal < 1.0 && !is_exact {
         let what = "a picture on what is partly metal, of";
@@ -203,7 +175,7 @@ fn metallic_roughness(
     let picture = pbr.and_then(|pbr| TextureInfo::of(pbr.get("metallicRoughnessTexture")?));
     if let Some(picture) = picture {
         match mean(document, picture.texture) {
-            Some([_, green, blue]) => {
+            Some([_, green, blue, _]) => {
                 note(
                     "a picture of metalness and roughness, of",
                     "its mean is taken",
@@ -240,8 +212,24 @@ fn metallic_roughness(
     (phong, metal)
 }
 
-fn specular_glossiness(json: Json, base: [f32; 3]) -> Phong {
-    let rough = 1.0 - unit(json.number("glossinessFactor").unwrap_or(1.0));
+fn specular_glossiness(
+    document: &Document,
+    json: Json,
+    base: [f32; 3],
+    note: &impl Fn(&str, &'static str),
+) -> Phong {
+    let mut glossiness = unit(json.number("glossinessFactor").unwrap_or(1.0));
+    let picture = json
+        .get("specularGlossinessTexture")
+        .and_then(TextureInfo::of);
+    // One that cannot be read is noted where reflections take its colour.
+    if let Some([.., alpha]) = picture.and_then(|picture| mean(document, picture.texture)) {
+        if glossiness > 0.0 && alpha < 1.0 {
+            note("a picture of glossiness, of", "its mean is taken");
+        }
+        glossiness *= alpha;
+    }
+    let rough = 1.0 - glossiness;
     let gloss = (1.0 - rough) * (1.0 - rough);
     let specular = json.numbers("specularFactor").unwrap_or([1.0; 3]);
     let specular = color(specular.map(|s| unit(s) * gloss));
@@ -268,6 +256,9 @@ fn opacity(
     is_exact: bool,
 ) -> bool {
     let mode = material.text("alphaMode").unwrap_or("OPAQUE");
+    if !matches!(mode, "OPAQUE" | "MASK" | "BLEND") {
+        note("an alphaMode that there is not, of", "read as OPAQUE");
+    }
     let cutoff = at_least_0(material.number("alphaCutoff").unwrap_or(0.5));
     let mode = match mode {
         "BLEND" => Alpha::Blend,

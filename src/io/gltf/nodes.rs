@@ -99,8 +99,16 @@ impl Reader<'_> {
     fn roots(&self) -> Vec<usize> {
         let json = self.document.json();
         let scenes = json.list("scenes").len();
-        let chosen = json.index("scene").filter(|&scene| scene < scenes);
-        if chosen.is_none() && scenes > 1 {
+        let named = json.index("scene");
+        let chosen = named.filter(|&scene| scene < scenes);
+        if let (Some(named), None) = (named, chosen) {
+            let what = format!("scene {named}, which there is not");
+            let instead = match scenes {
+                0 => "all nodes are shown",
+                _ => "the first is shown",
+            };
+            self.document.note("scene", what, instead);
+        } else if chosen.is_none() && scenes > 1 {
             let what = format!("{scenes} scenes, and none that is to be shown");
             self.document.note("scenes", what, "the first is");
         }

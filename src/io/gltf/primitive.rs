@@ -6,7 +6,8 @@ use super::super::model::triangle_mesh;
 use super::accessors::{colors, floats, indices};
 use super::document::Document;
 use super::json::Json;
-use super::material::{is_unlit, placing_texture};
+use super::material::is_unlit;
+use super::pictures::placing_texture;
 use super::rest::Pose;
 use super::texture::TextureInfo;
 use bevy::math::Vec2;
@@ -65,6 +66,10 @@ fn triangles(
     let set = texture.map_or(0, |texture| texture.set);
     let set = format!("TEXCOORD_{set}");
     let mut uvs: Vec<[f32; 2]> = attribute(document, attributes, &set, name, count, floats);
+    if texture.is_some() && uvs.is_empty() {
+        let what = format!("no {set} for the pictures of its material");
+        document.note(name, what, "shown without them");
+    }
     if let Some(TextureInfo {
         transform: Some(transform),
         ..

@@ -63,11 +63,16 @@ const MIRRORED_REPEAT: usize = 33_648;
 /// How a texture is read beyond its edges and between its pixels.
 fn sampled(document: &Document, texture: usize, path: String) -> TextureSource {
     let json = document.json();
-    let sampler = json
+    let named = json
         .element("textures", texture)
-        .and_then(|texture| texture.index("sampler"))
-        .and_then(|sampler| json.element("samplers", sampler));
+        .and_then(|texture| texture.index("sampler"));
+    let sampler = named.and_then(|sampler| json.element("samplers", sampler));
     let Some(sampler) = sampler else {
+        if let Some(named) = named {
+            let what = format!("sampler {named}, which there is not");
+            let instead = "its pictures repeat";
+            document.note(&format!("textures[{texture}]"), what, instead);
+        }
         return TextureSource::new(path);
     };
     let wrap = |key| match sampler.index(key) {
@@ -131,8 +136,8 @@ pub(super) fn texture_source(document: &Document, texture: usize) -> Option<Text
     Some(sampled(document, texture, path))
 }
 
-/// The mean of a picture's red, green and blue as numbers.
-pub(super) fn mean(document: &Document, texture: usize) -> Option<[f32; 3]> {
+/// The mean of a picture's red, green, blue and alpha as numbers.
+pub(super) fn mean(document: &Document, texture: usize) -> Option<[f32; 4]> {
     let image = read_texture(
         document,
         &format!("texture{texture}"),
@@ -142,7 +147,7 @@ pub(super) fn mean(document: &Document, texture: usize) -> Option<[f32; 3]> {
     .ok()?;
     let pixels = image.width() as usize * image.height() as usize;
     let data = image.data?;
-    let mut sums = [0_u64; 3];
+    let mut sums = [0_u64; 4];
     let pixel_bytes = data.len().checked_div(pixels)?;
     // The upper bytes of 16 bits are near enough.
     let step = match pixel_bytes {

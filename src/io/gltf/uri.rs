@@ -4,14 +4,22 @@ use crate::io::file_name::unescaped;
 
 /// The bytes of a `data:` URI in base64; `None` where it is not one, or is damaged.
 pub(super) fn data_of(uri: &str) -> Option<Vec<u8>> {
-    let (head, text) = uri.strip_prefix("data:")?.split_once(',')?;
-    if !head.ends_with(";base64") {
+    if !is_data(uri) {
         return None;
     }
-    let text = text.trim_end_matches('=');
+    let (head, text) = uri.split_once(',')?;
+    if !head.to_ascii_lowercase().ends_with(";base64") {
+        return None;
+    }
+    // As in any URI, what is no letter or digit may be escaped.
+    let unescaped = text.contains('%').then(|| unescaped(text));
+    let text = unescaped.as_deref().unwrap_or(text.as_bytes());
     let mut bytes = Vec::with_capacity(text.len() / 4 * 3 + 3);
     let (mut bits, mut count) = (0_u32, 0);
-    for &character in text.as_bytes() {
+    for &character in text {
+        if character == b'=' || character.is_ascii_whitespace() {
+            continue;
+        }
         bits = bits << 6 | u32::from(digit(character)?);
         count += 6;
         if count >= 8 {
@@ -23,14 +31,14 @@ pub(super) fn data_of(uri: &str) -> Option<Vec<u8>> {
     Some(bytes)
 }
 
-/// The value of a base64 digit (RFC 4648, section 4).
+/// The value of a base64 digit (RFC 4648, section 4, and section 5, which some libraries take).
 fn digit(character: u8) -> Option<u8> {
     match character {
         b'A'..=b'Z' => Some(character - b'A'),
         b'a'..=b'z' => Some(character - b'a' + 26),
         b'0'..=b'9' => Some(character - b'0' + 52),
-        b'+' => Some(62),
-        b'/' => Some(63),
+        b'+' | b'-' => Some(62),
+        b'/' | b'_' => Some(63),
         _ => None,
     }
 }
@@ -43,7 +51,9 @@ pub(super) fn path_of(uri: &str) -> String {
 
 /// Whether a URI is data.
 pub(super) fn is_data(uri: &str) -> bool {
-    uri.starts_with("data:")
+    const SCHEME: &str = "data:";
+    let start = uri.get(..SCHEME.len());
+    start.is_some_and(|start| start.eq_ignore_ascii_case(SCHEME))
 }
 
 #[cfg(test)]
@@ -62,7 +72,16 @@ mod tests {
             let uri = format!("data:application/octet-stream;base64,{text}");
             assert_eq!(data_of(&uri).as_deref(), Some(bytes.as_bytes()), "{text}");
         }
+        for uri in [
+            "DATA:a;BASE64,Zm8=",
+            "data:a;charset=utf-8;base64,Zm8%3D",
+            "data:;base64,\n Z\tm8=\r\n",
+        ] {
+            assert_eq!(data_of(uri).as_deref(), Some(&b"fo"[..]), "{uri}");
+        }
+        assert_eq!(data_of("data:a;base64,-_-_"), data_of("data:a;base64,+/+/"));
         assert_eq!(data_of("data:a;base64,Zm9*"), None);
+        assert_eq!(data_of("data:a,Zm9v"), None);
     }
 
     #[test]

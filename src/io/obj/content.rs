@@ -109,10 +109,6 @@ impl Content {
             });
             corners.truncate(kept);
         }
-        if !content.colors.is_empty() {
-            let what = "vertex colours";
-            notes.add(file, Place::Whole, what, "kept, and not traced");
-        }
         if content.colors.iter().flatten().any(|&value| value > 1.0) {
             let what = "vertex colours above 1";
             let instead = "read as numbers up to 255";

@@ -49,6 +49,7 @@ pub(super) struct MtlMaterial {
     pub specular_map: Option<NamedMap>,
     pub emission_map: Option<NamedMap>,
     pub normal_map: Option<NamedMap>,
+    pub bump_map: Option<NamedMap>,
 }
 
 const LEFT_OUT: &str = "left out";
@@ -138,6 +139,7 @@ impl Reader<'_, '_> {
             b"map_d" | b"map_opacity" => material.opacity_map = self.map("map_d", rest),
             b"map_ks" => material.specular_map = self.map("map_Ks", rest),
             b"map_ke" | b"map_emissive" => material.emission_map = self.map("map_Ke", rest),
+            b"map_bump" | b"bump" => material.bump_map = self.map("map_Bump", rest),
             b"norm" => material.normal_map = self.map("norm", rest),
             b"tf" => {
                 let mut filter = None;
@@ -314,7 +316,7 @@ impl Reader<'_, '_> {
                 true
             }
             "cc" => first.eq_ignore_ascii_case("off"),
-            "bm" if word == "norm" => {
+            "bm" if matches!(word, "norm" | "map_Bump") => {
                 map.bump = numbers[0].unwrap_or(1.0);
                 true
             }

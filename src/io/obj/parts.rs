@@ -103,6 +103,11 @@ impl<'a> Builder<'a> {
             self.notes
                 .add_named(self.file, place, what, name, "theirs are 0 0");
         }
+        if pictured.has_pictures && textured == 0 {
+            let what = "no texture coordinates for the pictures of its material, in";
+            let place = Place::Line(part.faces.first().map_or(0, |face| face.line.into()));
+            (self.notes).add_named(self.file, place, what, name, "shown without them");
+        }
         let mut whole = Vertices::new(self.content, with_normals, textured > 0, pictured);
         let mut plain = Vertices::new(self.content, with_normals, false, pictured);
         let mut polygon = Vec::new();

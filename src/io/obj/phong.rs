@@ -9,6 +9,7 @@
 //! | `map_d` | `opacity_map`: its alpha where any of that is below 1, else its brightness |
 //! | `Ke`, `map_Ke` | `emission`, `emission_map` |
 //! | `norm`, its `-bm` | `normal_map`, `normal_scale` |
+//! | `map_Bump` | the same, where its picture holds normals, as many exporters write it; heights are left out |
 //!
 //! A colour that is not given is 1 1 1 where its picture is, and 0 0 0 where that cannot be found. `-clamp on` clamps.
 
@@ -91,12 +92,25 @@ pub(super) fn phong_of(
         );
     }
     let named = |map: &Option<NamedMap>| map.clone().flatten();
+    let mut normals = named(&material.normal_map);
+    if let Some(bumps) = named(&material.bump_map) {
+        let is_alone = normals.is_none();
+        if is_alone && holds_normals(&bumps, folder, limits) {
+            note("a map_Bump whose picture holds normals, of", "read as norm");
+            normals = Some(bumps);
+        } else if is_alone {
+            let what = "heights (map_Bump), for which Phong has normals alone, of";
+            note(what, "left out");
+        } else {
+            note("a map_Bump beside norm, of", "left out");
+        }
+    }
     let maps = [
         (PhongMap::Diffuse, named(&material.diffuse_map)),
         (PhongMap::Specular, named(&material.specular_map)),
         (PhongMap::Emission, named(&material.emission_map)),
         (PhongMap::Opacity, named(&material.opacity_map)),
-        (PhongMap::Normal, named(&material.normal_map)),
+        (PhongMap::Normal, normals),
     ];
     let placements = maps.iter().filter_map(|(_, map)| map.as_ref());
     let placements: Vec<Placement> = placements.map(|map| map.placement).collect();
@@ -193,6 +207,32 @@ fn opacity_source(map: &Map, is_diffuse: bool, folder: &Folder, limits: &Limits)
         (false, false) => Some(of_file(map.path.clone())),
         (false, true) => None,
     }
+}
+
+/// Whether a picture holds normals in tangent space, not heights: in the mean they point out of the surface, and heights
+/// are grey.
+fn holds_normals(map: &Map, folder: &Folder, limits: &Limits) -> bool {
+    let file = folder.resolve(&map.path).ok();
+    let picture = file.and_then(|file| read_picture(&file, PictureUse::Data, limits).ok());
+    let Some(picture) = picture else {
+        return false;
+    };
+    let data = picture.data.as_deref().unwrap_or_default();
+    let mut sums = [0_u64; 3];
+    // Such pictures have 8 bits.
+    if picture.texture_descriptor.format != TextureFormat::Rgba8Unorm {
+        return false;
+    }
+    let (pixels, _) = data.as_chunks::<4>();
+    for pixel in pixels {
+        for (sum, &value) in sums.iter_mut().zip(pixel) {
+            *sum += u64::from(value);
+        }
+    }
+    let count = pixels.len().max(1) as u64;
+    let [red, green, blue] = sums.map(|sum| sum / count);
+    let is_middle = |mean: u64| (96..160).contains(&mean);
+    is_middle(red) && is_middle(green) && blue > 192
 }
 
 fn clamp(phong: Phong) -> Phong {

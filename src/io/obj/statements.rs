@@ -1,6 +1,7 @@
 //! The statements of an OBJ: one line, one of them.
 
 use super::super::error::{FileError, Place, Problem};
+use super::super::far_off::FarOff;
 use super::super::notes::Notes;
 use super::content::{BEYOND, Content, Corner, Face, LEFT_OUT, NONE, Part, out_of_range};
 use super::text::{Lines, keyword, number, shown, text, values};
@@ -33,6 +34,7 @@ pub(super) fn read_content(
         numbers: HashMap::new(),
         places: HashMap::new(),
         memory: Growing::of(&limits.memory),
+        far_off: FarOff::default(),
     };
     reader.object = reader.object_named(UNNAMED);
     while let Some((number, line)) = lines.next()? {
@@ -41,6 +43,7 @@ pub(super) fn read_content(
         reader.claim()?;
     }
     let mut content = reader.content;
+    (reader.far_off).settle(&mut content.positions, file, reader.notes);
     content.finish(file, notes);
     Ok(content)
 }
@@ -62,6 +65,7 @@ struct Reader<'a> {
     /// Parts by their object and material.
     places: HashMap<(u32, Option<u32>), usize>,
     memory: Growing<'a>,
+    far_off: FarOff,
 }
 
 #[derive(PartialEq, Eq, Hash)]
@@ -261,9 +265,10 @@ impl Reader<'_> {
                 4 => position = position.map(|value| value / r),
                 6 => color = Some([r, g, b]),
                 7 => {
-                    // Either a colour with alpha follows, or w and a colour; w is 1 then.
+                    // Either a colour with alpha follows, which is 1 mostly, or w, which is 1 then, and a colour.
                     self.note("a vertex of 7 numbers", "read as x y z r g b");
-                    color = Some(if r == 1.0 { [g, b, a] } else { [r, g, b] });
+                    let is_w = r == 1.0 && a != 1.0;
+                    color = Some(if is_w { [g, b, a] } else { [r, g, b] });
                 }
                 _ => self.note(
                     &format!("a vertex of {count} numbers"),
@@ -271,6 +276,9 @@ impl Reader<'_> {
                 ),
             }
             self.content.positions[place] = position;
+            if self.far_off.wants(position) && count != 4 {
+                self.far_off.tell(place, exact(rest), position);
+            }
         }
         match color {
             Some(color) => {
@@ -403,4 +411,13 @@ impl Reader<'_> {
         }
         Ok(corner)
     }
+}
+
+/// The first three numbers of a vertex that are numbers, with all their digits.
+fn exact(rest: &[u8]) -> [f64; 3] {
+    let mut words = values(rest);
+    [(); 3].map(|()| {
+        let word = words.next().and_then(|word| std::str::from_utf8(word).ok());
+        word.and_then(|word| word.parse().ok()).unwrap_or(0.0)
+    })
 }

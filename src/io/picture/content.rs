@@ -27,10 +27,31 @@ pub(super) fn recognised(head: &[u8]) -> Result<ImageFormat, Problem> {
             )))
         }
         Err(_) if looks_like_tga(head) => Ok(F::Tga),
-        Err(_) => Err(Problem::Malformed(format!(
-            "is not a picture that can be decoded; {READ}"
-        ))),
+        Err(_) => {
+            let text = match unread(head) {
+                Some(name) => format!("is {name}, which is not read; {READ}"),
+                None => format!("is not a picture that can be decoded; {READ}"),
+            };
+            Err(Problem::Malformed(text))
+        }
     }
+}
+
+/// What a file is instead that often stands where a picture should, for the message.
+fn unread(head: &[u8]) -> Option<&'static str> {
+    const MARKS: [(&[u8], &str); 6] = [
+        (b"\xabKTX ", "a texture in KTX"),
+        (b"\0\0\0\x0cjP  ", "a picture in JPEG 2000"),
+        (b"8BPS", "a document of Photoshop"),
+        (b"<!DOCTYPE html", "a web page"),
+        (b"<svg", "a drawing in SVG"),
+        (
+            b"version https://git-lfs",
+            "a pointer of Git LFS to the file",
+        ),
+    ];
+    let found = MARKS.iter().find(|(mark, _)| head.starts_with(mark));
+    found.map(|&(_, name)| name)
 }
 
 /// A TGA has no mark at its beginning, but a head whose numbers few other files have (Truevision TGA
@@ -73,5 +94,7 @@ mod tests {
             problem.contains(".tiff") && problem.contains("PNG"),
             "{problem}"
         );
+        let texture = recognised(b"\xabKTX 20\xbb\r\n\x1a\n").unwrap_err();
+        assert!(texture.to_string().contains("KTX"), "{texture}");
     }
 }

@@ -3,6 +3,7 @@
 //! are more kinds of it: WebP, TGA, BMP, DDS, and the first frame of a GIF.
 
 mod content;
+mod dds;
 mod exr_blocks;
 mod jpeg;
 mod open_exr;

@@ -4,6 +4,7 @@
 //!
 //! - a layer with `R`, `G` or `B` (or `red`, `green`, `blue`) is a colour, and what it lacks of them is 0;
 //! - one with `Y` (or `luminance`), and no `X` that would make it a vector, is grey;
+//! - one that has `RY` and `BY` beside `Y` is a colour, which follows from them;
 //! - one of a single channel of another name is grey, too;
 //! - `A` (or `alpha`) is the alpha of the first two.
 //!
@@ -54,6 +55,9 @@ pub(super) fn decode(
             chunks.decompress_parallel(false, |meta, block| pixels.take(&meta.headers, &block))
         })
         .map_err(fails)?;
+    if pixels.layer.is_chroma {
+        pixels.colors_from_chroma();
+    }
     let (width, height) = (pixels.size.0 as u32, pixels.size.1 as u32);
     let picture = if pixels.channels == 4 {
         ImageBuffer::from_raw(width, height, pixels.values).map(DynamicImage::ImageRgba32F)
@@ -100,6 +104,8 @@ struct Layer {
     header: usize,
     /// Red, green and blue, where they are there.
     colors: [Option<usize>; 3],
+    /// They are RY, Y and BY, which red, green and blue follow from.
+    is_chroma: bool,
     /// In place of them.
     grey: Option<usize>,
     alpha: Option<usize>,
@@ -173,6 +179,15 @@ fn layers(header: usize, names: &[String]) -> Vec<([u8; 2], Layer)> {
                 ..Layer::default()
             };
             (0, layer)
+        } else if let (Some(y), Some(ry), Some(by)) = (luminance, called(&["ry"]), called(&["by"]))
+        {
+            let layer = Layer {
+                colors: [Some(ry), Some(y), Some(by)],
+                is_chroma: true,
+                alpha,
+                ..Layer::default()
+            };
+            (0, layer)
         } else if luminance.is_some() {
             let layer = Layer {
                 grey: luminance,
@@ -224,6 +239,20 @@ impl Pixels {
             channels,
             // What lies outside of the data is black, and transparent where there is alpha.
             values: vec![0.0; size.0 * size.1 * channels],
+        }
+    }
+
+    /// `RY = (R - Y) / Y` and `BY = (B - Y) / Y` become red, green and blue, with the luminances of sRGB's primaries, which
+    /// files have that say no others (OpenEXR, "Technical Introduction", "Luminance/Chroma Images").
+    fn colors_from_chroma(&mut self) {
+        let [to_red, to_green, to_blue] = [0.212_6, 0.715_2, 0.072_2];
+        for pixel in self.values.chunks_exact_mut(self.channels) {
+            if let [red, green, blue, ..] = pixel {
+                let luminance = *green;
+                *red = (*red + 1.0) * luminance;
+                *blue = (*blue + 1.0) * luminance;
+                *green = (luminance - to_red * *red - to_blue * *blue) / to_green;
+            }
         }
     }
 
@@ -324,6 +353,8 @@ mod tests {
         assert_eq!(best(&["Y"]).grey, Some(0));
         assert_eq!(best(&["A", "Y"]).alpha, Some(0));
         assert_eq!(best(&["depth"]).grey, Some(0));
+        assert_eq!(best(&["BY", "RY", "Y"]).colors, rgb(1, 2, 0));
+        assert!(best(&["BY", "RY", "Y"]).is_chroma);
         assert_eq!(best(&["B.Y", "C.B", "C.G", "C.R"]).colors, rgb(3, 2, 1));
         assert_eq!(best(&["G", "R"]).colors, [Some(1), Some(0), None]);
     }

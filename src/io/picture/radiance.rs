@@ -78,10 +78,14 @@ fn head(reader: &mut impl BufRead) -> Result<Head, Problem> {
     let mut limited = reader.take(LONGEST_HEAD);
     let mut exposure = [1.0_f32; 3];
     let mut xyz = false;
-    loop {
+    let sizes = loop {
         let line = line(&mut limited)?;
         if line.is_empty() {
-            break;
+            break self::line(&mut limited)?;
+        }
+        // Some programs leave out the empty line before it.
+        if is_size(&line) {
+            break line;
         }
         let Some((key, value)) = line.split_once('=') else {
             continue;
@@ -117,8 +121,7 @@ fn head(reader: &mut impl BufRead) -> Result<Head, Problem> {
         }
         // There may be several, and each counts.
         exposure = std::array::from_fn(|i| exposure[i] * factors[i]);
-    }
-    let sizes = line(&mut limited)?;
+    };
     let words: Vec<&str> = sizes.split_whitespace().collect();
     let wrong = || {
         Problem::Malformed(format!(
@@ -153,6 +156,17 @@ fn head(reader: &mut impl BufRead) -> Result<Head, Problem> {
         exposure,
         xyz,
     })
+}
+
+/// Whether a line of the head is the last, as in `-Y 480 +X 640`.
+fn is_size(line: &str) -> bool {
+    let is_axis = |word: &str| matches!(word, "+X" | "-X" | "+Y" | "-Y");
+    let is_number = |word: &str| word.bytes().all(|byte| byte.is_ascii_digit());
+    let mut words = line.split_whitespace();
+    let is_pair = |words: &mut std::str::SplitWhitespace| {
+        words.next().is_some_and(is_axis) && words.next().is_some_and(is_number)
+    };
+    is_pair(&mut words) && is_pair(&mut words)
 }
 
 /// The next line without its end, LF or CR and LF.
@@ -195,6 +209,7 @@ mod tests {
             "#?RGBE\nFORMAT=32-bit_rle_rgbe\n\n",
             "#?RADIANCE\r\n# a comment\r\nFORMAT=32-bit_rle_rgbe\r\n\r\n",
             "#?\nGAMMA=1\nVIEW= -vp 0 0 0\n\n",
+            "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n",
             "#?RADIANCE\n\n",
         ] {
             for end in ["\n", "\r\n"] {

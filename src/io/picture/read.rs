@@ -1,7 +1,7 @@
 use super::super::error::{FileError, Problem};
 use super::super::open_to_read;
 use super::content::{HEAD, recognised};
-use super::{claim_picture, decoder_bytes, open_exr, radiance};
+use super::{claim_picture, dds, decoder_bytes, open_exr, radiance};
 use crate::io::Limits;
 use crate::scene::{PhongMap, SRGB_16_BITS};
 use crate::trace::srgb::decode_table_16;
@@ -87,6 +87,16 @@ fn decode(
                 pixels: picture,
                 is_half,
             }
+        }
+        ImageFormat::Dds => {
+            let plain = dds::decode_uncompressed(name, &mut reader, limits)?;
+            let rewound = reader.seek(SeekFrom::Start(0));
+            rewound.map_err(|error| FileError::reading(name, &error))?;
+            let picture = match plain {
+                Some(picture) => picture,
+                None => decode_as(ImageFormat::Dds, name, reader, limits)?,
+            };
+            whole(picture)
         }
         format => whole(decode_as(format, name, reader, limits)?),
     };

@@ -3,6 +3,7 @@
 use super::super::Limits;
 use super::super::budget::Growing;
 use super::super::error::{FileError, Place, Problem};
+use super::super::far_off::FarOff;
 use super::super::model::triangle_mesh;
 use super::super::notes::Notes;
 use super::body::Fault;
@@ -18,6 +19,8 @@ pub(super) struct Work<'a> {
     /// The first thing that could not be used: the reason, should nothing be left to show.
     pub fault: Option<FileError>,
     memory: Growing<'a>,
+    /// What vertices lose.
+    pub far_off: FarOff,
     /// Corners of one face that were spoken for.
     corners: usize,
 }
@@ -30,6 +33,7 @@ impl<'a> Work<'a> {
             notes: Notes::default(),
             fault: None,
             memory: Growing::of(&limits.memory),
+            far_off: FarOff::default(),
             corners: 1 << 16,
         }
     }

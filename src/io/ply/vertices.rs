@@ -71,7 +71,7 @@ pub(super) fn read_vertices(
         }
     }
     for _ in 0..element.count {
-        let (mut position, mut normal, mut uv) = ([0.0; 3], [0.0; 3], [0.0; 2]);
+        let (mut exact, mut normal, mut uv) = ([0.0; 3], [0.0; 3], [0.0; 2]);
         let mut color = [1.0_f32; 4];
         for (property, slot) in element.properties.iter().zip(&slots) {
             if let Slot::Nowhere = slot {
@@ -80,12 +80,16 @@ pub(super) fn read_vertices(
             }
             let number = body.number(property.scalar)?;
             match *slot {
-                Slot::Position(axis) => position[axis] = number as f32,
+                Slot::Position(axis) => exact[axis] = number,
                 Slot::Normal(axis) => normal[axis] = number as f32,
                 Slot::Uv(axis) => uv[axis] = number as f32,
                 Slot::Color(channel, whole) => color[channel] = unit(number, whole),
                 Slot::Nowhere => {}
             }
+        }
+        let position = exact.map(|number| number as f32);
+        if work.far_off.wants(position) {
+            (work.far_off).tell(content.positions.len(), exact, position);
         }
         content.positions.push(position);
         if has_normals {
@@ -99,6 +103,8 @@ pub(super) fn read_vertices(
         }
         work.claim(content)?;
     }
+    let far_off = std::mem::take(&mut work.far_off);
+    far_off.settle(&mut content.positions, work.file, &mut work.notes);
     Ok(())
 }
 

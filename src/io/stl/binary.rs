@@ -21,11 +21,22 @@ pub(super) fn read_binary(
         .first_chunk()
         .map_or(0, |&count| u32::from_le_bytes(count));
     let whole = (size - HEAD) / FACET;
-    let count = u64::from(told).min(whole);
+    let is_uncounted = told == 0 && whole > 0;
+    let count = if is_uncounted {
+        whole
+    } else {
+        whole.min(told.into())
+    };
     let note = |facets: &mut Facets, what: &str, instead| {
         facets.notes.add(file, Place::Whole, what, instead);
     };
-    if u64::from(told) > whole {
+    if is_uncounted {
+        note(
+            facets,
+            "a count of 0 facets",
+            "as many as there are are shown",
+        );
+    } else if u64::from(told) > whole {
         let text = format!("it says that it has {told} facets and has {whole}");
         note(facets, &text, "those that are there are shown");
         facets

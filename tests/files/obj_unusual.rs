@@ -1,0 +1,112 @@
+//! What few OBJ files hold, and other readers open all the same.
+
+use super::app::{opened, write};
+use super::models::objects;
+use super::obj::{SQUARE, area, attribute, obj, open};
+use bevy::mesh::{Mesh, VertexAttributeValues};
+
+#[test]
+fn seven_numbers_are_a_colour_with_alpha_or_w_and_a_colour() {
+    for (numbers, color) in [
+        ("1 0 0 1", [1.0, 0.0, 0.0]),
+        ("1 1 0 0", [1.0, 0.0, 0.0]),
+        ("0 1 0 1", [0.0, 1.0, 0.0]),
+    ] {
+        let vertices =
+            format!("v 0 0 0 {numbers}\nv 1 0 0 {numbers}\nv 0 1 0 {numbers}\nf 1 2 3\n");
+        let (mut app, _) = obj(&vertices);
+        let Some(VertexAttributeValues::Float32x4(colors)) =
+            attribute(&mut app, Mesh::ATTRIBUTE_COLOR)
+        else {
+            panic!("no colours");
+        };
+        let [r, g, b] = color;
+        assert_eq!(colors, [[r, g, b, 1.0]; 3], "{numbers}");
+    }
+}
+
+#[test]
+fn colours_of_vertices_are_traced_and_nothing_else_is_said_of_them() {
+    let (_, told) = obj("v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nf 1 2 3\n");
+    assert!(told.is_empty(), "{told:?}");
+}
+
+#[test]
+fn a_comment_behind_a_number_and_a_name_that_ends_in_a_backslash_hide_nothing() {
+    for text in [
+        "v 0 0 0#a\nv 1 0 0 # b\nv 0 1 0\nf 1 2 3#c\n",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\no C:\\art\\\nf 1 2 3\n",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1.#INF 0 0\nf 1 2 3\n",
+    ] {
+        let (mut app, _) = obj(text);
+        assert_eq!(area(&mut app), 0.5, "{text}");
+    }
+}
+
+#[test]
+fn a_model_that_lies_far_off_keeps_its_digits_near_the_origin() {
+    let far = |x: f64, y: f64| format!("v {:?} {:?} 120.5\n", 500_000.0 + x, 4_500_000.0 + y);
+    let corners = far(0.0, 0.0) + &far(0.25, 0.0) + &far(0.25, 0.01) + &far(0.0, 0.01);
+    let (mut app, told) = obj(&(corners + "f 1 2 3 4\n"));
+    let found = area(&mut app);
+    // Where it lies, floats tell 0.03 and 0.5 apart.
+    assert!((found - 0.0025).abs() < 1e-6, "{found}: {told:?}");
+    assert!(
+        told.len() == 1 && told[0].contains("500000 4500000 121"),
+        "{told:?}"
+    );
+    // One that is large, and whose first vertex lies outside, is left where it is.
+    let (mut app, told) = obj("v 9000 0 0\nv 0 9000.0625 0\nv 0 0 0\nf 1 2 3\n");
+    assert!(told.is_empty(), "{told:?}");
+    assert_eq!(objects(app.world_mut())[0].2[0][1], [0.0, 9000.0625, 0.0]);
+}
+
+#[test]
+fn pictures_without_texture_coordinates_and_triangles_without_area_are_told() {
+    let text = "mtllib a.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    let files = [
+        ("a.obj", text.as_bytes()),
+        ("a.mtl", &b"newmtl a\nmap_Kd wall.png\n"[..]),
+    ];
+    let (_, told, _folder) = open(&files);
+    assert!(
+        told.len() == 1 && told[0].contains("no texture coordinates"),
+        "{told:?}"
+    );
+    let (_, told) = obj("v 1 1 1\nf 1 1 1\n");
+    assert!(
+        told.iter()
+            .any(|line| line.contains("none of them has an area")),
+        "{told:?}"
+    );
+}
+
+#[test]
+fn a_bump_map_that_holds_normals_is_a_normal_map_and_heights_are_told() {
+    for (color, is_normals) in [
+        ([128, 128, 255], true),
+        ([128; 3], false),
+        ([200, 100, 50], false),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        image::RgbImage::from_pixel(2, 2, image::Rgb(color))
+            .save(folder.path().join("bump.png"))
+            .unwrap();
+        write(
+            folder.path(),
+            "a.mtl",
+            "newmtl a\nmap_Bump -bm 0.5 bump.png\n",
+        );
+        let text = format!("mtllib a.mtl\nusemtl a\n{SQUARE}f 1/1 2/2 3/3\n");
+        let (mut app, opened) = opened(&write(folder.path(), "a.obj", text));
+        let phong = objects(app.world_mut())[0].1.clone();
+        let told = opened.notes.lines().join("\n");
+        assert_eq!(phong.normal_map.is_some(), is_normals, "{color:?}: {told}");
+        assert_eq!(
+            phong.normal_scale,
+            if is_normals { 0.5 } else { 1.0 },
+            "{color:?}"
+        );
+        assert!(told.contains("map_Bump"), "{color:?}: {told}");
+    }
+}
