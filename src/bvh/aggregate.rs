@@ -111,19 +111,20 @@ impl Aggregate {
                 (tree, places)
             }
         };
-        let mut wide_leaves = Vec::new();
-        let (mut blocks, mut block_instances) = (Vec::new(), Vec::new());
-        let wide = match &places {
+        let capacity = match &places {
             // An instance is dear to enter, so none shares its leaf.
-            Places::Instances(_) => WideTree::new(&tree, 1, |leaf| {
-                wide_leaves.push(leaf);
-                wide_leaves.len() as u32 - 1
-            }),
-            Places::Triangles(places) => WideTree::new(&tree, TriangleBlock::CAPACITY, |leaf| {
+            Places::Instances(_) => 1,
+            Places::Triangles(_) => TriangleBlock::CAPACITY,
+        };
+        let (wide, mut wide_leaves) =
+            WideTree::new(&tree, capacity, |leaf, leaves| leaves.push(leaf));
+        let (mut blocks, mut block_instances) = (Vec::new(), Vec::new());
+        if let Places::Triangles(places) = &places {
+            for leaf in &mut wide_leaves {
                 let first = blocks.len();
-                let mut leaf = places[leaf].to_vec();
-                leaf.sort_unstable();
-                for same in leaf.chunk_by(|a, b| a.0 == b.0) {
+                let mut pairs = places[leaf.clone()].to_vec();
+                pairs.sort_unstable();
+                for same in pairs.chunk_by(|a, b| a.0 == b.0) {
                     let number = same[0].0;
                     let mesh = &instances[number as usize].mesh;
                     let triangles: Vec<LeafTriangle> = same
@@ -133,10 +134,9 @@ impl Aggregate {
                     TriangleBlock::append(&triangles, &mut blocks);
                     block_instances.resize(blocks.len(), number);
                 }
-                wide_leaves.push(first..blocks.len());
-                wide_leaves.len() as u32 - 1
-            }),
-        };
+                *leaf = first..blocks.len();
+            }
+        }
         let meshes = instances.iter().map(|i| i.mesh.most_pending());
         let most_pending = wide.most_pending() + meshes.max().unwrap_or(0);
         let ray_pad = instances.iter().map(Instance::ray_pad).fold(0.0, f32::max);

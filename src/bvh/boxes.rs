@@ -1,29 +1,90 @@
 //! The boxes that builders work on: not the callers' own, but copies with which no builder can go wrong.
 
-use glam::{DVec3, Vec3A};
-use obvhs::{aabb::Aabb, bvh2::node::Bvh2Node};
+use glam::{DVec3, Vec3A, Vec4};
+use obvhs::aabb::Aabb;
+use rayon::prelude::*;
 
-/// Boxes multiplied by a power of two, so that the largest coordinate lies in [1, 2).
+/// Below this many boxes a pass over them takes less time than handing it to other threads.
+const PARALLEL_SIZE: usize = 1 << 14;
+
+/// A primitive as builders move it about: its box and its number, 32 bytes.
+///
+/// The lanes behind the corners' coordinates hold the number, 16 bits each, as floats that are neither tiny nor NaN:
+/// whatever is computed with a whole register never meets a denormal number there, which takes a hundred cycles.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Item {
+    min: Vec4,
+    max: Vec4,
+}
+
+impl Item {
+    /// The bits of 1.0.
+    const ONE: u32 = 0x3f80_0000;
+
+    pub(super) fn new(bounds: &Aabb, number: u32) -> Self {
+        let half = |bits: u32| f32::from_bits(Self::ONE | bits);
+        Self {
+            min: bounds.min.extend(half(number & 0xffff)),
+            max: bounds.max.extend(half(number >> 16)),
+        }
+    }
+
+    /// The primitive's number.
+    #[inline(always)]
+    pub(super) fn number(&self) -> u32 {
+        (self.min.w.to_bits() & 0xffff) | (self.max.w.to_bits() & 0xffff) << 16
+    }
+
+    /// Its box.
+    #[inline(always)]
+    pub(super) fn bounds(&self) -> Aabb {
+        Aabb::new(Vec3A::from_vec4(self.min), Vec3A::from_vec4(self.max))
+    }
+
+    /// Twice the centre of its box: the point by which builders sort primitives.
+    #[inline(always)]
+    pub(super) fn centre(&self) -> Vec3A {
+        Vec3A::from_vec4(self.min + self.max)
+    }
+}
+
+/// What boxes are multiplied by, so that their largest coordinate lies in [1, 2): a power of two.
 ///
 /// Areas then neither overflow (obvhs turns ∞ − ∞ into a broken tree) nor vanish, and a scene scaled by a
 /// power of two gets the very same tree. Nothing is rounded but what falls 2^126 below the scene's size.
 /// A box that is not finite becomes a point at the origin.
-pub(super) fn normalised(boxes: &[Aabb]) -> Vec<Aabb> {
-    let is_finite = |b: &&Aabb| b.min.is_finite() && b.max.is_finite();
-    let largest = boxes
-        .iter()
-        .filter(is_finite)
-        .fold(Vec3A::ZERO, |largest, b| {
-            largest.max(b.min.abs()).max(b.max.abs())
-        })
-        .max_element();
-    let scale = power_of_two_towards_one(largest);
-    let scaled = |v: Vec3A| (v.as_dvec3() * scale).as_vec3a();
-    boxes
-        .iter()
-        .map(|b| Some(b).filter(is_finite).copied().unwrap_or_default())
-        .map(|b| Aabb::new(scaled(b.min), scaled(b.max)))
-        .collect()
+#[derive(Clone, Copy)]
+pub(super) struct Normalisation {
+    scale: f64,
+}
+
+impl Normalisation {
+    pub(super) fn of(boxes: &[Aabb]) -> Self {
+        let largest = |boxes: &[Aabb]| {
+            (boxes.iter().filter(|b| is_finite(b)))
+                .fold(Vec3A::ZERO, |largest, b| {
+                    largest.max(b.min.abs()).max(b.max.abs())
+                })
+                .max_element()
+        };
+        let largest = (boxes.par_chunks(PARALLEL_SIZE).map(largest)).reduce(|| 0.0, f32::max);
+        Self {
+            scale: power_of_two_towards_one(largest),
+        }
+    }
+
+    /// The box, multiplied.
+    pub(super) fn apply(self, bounds: &Aabb) -> Aabb {
+        if !is_finite(bounds) {
+            return Aabb::default();
+        }
+        let scaled = |v: Vec3A| (v.as_dvec3() * self.scale).as_vec3a();
+        Aabb::new(scaled(bounds.min), scaled(bounds.max))
+    }
+}
+
+fn is_finite(b: &Aabb) -> bool {
+    b.min.is_finite() && b.max.is_finite()
 }
 
 /// 2^-⌊log2 x⌋, or 1 for zero. In f64, where the reciprocal of every f32's power of two is a normal number.
@@ -36,18 +97,20 @@ fn power_of_two_towards_one(x: f32) -> f64 {
     1.0 / power
 }
 
-/// The `i`th box as the leaf that holds primitive `i` alone: 32 bytes that partitioning can move about.
-pub(super) fn items(boxes: &[Aabb]) -> Vec<Bvh2Node> {
-    boxes
-        .iter()
-        .zip(0..)
-        .map(|(b, i)| Bvh2Node::new(*b, 1, i))
+/// The `i`th box, normalised, as primitive `i`.
+pub(super) fn items(boxes: &[Aabb]) -> Vec<Item> {
+    let normalisation = Normalisation::of(boxes);
+    (boxes.par_iter().with_min_len(PARALLEL_SIZE).enumerate())
+        .map(|(i, b)| Item::new(&normalisation.apply(b), i as u32))
         .collect()
 }
 
-/// The centre of a box, the point by which builders sort primitives.
-pub(super) fn centroid(item: &Bvh2Node) -> Vec3A {
-    item.aabb().center()
+/// All of them, normalised.
+pub(super) fn normalised(boxes: &[Aabb]) -> Vec<Aabb> {
+    let normalisation = Normalisation::of(boxes);
+    (boxes.par_iter().with_min_len(PARALLEL_SIZE))
+        .map(|b| normalisation.apply(b))
+        .collect()
 }
 
 /// By how much of its longest side a box is jittered at most. Measured on five meshes of 100k triangles, three
@@ -67,9 +130,8 @@ const JITTER_OF_SCENE: f32 = 1.0 / (1u64 << 40) as f32;
 /// joins one pair: n rounds, and a tree n deep. With a jitter no two costs are equal, a round joins a third
 /// of the primitives, and duplicates are an ordinary input.
 pub(super) fn jittered(boxes: &[Aabb]) -> Vec<Aabb> {
-    boxes
-        .iter()
-        .zip(0..)
+    (boxes.par_iter().with_min_len(PARALLEL_SIZE))
+        .zip(0..boxes.len() as u32)
         .map(|(b, i)| {
             let side = Vec3A::splat(b.diagonal().max_element() * JITTER_OF_SIDE + JITTER_OF_SCENE);
             let coordinate = b.min.abs().max(b.max.abs()) * JITTER_OF_COORDINATE;

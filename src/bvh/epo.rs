@@ -153,7 +153,7 @@ impl Polygon {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bvh::{BuildOptions, Builder, build_tree, specimens};
+    use crate::bvh::{BuildOptions, Builder, COST_INTERSECT, build_tree, specimens};
 
     fn epo_of(triangles: &[[Vec3; 3]], options: &BuildOptions) -> f64 {
         let tree = build_tree(&specimens::boxes(triangles), options);
@@ -192,7 +192,7 @@ mod tests {
         ];
         let upright_area = 0.5 * 2f64.sqrt() * 2.0;
         let measured = epo_of(&[flat, upright], &SINGLE);
-        let expected = 1.0 / (2.0 + upright_area);
+        let expected = f64::from(COST_INTERSECT) / (2.0 + upright_area);
         assert!(
             (measured - expected).abs() < 1e-12,
             "{measured} instead of {expected}"

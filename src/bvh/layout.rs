@@ -1,6 +1,12 @@
 //! The last step of every builder: nodes in depth-first order, exact boxes, a bounded depth.
 
-use super::{boxes, depth::MAX_DEPTH, median, options::BuildOptions, top_down};
+use super::{
+    boxes::{self, Item},
+    depth::MAX_DEPTH,
+    median,
+    options::BuildOptions,
+    top_down,
+};
 use obvhs::{
     aabb::Aabb,
     bvh2::{Bvh2, DEFAULT_MAX_STACK_DEPTH, node::Bvh2Node},
@@ -10,27 +16,32 @@ use obvhs::{
 /// halvings tell all primitives apart that a `u32` can number.
 const REBUILD_DEPTH: usize = MAX_DEPTH - 32;
 
-/// Nodes and the primitives their leaves refer to, from whatever builder.
-#[derive(Clone, Copy)]
-pub(super) struct Draft<'a> {
-    pub nodes: &'a [Bvh2Node],
-    pub primitives: &'a [u32],
+/// A tree of what has been laid out already: nodes in depth-first order with their boxes, the root first, and the primitives
+/// in the order of the leaves. `depth` is that of the deepest leaf.
+pub(super) fn tree(nodes: Vec<Bvh2Node>, primitive_indices: Vec<u32>, depth: usize) -> Bvh2 {
+    Bvh2 {
+        nodes,
+        primitive_indices,
+        max_depth: DEFAULT_MAX_STACK_DEPTH.max(depth + 1),
+        children_are_ordered_after_parents: true,
+        ..Bvh2::default()
+    }
 }
 
-/// Makes a tree of a draft, with these properties whatever the builder was:
+/// Makes a tree of a draft, whatever made that, with these properties:
 /// - nodes stand in depth-first order, the two children of a node side by side and after it;
 /// - `primitive_indices` stands in the order of the leaves, so a subtree's primitives are a range of it;
 /// - every box is the union of the primitives' `boxes`, not of what the builder made of them;
 /// - no leaf is deeper than [`MAX_DEPTH`].
-pub(super) fn finish(draft: Draft, boxes: &[Aabb], options: &BuildOptions) -> Bvh2 {
-    let mut tree = Bvh2 {
-        nodes: Vec::with_capacity(draft.nodes.len()),
-        primitive_indices: Vec::with_capacity(boxes.len()),
-        ..Bvh2::default()
-    };
+pub(super) fn finish(draft: &Bvh2, boxes: &[Aabb], options: &BuildOptions) -> Bvh2 {
     if draft.nodes.is_empty() {
-        return tree;
+        return Bvh2::default();
     }
+    let mut tree = tree(
+        Vec::with_capacity(draft.nodes.len()),
+        Vec::with_capacity(boxes.len()),
+        0,
+    );
     tree.nodes.push(Bvh2Node::default());
     let root = Visit {
         from: 0,
@@ -39,8 +50,7 @@ pub(super) fn finish(draft: Draft, boxes: &[Aabb], options: &BuildOptions) -> Bv
     };
     let depth = copy(draft, root, &mut tree, boxes, options);
     tree.nodes.shrink_to_fit();
-    tree.max_depth = DEFAULT_MAX_STACK_DEPTH.max(depth + 1);
-    tree.children_are_ordered_after_parents = true;
+    tree.max_depth = tree.max_depth.max(depth + 1);
     tree.refit_all();
     tree
 }
@@ -56,7 +66,7 @@ struct Visit {
 /// Copies the subtree at `start` behind the nodes that are there, and answers the depth of its deepest leaf.
 /// Leaves get their boxes.
 fn copy(
-    draft: Draft,
+    draft: &Bvh2,
     start: Visit,
     tree: &mut Bvh2,
     boxes: &[Aabb],
@@ -68,14 +78,14 @@ fn copy(
         let node = draft.nodes[visit.from];
         if node.is_leaf() {
             let first = node.first_index as usize;
-            let primitives = &draft.primitives[first..first + node.prim_count as usize];
+            let primitives = &draft.primitive_indices[first..first + node.prim_count as usize];
             tree.nodes[visit.to] = leaf(primitives, tree.primitive_indices.len(), boxes);
             tree.primitive_indices.extend_from_slice(primitives);
             deepest = deepest.max(visit.depth);
             continue;
         }
         if visit.depth == REBUILD_DEPTH
-            && exceeds(draft.nodes, visit.from, MAX_DEPTH - REBUILD_DEPTH)
+            && exceeds(&draft.nodes, visit.from, MAX_DEPTH - REBUILD_DEPTH)
         {
             deepest = deepest.max(rebuild(draft, visit, tree, boxes, options));
             continue;
@@ -122,7 +132,7 @@ pub(super) fn exceeds(nodes: &[Bvh2Node], root: usize, levels: usize) -> bool {
 
 /// Replaces the subtree at `visit` by a balanced one over the same primitives.
 fn rebuild(
-    draft: Draft,
+    draft: &Bvh2,
     visit: Visit,
     tree: &mut Bvh2,
     boxes: &[Aabb],
@@ -134,12 +144,8 @@ fn rebuild(
         let node = draft.nodes[index];
         let first = node.first_index as usize;
         if node.is_leaf() {
-            let primitives = &draft.primitives[first..first + node.prim_count as usize];
-            items.extend(
-                primitives
-                    .iter()
-                    .map(|&p| Bvh2Node::new(boxes[p as usize], 1, p)),
-            );
+            let primitives = &draft.primitive_indices[first..first + node.prim_count as usize];
+            items.extend(primitives.iter().map(|&p| Item::new(&boxes[p as usize], p)));
         } else {
             stack.extend([first + 1, first]);
         }
@@ -148,13 +154,15 @@ fn rebuild(
         max_depth: (MAX_DEPTH - REBUILD_DEPTH) as u32,
         ..*options
     };
-    let nodes = top_down::build(&mut items, &|items, depth, _| {
-        median::cut(items, depth, &balanced)
+    let grown = top_down::build(&mut items, boxes, &|items, centres, depth, _| {
+        median::cut(items, centres, depth, &balanced)
     });
-    let primitives: Vec<u32> = items.iter().map(|item| item.first_index).collect();
-    let balanced = Draft {
-        nodes: &nodes,
-        primitives: &primitives,
-    };
-    copy(balanced, Visit { from: 0, ..visit }, tree, boxes, options)
+    let mut nodes = grown.within(tree.nodes.len(), tree.primitive_indices.len());
+    if let Some(root) = nodes.next() {
+        tree.nodes[visit.to] = root;
+    }
+    tree.nodes.extend(nodes);
+    tree.primitive_indices
+        .extend(items.iter().map(Item::number));
+    visit.depth + grown.depth
 }

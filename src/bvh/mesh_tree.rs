@@ -7,6 +7,7 @@ use std::{
 
 use glam::Vec3A;
 use obvhs::{aabb::Aabb, bvh2::Bvh2};
+use rayon::prelude::*;
 
 use super::{
     build_tree,
@@ -25,6 +26,9 @@ use super::{
         View, WideBox, WideRay, WideStats, WideTree, lanes_of,
     },
 };
+
+/// Below this many triangles a pass over them takes less time than handing it to other threads.
+const PARALLEL_SIZE: usize = 1 << 13;
 
 /// A mesh's triangles, the tree over them, and their corners again in the order of the tree's leaves. And the same in
 /// the form in which rays walk it when nobody watches.
@@ -46,35 +50,21 @@ impl MeshTree {
     pub fn build(triangles: Triangles, options: &BuildOptions) -> Self {
         let start = Instant::now();
         let numbers: Vec<u32> = (0..triangles.len() as u32)
+            .into_par_iter()
+            .with_min_len(PARALLEL_SIZE)
             .filter(|&triangle| triangles.is_traced(triangle))
             .collect();
-        let boxes: Vec<Aabb> = numbers
-            .iter()
-            .map(|&triangle| triangle_box(triangles.corners(triangle).map(Vec3A::from)))
-            .collect();
-        let tree = build_tree(&boxes, options);
-        let leaves: Vec<LeafTriangle> = tree
-            .primitive_indices
-            .iter()
-            .map(|&slot| {
-                let number = numbers[slot as usize];
-                LeafTriangle::new(triangles.corners(number), number)
-            })
-            .collect();
-        let mut blocks = Vec::with_capacity(leaves.len() / 4);
-        let wide = WideTree::new(&tree, TriangleBlock::CAPACITY, |places| {
-            let first = blocks.len() as u32;
-            TriangleBlock::append(&leaves[places], &mut blocks);
-            first
-        });
-        blocks.shrink_to_fit();
+        let ((tree, leaves, wide, blocks), wedges) = rayon::join(
+            || tree_over(&triangles, &numbers, options),
+            || Wedges::of(&triangles, &numbers),
+        );
         let reach = tree.nodes.first().map_or(Vec3A::ZERO, |root| {
             let bounds = root.aabb();
             bounds.min.abs().max(bounds.max.abs())
         });
         Self {
             reach: reach.max_element(),
-            wedges: Wedges::of(&triangles, &numbers),
+            wedges,
             triangles,
             tree,
             leaves,
@@ -276,6 +266,31 @@ impl MeshTree {
         let triangle = &self.leaves[place as usize];
         (triangle.number, cross(shear, &ray.slab, triangle, limit))
     }
+}
+
+/// The tree over the triangles of these numbers, their corners in the order of its leaves, and both in the form in which rays
+/// walk it when nobody watches.
+fn tree_over(
+    triangles: &Triangles,
+    numbers: &[u32],
+    options: &BuildOptions,
+) -> (Bvh2, Vec<LeafTriangle>, WideTree, Vec<TriangleBlock>) {
+    let boxes: Vec<Aabb> = (numbers.par_iter().with_min_len(PARALLEL_SIZE))
+        .map(|&triangle| triangle_box(triangles.corners(triangle).map(Vec3A::from)))
+        .collect();
+    let tree = build_tree(&boxes, options);
+    drop(boxes);
+    let leaves: Vec<LeafTriangle> = (tree.primitive_indices.par_iter())
+        .with_min_len(PARALLEL_SIZE)
+        .map(|&slot| {
+            let number = numbers[slot as usize];
+            LeafTriangle::new(triangles.corners(number), number)
+        })
+        .collect();
+    let (wide, blocks) = WideTree::new(&tree, TriangleBlock::CAPACITY, |places, blocks| {
+        TriangleBlock::append(&leaves[places], blocks);
+    });
+    (tree, leaves, wide, blocks)
 }
 
 /// The blocks of a mesh's wide tree, with a ray.

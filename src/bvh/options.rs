@@ -8,9 +8,9 @@ pub enum Builder {
     /// Half of the primitives on either side, along the longest axis of their centroids.
     Median,
     /// Binned surface area heuristic: the split that costs least.
+    #[default]
     Sah,
     /// obvhs' locally-ordered clustering with reinsertion.
-    #[default]
     Ploc,
 }
 

@@ -2,8 +2,9 @@
 //! Volume Hierarchy Construction", 2018) with reinsertion (the same, "Parallel Reinsertion for Bounding
 //! Volume Hierarchy Optimization", 2018).
 //!
-//! WHEN to use it: for the lowest SAH cost. Measured, rays go through its trees about as fast as through those of
-//! binned SAH, which take half the time to build; `glassbox report` compares them on a scene.
+//! WHEN to use it: to see what building from below does. Rays go through its trees a little more slowly than through those of
+//! binned SAH, and it takes longer; `glassbox report` compares them on a scene. It runs on one thread, so that the
+//! same boxes always give the same tree.
 
 use super::{
     boxes, layout,
@@ -39,9 +40,9 @@ fn parameters(options: &BuildOptions) -> BvhBuildParams {
 
 /// Reinsertion searches the tree for a better place for each of its candidates, and the more the boxes overlap
 /// the longer it searches: about as the tree's SAH cost. Above this cost there are fewer candidates in
-/// proportion, so that time stays O(n log n). Meshes of millions of triangles cost 40 to 100; 1e5 identical
-/// triangles cost 1e5, and took `VerySlow` 17 s.
-const UNLIMITED_COST: f64 = 4096.0;
+/// proportion, so that time stays O(n log n). Meshes of millions of triangles cost 20 to 50; 1e5 identical
+/// triangles cost 1e4, and took `VerySlow` 17 s.
+const UNLIMITED_COST: f64 = 512.0;
 
 /// A tree that is deeper is not reinserted into: obvhs' search keeps a stack of 192 entries and panics when
 /// that is full, and reinsertion makes trees deeper. (Two million triangles of a sphere with slivers at its

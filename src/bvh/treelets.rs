@@ -4,7 +4,14 @@
 //! tree's cost is; a top-down build is at its best there. (Ganestam et al., "Bonsai: Rapid Bounding Volume
 //! Hierarchy Generation using Mini Trees", 2015, join the same two ideas the other way round.)
 
-use super::{boxes, depth::MAX_DEPTH, median, options::BuildOptions, sah, stats, top_down};
+use super::{
+    boxes::Item,
+    depth::MAX_DEPTH,
+    median,
+    options::BuildOptions,
+    sah, stats,
+    top_down::{self, Grown},
+};
 use obvhs::{
     aabb::Aabb,
     bvh2::{Bvh2, node::Bvh2Node},
@@ -27,10 +34,10 @@ struct Treelet {
     primitives: Range<usize>,
 }
 
-/// What stands in a treelet's place: nodes as [`top_down`] makes them, over these primitives.
+/// What stands in a treelet's place: a tree over these primitives.
 struct Replacement {
-    nodes: Vec<Bvh2Node>,
-    items: Vec<Bvh2Node>,
+    grown: Grown,
+    items: Vec<Item>,
 }
 
 /// Replaces the treelets of `tree` where that makes them cheaper. `tree` is as [`layout`](super::layout)
@@ -42,32 +49,17 @@ pub(super) fn rebuild(mut tree: Bvh2, boxes: &[Aabb], options: &BuildOptions) ->
         .map(|treelet| replacement(&tree, treelet, boxes, options))
         .collect();
     for (treelet, replacement) in treelets.into_iter().zip(replacements) {
-        let Some(Replacement { nodes, items }) = replacement else {
+        let Some(Replacement { grown, items }) = replacement else {
             continue;
         };
-        let first_primitive = treelet.primitives.start as u32;
-        let first_node = tree.nodes.len() as u32;
-        let moved = |node: &Bvh2Node| Bvh2Node {
-            first_index: node.first_index
-                + if node.is_leaf() {
-                    first_primitive
-                } else {
-                    // The root goes where the old one was, so the others move up by one.
-                    first_node - 1
-                },
-            ..*node
-        };
-        let mut nodes = nodes.iter().map(moved);
+        let mut nodes = grown.within(tree.nodes.len(), treelet.primitives.start);
         if let Some(root) = nodes.next() {
             tree.nodes[treelet.root] = root;
         }
         tree.nodes.extend(nodes);
-        let indices = items.iter().map(|item| item.first_index);
-        for (slot, index) in tree.primitive_indices[treelet.primitives]
-            .iter_mut()
-            .zip(indices)
-        {
-            *slot = index;
+        let slots = &mut tree.primitive_indices[treelet.primitives];
+        for (slot, item) in slots.iter_mut().zip(&items) {
+            *slot = item.number();
         }
     }
     tree
@@ -111,44 +103,24 @@ fn replacement(
     if tree.nodes[treelet.root].is_leaf() {
         return None;
     }
-    let mut items: Vec<Bvh2Node> = tree.primitive_indices[treelet.primitives.clone()]
+    let mut items: Vec<Item> = tree.primitive_indices[treelet.primitives.clone()]
         .iter()
-        .map(|&p| Bvh2Node::new(boxes[p as usize], 1, p))
+        .map(|&p| Item::new(&boxes[p as usize], p))
         .collect();
     let options = BuildOptions {
         max_depth: MAX_DEPTH as u32,
         ..*options
     };
-    let nodes = top_down::build(&mut items, &|items, depth, bins| {
+    let grown = top_down::build(&mut items, boxes, &|items, centres, depth, bins| {
         if depth < DEEPEST_SAH {
-            sah::cut(items, depth, &options, bins)
+            sah::cut(items, centres, depth, &options, bins)
         } else {
-            median::cut(items, depth, &options)
+            median::cut(items, centres, depth, &options)
         }
     });
-    let new_cost = cost(&with_boxes(&nodes, &items), 0);
     // Of two that cost the same (points have no area) the halved one is shallower.
-    (new_cost <= cost(&tree.nodes, treelet.root)).then_some(Replacement { nodes, items })
-}
-
-/// The nodes with the boxes that [`top_down`] leaves out.
-fn with_boxes(nodes: &[Bvh2Node], items: &[Bvh2Node]) -> Vec<Bvh2Node> {
-    let mut nodes = nodes.to_vec();
-    for index in (0..nodes.len()).rev() {
-        let node = nodes[index];
-        let first = node.first_index as usize;
-        let below = if node.is_leaf() {
-            &items[first..first + node.prim_count as usize]
-        } else if first > 0 {
-            &nodes[first..first + 2]
-        } else {
-            // A slot that no node needed.
-            continue;
-        };
-        let bounds = boxes::union(below.iter().map(|node| *node.aabb()));
-        nodes[index].set_aabb(bounds.unwrap_or_default());
-    }
-    nodes
+    let is_cheaper = cost(&grown.nodes, 0) <= cost(&tree.nodes, treelet.root);
+    is_cheaper.then_some(Replacement { grown, items })
 }
 
 /// Σ area × cost over a subtree: its part of the tree's SAH cost, but for a constant factor.

@@ -284,10 +284,10 @@ pub enum Builder {
     /// Half of the triangles on either side, along the longest axis.
     Median,
     /// Binned surface area heuristic.
+    #[default]
     Sah,
     /// obvhs: parallel locally-ordered clustering merges neighbours bottom-up, then reinsertion
     /// improves the tree.
-    #[default]
     Ploc,
 }
 

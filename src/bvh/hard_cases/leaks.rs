@@ -14,14 +14,27 @@ pub(crate) enum Aim {
     Anywhere,
     Edge,
     Vertex,
+    /// Not at a triangle, but along an axis.
+    Axis,
 }
 
-/// All of them.
+/// Those that are aimed at nothing special, and at triangles.
 pub(crate) const AIMS: [Aim; 3] = [Aim::Anywhere, Aim::Edge, Aim::Vertex];
 
 /// A place on a random triangle, or anywhere around the origin of the ray.
 pub(crate) fn target(aim: Aim, triangles: &Triangles, origin: Vec3, random: &mut Random) -> Vec3 {
     let triangle = random.below(triangles.len()) as u32;
+    target_on(aim, triangles, triangle, origin, random)
+}
+
+/// A place on that triangle, or somewhere around the origin of the ray.
+fn target_on(
+    aim: Aim,
+    triangles: &Triangles,
+    triangle: u32,
+    origin: Vec3,
+    random: &mut Random,
+) -> Vec3 {
     let corners = triangles.corners(triangle);
     let corner = random.below(3);
     let (a, b) = (corners[corner], corners[(corner + 1) % 3]);
@@ -29,14 +42,52 @@ pub(crate) fn target(aim: Aim, triangles: &Triangles, origin: Vec3, random: &mut
         Aim::Anywhere => origin + random.direction(),
         Aim::Edge => a + (b - a) * random.unit(),
         Aim::Vertex => a,
+        Aim::Axis => origin + random.of(&Vec3::AXES) * random.of(&[-1.0, 1.0]),
     }
+}
+
+/// Rays that go together, as packets take them.
+#[cfg(test)]
+const TOGETHER: usize = 16;
+
+/// Rays from inside a mesh that was moved by `offset`. Of sixteen in a row all go towards neighbouring triangles, from one
+/// place, or along one axis, from several.
+#[cfg(test)]
+pub(crate) fn bundles(
+    triangles: &Triangles,
+    inside: Inside,
+    offset: Vec3,
+    aim: Aim,
+    rays: usize,
+    random: &mut Random,
+) -> Vec<Ray> {
+    let mut all = Vec::with_capacity(rays + TOGETHER);
+    while all.len() < rays {
+        let from = inside(random) + offset;
+        let triangle = random.below(triangles.len());
+        let along = target_on(Aim::Axis, triangles, 0, Vec3::ZERO, random);
+        for _ in 0..TOGETHER {
+            let neighbour = (triangle + random.below(6)) % triangles.len();
+            let (from, direction) = match aim {
+                Aim::Axis => (inside(random) + offset, along),
+                aim => {
+                    let to = target_on(aim, triangles, neighbour as u32, from, random);
+                    (from, to - from)
+                }
+            };
+            if direction != Vec3::ZERO {
+                all.push(Ray::new(from, direction));
+            }
+        }
+    }
+    all
 }
 
 /// A random point inside a mesh.
 pub(crate) type Inside = fn(&mut Random) -> Vec3;
 
 /// Closed meshes and random points inside of them.
-pub(crate) fn closed() -> [(&'static str, Triangles, Inside); 4] {
+pub(crate) fn closed() -> [(&'static str, Triangles, Inside); 5] {
     [
         ("cube", cube(), |random| random.cube() * 0.95),
         // So near to walls that the far corners' roundings are larger than the distance to the wall.
@@ -47,6 +98,10 @@ pub(crate) fn closed() -> [(&'static str, Triangles, Inside); 4] {
             Vec3::new(near(random), near(random), random.between(-0.9, 0.9))
         }),
         ("sphere", sphere(4), |random| random.cube() * 0.5),
+        // Along an axis from there, rays meet edges and corners.
+        ("sphere, from its planes", sphere(4), |random| {
+            (random.cube() * 4.0).round() / 8.0
+        }),
         ("knot", knot(240, 12), |random| {
             knot_centre(random.below(240) as f32 / 240.0) + random.cube() * 0.1
         }),

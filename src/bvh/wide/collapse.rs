@@ -28,7 +28,18 @@ pub(super) struct Plan {
     pub(super) is_leaf: bool,
 }
 
-/// The plan for every node of a tree whose children stand after their parents. A leaf holds at most `capacity`
+/// A subtree of fewer nodes is planned by one thread.
+const PARALLEL_SIZE: usize = 1 << 13;
+
+/// What the dynamic programming knows of a node.
+#[derive(Clone, Copy, Default)]
+struct Known {
+    /// The least cost as at most n + 1 children.
+    costs: [f32; WIDTH - 1],
+    primitives: usize,
+}
+
+/// The plan for every node of a tree as [`crate::bvh::build_tree`] makes them. A leaf holds at most `capacity`
 /// primitives in a block; leaves of the binary tree that hold more stay leaves, of several blocks.
 pub(super) fn plan(tree: &Bvh2, capacity: usize) -> Vec<Plan> {
     let nothing = Plan {
@@ -36,50 +47,130 @@ pub(super) fn plan(tree: &Bvh2, capacity: usize) -> Vec<Plan> {
         is_leaf: true,
     };
     let mut plans = vec![nothing; tree.nodes.len()];
-    let mut costs = vec![[0.0f32; WIDTH - 1]; tree.nodes.len()];
-    let mut counts = vec![0usize; tree.nodes.len()];
-    let root_area = tree.nodes.first().map_or(0.0, stats::half_area);
-    for (index, node) in tree.nodes.iter().enumerate().rev() {
-        let ratio = (stats::half_area(node) / root_area) as f32;
-        // Without an area (points, lines) the number of nodes decides.
-        let area = if ratio.is_finite() { ratio } else { 1.0 };
-        if node.is_leaf() {
-            counts[index] = node.prim_count as usize;
-            let blocks = counts[index].div_ceil(capacity);
-            costs[index] = [area * blocks as f32 * COST_BLOCK; WIDTH - 1];
-            continue;
+    let Some((root, below)) = plans.split_first_mut() else {
+        return plans;
+    };
+    let planning = Planning {
+        tree,
+        capacity,
+        root_area: stats::half_area(&tree.nodes[0]),
+    };
+    planning.subtree(0, 1, root, below);
+    plans
+}
+
+struct Planning<'a> {
+    tree: &'a Bvh2,
+    capacity: usize,
+    root_area: f64,
+}
+
+impl Planning<'_> {
+    /// Plans the node `root` and all below it, which stand from `first` on.
+    fn subtree(&self, root: usize, first: usize, plan: &mut Plan, below: &mut [Plan]) -> Known {
+        if below.len() < PARALLEL_SIZE {
+            return self.small_subtree(root, first, plan, below);
         }
+        let node = &self.tree.nodes[root];
         let child = node.first_index as usize;
-        counts[index] = counts[child] + counts[child + 1];
-        let (left, right) = (costs[child], costs[child + 1]);
+        let (children, below) = below.split_at_mut(2);
+        let (left, right) = children.split_at_mut(1);
+        // The left child's descendants stand before the right one's.
+        let right_child = &self.tree.nodes[child + 1];
+        let right_first = if right_child.is_leaf() {
+            first + 2 + below.len()
+        } else {
+            right_child.first_index as usize
+        };
+        let (below_left, below_right) = below.split_at_mut(right_first - first - 2);
+        let known = rayon::join(
+            || self.subtree(child, first + 2, &mut left[0], below_left),
+            || self.subtree(child + 1, right_first, &mut right[0], below_right),
+        );
+        let (known, made) = self.node(root, &known.0, &known.1);
+        *plan = made;
+        known
+    }
+
+    fn small_subtree(
+        &self,
+        root: usize,
+        first: usize,
+        plan: &mut Plan,
+        below: &mut [Plan],
+    ) -> Known {
+        let nodes = &self.tree.nodes;
+        let mut known = vec![Known::default(); below.len()];
+        let of = |known: &[Known], index: usize| -> (Known, Option<Plan>) {
+            let node = &nodes[index];
+            if node.is_leaf() {
+                return (self.leaf(index), None);
+            }
+            let child = node.first_index as usize - first;
+            let (known, plan) = self.node(index, &known[child], &known[child + 1]);
+            (known, Some(plan))
+        };
+        for place in (0..below.len()).rev() {
+            let (made, plan) = of(&known, first + place);
+            known[place] = made;
+            if let Some(plan) = plan {
+                below[place] = plan;
+            }
+        }
+        let (made, of_root) = of(&known, root);
+        if let Some(of_root) = of_root {
+            *plan = of_root;
+        }
+        made
+    }
+
+    fn area(&self, index: usize) -> f32 {
+        let ratio = (stats::half_area(&self.tree.nodes[index]) / self.root_area) as f32;
+        // Without an area (points, lines) the number of nodes decides.
+        if ratio.is_finite() { ratio } else { 1.0 }
+    }
+
+    fn leaf(&self, index: usize) -> Known {
+        let primitives = self.tree.nodes[index].prim_count as usize;
+        let blocks = primitives.div_ceil(self.capacity);
+        Known {
+            costs: [self.area(index) * blocks as f32 * COST_BLOCK; WIDTH - 1],
+            primitives,
+        }
+    }
+
+    fn node(&self, index: usize, left: &Known, right: &Known) -> (Known, Plan) {
+        let area = self.area(index);
+        let primitives = left.primitives + right.primitives;
         // The cheapest way to have n children, and how many of them are in the left half.
         let split = |n: usize| {
-            (1..n)
-                .map(|k| (left[k - 1] + right[n - k - 1], k))
-                .min_by(|a, b| a.0.total_cmp(&b.0))
-                .unwrap_or((f32::INFINITY, 1))
+            let (mut least, mut of_left) = (f32::INFINITY, 1);
+            for k in 1..n {
+                let cost = left.costs[k - 1] + right.costs[n - k - 1];
+                if cost < least {
+                    (least, of_left) = (cost, k);
+                }
+            }
+            (least, of_left)
         };
         let mut splits = [0; WIDTH];
         let (below, k) = split(WIDTH);
         splits[WIDTH - 1] = k as u8;
         let as_node = below + area * COST_NODE;
-        let fits = counts[index] <= capacity;
         let as_leaf = area * COST_BLOCK;
-        let is_leaf = fits && as_leaf <= as_node;
-        let mut best = [if is_leaf { as_leaf } else { as_node }; WIDTH - 1];
+        let is_leaf = primitives <= self.capacity && as_leaf <= as_node;
+        let mut costs = [if is_leaf { as_leaf } else { as_node }; WIDTH - 1];
         for n in 2..WIDTH {
             let (cost, k) = split(n);
-            if cost < best[n - 2] {
-                best[n - 1] = cost;
+            if cost < costs[n - 2] {
+                costs[n - 1] = cost;
                 splits[n - 1] = k as u8;
             } else {
-                best[n - 1] = best[n - 2];
+                costs[n - 1] = costs[n - 2];
             }
         }
-        costs[index] = best;
-        plans[index] = Plan { splits, is_leaf };
+        (Known { costs, primitives }, Plan { splits, is_leaf })
     }
-    plans
 }
 
 /// The nodes of the binary tree that become the children of the wide node at `root`, which is no leaf: two to eight.

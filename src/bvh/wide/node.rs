@@ -42,6 +42,26 @@ impl WideNode {
         self.rows[CHILDREN][lane] = f32::from_bits(child);
     }
 
+    /// Gives the child in a lane another number.
+    pub(super) fn renumber(&mut self, lane: usize, child: u32) {
+        self.rows[CHILDREN][lane] = f32::from_bits(child);
+    }
+
+    /// The same node where the nodes and the leaves that it counts from 0 begin at these numbers.
+    pub(super) fn moved(&self, first_node: u32, first_leaf: u32) -> Self {
+        let mut node = *self;
+        for number in &mut node.rows[CHILDREN] {
+            let child = number.to_bits();
+            let first = if child & LEAF == 0 {
+                first_node
+            } else {
+                first_leaf
+            };
+            *number = f32::from_bits(child + first);
+        }
+        node
+    }
+
     /// The faces of row `row % 8`.
     #[inline(always)]
     pub(super) fn row(&self, row: usize) -> &[f32; 8] {

@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use glam::Vec3;
 use obvhs::{aabb::Aabb, bvh2::Bvh2};
+use rayon::prelude::*;
 
 use super::{
-    collapse,
+    collapse::{self, Plan},
     node::{LEAF, WideNode},
 };
 use crate::bvh::split_plane::primitives_below;
@@ -41,6 +42,99 @@ pub struct WideBox {
     pub bounds: [Vec3; 2],
 }
 
+/// A subtree of fewer primitives is converted by one thread.
+const PARALLEL_SIZE: usize = 1 << 13;
+
+/// How a binary tree becomes a wide one.
+struct Conversion<'a, F> {
+    tree: &'a Bvh2,
+    plans: &'a [Plan],
+    leaf: F,
+}
+
+/// A subtree: its nodes, the root first, and what its leaves hold, both numbered from 0.
+struct Part<L> {
+    nodes: Vec<WideNode>,
+    leaves: usize,
+    held: Vec<L>,
+}
+
+/// A node of the binary tree that is to become a wide one, and the wide node and lane that it is a child of.
+struct Hanging {
+    root: usize,
+    parent: usize,
+    lane: usize,
+}
+
+impl<F> Conversion<'_, F> {
+    /// The whole tree, whose root is no leaf: its top, and by many threads what hangs below it.
+    fn convert<L: Send>(&self) -> Part<L>
+    where
+        F: Fn(Range<usize>, &mut Vec<L>) + Sync,
+    {
+        let mut small = Vec::new();
+        let mut whole = self.subtree(0, |hanging| {
+            let is_small = primitives_below(self.tree, hanging.root).len() < PARALLEL_SIZE;
+            if is_small {
+                small.push(hanging);
+            }
+            !is_small
+        });
+        let parts: Vec<Part<L>> = (small.par_iter())
+            .map(|hanging| self.subtree(hanging.root, |_| true))
+            .collect();
+        let count = |of: fn(&Part<L>) -> usize| parts.iter().map(of).sum();
+        whole.nodes.reserve_exact(count(|part| part.nodes.len()));
+        whole.held.reserve_exact(count(|part| part.held.len()));
+        for (Hanging { parent, lane, .. }, mut part) in small.into_iter().zip(parts) {
+            let (first_node, first_held) = (whole.nodes.len() as u32, whole.held.len() as u32);
+            whole.nodes[parent].renumber(lane, first_node);
+            whole.nodes.extend(
+                part.nodes
+                    .iter()
+                    .map(|node| node.moved(first_node, first_held)),
+            );
+            whole.held.append(&mut part.held);
+            whole.leaves += part.leaves;
+        }
+        whole
+    }
+
+    /// The subtree at a node of the binary tree that becomes a wide one. What `keep` refuses is left out.
+    fn subtree<L>(&self, root: usize, mut keep: impl FnMut(Hanging) -> bool) -> Part<L>
+    where
+        F: Fn(Range<usize>, &mut Vec<L>),
+    {
+        let mut part = Part {
+            nodes: vec![WideNode::EMPTY],
+            leaves: 0,
+            held: Vec::new(),
+        };
+        let mut pending = vec![(root, 0)];
+        while let Some((from, parent)) = pending.pop() {
+            let (children, count) = collapse::children(self.tree, self.plans, from);
+            let mut node = WideNode::EMPTY;
+            for (lane, &root) in children[..count].iter().enumerate() {
+                let number = if self.plans[root].is_leaf {
+                    let number = part.held.len() as u32;
+                    part.leaves += 1;
+                    (self.leaf)(primitives_below(self.tree, root), &mut part.held);
+                    LEAF | number
+                } else if keep(Hanging { root, parent, lane }) {
+                    part.nodes.push(WideNode::EMPTY);
+                    pending.push((root, part.nodes.len() - 1));
+                    part.nodes.len() as u32 - 1
+                } else {
+                    0
+                };
+                node.set(lane, self.tree.nodes[root].aabb(), number);
+            }
+            part.nodes[parent] = node;
+        }
+        part
+    }
+}
+
 /// Wide nodes, the root first.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct WideTree {
@@ -53,47 +147,46 @@ pub(crate) struct WideTree {
 }
 
 impl WideTree {
-    /// Collapses a tree as [`crate::bvh::build_tree`] makes them. A leaf's block holds `capacity` primitives. For each leaf `leaf`
-    /// gets its range of the tree's `primitive_indices` and returns its number, below 2^31.
-    pub(crate) fn new(
+    /// Collapses a tree as [`crate::bvh::build_tree`] makes them. A leaf's block holds `capacity` primitives. For each leaf
+    /// `leaf` gets its range of the tree's `primitive_indices` and adds what the leaf holds to a list; the place of the
+    /// first of it in the list, which comes back too, is the leaf's number, below 2^31.
+    pub(crate) fn new<L: Send>(
         tree: &Bvh2,
         capacity: usize,
-        mut leaf: impl FnMut(Range<usize>) -> u32,
-    ) -> Self {
-        let mut wide = Self::default();
+        leaf: impl Fn(Range<usize>, &mut Vec<L>) + Sync,
+    ) -> (Self, Vec<L>) {
         let plans = collapse::plan(tree, capacity);
         let Some(plan) = plans.first() else {
-            return wide;
+            return (Self::default(), Vec::new());
+        };
+        let conversion = Conversion {
+            tree,
+            plans: &plans,
+            leaf,
         };
         if plan.is_leaf {
-            wide.leaves = 1;
-            wide.root = Some(LEAF | leaf(primitives_below(tree, 0)));
-            return wide;
+            let mut held = Vec::new();
+            (conversion.leaf)(primitives_below(tree, 0), &mut held);
+            let wide = Self {
+                root: Some(LEAF),
+                leaves: 1,
+                ..Self::default()
+            };
+            return (wide, held);
         }
-        wide.root = Some(0);
-        wide.nodes.push(WideNode::EMPTY);
-        let mut pending = vec![(0, 0)];
-        while let Some((from, to)) = pending.pop() {
-            let (children, count) = collapse::children(tree, &plans, from);
-            let mut node = WideNode::EMPTY;
-            for (lane, &child) in children[..count].iter().enumerate() {
-                let number = if plans[child].is_leaf {
-                    wide.leaves += 1;
-                    LEAF | leaf(primitives_below(tree, child))
-                } else {
-                    wide.nodes.push(WideNode::EMPTY);
-                    wide.nodes.len() as u32 - 1
-                };
-                node.set(lane, tree.nodes[child].aabb(), number);
-                if number & LEAF == 0 {
-                    pending.push((child, number as usize));
-                }
-            }
-            wide.nodes[to] = node;
-        }
-        wide.nodes.shrink_to_fit();
+        let Part {
+            nodes,
+            leaves,
+            held,
+        } = conversion.convert();
+        let mut wide = Self {
+            nodes,
+            root: Some(0),
+            leaves,
+            most_pending: 0,
+        };
         wide.most_pending = wide.count_pending();
-        wide
+        (wide, held)
     }
 
     /// While one child is walked the others wait. Children stand after their parents.

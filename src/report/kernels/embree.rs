@@ -1,8 +1,10 @@
 //! Embree, where the machine has it: loaded while the program runs, so that nothing depends on it.
 //!
 //! Declarations: Embree's manual and public headers, `rtcore_device.h`, `rtcore_geometry.h`, `rtcore_scene.h`,
-//! `rtcore_ray.h` and `rtcore_common.h`, versions 3 and 4. All `unsafe` code of the report is here.
+//! `rtcore_ray.h` and `rtcore_common.h`, versions 3 and 4. What is `unsafe` in the report is here and in
+//! [`embree_eights`](super::embree_eights).
 
+use super::embree_eights::{Eights, Instancing};
 use super::{Found, Kernel};
 use crate::bvh::Ray;
 use glam::Vec3;
@@ -31,15 +33,15 @@ const FLOAT3: c_int = 0x9003;
 /// RTC_GEOMETRY_TYPE_TRIANGLE.
 const TRIANGLES: c_int = 0;
 /// RTC_SCENE_FLAG_ROBUST.
-const ROBUST: c_int = 1 << 2;
+pub(super) const ROBUST: c_int = 1 << 2;
 /// RTC_DEVICE_PROPERTY_VERSION: 10000 · major + 100 · minor + patch.
 const VERSION: c_int = 0;
 /// RTC_INVALID_GEOMETRY_ID.
-const INVALID: c_uint = u32::MAX;
+pub(super) const INVALID: c_uint = u32::MAX;
 
 type Device = *mut c_void;
-type Scene = *mut c_void;
-type Geometry = *mut c_void;
+pub(super) type Scene = *mut c_void;
+pub(super) type Geometry = *mut c_void;
 
 /// RTCRay and RTCHit, one after the other (RTCRayHit), and room behind them for what newer versions add to a hit.
 #[repr(C, align(64))]
@@ -83,10 +85,20 @@ impl RayHit {
 
 /// RTCIntersectContext of version 3, and room behind it.
 #[repr(C)]
-struct Context {
+pub(super) struct Context {
     flags: c_int,
     filter: *mut c_void,
     instances: [c_uint; 4],
+}
+
+impl Context {
+    pub(super) fn new(flags: c_int) -> Self {
+        Self {
+            flags,
+            filter: std::ptr::null_mut(),
+            instances: [INVALID; 4],
+        }
+    }
 }
 
 /// What version 3 takes between a scene and a ray, and version 4 behind the ray.
@@ -103,17 +115,19 @@ enum Queries {
 pub(super) struct Embree4Or3 {
     path: PathBuf,
     version: isize,
-    device: Device,
-    new_scene: unsafe extern "C" fn(Device) -> Scene,
+    pub(super) device: Device,
+    pub(super) new_scene: unsafe extern "C" fn(Device) -> Scene,
     release_scene: unsafe extern "C" fn(Scene),
     release_device: unsafe extern "C" fn(Device),
-    set_scene_flags: unsafe extern "C" fn(Scene, c_int),
-    commit_scene: unsafe extern "C" fn(Scene),
-    new_geometry: unsafe extern "C" fn(Device, c_int) -> Geometry,
+    pub(super) set_scene_flags: unsafe extern "C" fn(Scene, c_int),
+    pub(super) commit_scene: unsafe extern "C" fn(Scene),
+    pub(super) new_geometry: unsafe extern "C" fn(Device, c_int) -> Geometry,
     new_buffer: unsafe extern "C" fn(Geometry, c_int, c_uint, c_int, usize, usize) -> *mut c_void,
-    commit_geometry: unsafe extern "C" fn(Geometry),
-    attach_geometry: unsafe extern "C" fn(Scene, Geometry) -> c_uint,
-    release_geometry: unsafe extern "C" fn(Geometry),
+    pub(super) commit_geometry: unsafe extern "C" fn(Geometry),
+    pub(super) attach_geometry: unsafe extern "C" fn(Scene, Geometry) -> c_uint,
+    pub(super) release_geometry: unsafe extern "C" fn(Geometry),
+    pub(super) instancing: Instancing,
+    pub(super) eights: Eights,
     queries: Queries,
     /// Never unloaded: threads that Embree has started may still be in its code when its device is gone.
     _library: ManuallyDrop<Library>,
@@ -204,6 +218,16 @@ fn of_library(path: &Path, library: Library) -> Option<Embree4Or3> {
         },
         _ => return None,
     };
+    let eights = match queries {
+        Queries::Version3 { .. } => Eights::Version3 {
+            intersect: function!(b"rtcIntersect8"),
+            occluded: function!(b"rtcOccluded8"),
+        },
+        Queries::Version4 { .. } => Eights::Version4 {
+            intersect: function!(b"rtcIntersect8"),
+            occluded: function!(b"rtcOccluded8"),
+        },
+    };
     Some(Embree4Or3 {
         path: path.to_path_buf(),
         version,
@@ -218,6 +242,11 @@ fn of_library(path: &Path, library: Library) -> Option<Embree4Or3> {
         commit_geometry: function!(b"rtcCommitGeometry"),
         attach_geometry: function!(b"rtcAttachGeometry"),
         release_geometry: function!(b"rtcReleaseGeometry"),
+        instancing: Instancing {
+            set_scene: function!(b"rtcSetGeometryInstancedScene"),
+            set_transform: function!(b"rtcSetGeometryTransform"),
+        },
+        eights,
         queries,
         _library: ManuallyDrop::new(library),
     })
@@ -243,8 +272,8 @@ impl Embree4Or3 {
 
 /// Triangles in Embree.
 pub(super) struct Embree {
-    scene: Scene,
-    of: Rc<Embree4Or3>,
+    pub(super) scene: Scene,
+    pub(super) of: Rc<Embree4Or3>,
 }
 
 impl Embree {
@@ -289,11 +318,7 @@ impl Embree {
                 intersect,
                 occluded: any,
             } => {
-                let mut context = Context {
-                    flags: 0,
-                    filter: std::ptr::null_mut(),
-                    instances: [INVALID; 4],
-                };
+                let mut context = Context::new(0);
                 let query = if occluded { any } else { intersect };
                 // SAFETY: the scene is committed. Context and ray are laid out and aligned (16 bytes) as version 3
                 // declares them, and written to by this call only; an occlusion query uses the ray alone.

@@ -4,10 +4,13 @@
 //! into the world) and the same rays, on one thread.
 
 mod accuracy;
+mod against;
+mod arrangements;
 mod builders;
 mod candidates;
 mod closed;
 mod embree;
+mod embree_eights;
 mod exact;
 mod moller_trumbore;
 mod obvhs_trees;
@@ -107,6 +110,7 @@ pub fn measure(subjects: &[Subject], options: &Options, watch: Watch) -> Section
         ],
     );
     let mut standings = Vec::new();
+    let mut ratios = Vec::new();
     for subject in subjects {
         let triangles = subject.triangles();
         if triangles.is_empty() {
@@ -131,6 +135,7 @@ pub fn measure(subjects: &[Subject], options: &Options, watch: Watch) -> Section
             .findings
             .extend(finding(subject, &candidates, &rows, &leaks));
         standings.extend(standing(&candidates, &rows));
+        ratios.extend(against::ratios(subject, &candidates, &rows));
         builders::measure(subject, &triangles, &rays, options, watch, &mut section);
     }
     if subjects.len() > 1 {
@@ -138,6 +143,10 @@ pub fn measure(subjects: &[Subject], options: &Options, watch: Watch) -> Section
             .findings
             .splice(0..0, over_all(&candidates, &leaks, &standings));
     }
+    arrangements::measure(options, watch, &mut section);
+    section
+        .findings
+        .splice(0..0, against::embree(&candidates, &ratios));
     section.summary = Some(section.tables.len());
     section.tables.push(summary);
     let ours = leaks.iter().zip(&candidates).filter(|(_, c)| c.is_ours());

@@ -1,7 +1,7 @@
 //! Glassbox' own traversals, through the calls that the tracer uses.
 
 use super::{Found, Kernel};
-use crate::bvh::{Aggregate, BuildOptions, Hit, Instance, MeshTree, Ray, Triangles};
+use crate::bvh::{Aggregate, BuildOptions, Hit, Instance, MeshTree, Order, Ray, Triangles};
 use glam::{Affine3A, Vec3};
 use std::cell::RefCell;
 use std::sync::Arc;
@@ -26,7 +26,9 @@ fn found(hit: Option<Hit>) -> Option<Found> {
 
 /// What pictures are traced with.
 pub(super) struct OursWide {
-    aggregate: Aggregate,
+    aggregate: Arc<Aggregate>,
+    /// Of the rays whose nearest hit is asked for, and of the others.
+    orders: [Order; 2],
     hits: RefCell<Vec<Option<Hit>>>,
 }
 
@@ -36,8 +38,14 @@ impl OursWide {
     }
 
     pub fn with(aggregate: Aggregate) -> Self {
+        Self::in_order(Arc::new(aggregate), [Order::None; 2])
+    }
+
+    /// Rays whose nearest hit is asked for come in the first order, the others in the second.
+    pub fn in_order(aggregate: Arc<Aggregate>, orders: [Order; 2]) -> Self {
         Self {
             aggregate,
+            orders,
             hits: RefCell::default(),
         }
     }
@@ -46,13 +54,14 @@ impl OursWide {
 impl Kernel for OursWide {
     fn closest(&self, rays: &[Ray], all: &mut Vec<Option<Found>>) {
         let mut hits = self.hits.borrow_mut();
-        self.aggregate.closest_hits(rays, &mut hits);
+        self.aggregate
+            .closest_hits_in(self.orders[0], rays, &mut hits);
         all.clear();
         all.extend(hits.iter().copied().map(found));
     }
 
     fn occluded(&self, rays: &[Ray], occluded: &mut Vec<bool>) {
-        self.aggregate.occlusions(rays, occluded);
+        self.aggregate.occlusions_in(self.orders[1], rays, occluded);
     }
 }
 

@@ -7,7 +7,7 @@ use crate::report::timing::{median, seconds};
 use std::hint::black_box;
 
 /// Rays that are handed over together, as the tracer does.
-const BATCH: usize = 4096;
+pub(super) const BATCH: usize = 4096;
 
 /// Rounds that are counted.
 pub(super) fn rounds(options: &Options) -> usize {

@@ -113,18 +113,18 @@ fn a_click_on_a_builder_switches_to_it_as_a_step_and_makes_nothing_stale() {
     desk.until_measured();
     let steps = desk.world().resource::<History>().position();
     let builder = |desk: &mut Desk| desk.world().resource::<RenderSettings>().tree.builder;
-    assert_eq!(builder(&mut desk), scene::Builder::Ploc);
-    desk.click_on("SAH");
     assert_eq!(builder(&mut desk), scene::Builder::Sah);
+    desk.click_on("PLOC");
+    assert_eq!(builder(&mut desk), scene::Builder::Ploc);
     desk.until("rebuilt", |world| {
         let traced = world.resource::<Traced>();
-        traced.pending == 0 && traced.world.aggregate.options().builder == Builder::Sah
+        traced.pending == 0 && traced.world.aggregate.options().builder == Builder::Ploc
     });
     assert_eq!(desk.stale(), None);
     assert_eq!(desk.world().resource::<History>().position(), steps + 1);
     desk.world().write_message(Action::Undo);
     desk.settle();
-    assert_eq!(builder(&mut desk), scene::Builder::Ploc);
+    assert_eq!(builder(&mut desk), scene::Builder::Sah);
     // Other leaves are other trees.
     desk.world()
         .resource_mut::<RenderSettings>()
