@@ -13,4 +13,6 @@ mod inspect;
 mod mutation;
 mod trees;
 #[cfg(feature = "editor")]
+mod views;
+#[cfg(feature = "editor")]
 mod window;

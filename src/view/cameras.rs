@@ -19,6 +19,8 @@ pub fn picture_camera() -> impl Bundle {
     (
         TracedView::default(),
         Msaa::Off,
+        // Our materials are shown as bright as they are traced.
+        Tonemapping::None,
         raster::exposure(),
         raster::ambient(),
         RenderLayers::from_layers(&[0, RASTER_LAYER]),

@@ -28,6 +28,7 @@ mod pick;
 pub mod raster;
 mod render;
 mod screen;
+mod screen_pass;
 mod shot;
 mod sketch;
 mod standard;
@@ -63,7 +64,7 @@ impl PluginGroup for GlassboxPlugins {
             .add(IoPlugin)
             .add(StandardMappingPlugin)
             .add(SyncPlugin)
-            .add(screen::ScreenPlugin)
+            .add(screen_pass::ScreenPlugin)
             .add(TracedViewPlugin)
             .add(TracedPickingPlugin)
             .add(LinesPlugin)

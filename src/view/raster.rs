@@ -2,7 +2,7 @@
 //!
 //! | ours | Bevy's |
 //! |---|---|
-//! | [`Phong`] | `StandardMaterial` (that ends at the view's divider) on the same entity: kd is the base colour, ke the emission; a highlight of exponent s has about the roughness (2/(s+2))^¼ (Beckmann's, Walter et al. 2007, eq. 8, and Bevy's square); a mirror is metal |
+//! | [`Phong`] | `StandardMaterial` on the same entity: kd is the base colour, ke the emission; a highlight of exponent s has about the roughness (2/(s+2))^¼ (Beckmann's, Walter et al. 2007, eq. 8, and Bevy's square); a mirror is metal |
 //! | [`PointLamp`] | `PointLight` of 4π·I/E lumens, or `SpotLight` |
 //! | [`DirectionalLamp`] | `DirectionalLight` of I/E lux |
 //! | [`SegmentLamp`] | `PointLight` in its middle, of all its strength |
@@ -14,17 +14,16 @@
 //!
 //! Everything that is drawn so lies in one layer, which a camera can leave out.
 
-use super::TracedView;
 use crate::scene::{
     Alpha, DirectionalLamp, ParallelogramLamp, Phong, PhongMap, PhongMaps, PointLamp, SegmentLamp,
     UsesMaterial,
 };
-use bevy::asset::{Asset, Assets, Handle, embedded_asset};
+use bevy::asset::{Asset, Assets, Handle};
 use bevy::camera::Exposure;
 use bevy::camera::visibility::{InheritedVisibility, RenderLayers, Visibility};
 use bevy::color::{Color, ColorToComponents, LinearRgba};
 use bevy::light::{AmbientLight, DirectionalLight, PointLight, RectLight, SpotLight};
-use bevy::math::{Quat, Vec3, Vec4};
+use bevy::math::{Quat, Vec3};
 use bevy::mesh::Mesh3d;
 use bevy::pbr::{
     ExtendedMaterial, MaterialExtension, MaterialPlugin, MeshMaterial3d, StandardMaterial,
@@ -32,12 +31,11 @@ use bevy::pbr::{
 use bevy::platform::collections::HashMap;
 use bevy::prelude::{
     AlphaMode, App, Changed, Commands, Component, DetectChanges, DetectChangesMut, Entity,
-    IntoScheduleConfigs, Or, Plugin, PostUpdate, Query, Ref, RemovedComponents, Res, ResMut,
-    Resource, With, Without,
+    IntoScheduleConfigs, Or, Plugin, PostUpdate, Query, Ref, RemovedComponents, ResMut, Resource,
+    With, Without,
 };
 use bevy::reflect::TypePath;
 use bevy::render::render_resource::AsBindGroup;
-use bevy::shader::ShaderRef;
 use bevy::transform::TransformSystems;
 use bevy::transform::components::{GlobalTransform, Transform};
 use std::f32::consts::{FRAC_PI_2, PI};
@@ -57,17 +55,14 @@ pub struct RasterPlugin;
 
 impl Plugin for RasterPlugin {
     fn build(&self, app: &mut App) {
-        embedded_asset!(app, "raster.wgsl");
         app.add_plugins(MaterialPlugin::<RasterMaterial>::default());
-        app.init_resource::<RasterMaterials>()
-            .init_resource::<Divider>()
-            .add_systems(
-                PostUpdate,
-                (give_materials, end_at_divider, give_lights, move_lights)
-                    .chain()
-                    .after(TransformSystems::Propagate)
-                    .after(crate::sync::SyncSystems),
-            );
+        app.init_resource::<RasterMaterials>().add_systems(
+            PostUpdate,
+            (give_materials, give_lights, move_lights)
+                .chain()
+                .after(TransformSystems::Propagate)
+                .after(crate::sync::SyncSystems),
+        );
     }
 }
 
@@ -85,29 +80,13 @@ pub(super) fn ambient() -> AmbientLight {
 }
 
 /// What Bevy's renderer draws of a material of ours.
-type RasterMaterial = ExtendedMaterial<StandardMaterial, EndsAt>;
+type RasterMaterial = ExtendedMaterial<StandardMaterial, OfPhong>;
 
-/// Where in the viewport it ends: the traced picture begins there.
+/// Tells our materials from an app's own, and leaves out what they have no part in.
 #[derive(Asset, AsBindGroup, TypePath, Clone, Debug)]
-struct EndsAt {
-    /// x: a part of the viewport's width.
-    #[uniform(100)]
-    numbers: Vec4,
-}
+struct OfPhong {}
 
-impl EndsAt {
-    fn new(divider: f32) -> Self {
-        Self {
-            numbers: Vec4::new(divider, 0.0, 0.0, 0.0),
-        }
-    }
-}
-
-impl MaterialExtension for EndsAt {
-    fn fragment_shader() -> ShaderRef {
-        "embedded://glassbox/view/raster.wgsl".into()
-    }
-
+impl MaterialExtension for OfPhong {
     fn enable_prepass() -> bool {
         false
     }
@@ -166,7 +145,6 @@ type Ours = (With<Mesh3d>, Without<MeshMaterial3d<StandardMaterial>>);
 fn give_materials(
     mut commands: Commands,
     mut materials: ResMut<RasterMaterials>,
-    divider: Res<Divider>,
     mut assets: ResMut<Assets<RasterMaterial>>,
     edited: Query<(Entity, &Phong, Option<&PhongMaps>), EditedMaterial>,
     mut gone: RemovedComponents<Phong>,
@@ -196,7 +174,7 @@ fn give_materials(
         }
         let material = RasterMaterial {
             base: material,
-            extension: EndsAt::new(divider.0),
+            extension: OfPhong {},
         };
         materials.0.insert(entity, assets.add(material));
         added = true;
@@ -226,33 +204,6 @@ fn give_materials(
         }
     }
     unshared.clear();
-}
-
-/// Where the materials end now.
-#[derive(Resource)]
-struct Divider(f32);
-
-impl Default for Divider {
-    fn default() -> Self {
-        Self(1.0)
-    }
-}
-
-/// Where the traced picture begins there is no raster picture. Of several views the first counts.
-fn end_at_divider(
-    views: Query<&TracedView>,
-    mut divider: ResMut<Divider>,
-    mut assets: ResMut<Assets<RasterMaterial>>,
-) {
-    // All traced: nothing of it is drawn.
-    let wanted = views.iter().map(|view| view.divider).next().unwrap_or(1.0);
-    if wanted == divider.0 || wanted <= 0.0 {
-        return;
-    }
-    divider.0 = wanted;
-    for (_, material) in assets.iter_mut() {
-        material.extension = EndsAt::new(wanted);
-    }
 }
 
 type LampQuery<'w, 's> = Query<

@@ -1,14 +1,12 @@
-//! The render behind a traced view: begun, directed, replaced, and what it has on the screen.
+//! The render behind a traced view: begun, directed, replaced, and what it says of its picture.
 
 use super::darkroom::{Darkroom, Order, Subject};
-use super::screen::ScreenMaterial;
 use super::traced::TracedView;
 use crate::film::views::Scale;
 use crate::film::{Progressive, State, Status};
 use crate::scene::RenderSettings;
 use crate::trace;
 use bevy::asset::Handle;
-use bevy::ecs::entity::Entity;
 use bevy::image::Image;
 use bevy::log::error;
 use bevy::math::{URect, UVec2, Vec2};
@@ -26,7 +24,6 @@ pub struct TracedRender {
     pub(super) darkroom: Option<Darkroom>,
     /// What the print on the screen says of itself.
     pub(super) shown: Option<PrintInfo>,
-    pub(super) screen: Option<ScreenOf>,
     pub(super) failed: bool,
 }
 
@@ -56,12 +53,6 @@ pub(super) struct Running {
     pub(super) started: Instant,
     paused: bool,
     focus: Vec2,
-}
-
-/// The rectangle that shows it.
-pub(super) struct ScreenOf {
-    pub entity: Entity,
-    pub material: Handle<ScreenMaterial>,
 }
 
 impl TracedRender {

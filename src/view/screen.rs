@@ -1,130 +1,24 @@
-//! The traced picture as something that Bevy's renderer draws: a rectangle over the whole viewport
-//! with the depth of what was traced, so that gizmos are hidden by what they stand behind.
-//!
-//! It is drawn after the opaque part of the rasterised scene, which it covers where it shows, and
-//! before gizmos.
+//! What stands on the screen of a view: its picture, and the depth of what was traced, so that
+//! gizmos are hidden by what they stand behind. The renderer draws it in [`screen_pass`](super::screen_pass).
 
-use crate::scene::NotTraced;
-use bevy::asset::{Asset, Assets, Handle, RenderAssetUsages, embedded_asset};
-use bevy::camera::visibility::{NoFrustumCulling, RenderLayers};
+use bevy::asset::{Handle, RenderAssetUsages};
+use bevy::camera::Projection;
 use bevy::image::{Image, ImageSampler, TextureFormatPixelInfo};
-use bevy::light::{NotShadowCaster, NotShadowReceiver};
-use bevy::mesh::{Indices, Mesh, Mesh3d, MeshVertexBufferLayoutRef, PrimitiveTopology};
-use bevy::pbr::{Material, MaterialPipeline, MaterialPipelineKey, MaterialPlugin, MeshMaterial3d};
-use bevy::prelude::{AlphaMode, App, Commands, Component, Plugin, Transform, Vec3, Vec4};
-use bevy::reflect::TypePath;
-use bevy::render::render_resource::{
-    AsBindGroup, CompareFunction, Extent3d, RenderPipelineDescriptor, SpecializedMeshPipelineError,
-    TextureDimension, TextureFormat,
-};
-use bevy::shader::ShaderRef;
+use bevy::math::Vec3;
+use bevy::prelude::Component;
+use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat};
 
-/// Adds the material.
-pub(super) struct ScreenPlugin;
-
-impl Plugin for ScreenPlugin {
-    fn build(&self, app: &mut App) {
-        embedded_asset!(app, "screen.wgsl");
-        app.add_plugins(MaterialPlugin::<ScreenMaterial>::default());
-    }
-}
-
-/// What the rectangle shows.
-#[derive(Asset, AsBindGroup, TypePath, Clone)]
-pub(super) struct ScreenMaterial {
-    /// x: nothing is drawn left of this part of the viewport's width. y, z, w: the depth that is
-    /// written is `y / metres + z - w · metres`.
-    #[uniform(0)]
-    pub numbers: Vec4,
+/// What a view shows. A camera without it shows nothing that was traced.
+#[derive(Component, Clone, Debug, PartialEq)]
+pub(super) struct Screen {
     /// Encoded for the screen.
-    #[texture(1)]
-    #[sampler(2)]
     pub picture: Handle<Image>,
     /// Metres along the view axis.
-    #[texture(3, sample_type = "float", filterable = false)]
     pub depth: Handle<Image>,
-}
-
-impl Material for ScreenMaterial {
-    fn vertex_shader() -> ShaderRef {
-        "embedded://glassbox/view/screen.wgsl".into()
-    }
-
-    fn fragment_shader() -> ShaderRef {
-        "embedded://glassbox/view/screen.wgsl".into()
-    }
-
-    fn alpha_mode(&self) -> AlphaMode {
-        // These are drawn after what is opaque, and before gizmos, which are drawn first of all
-        // that is blended.
-        AlphaMode::Mask(0.5)
-    }
-
-    fn enable_prepass() -> bool {
-        false
-    }
-
-    fn enable_shadows() -> bool {
-        false
-    }
-
-    fn specialize(
-        _: &MaterialPipeline,
-        descriptor: &mut RenderPipelineDescriptor,
-        _: &MeshVertexBufferLayoutRef,
-        _: MaterialPipelineKey<Self>,
-    ) -> Result<(), SpecializedMeshPipelineError> {
-        // Whatever is there already: this covers it.
-        if let Some(depth) = descriptor.depth_stencil.as_mut() {
-            depth.depth_write_enabled = Some(true);
-            depth.depth_compare = Some(CompareFunction::Always);
-        }
-        descriptor.primitive.cull_mode = None;
-        Ok(())
-    }
-}
-
-/// Marks the rectangle that belongs to a view.
-#[derive(Component)]
-pub(super) struct Screen;
-
-/// A rectangle over the whole viewport.
-pub(super) fn spawn_screen(
-    commands: &mut Commands,
-    meshes: &mut Assets<Mesh>,
-    materials: &mut Assets<ScreenMaterial>,
-    material: ScreenMaterial,
-    layer: RenderLayers,
-) -> (bevy::ecs::entity::Entity, Handle<ScreenMaterial>) {
-    let corners = [
-        Vec3::new(-1.0, -1.0, 0.0),
-        Vec3::new(1.0, -1.0, 0.0),
-        Vec3::new(1.0, 1.0, 0.0),
-        Vec3::new(-1.0, 1.0, 0.0),
-    ];
-    let mesh = Mesh::new(
-        PrimitiveTopology::TriangleList,
-        RenderAssetUsages::RENDER_WORLD,
-    )
-    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, corners.to_vec())
-    .with_inserted_indices(Indices::U32(vec![0, 1, 2, 0, 2, 3]));
-    let handle = materials.add(material);
-    let entity = commands.spawn((
-        (Screen, NotTraced),
-        Mesh3d(meshes.add(mesh)),
-        MeshMaterial3d(handle.clone()),
-        NoFrustumCulling,
-        NotShadowCaster,
-        NotShadowReceiver,
-        Transform::default(),
-        layer,
-    ));
-    (entity.id(), handle)
-}
-
-/// A picture of one black pixel, until there is one.
-pub(super) fn no_picture() -> Image {
-    picture_image(1, 1, vec![0, 0, 0, 255])
+    /// Left of this part of the viewport's width the picture is not drawn.
+    pub divider: f32,
+    /// What turns metres into the depth that is written: [`depth_numbers`].
+    pub numbers: Vec3,
 }
 
 /// Bytes in RGBA, as they go to the screen.
@@ -136,6 +30,11 @@ pub(super) fn picture_image(width: u32, height: u32, bytes: Vec<u8>) -> Image {
 pub(super) fn depth_image(width: u32, height: u32, depths: &[f32]) -> Image {
     let bytes = depths.iter().flat_map(|d| d.to_ne_bytes()).collect();
     image(width, height, bytes, TextureFormat::R32Float)
+}
+
+/// As far as anything is, until depths have been traced.
+pub(super) fn no_depth() -> Image {
+    depth_image(1, 1, &[f32::MAX])
 }
 
 fn image(width: u32, height: u32, bytes: Vec<u8>, format: TextureFormat) -> Image {
@@ -155,20 +54,47 @@ fn image(width: u32, height: u32, bytes: Vec<u8>, format: TextureFormat) -> Imag
     image
 }
 
-/// The three numbers of [`ScreenMaterial`] that turn metres into Bevy's reversed depth.
-pub(super) fn depth_numbers(projection: &bevy::camera::Projection) -> [f32; 3] {
+/// With `m` metres along the view axis, Bevy's reversed depth is `x / m + y - z · m`.
+pub(super) fn depth_numbers(projection: &Projection) -> Vec3 {
     match projection {
-        bevy::camera::Projection::Orthographic(p) => {
+        Projection::Orthographic(p) => {
             let length = p.far - p.near;
-            [0.0, p.far / length, 1.0 / length]
+            Vec3::new(0.0, p.far / length, 1.0 / length)
         }
-        bevy::camera::Projection::Perspective(p) => [p.near, 0.0, 0.0],
-        bevy::camera::Projection::Custom(_) => [0.1, 0.0, 0.0],
+        Projection::Perspective(p) => Vec3::new(p.near, 0.0, 0.0),
+        Projection::Custom(_) => Vec3::new(0.1, 0.0, 0.0),
     }
 }
 
-/// `numbers` of [`ScreenMaterial`].
-pub(super) fn numbers(divider: f32, projection: &bevy::camera::Projection) -> Vec4 {
-    let [near, offset, slope] = depth_numbers(projection);
-    Vec4::new(divider, near, offset, slope)
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::camera::{CameraProjection, OrthographicProjection, PerspectiveProjection};
+
+    #[test]
+    fn metres_become_the_depth_that_bevys_own_projections_give() {
+        let perspective = PerspectiveProjection {
+            near: 0.2,
+            ..PerspectiveProjection::default()
+        };
+        let orthographic = OrthographicProjection {
+            near: -3.0,
+            far: 70.0,
+            ..OrthographicProjection::default_3d()
+        };
+        let projections = [
+            Projection::Perspective(perspective),
+            Projection::Orthographic(orthographic),
+        ];
+        for projection in projections {
+            let numbers = depth_numbers(&projection);
+            for metres in [0.5, 2.0, 30.0] {
+                let clip = projection.get_clip_from_view();
+                let wanted = clip.project_point3(Vec3::NEG_Z * metres).z;
+                let depth = numbers.x / metres + numbers.y - numbers.z * metres;
+                let off = (depth - wanted).abs();
+                assert!(off < 1e-6, "{metres} m: {depth}, not {wanted}");
+            }
+        }
+    }
 }

@@ -1,37 +1,41 @@
-#import bevy_pbr::mesh_view_bindings::view
+// The traced picture and its depth over the viewport. It is encoded for the screen already, and read as
+// linear light; what the main texture holds instead is converted to.
+#import bevy_core_pipeline::fullscreen_vertex_shader::FullscreenVertexOutput
+#ifdef LINEAR_TO_SRGB
+#import bevy_render::color_operations::linear_to_srgb
+#endif
+#ifdef LINEAR_TO_OKLAB
+#import bevy_render::color_operations::linear_rgb_to_oklab
+#endif
 
-@group(#{MATERIAL_BIND_GROUP}) @binding(0) var<uniform> numbers: vec4<f32>;
-@group(#{MATERIAL_BIND_GROUP}) @binding(1) var picture: texture_2d<f32>;
-@group(#{MATERIAL_BIND_GROUP}) @binding(2) var picture_sampler: sampler;
-@group(#{MATERIAL_BIND_GROUP}) @binding(3) var depths: texture_2d<f32>;
-
-struct Corner {
-    @location(0) position: vec3<f32>,
-}
-
-// The corners are in clip space already.
-@vertex
-fn vertex(corner: Corner) -> @builtin(position) vec4<f32> {
-    return vec4(corner.position.xy, 0.5, 1.0);
-}
+@group(0) @binding(0) var picture: texture_2d<f32>;
+@group(0) @binding(1) var depths: texture_2d<f32>;
+// With m metres the depth that is written is x / m + y - z * m.
+@group(0) @binding(2) var<uniform> numbers: vec4<f32>;
 
 struct Pixel {
     @location(0) color: vec4<f32>,
     @builtin(frag_depth) depth: f32,
 }
 
+fn texel(place: vec2<f32>, size: vec2<u32>) -> vec2<i32> {
+    let pixels = vec2<f32>(size);
+    return vec2<i32>(clamp(place * pixels, vec2(0.0), pixels - 1.0));
+}
+
 @fragment
-fn fragment(@builtin(position) position: vec4<f32>) -> Pixel {
-    let place = (position.xy - view.viewport.xy) / view.viewport.zw;
-    if place.x < numbers.x {
-        discard;
-    }
-    let size = vec2<f32>(textureDimensions(depths));
-    let texel = vec2<i32>(clamp(place * size, vec2(0.0), size - 1.0));
-    let metres = textureLoad(depths, texel, 0).x;
+fn fragment(in: FullscreenVertexOutput) -> Pixel {
+    var color = textureLoad(picture, texel(in.uv, textureDimensions(picture)), 0).rgb;
+#ifdef LINEAR_TO_SRGB
+    color = linear_to_srgb(color);
+#endif
+#ifdef LINEAR_TO_OKLAB
+    color = linear_rgb_to_oklab(color);
+#endif
+    let metres = textureLoad(depths, texel(in.uv, textureDimensions(depths)), 0).x;
     var pixel: Pixel;
-    pixel.color = vec4(textureSampleLevel(picture, picture_sampler, place, 0.0).rgb, 1.0);
+    pixel.color = vec4(color, 1.0);
     // Farther than any number is the far plane, which is 0.
-    pixel.depth = clamp(numbers.y / max(metres, 1e-6) + numbers.z - numbers.w * metres, 0.0, 1.0);
+    pixel.depth = clamp(numbers.x / max(metres, 1e-6) + numbers.y - numbers.z * metres, 0.0, 1.0);
     return pixel;
 }

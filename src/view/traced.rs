@@ -6,29 +6,26 @@
 //! replaces is cancelled and left to the developing thread to end: nothing here waits.
 
 use super::darkroom::{Darkroom, Order, Print};
-use super::render::{PrintInfo, ScreenOf, TracedRender, Wanted};
-use super::screen::{
-    Screen, ScreenMaterial, depth_image, no_picture, numbers, picture_image, spawn_screen,
-};
+use super::render::{PrintInfo, TracedRender, Wanted};
+use super::screen::{Screen, depth_image, depth_numbers, no_depth, picture_image};
 use crate::film::views::View;
 use crate::scene::{self, Output, RenderSettings, SceneId};
 use crate::sync::{SyncSystems, Traced, TracedCameras};
 use crate::trace;
 use bevy::asset::{AssetEventSystems, Assets};
-use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{Camera, Camera3d, Projection};
-use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::ecs::change_detection::DetectChangesMut;
 use bevy::ecs::entity::Entity;
-use bevy::ecs::hierarchy::ChildOf;
+use bevy::ecs::entity_disabling::Disabled;
+use bevy::ecs::lifecycle::Remove;
+use bevy::ecs::observer::On;
 use bevy::ecs::reflect::ReflectComponent;
 use bevy::image::Image;
 use bevy::log::error;
 use bevy::math::{Rect, URect, UVec2, Vec2};
-use bevy::mesh::Mesh;
 use bevy::prelude::{
-    Added, App, Commands, Component, IntoScheduleConfigs, Plugin, PostUpdate, Query, Res, ResMut,
-    With, Without,
+    App, Commands, Component, IntoScheduleConfigs, Plugin, PostUpdate, Query, Res, ResMut, With,
+    Without,
 };
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 use bevy::transform::components::GlobalTransform;
@@ -38,26 +35,27 @@ pub struct TracedViewPlugin;
 
 impl Plugin for TracedViewPlugin {
     fn build(&self, app: &mut App) {
-        app.register_type::<TracedView>().add_systems(
-            PostUpdate,
-            (
-                (give_screens, follow).chain().after(SyncSystems),
-                // A print's texture has to reach the renderer in the frame in which the material
-                // names it: a material without its texture waits for the next frame, and where
-                // every frame brings another print it would wait for ever.
-                show_prints.before(AssetEventSystems),
-            ),
-        );
+        app.register_type::<TracedView>()
+            .add_observer(leave)
+            .add_systems(
+                PostUpdate,
+                (
+                    (attend, follow).chain().after(SyncSystems),
+                    // So that a print's texture reaches the renderer with the screen that names it.
+                    show_prints.before(AssetEventSystems),
+                ),
+            );
     }
 }
 
-/// On a `Camera3d`: the tracer draws what this camera sees, in the camera's viewport.
+/// On a `Camera3d`: the tracer draws what this camera sees, in the camera's viewport and nowhere else.
 ///
 /// The camera's own transform and projection count, so that raster and traced picture cover each
-/// other.
+/// other. The picture comes after all that Bevy does to what it rasterises (tone mapping, bloom,
+/// anti-aliasing …), and is as [`Output`] says.
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq, Debug)]
-#[require(Camera3d, Tonemapping::None, TracedRender)]
+#[require(Camera3d, TracedRender)]
 pub struct TracedView {
     /// Left of this part of the viewport's width Bevy's renderer is seen: 0 is all traced, 1 none,
     /// and nothing is traced.
@@ -69,7 +67,7 @@ pub struct TracedView {
     pub range: Option<[f32; 2]>,
     /// Screen pixels along each side of one of the film's: 1, 2, 4 …
     pub pixel_size: u32,
-    /// Stands still, and keeps what it has.
+    /// Stands still: the picture that there is stays, whatever becomes of scene and camera.
     pub paused: bool,
     /// Only this part of the viewport is rendered; from (0, 0) at the top left to (1, 1).
     pub region: Option<Rect>,
@@ -115,25 +113,31 @@ pub fn traced_camera(
     Some(trace::Camera::new(position, rotation, projection, optics))
 }
 
-/// Each view gets its rectangle, and a thread that develops for it.
-fn give_screens(
+/// Nothing is left of a view, and nothing goes on for it, once it is none any more.
+fn leave(view: On<Remove, TracedView>, mut commands: Commands) {
+    if let Ok(mut camera) = commands.get_entity(view.entity) {
+        camera.try_remove::<(TracedRender, Screen)>();
+    }
+}
+
+/// Each view has a thread that develops for it; what was disabled, which no other query meets, has
+/// nothing that goes on.
+fn attend(
     mut commands: Commands,
-    mut added: Query<(Entity, &mut TracedRender, Option<&RenderLayers>), Added<TracedView>>,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<ScreenMaterial>>,
-    mut images: ResMut<Assets<Image>>,
+    mut views: Query<&mut TracedRender, With<TracedView>>,
+    resting: Query<Entity, (With<TracedRender>, With<Disabled>)>,
+    without: Query<Entity, (With<TracedView>, Without<TracedRender>)>,
 ) {
-    for (camera, mut render, layers) in &mut added {
-        let material = ScreenMaterial {
-            numbers: numbers(1.0, &Projection::default()),
-            picture: images.add(no_picture()),
-            depth: images.add(depth_image(1, 1, &[f32::MAX])),
-        };
-        let layers = layers.cloned().unwrap_or_default();
-        let (entity, material) =
-            spawn_screen(&mut commands, &mut meshes, &mut materials, material, layers);
-        commands.entity(entity).insert(ChildOf(camera));
-        render.screen = Some(ScreenOf { entity, material });
+    for view in &resting {
+        commands.entity(view).try_remove::<(TracedRender, Screen)>();
+    }
+    for view in &without {
+        commands.entity(view).try_insert(TracedRender::default());
+    }
+    for mut render in &mut views {
+        if render.darkroom.is_some() || render.failed {
+            continue;
+        }
         match Darkroom::open() {
             Ok(darkroom) => render.darkroom = Some(darkroom),
             Err(problem) => {
@@ -197,7 +201,8 @@ fn follow(
                 range: view.range,
             },
         };
-        if render.renders(&wanted) {
+        let keeps = view.paused && render.running.is_some();
+        if keeps || render.renders(&wanted) {
             render.develop(wanted.order);
         } else if render.is_awaited(size) {
             continue;
@@ -219,51 +224,52 @@ fn seen_size(view: &TracedView, camera: &Camera) -> Option<UVec2> {
 
 /// Puts what has been developed since the last frame onto the screens.
 fn show_prints(
-    mut views: Query<(&TracedView, &mut TracedRender, &Projection)>,
-    mut screens: Query<&mut RenderLayers, With<Screen>>,
-    cameras: Query<&RenderLayers, (With<TracedView>, Without<Screen>)>,
-    parents: Query<&ChildOf>,
-    mut materials: ResMut<Assets<ScreenMaterial>>,
+    mut commands: Commands,
+    mut views: Query<(
+        Entity,
+        &TracedView,
+        &mut TracedRender,
+        &Projection,
+        Option<&mut Screen>,
+    )>,
     mut images: ResMut<Assets<Image>>,
 ) {
-    for (view, mut render, projection) in &mut views {
-        let Some(screen) = &render.screen else {
+    for (entity, view, mut render, projection, mut screen) in &mut views {
+        if let Some(screen) = &mut screen {
+            let wanted = Screen {
+                divider: view.divider,
+                numbers: depth_numbers(projection),
+                ..(**screen).clone()
+            };
+            screen.set_if_neq(wanted);
+        }
+        let Some(print) = render.darkroom.as_ref().and_then(Darkroom::take) else {
             continue;
         };
-        // A rectangle lies in the layers of its camera, whatever these become.
-        if let Ok(parent) = parents.get(screen.entity)
-            && let Ok(layers) = cameras.get(parent.parent())
-            && let Ok(mut own) = screens.get_mut(screen.entity)
-        {
-            own.set_if_neq(layers.clone());
-        }
-        let print = render.darkroom.as_ref().and_then(Darkroom::take);
-        let Some(mut material) = materials.get_mut(&screen.material) else {
-            continue;
-        };
-        let divider = if render.shown.is_none() && print.is_none() {
-            1.0
-        } else {
-            view.divider
-        };
-        let wanted = numbers(divider, projection);
-        if material.numbers != wanted {
-            material.numbers = wanted;
-        }
-        let Some(Print {
+        let Print {
             size,
             bytes,
             depths,
             scale,
             of,
-        }) = print
-        else {
-            continue;
-        };
+        } = print;
         let picture = images.add(picture_image(size.x, size.y, bytes));
-        material.picture = picture.clone();
-        if let Some((size, depths)) = depths {
-            material.depth = images.add(depth_image(size.x, size.y, &depths));
+        let depth = depths.map(|(size, depths)| images.add(depth_image(size.x, size.y, &depths)));
+        match screen {
+            Some(mut screen) => {
+                screen.picture = picture.clone();
+                if let Some(depth) = depth {
+                    screen.depth = depth;
+                }
+            }
+            None => {
+                commands.entity(entity).try_insert(Screen {
+                    picture: picture.clone(),
+                    depth: depth.unwrap_or_else(|| images.add(no_depth())),
+                    divider: view.divider,
+                    numbers: depth_numbers(projection),
+                });
+            }
         }
         let running = render.running.as_ref();
         let same = running.filter(|running| running.render.number() == of);

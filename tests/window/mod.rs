@@ -166,7 +166,7 @@ fn until(what: &str, mut is_so: impl FnMut() -> bool) {
 }
 
 /// Says what is missing, so that nobody takes a skipped test for a passed one.
-fn missing(what: &str) {
+pub(crate) fn missing(what: &str) {
     let needed = std::env::var("GLASSBOX_NEEDS_WINDOW").is_ok_and(|value| value == "1");
     assert!(!needed, "GLASSBOX_NEEDS_WINDOW=1, and {what}");
     eprintln!("NOT TESTED: {what}");
