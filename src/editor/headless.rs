@@ -1,5 +1,6 @@
 //! The editor without a window, for whoever drives it by program.
 
+use super::dispatch::DispatchPlugin;
 use super::document::DocumentPlugin;
 use super::edits::EditsPlugin;
 use super::history::HistoryPlugin;
@@ -23,5 +24,11 @@ pub fn headless_editor_with_recovery(folder: &Path) -> App {
 }
 
 fn editor(document: DocumentPlugin) -> App {
-    headless_app_with((HistoryPlugin, EditsPlugin, document, RenderJobPlugin))
+    headless_app_with((
+        DispatchPlugin,
+        HistoryPlugin,
+        EditsPlugin,
+        document,
+        RenderJobPlugin,
+    ))
 }

@@ -2,12 +2,13 @@
 //! knows egui.
 //!
 //! Whatever a person does ends in one of two things: an [`Action`], which menus, keys, buttons and
-//! scripts send alike, or a change of a component, which panels and handles make directly.
+//! scripts send alike and which mostly names a [`command`], or a change of a component, which panels and handles make directly.
 //! [`History`](history::History) watches the components, so every change can be undone however it was made.
 //!
 //! | module | does |
 //! |---|---|
-//! | [`action`] | what can be asked for, with names, keys and explanations in one table |
+//! | [`command`] | the table of commands: a row says what one is called, its keys, its places and what it does |
+//! | [`action`], `dispatch` | what is asked for in messages, and where it is done |
 //! | [`document`] | the open scene as a file: open, save, recover |
 //! | [`edits`] | what can be done to the scene |
 //! | [`history`] | undo and redo |
@@ -23,13 +24,15 @@
 //! | `trees` | the builders compared and timed, two trees side by side |
 //! | [`navigation`] | moving the view |
 //! | [`handles`] | arrows, rings and points that are dragged |
-//! | `pointer`, `keys`, `pick` | what a press means, what a key means, what is under the pointer |
+//! | `pointer`, [`keys`], `pick` | what a press means, what a key means, what is under the pointer |
 //! | `pace` | how often the window is drawn |
 //! | `script` | clicks and keys from a file |
 //! | `startup`, `signals` | whether there can be a window at all; being asked to end from outside |
 
 pub mod action;
 mod cameras;
+pub mod command;
+mod dispatch;
 pub mod document;
 pub mod edits;
 mod embed;
@@ -38,7 +41,7 @@ pub mod handles;
 mod headless;
 pub mod history;
 mod inspection;
-mod keys;
+pub mod keys;
 pub mod navigation;
 pub mod notice;
 mod pace;

@@ -16,7 +16,7 @@ use bevy::ecs::entity::Entity;
 use bevy::ecs::query::{Or, With};
 use bevy::ecs::world::World;
 use bevy::math::{Ray3d, Vec2, Vec3};
-use bevy::transform::components::GlobalTransform;
+use bevy::transform::components::{GlobalTransform, Transform};
 use bevy_egui::{EguiContext, PrimaryEguiContext, egui};
 
 /// How near to the lines of a symbol the pointer has to be, in logical pixels.
@@ -39,11 +39,12 @@ pub(super) type Symbol = Or<(
     With<SceneCamera>,
 )>;
 
-/// The camera of the window and its place, as they were drawn last.
+/// The camera of the window and its place: as they were drawn last, and in the panels' pass as they are drawn next.
 pub(super) fn camera(world: &mut World) -> Option<(Camera, GlobalTransform)> {
-    let mut cameras = world.query_filtered::<(&Camera, &GlobalTransform), With<EditorCamera>>();
+    let mut cameras = world.query_filtered::<(&Camera, &Transform), With<EditorCamera>>();
     let (camera, place) = cameras.single(world).ok()?;
-    Some((camera.clone(), *place))
+    // It hangs on nothing, and what is propagated of it is that of the frame before.
+    Some((camera.clone(), GlobalTransform::from(*place)))
 }
 
 /// The ray through a place of the window, in logical pixels from its top left.

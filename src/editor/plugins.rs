@@ -1,7 +1,7 @@
 //! The plugins that make up the editor: in its own window, and over an app's own scene.
 
-use super::action::Action;
 use super::cameras::CamerasPlugin;
+use super::dispatch::DispatchPlugin;
 use super::document::DocumentPlugin;
 use super::edits::EditsPlugin;
 use super::embed::EmbedPlugin;
@@ -71,6 +71,7 @@ pub(super) fn parts(document: DocumentPlugin) -> PluginGroupBuilder {
         .add(RasterPlugin)
         .add(SymbolsPlugin)
         .add(StatePlugin)
+        .add(DispatchPlugin)
         .add(HistoryPlugin)
         .add(EditsPlugin)
         .add(document)
@@ -90,8 +91,7 @@ pub(super) struct StatePlugin;
 
 impl Plugin for StatePlugin {
     fn build(&self, app: &mut App) {
-        app.add_message::<Action>()
-            .init_resource::<Selection>()
+        app.init_resource::<Selection>()
             .init_resource::<Viewport>()
             .init_resource::<Notices>()
             .add_observer(forget_region);

@@ -1,6 +1,7 @@
 //! What a person chose about the editor itself, kept from one day to the next in a file of the
 //! user's configuration folder. Nothing in it belongs to a scene.
 
+use super::keys::Bindings;
 use super::notice::Notices;
 use crate::io::{Problem, read_text, replace_file};
 use bevy::app::{App, AppExit, Last, Plugin};
@@ -63,6 +64,8 @@ pub struct Preferences {
     pub pixel_size: u32,
     /// The first-run hint was read.
     pub hint_seen: bool,
+    /// Keys that were given to commands.
+    pub keys: Bindings,
     /// Files that were opened or saved, the newest first.
     pub recent: Vec<PathBuf>,
 }
@@ -81,6 +84,7 @@ impl Default for Preferences {
             rays_height: 240.0,
             pixel_size: 1,
             hint_seen: false,
+            keys: Bindings::default(),
             recent: Vec::new(),
         }
     }

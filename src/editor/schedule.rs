@@ -4,12 +4,17 @@
 use super::embed::Editing;
 use super::history::within;
 use bevy::app::{App, MainScheduleOrder, Update};
-use bevy::ecs::schedule::ScheduleLabel;
+use bevy::ecs::schedule::{ScheduleLabel, SystemSet};
 use bevy::ecs::world::World;
 
 /// Everything that answers to a hand: keys, pointer, actions, files.
 #[derive(ScheduleLabel, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct EditorUpdate;
+
+/// In [`EditorUpdate`]: what was asked for is done. Keys and pointer are read before, the view and the handles follow
+/// after.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Dispatch;
 
 /// Runs [`EditorUpdate`].
 #[derive(ScheduleLabel, Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -1,8 +1,13 @@
 //! Which entities of the scene are meant.
 
 use crate::scene::SceneId;
+use bevy::ecs::event::Event;
 use bevy::ecs::resource::Resource;
 use std::collections::HashSet;
+
+/// Nothing is to be selected, chosen or in front any more.
+#[derive(Event, Clone, Copy, Debug)]
+pub(super) struct Escaped;
 
 /// The selected entities, by their numbers: these outlive undo, which makes entities anew.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]

@@ -51,6 +51,8 @@ pub struct Viewport {
     pub hovered: bool,
     /// Whether keys are meant for the scene: nothing is being typed into.
     pub takes_keys: bool,
+    /// Whether letters and digits are, too: the list of entities does not find names by them.
+    pub takes_letters: bool,
 }
 
 impl Default for Viewport {
@@ -61,6 +63,7 @@ impl Default for Viewport {
             divider: 0.5,
             hovered: false,
             takes_keys: true,
+            takes_letters: true,
         }
     }
 }

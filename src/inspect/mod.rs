@@ -21,6 +21,7 @@
 //! through the trees step by step; [`legend()`], what the colours of the lines mean; [`compare_builders`], each builder's tree in numbers;
 //! [`draw_over`], lines over a picture without a GPU; [`Document`], all of it as one file.
 
+mod answer;
 mod box_range;
 mod boxes;
 mod builders;
@@ -48,6 +49,7 @@ mod trees;
 mod visits;
 mod wide_boxes;
 
+pub use answer::answer;
 pub use box_range::BoxRange;
 pub(crate) use builders::corners;
 pub use builders::{

@@ -38,10 +38,10 @@ fn changed_twice(file: &Path) -> (App, Vec<u8>) {
     act(&mut second, Action::Open(file.to_path_buf()));
     second.update();
     add(&mut second, "Cuboid");
-    act(&mut second, Action::Save);
+    act(&mut second, Action::run("file.save"));
     assert_eq!(question(&second), None, "nobody else has changed it");
     add(&mut first, "Sphere");
-    act(&mut first, Action::Save);
+    act(&mut first, Action::run("file.save"));
     assert_eq!(question(&first), changed(file));
     (first, fs::read(file).unwrap())
 }
@@ -66,7 +66,7 @@ fn a_change_of_another_program_is_not_saved_over_unless_that_is_wanted() {
     assert!(!app.world().resource::<Document>().unsaved());
     // From then on it is ours.
     add(&mut app, "Sphere");
-    act(&mut app, Action::Save);
+    act(&mut app, Action::run("file.save"));
     assert_eq!(question(&app), None);
 }
 
@@ -83,7 +83,7 @@ fn reloading_opens_what_the_other_program_wrote() {
     named(&mut app, "Cuboid");
     assert!(!app.world().resource::<Document>().unsaved());
     add(&mut app, "Sphere");
-    act(&mut app, Action::Save);
+    act(&mut app, Action::run("file.save"));
     assert_eq!(question(&app), None);
 }
 
@@ -96,7 +96,7 @@ fn saving_under_another_name_keeps_both_and_goes_on_with_what_waited() {
     );
     let (mut app, theirs) = changed_twice(&file);
     answer(app.world_mut(), Answer::Cancel);
-    act(&mut app, Action::Quit);
+    act(&mut app, Action::run("file.quit"));
     answer(app.world_mut(), Answer::Yes);
     assert_eq!(question(&app), changed(&file));
     answer(app.world_mut(), Answer::Elsewhere);
@@ -126,16 +126,16 @@ fn a_file_that_is_gone_is_written_again_and_one_that_says_the_same_is_not_asked_
     fs::remove_file(&file).unwrap();
     fs::write(&file, &text).unwrap();
     add(&mut app, "Sphere");
-    act(&mut app, Action::Save);
+    act(&mut app, Action::run("file.save"));
     assert_eq!(question(&app), None);
     fs::remove_file(&file).unwrap();
     add(&mut app, "Sphere");
-    act(&mut app, Action::Save);
+    act(&mut app, Action::run("file.save"));
     assert_eq!(question(&app), None);
     assert!(file.is_file());
     // Emptied is changed as well.
     fs::write(&file, "").unwrap();
-    act(&mut app, Action::Save);
+    act(&mut app, Action::run("file.save"));
     assert_eq!(question(&app), changed(&file));
 }
 
@@ -174,7 +174,7 @@ fn recovered_work_is_not_saved_over_what_was_changed_since() {
     assert!(asked, "{:?}", question(&next));
     answer(next.world_mut(), Answer::Yes);
     next.update();
-    act(&mut next, Action::Save);
+    act(&mut next, Action::run("file.save"));
     assert_eq!(question(&next), changed(&file));
     assert_eq!(fs::read(&file).unwrap(), b"theirs");
 }
@@ -227,7 +227,7 @@ fn a_change_of_another_program_is_asked_about_when_the_window_is_turned_to_and_o
         assert_eq!(question(&app), None, "it was asked already");
         SceneCopy::of(&mut app).assert_same(&ours, "the edits are still there");
     }
-    act(&mut app, Action::Save);
+    act(&mut app, Action::run("file.save"));
     assert_eq!(question(&app), changed(&file), "it is not written over");
     answer(app.world_mut(), Answer::Yes);
     focus(&mut app);

@@ -10,7 +10,7 @@ use bevy::math::Vec3;
 use bevy::prelude::Transform;
 use bevy::window::FileDragAndDrop;
 use glassbox::editor::action::Addition;
-use glassbox::editor::document::{Answer, Document, Purpose, Question, answer};
+use glassbox::editor::document::{Answer, Document, FileTask, Purpose, Question, answer};
 use glassbox::editor::edits::scene_entity;
 use glassbox::editor::notice::Notices;
 use glassbox::editor::{Action, Selection};
@@ -69,12 +69,12 @@ fn what_is_saved_and_opened_again_is_the_same_scene_and_the_same_picture() {
     assert_eq!(document(&app).path.as_deref(), Some(&*file));
     assert_eq!(document(&app).title(), "a.scn.ron – Glassbox");
     let (scene, picture) = (SceneCopy::of(&mut app), traced(&app));
-    act(&mut app, Action::Undo);
+    act(&mut app, Action::run("edit.undo"));
     assert!(
         document(&app).unsaved(),
         "what was undone is not what was saved"
     );
-    act(&mut app, Action::Redo);
+    act(&mut app, Action::run("edit.redo"));
     assert!(!document(&app).unsaved(), "what was done again is");
     let mut other = editor("triangle");
     act(&mut other, Action::Open(file));
@@ -87,12 +87,18 @@ fn what_is_saved_and_opened_again_is_the_same_scene_and_the_same_picture() {
 fn unsaved_changes_are_asked_for_before_they_are_lost() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("a.scn.ron");
-    for action in [Action::New, Action::Quit, Action::Open("triangle".into())] {
+    for (action, then) in [
+        (Action::run("file.new"), FileTask::New),
+        (Action::run("file.quit"), FileTask::Quit),
+        (
+            Action::Open("triangle".into()),
+            FileTask::Open("triangle".into()),
+        ),
+    ] {
         let mut app = editor(BOX);
         edit(&mut app);
         let scene = SceneCopy::of(&mut app);
         act(&mut app, action.clone());
-        let then = action.clone();
         assert_eq!(document(&app).question, Some(Question::Unsaved { then }));
         SceneCopy::of(&mut app).assert_same(&scene, "asked");
         assert!(!wants_to_quit(&app));
@@ -117,19 +123,23 @@ fn unsaved_changes_are_asked_for_before_they_are_lost() {
         }
         app.update();
         assert!(file.exists());
-        assert_eq!(wants_to_quit(&app), action == Action::Quit, "{action:?}");
-        if action != Action::Quit {
+        assert_eq!(
+            wants_to_quit(&app),
+            action == Action::run("file.quit"),
+            "{action:?}"
+        );
+        if action != Action::run("file.quit") {
             assert_ne!(SceneCopy::of(&mut app), scene, "{action:?} was not done");
         }
     }
     let mut app = editor(BOX);
     edit(&mut app);
-    act(&mut app, Action::Quit);
+    act(&mut app, Action::run("file.quit"));
     answer(app.world_mut(), Answer::No);
     assert!(wants_to_quit(&app));
     // Nothing to lose, nothing to ask.
     let mut app = editor(BOX);
-    act(&mut app, Action::Quit);
+    act(&mut app, Action::run("file.quit"));
     assert!(wants_to_quit(&app));
 }
 
@@ -181,7 +191,7 @@ fn what_was_saved_opens_again_although_something_in_it_cannot_be_loaded() {
         corners: [Vec3::ZERO; 4],
     });
     app.update();
-    act(&mut app, Action::Save);
+    act(&mut app, Action::run("file.save"));
     let mut other = editor("triangle");
     act(&mut other, Action::Open(file.clone()));
     other.update();
@@ -260,7 +270,7 @@ fn a_dropped_model_is_added_and_taken_back_in_one_step() {
     answer(other.world_mut(), Answer::Yes);
     other.update();
     assert_eq!(traced(&other), picture);
-    act(&mut app, Action::Undo);
+    act(&mut app, Action::run("edit.undo"));
     SceneCopy::of(&mut app).assert_same(&scene, "undone");
 }
 
@@ -339,9 +349,9 @@ fn wait(app: &mut App, time: Duration, what: impl Fn(&mut App) -> bool) -> bool 
 #[test]
 fn nothing_is_unsaved_after_looking_and_selecting() {
     let mut app = editor(BOX);
-    act(&mut app, Action::SelectAll);
-    act(&mut app, Action::Copy);
-    act(&mut app, Action::SelectNone);
+    act(&mut app, Action::run("select.all"));
+    act(&mut app, Action::run("edit.copy"));
+    act(&mut app, Action::run("select.none"));
     assert!(!document(&app).unsaved());
     let block = named(&mut app, "Short block");
     let entity = scene_entity(app.world(), block).unwrap();

@@ -30,8 +30,8 @@ fn selected(app: &App) -> Vec<SceneId> {
 fn a_duplicate_shares_the_material_and_has_the_next_name() {
     let (mut app, material, block) = with_shared_material();
     let before = SceneCopy::of(&mut app);
-    act(&mut app, Action::Duplicate);
-    act(&mut app, Action::Duplicate);
+    act(&mut app, Action::run("edit.duplicate"));
+    act(&mut app, Action::run("edit.duplicate"));
     let after = SceneCopy::of(&mut app);
     assert_eq!(after.entities.len(), before.entities.len() + 2);
     for name in ["Short block 2", "Short block 3"] {
@@ -47,8 +47,8 @@ fn a_duplicate_shares_the_material_and_has_the_next_name() {
 #[test]
 fn what_is_pasted_into_its_own_scene_goes_on_sharing_the_material() {
     let (mut app, material, _) = with_shared_material();
-    act(&mut app, Action::Copy);
-    act(&mut app, Action::Paste);
+    act(&mut app, Action::run("edit.copy"));
+    act(&mut app, Action::run("edit.paste"));
     let [copy] = selected(&app)[..] else {
         panic!("{:?}", selected(&app));
     };
@@ -65,7 +65,7 @@ fn what_is_pasted_into_its_own_scene_goes_on_sharing_the_material() {
 #[test]
 fn what_is_pasted_into_another_scene_brings_its_material_along() {
     let (mut app, _, _) = with_shared_material();
-    act(&mut app, Action::Copy);
+    act(&mut app, Action::run("edit.copy"));
     let clipboard = app.world().resource::<Clipboard>().clone();
     let mut other = editor("triangle");
     let before = SceneCopy::of(&mut other).entities.len();
@@ -96,15 +96,15 @@ fn a_child_is_copied_to_where_it_stands_in_the_world() {
             .affine()
     };
     act(&mut app, Action::Select(vec![tall]));
-    act(&mut app, Action::Copy);
-    act(&mut app, Action::Paste);
+    act(&mut app, Action::run("edit.copy"));
+    act(&mut app, Action::run("edit.paste"));
     app.update();
     let copy = selected(&app)[0];
     assert!(place(&app, copy).abs_diff_eq(place(&app, tall), 1e-5));
     // A parent is copied with its children, each once, whichever of them are selected.
     act(&mut app, Action::Select(vec![tall, short]));
     let before = SceneCopy::of(&mut app).entities.len();
-    act(&mut app, Action::Duplicate);
+    act(&mut app, Action::run("edit.duplicate"));
     assert_eq!(SceneCopy::of(&mut app).entities.len(), before + 2);
 }
 

@@ -42,7 +42,7 @@ fn edit(app: &mut App, (kind, a, b, numbers): Edit) {
     let color = LinearRgba::rgb(vector.x.abs(), vector.y.abs(), vector.z.abs());
     if ids.len() > MOST {
         act(app, Action::Select(ids[..MOST / 2].to_vec()));
-        act(app, Action::Delete);
+        act(app, Action::run("edit.delete"));
         return;
     }
     match kind % 24 {
@@ -66,22 +66,22 @@ fn edit(app: &mut App, (kind, a, b, numbers): Edit) {
         }
         2 => {
             act(app, Action::Select(vec![id]));
-            act(app, Action::Delete);
+            act(app, Action::run("edit.delete"));
         }
         3 => {
             act(app, Action::Select(vec![id, other]));
-            act(app, Action::Duplicate);
+            act(app, Action::run("edit.duplicate"));
         }
         4 => {
             act(app, Action::Select(vec![id, other]));
-            act(app, Action::Copy);
+            act(app, Action::run("edit.copy"));
         }
-        5 => act(app, Action::Paste),
+        5 => act(app, Action::run("edit.paste")),
         6 => act(app, Action::Reparent(vec![id], Some(other))),
         7 => act(app, Action::Reparent(vec![id, other], None)),
         8 => {
             act(app, Action::Select(vec![id, other]));
-            act(app, Action::ToggleVisible);
+            act(app, Action::run("edit.hide"));
         }
         9 => act(app, Action::Rename(id, format!("{:.1}", vector.x))),
         10..=12 => {
@@ -131,12 +131,12 @@ fn edit(app: &mut App, (kind, a, b, numbers): Edit) {
         21 => app.world_mut().resource_mut::<Environment>().background = color,
         22 => {
             for _ in 0..=a % 4 {
-                act(app, Action::Undo);
+                act(app, Action::run("edit.undo"));
             }
         }
         _ => {
             for _ in 0..=a % 4 {
-                act(app, Action::Redo);
+                act(app, Action::run("edit.redo"));
             }
         }
     }

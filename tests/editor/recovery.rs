@@ -72,7 +72,7 @@ fn unsaved_work_is_offered_after_a_crash_and_not_where_somebody_gave_it_up() {
     named(&mut next, "Sphere");
     assert!(next.world().resource::<Document>().unsaved());
     // Who says that it shall not be kept is believed.
-    act(&mut next, Action::Quit);
+    act(&mut next, Action::run("file.quit"));
     answer(next.world_mut(), Answer::No);
     next.update();
     drop(next);

@@ -54,9 +54,9 @@ fn edits_do_not_reach_a_render_that_has_begun_and_it_equals_one_made_at_once() {
         app.update();
         let block = named(&mut app, "Short block");
         act(&mut app, Action::Select(vec![block]));
-        act(&mut app, Action::Delete);
+        act(&mut app, Action::run("edit.delete"));
         wait(&mut app);
-        act(&mut app, Action::Undo);
+        act(&mut app, Action::run("edit.undo"));
         let plain = folder.path().join(format!("plain-{name}"));
         let pixels = if name.ends_with("exr") {
             expected
@@ -139,7 +139,7 @@ fn a_picture_that_the_scene_reads_or_has_read_is_not_rendered_over() {
     app.world_mut().resource_mut::<Environment>().map = Some(map);
     app.update();
     // Undoing brings it back.
-    act(&mut app, Action::Undo);
+    act(&mut app, Action::run("edit.undo"));
     app.update();
     assert_eq!(app.world().resource::<Environment>().map, None);
     let wanted = request(&app, &file, 1);

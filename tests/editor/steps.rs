@@ -28,7 +28,7 @@ fn steps_are_named_after_what_was_done() {
     let block = named(&mut app, "Short block");
     move_by(&mut app, block, 0.1);
     act(&mut app, Action::Select(vec![block]));
-    act(&mut app, Action::ToggleVisible);
+    act(&mut app, Action::run("edit.hide"));
     act(&mut app, Action::Rename(block, "Crate".into()));
     app.world_mut().resource_mut::<RenderSettings>().max_depth = 2;
     app.update();
@@ -49,7 +49,7 @@ fn steps_are_named_after_what_was_done() {
         ]
     );
     assert_eq!(history(&app).undo_text(), Some("Dim"));
-    act(&mut app, Action::Undo);
+    act(&mut app, Action::run("edit.undo"));
     assert_eq!(history(&app).redo_text(), Some("Dim"));
 }
 
@@ -124,24 +124,24 @@ fn a_material_that_was_deleted_and_came_back_is_used_again() {
     // Behind the back of the edits: they would give the block a material of its own.
     app.world_mut().despawn(used);
     app.update();
-    act(&mut app, Action::Undo);
+    act(&mut app, Action::run("edit.undo"));
     assert_eq!(uses(&app), Some(entity(&app, material)));
     // Through them.
     act(&mut app, Action::Select(vec![material]));
-    act(&mut app, Action::Delete);
+    act(&mut app, Action::run("edit.delete"));
     assert_eq!(uses(&app), None);
-    act(&mut app, Action::Undo);
+    act(&mut app, Action::run("edit.undo"));
     assert_eq!(uses(&app), Some(entity(&app, material)));
 }
 
 #[test]
 fn steps_take_less_than_their_bound_and_the_oldest_are_forgotten() {
     let mut app = editor(BOX);
-    act(&mut app, Action::SelectAll);
-    act(&mut app, Action::Copy);
+    act(&mut app, Action::run("select.all"));
+    act(&mut app, Action::run("edit.copy"));
     // Each paste doubles nothing: it adds the same twelve or so entities again.
     for _ in 0..40 {
-        act(&mut app, Action::Paste);
+        act(&mut app, Action::run("edit.paste"));
     }
     let bytes = history(&app).bytes();
     assert!(bytes > 40_000 && bytes < 4 << 20, "{bytes} bytes");

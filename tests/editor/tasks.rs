@@ -103,31 +103,31 @@ const TASKS: &[Task] = &[
         name: "delete an object",
         scene: BOX,
         act: |app| {
-            act_on(app, "Mirror block", Action::Delete);
+            act_on(app, "Mirror block", Action::run("edit.delete"));
         },
     },
     Task {
         name: "delete everything",
         scene: "spheres",
         act: |app| {
-            act(app, Action::SelectAll);
-            act(app, Action::Delete);
+            act(app, Action::run("select.all"));
+            act(app, Action::run("edit.delete"));
         },
     },
     Task {
         name: "duplicate an object",
         scene: BOX,
         act: |app| {
-            act_on(app, "Mirror block", Action::Duplicate);
+            act_on(app, "Mirror block", Action::run("edit.duplicate"));
         },
     },
     Task {
         name: "copy and paste everything",
         scene: "spheres",
         act: |app| {
-            act(app, Action::SelectAll);
-            act(app, Action::Copy);
-            act(app, Action::Paste);
+            act(app, Action::run("select.all"));
+            act(app, Action::run("edit.copy"));
+            act(app, Action::run("edit.paste"));
         },
     },
     Task {
@@ -148,7 +148,7 @@ const TASKS: &[Task] = &[
                 named(app, "Floor"),
             ];
             act(app, Action::Select(ids));
-            act(app, Action::ToggleVisible);
+            act(app, Action::run("edit.hide"));
         },
     },
     Task {
@@ -312,12 +312,12 @@ fn twenty_tasks_are_one_step_each_and_undo_leaves_nothing_of_them() {
         let steps: Vec<&str> = history(&app).steps().collect();
         assert_eq!(steps.len(), 1, "{name} is {steps:?}");
         for round in 0..2 {
-            act(&mut app, Action::Undo);
+            act(&mut app, Action::run("edit.undo"));
             // Meshes are made of their sources in the next frame.
             app.update();
             SceneCopy::of(&mut app).assert_same(&before, &format!("{name}, undone, round {round}"));
             assert_eq!(traced(&app), traced_before, "{name}, undone, round {round}");
-            act(&mut app, Action::Redo);
+            act(&mut app, Action::run("edit.redo"));
             app.update();
             SceneCopy::of(&mut app).assert_same(&after, &format!("{name}, redone, round {round}"));
             assert_eq!(traced(&app), traced_after, "{name}, redone, round {round}");
@@ -332,9 +332,9 @@ fn what_was_deleted_is_selected_again_when_it_comes_back() {
     let mut app = editor(BOX);
     let block = named(&mut app, "Mirror block");
     act(&mut app, Action::Select(vec![block]));
-    act(&mut app, Action::Delete);
+    act(&mut app, Action::run("edit.delete"));
     assert!(app.world().resource::<Selection>().is_empty());
-    act(&mut app, Action::Undo);
+    act(&mut app, Action::run("edit.undo"));
     assert_eq!(app.world().resource::<Selection>().ids(), [block]);
 }
 

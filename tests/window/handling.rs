@@ -46,7 +46,7 @@ fn the_view_is_turned_moved_and_looked_through_cameras_with() {
         Action(LookThrough(None)),
         Move(View(0.5, 0.5)),
         Wheel(3),
-        Action(AddBookmark),
+        Run("view.keep"),
         Exists("Camera 2"),
         AssertNot(of: Some("Camera 2"), path: "Transform.translation.z", is: 1.0796, within: 0.05),
         Quit,
@@ -71,10 +71,10 @@ fn corners_of_a_light_are_dragged_one_by_one() {
         Move(Grip("Ceiling light", 3)),
         Press(Left),
         Move(By(Grip("Ceiling light", 3), 40, 0)),
-        AssertNot(of: Some("Ceiling light"), path: "ParallelogramLamp.edges[0].x", is: 0, within: 0.005),
+        AssertNot(of: Some("Ceiling light"), path: "ParallelogramLamp.edges[1].x", is: 0.13, within: 0.005),
         Key("Escape"),
         Release(Left),
-        Assert(of: Some("Ceiling light"), path: "ParallelogramLamp.edges[0].x", is: 0, within: 1e-5),
+        Assert(of: Some("Ceiling light"), path: "ParallelogramLamp.edges[1].x", is: 0.13, within: 1e-5),
         Quit,
     ]"#;
     plays("cornell-box-parallelogram-light", script);

@@ -27,36 +27,36 @@ fn a_first_session_from_opening_to_reopening() {
         Drag(Handle(X), By(Handle(X), 60, 0)),
         AssertNot(of: Some("Lamp"), path: "Transform.translation.x", is: 0, within: 0.02),
         Undoes("Move Lamp"),
-        Action(SelectNone),
+        Run("select.none"),
         Wait(Samples(1e9)),
         Screenshot("moved.png"),
 
         Key("Ctrl+Z"),
         Assert(of: Some("Lamp"), path: "Transform.translation.x", is: 0, within: 1e-6),
         // Undo selects what it changed, and handles and outlines are part of a screenshot.
-        Action(SelectNone),
+        Run("select.none"),
         Wait(Samples(1e9)),
         Screenshot("undone.png"),
 
-        Action(Add(Shape("Sphere"))),
+        Run("add.sphere"),
         Exists("Sphere"),
         Selected(["Sphere"]),
         Set(of: Some("Sphere"), path: "Transform.translation", to: [0, 0.25, 0.1]),
         Set(of: Some("Sphere"), path: "Transform.scale", to: [0.2, 0.2, 0.2]),
-        Action(SelectNone),
+        Run("select.none"),
         Wait(Samples(1e9)),
         Screenshot("sphere.png"),
 
         Select(["Sphere"]),
         Set(of: Some("Sphere"), path: "Phong.diffuse", to: [0, 0, 0, 1]),
         Set(of: Some("Sphere"), path: "Phong.mirror", to: [0.9, 0.9, 0.9, 1]),
-        Action(SelectNone),
+        Run("select.none"),
         Wait(Samples(1e9)),
         Screenshot("mirror.png"),
 
         Action(SaveAs("story.scn.ron")),
         Wait(Seconds(1)),
-        Action(Quit),
+        Run("file.quit"),
         Wait(Seconds(60)),
     ]"#;
     display.plays(folder.path(), &["cornell-box"], script);

@@ -1,8 +1,7 @@
 //! New, open, save, quit.
 
-use super::question::{Purpose, Question};
+use super::question::{FileTask, Purpose, Question};
 use super::{Document, adopt, dialog, note_state_now};
-use crate::editor::action::Action;
 use crate::editor::edits;
 use crate::editor::history::{Gesture, History};
 use crate::editor::notice::Notices;
@@ -16,48 +15,32 @@ use bevy::app::AppExit;
 use bevy::ecs::world::World;
 use std::path::Path;
 
-/// Does what an action asks for, if it is about files, or asks first.
-pub(super) fn perform(world: &mut World, action: &Action) {
-    match action {
-        Action::New | Action::Open(_) | Action::Quit => request(world, action),
-        Action::OpenDialog => dialog::ask(world, Purpose::Open),
-        Action::ImportDialog => dialog::ask(world, Purpose::Import),
-        Action::SaveAsDialog => dialog::ask(world, Purpose::SaveAs),
-        Action::Save | Action::SaveAs(_) => perform_now(world, action),
-        _ => {}
-    }
-}
-
 /// Does it, unless unsaved changes would be lost: then that is asked.
-pub(super) fn request(world: &mut World, action: &Action) {
-    let loses = matches!(action, Action::New | Action::Open(_) | Action::Quit);
+pub(in crate::editor) fn request(world: &mut World, task: FileTask) {
+    let loses = matches!(task, FileTask::New | FileTask::Open(_) | FileTask::Quit);
+    if !loses {
+        return perform_now(world, task);
+    }
     world.resource_mut::<Gesture>().end();
     note_state_now(world);
-    if loses && world.resource::<Document>().unsaved {
-        let then = action.clone();
-        world.resource_mut::<Document>().question = Some(Question::Unsaved { then });
+    if world.resource::<Document>().unsaved {
+        world.resource_mut::<Document>().question = Some(Question::Unsaved { then: task });
     } else {
-        perform_now(world, action);
+        perform_now(world, task);
     }
 }
 
 /// Does it.
-pub(super) fn perform_now(world: &mut World, action: &Action) {
-    match action {
-        Action::New => {
+pub(super) fn perform_now(world: &mut World, task: FileTask) {
+    match task {
+        FileTask::New => {
             open_empty(world);
             finish_opening(world, "Untitled".into(), None);
         }
-        Action::Open(path) => open_file(world, path, false),
-        Action::Import(_) => {
-            edits::perform(world, action);
-        }
-        Action::Save => match world.resource::<Document>().path.clone() {
-            Some(path) => save_to(world, &path),
-            None => dialog::ask(world, Purpose::SaveAs),
-        },
-        Action::SaveAs(path) => save_to(world, path),
-        Action::Quit => {
+        FileTask::Open(path) => open_file(world, &path, false),
+        FileTask::Import(path) => edits::step_import(world, &path),
+        FileTask::SaveAs(path) => save_to(world, &path),
+        FileTask::Quit => {
             let job = world.get_resource::<RenderJob>();
             let rendered = job.and_then(RenderJob::progress);
             match rendered.map(|progress| progress.file) {
@@ -67,7 +50,14 @@ pub(super) fn perform_now(world: &mut World, action: &Action) {
                 None => quit(world),
             }
         }
-        _ => {}
+    }
+}
+
+/// Writes the scene to its file; where it has none, asks for one.
+pub(super) fn save_here(world: &mut World) {
+    match world.resource::<Document>().path.clone() {
+        Some(path) => save_to(world, &path),
+        None => dialog::ask(world, Purpose::SaveAs),
     }
 }
 
@@ -191,6 +181,6 @@ pub(super) fn write_to(world: &mut World, path: &Path) {
         .opened(name, Some(path.to_path_buf()), state);
     remember(world, path);
     if let Some(then) = then {
-        perform_now(world, &then);
+        perform_now(world, then);
     }
 }

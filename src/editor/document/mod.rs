@@ -20,21 +20,20 @@ mod recovery;
 mod watch;
 mod window;
 
-pub(super) use files::open_file;
-pub use question::{Answer, Purpose, Question, answer};
+pub(super) use files::{open_file, request};
+pub use question::{Answer, FileTask, Purpose, Question, answer};
 pub(super) use recovery::give_up_work;
 pub use recovery::{Recovered, RecoveryFolder};
 pub(super) use window::{picture_at, typed_picture};
 
-use super::action::Action;
+use super::command::{AddCommands, Command, commands};
 use super::history::{History, commit};
 use super::notice::Notices;
-use crate::editor::schedule::EditorUpdate;
+use super::schedule::{Dispatch, EditorUpdate};
 use crate::io::LoadProblems;
 use bevy::app::{App, Last, Plugin};
 use bevy::ecs::change_detection::{DetectChanges, DetectChangesMut};
 use bevy::ecs::event::Event;
-use bevy::ecs::message::{MessageCursor, Messages};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::schedule::IntoScheduleConfigs;
 use bevy::ecs::system::{Local, Res, ResMut};
@@ -59,7 +58,7 @@ pub struct Document {
     saved: Option<u64>,
     unsaved: bool,
     /// What was waiting for the scene to be saved.
-    then: Option<Action>,
+    then: Option<FileTask>,
     /// Counts the scenes that were opened.
     scene: u64,
 }
@@ -123,7 +122,8 @@ impl Plugin for DocumentPlugin {
         app.init_resource::<Document>()
             .init_resource::<Notices>()
             .init_resource::<dialog::Dialogs>()
-            .add_systems(EditorUpdate, (dialog::take_choices, act).chain())
+            .add_commands(commands())
+            .add_systems(EditorUpdate, dialog::take_choices.before(Dispatch))
             .add_systems(Last, (note_state, tell_load_problems));
         if let Some(folder) = &self.recovery {
             recovery::add_to(app, folder, !self.leaves_recovered);
@@ -134,13 +134,20 @@ impl Plugin for DocumentPlugin {
     }
 }
 
-fn act(world: &mut World, mut cursor: Local<MessageCursor<Action>>) {
-    let actions: Vec<Action> = {
-        let messages = world.resource::<Messages<Action>>();
-        cursor.read(messages).cloned().collect()
-    };
-    for action in &actions {
-        files::perform(world, action);
+fn commands() -> Vec<Command> {
+    commands! {
+        "file.new" "New" ["Ctrl+N"] "Starts an empty scene with a camera and a light"
+            => |world| request(world, FileTask::New); menu("File", 0),
+        "file.open" "Open…" ["Ctrl+O"] "Opens a scene or a model: .scn.ron, .obj, .gltf, .glb, .stl, .ply"
+            => |world| dialog::ask(world, Purpose::Open); menu("File", 0),
+        "file.import" "Import…" ["Ctrl+I"] "Adds a model's meshes, materials, lights and cameras to this scene"
+            => |world| dialog::ask(world, Purpose::Import); menu("File", 1); menu("Add", 1),
+        "file.save" "Save" ["Ctrl+S"] "Writes the scene to its file"
+            => files::save_here; menu("File", 2),
+        "file.save-as" "Save as…" ["Ctrl+Shift+S"] "Writes the scene to another file: .scn.ron, .obj or .glb"
+            => |world| dialog::ask(world, Purpose::SaveAs); menu("File", 2),
+        "file.quit" "Quit" ["Ctrl+Q"] "Closes the editor; asks where changes would be lost"
+            => |world| request(world, FileTask::Quit); menu("File", 5),
     }
 }
 

@@ -1,10 +1,24 @@
 //! What a person has to decide, and what follows.
 
-use super::files::{self, perform_now, save_to};
+use super::files::{self, perform_now};
 use super::{Document, dialog, recovery};
-use crate::editor::action::Action;
 use bevy::ecs::world::World;
 use std::path::{Path, PathBuf};
+
+/// What is done with a file, at once or after a question.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FileTask {
+    /// Begins an empty scene.
+    New,
+    /// Opens a file, or a built-in scene by its name.
+    Open(PathBuf),
+    /// Adds a model's content to the open scene.
+    Import(PathBuf),
+    /// Writes the scene.
+    SaveAs(PathBuf),
+    /// Ends the program.
+    Quit,
+}
 
 /// What has to be decided before anything else goes on.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,7 +26,7 @@ pub enum Question {
     /// Unsaved changes would be lost by this. Answers: `Yes` saves first, `No` loses them, `Cancel`.
     Unsaved {
         /// What was asked for.
-        then: Action,
+        then: FileTask,
     },
     /// A path to type, where there is no native dialog. Answers: `Path`, `Cancel`.
     Path {
@@ -31,7 +45,7 @@ pub enum Question {
         /// The file.
         file: PathBuf,
         /// What writes it.
-        then: Action,
+        then: FileTask,
     },
     /// Another program has changed the scene's file since it was read or written here; asked when that is seen, and
     /// before it would be written over. Answers: `Yes` overwrites it,
@@ -90,16 +104,12 @@ pub fn answer(world: &mut World, answer: Answer) {
     };
     match (question, answer) {
         (Question::Unsaved { then }, Answer::Yes) => {
-            let path = world.resource::<Document>().path.clone();
             world.resource_mut::<Document>().then = Some(then);
-            match path {
-                Some(path) => save_to(world, &path),
-                None => dialog::ask(world, Purpose::SaveAs),
-            }
+            files::save_here(world);
         }
         (Question::Unsaved { then }, Answer::No) => {
             recovery::give_up_work(world);
-            perform_now(world, &then);
+            perform_now(world, then);
         }
         (Question::Path { .. }, Answer::Path(path)) if path.as_os_str().is_empty() => {
             world.resource_mut::<Document>().then = None;
@@ -110,7 +120,7 @@ pub fn answer(world: &mut World, answer: Answer) {
             dialog::give_up(world);
             world.resource_mut::<Document>().then = None;
         }
-        (Question::Replace { then, .. }, Answer::Yes) => perform_now(world, &then),
+        (Question::Replace { then, .. }, Answer::Yes) => perform_now(world, then),
         (Question::Changed { file }, Answer::Yes) => files::write_to(world, &file),
         (Question::Changed { file }, Answer::No) => {
             world.resource_mut::<Document>().then = None;
@@ -129,9 +139,9 @@ pub fn answer(world: &mut World, answer: Answer) {
 
 /// Goes on with a path that was chosen or typed. The desktop's own dialog has asked whether `asked` may be replaced.
 pub(super) fn take(world: &mut World, purpose: Purpose, path: &Path, asked: Option<&Path>) {
-    let action = chosen(purpose, path);
-    let Action::SaveAs(file) = &action else {
-        return files::request(world, &action);
+    let task = chosen(purpose, path);
+    let FileTask::SaveAs(file) = &task else {
+        return files::request(world, task);
     };
     let own = world.resource::<Document>().path.as_deref() == Some(file);
     let replaced = if file.exists() {
@@ -143,24 +153,24 @@ pub(super) fn take(world: &mut World, purpose: Purpose, path: &Path, asked: Opti
     };
     match replaced {
         Some(file) => {
-            let then = action;
+            let then = task;
             world.resource_mut::<Document>().question = Some(Question::Replace { file, then });
         }
-        None => perform_now(world, &action),
+        None => perform_now(world, task),
     }
 }
 
 /// What a chosen path asks for. A scene without an extension gets ours.
-fn chosen(purpose: Purpose, path: &Path) -> Action {
+fn chosen(purpose: Purpose, path: &Path) -> FileTask {
     match purpose {
-        Purpose::Open => Action::Open(path.to_path_buf()),
-        Purpose::Import => Action::Import(path.to_path_buf()),
+        Purpose::Open => FileTask::Open(path.to_path_buf()),
+        Purpose::Import => FileTask::Import(path.to_path_buf()),
         Purpose::SaveAs if path.extension().is_none() => {
             let mut name = path.as_os_str().to_owned();
             name.push(".scn.ron");
-            Action::SaveAs(name.into())
+            FileTask::SaveAs(name.into())
         }
-        Purpose::SaveAs => Action::SaveAs(path.to_path_buf()),
+        Purpose::SaveAs => FileTask::SaveAs(path.to_path_buf()),
     }
 }
 
@@ -199,7 +209,7 @@ mod tests {
         let mut app = rendering(&file);
         let world = app.world_mut();
         for (given, goes_on) in [(Answer::Cancel, true), (Answer::Yes, false)] {
-            perform_now(world, &Action::Quit);
+            perform_now(world, FileTask::Quit);
             let asked = world.resource::<Document>().question.clone();
             assert_eq!(asked, Some(Question::Rendering { file: file.clone() }));
             answer(world, given);
@@ -208,7 +218,7 @@ mod tests {
             let progress = world.resource::<RenderJob>().progress();
             assert_eq!(progress.is_some(), goes_on);
         }
-        perform_now(world, &Action::Quit);
+        perform_now(world, FileTask::Quit);
         assert_eq!(world.resource::<Document>().question, None);
     }
 
@@ -218,7 +228,7 @@ mod tests {
         let mut app = rendering(&folder.path().join("a.png"));
         let world = app.world_mut();
         world.resource_mut::<Notices>().close_all();
-        perform_now(world, &Action::New);
+        perform_now(world, FileTask::New);
         assert!(world.resource::<RenderJob>().progress().is_none());
         assert!(!world.resource::<Notices>().is_empty(), "it is said");
     }

@@ -41,7 +41,7 @@ fn take_closing(
     mut actions: bevy::ecs::message::MessageWriter<Action>,
 ) {
     if requests.read().next().is_some() {
-        actions.write(Action::Quit);
+        actions.write(Action::run("file.quit"));
     }
 }
 

@@ -1,179 +1,256 @@
-//! The actions that edit and select, each a step of its own.
+//! The commands that edit and select, each a step of its own.
 
 use super::{
     AddAt, Clipboard, SceneIndex, add, add_model, copy, delete, duplicate, name_of, paste, rename,
     reparent, scene_entity, set_visible,
 };
-use crate::editor::action::Action;
+use crate::editor::action::{Addition, shapes};
+use crate::editor::command::{AddCommands, Command, Over, State, commands};
 use crate::editor::history::{Gesture, History, commit, redo, undo};
 use crate::editor::notice::Notices;
-use crate::editor::schedule::EditorUpdate;
-use crate::editor::selection::Selection;
+use crate::editor::selection::{Escaped, Selection};
 use crate::scene::SceneId;
 use bevy::app::{App, Plugin};
 use bevy::camera::visibility::Visibility;
-use bevy::ecs::message::{MessageCursor, Messages};
-use bevy::ecs::system::Local;
 use bevy::ecs::world::World;
 use std::path::Path;
 
-/// Does what [`Action`]s ask for that edit the scene or select in it. Needs
+/// Does what [`Action`](crate::editor::Action)s ask for that edit the scene or select in it. Needs
 /// [`HistoryPlugin`](crate::editor::history::HistoryPlugin).
 pub struct EditsPlugin;
 
 impl Plugin for EditsPlugin {
     fn build(&self, app: &mut App) {
-        app.add_message::<Action>()
-            .init_resource::<Clipboard>()
+        app.init_resource::<Clipboard>()
             .init_resource::<AddAt>()
             .init_resource::<Selection>()
             .init_resource::<Notices>()
             .init_resource::<SceneIndex>()
-            .add_systems(EditorUpdate, edit);
+            .add_commands(commands())
+            .add_commands(shape_commands());
     }
 }
 
-fn edit(world: &mut World, mut cursor: Local<MessageCursor<Action>>) {
-    let actions: Vec<Action> = {
-        let messages = world.resource::<Messages<Action>>();
-        cursor.read(messages).cloned().collect()
-    };
-    for action in &actions {
-        perform(world, action);
+const ANY: &[Over] = &[Over::Entity];
+const ANYWHERE: &[Over] = &[Over::Entity, Over::Nothing];
+
+fn commands() -> Vec<Command> {
+    commands! {
+        "edit.undo" "Undo" ["Ctrl+Z"] "Takes the last step back"
+            => step_back; menu("Edit", 0); repeats(); state(about_undo),
+        "edit.redo" "Redo" ["Ctrl+Shift+Z", "Ctrl+Y"] "Does the step again that was taken back"
+            => step_forth; menu("Edit", 0); repeats(); state(about_redo),
+        "edit.copy" "Copy" ["Ctrl+C"] "Keeps the selected entities for pasting"
+            => copy_selected; menu("Edit", 2); over(ANY); state(is_any_selected),
+        "edit.paste" "Paste" ["Ctrl+V"] "Adds what was copied"
+            => |world| step(world, step_paste); menu("Edit", 2); over(ANYWHERE); state(is_any_copied),
+        "edit.duplicate" "Duplicate" ["Ctrl+D"] "Adds a copy of the selected entities where they are"
+            => |world| step(world, step_duplicate); menu("Edit", 2); over(ANY); state(is_any_selected),
+        "edit.delete" "Delete" ["Delete", "X"] "Removes the selected entities and their children"
+            => |world| step(world, step_delete); menu("Edit", 2); over(ANY); state(is_any_selected),
+        "edit.hide" "Hide or show" ["H"] "A hidden entity is not traced"
+            => |world| step(world, step_hide); menu("Edit", 2); over(ANY); state(is_any_selected),
+        "select.all" "Select all" ["Ctrl+A"] "Selects every entity"
+            => select_all; menu("Edit", 3); over(&[Over::Nothing]),
+        "select.none" "Select nothing" ["Escape"] "Selects no entity, lets go of a chosen ray or box, and brings the panels back"
+            => select_none; menu("Edit", 3),
+        "add.point-light" "Point light" [] "Shines in all directions from one point; with a cone it is a spot"
+            => |world| step_add(world, &Addition::PointLamp); menu("Add", 2),
+        "add.directional-light" "Directional light" [] "Shines from infinitely far, like the sun"
+            => |world| step_add(world, &Addition::DirectionalLamp); menu("Add", 2),
+        "add.segment-light" "Segment light" [] "A glowing line with a colour at each end: soft shadows"
+            => |world| step_add(world, &Addition::SegmentLamp); menu("Add", 2),
+        "add.parallelogram-light" "Parallelogram light" [] "A glowing surface with a colour at each corner: soft shadows"
+            => |world| step_add(world, &Addition::ParallelogramLamp); menu("Add", 2),
+        "add.camera" "Camera" [] "Adds a camera"
+            => |world| step_add(world, &Addition::Camera); menu("Add", 3),
+        "add.material" "Shared material" [] "A material that several objects can use: one change reaches all of them"
+            => |world| step_add(world, &Addition::Material); menu("Add", 3),
+        "add.group" "Group" [] "An empty place: what is dragged onto it in the list moves with it"
+            => |world| step_add(world, &Addition::Group); menu("Add", 3),
     }
 }
 
-/// Does what an action asks for, if it is one that edits or selects, and says whether it is.
-pub(in crate::editor) fn perform(world: &mut World, action: &Action) -> bool {
-    let selected = || world.resource::<Selection>().ids().to_vec();
-    match action {
-        Action::Select(ids) => {
-            let ids: Vec<SceneId> = ids.clone();
-            select(world, ids);
-            return true;
-        }
-        Action::SelectNone => {
-            select(world, Vec::new());
-            return true;
-        }
-        Action::SelectAll => {
-            let mut all = world.query::<&SceneId>();
-            let mut all: Vec<SceneId> = all.iter(world).copied().collect();
-            all.sort_unstable();
-            select(world, all);
-            return true;
-        }
-        Action::Copy => {
-            let ids = selected();
-            if !ids.is_empty() {
-                match copy(world, &ids) {
-                    Ok(clipboard) => world.insert_resource(clipboard),
-                    Err(error) => world.resource_mut::<Notices>().fault(error.to_string()),
-                }
-            }
-            return true;
-        }
-        Action::Undo => {
-            let text = world.resource::<History>().undo_text().map(str::to_owned);
-            let done = undo(world);
-            tell(world, done, "Undone", text, "Nothing to undo");
-            return true;
-        }
-        Action::Redo => {
-            let text = world.resource::<History>().redo_text().map(str::to_owned);
-            let done = redo(world);
-            tell(world, done, "Done again", text, "Nothing to redo");
-            return true;
-        }
-        Action::Add(_)
-        | Action::Import(_)
-        | Action::Paste
-        | Action::Duplicate
-        | Action::Delete
-        | Action::Rename(..)
-        | Action::Reparent(..)
-        | Action::ToggleVisible => {}
-        _ => return false,
+/// A command for each shape.
+fn shape_commands() -> impl Iterator<Item = Command> {
+    shapes().into_iter().map(|(name, _)| {
+        let id = format!("add.{}", name.to_lowercase());
+        let what = Addition::Shape(name.into());
+        let help = "Adds the shape at what the view looks at";
+        Command::new(id, name, help, move |world: &mut World| {
+            step_add(world, &what)
+        })
+        .menu("Add/Shape", 0)
+    })
+}
+
+fn is_any_selected(world: &World) -> State {
+    let any = !world.resource::<Selection>().is_empty();
+    State::when(any, "Nothing is selected.")
+}
+
+fn is_any_copied(world: &World) -> State {
+    let any = !world.resource::<Clipboard>().text.is_empty();
+    State::when(any, "Nothing was copied.")
+}
+
+fn about_undo(world: &World) -> State {
+    let text = world.resource::<History>().undo_text();
+    about_step(world, text, "Nothing to undo")
+}
+
+fn about_redo(world: &World) -> State {
+    let text = world.resource::<History>().redo_text();
+    about_step(world, text, "Nothing to redo")
+}
+
+/// Which step it is about. A gesture that is under way becomes one.
+fn about_step(world: &World, text: Option<&str>, why_not: &'static str) -> State {
+    let gesture = world.resource::<Gesture>().active();
+    State {
+        detail: text.map(str::to_owned),
+        ..State::when(text.is_some() || gesture, why_not)
     }
+}
+
+fn step_back(world: &mut World) {
+    let text = world.resource::<History>().undo_text().map(str::to_owned);
+    if undo(world) {
+        tell(world, "Undone", text);
+    }
+}
+
+fn step_forth(world: &mut World) {
+    let text = world.resource::<History>().redo_text().map(str::to_owned);
+    if redo(world) {
+        tell(world, "Done again", text);
+    }
+}
+
+fn copy_selected(world: &mut World) {
+    match copy(world, &selected(world)) {
+        Ok(clipboard) => world.insert_resource(clipboard),
+        Err(error) => world.resource_mut::<Notices>().fault(error.to_string()),
+    }
+}
+
+fn select_all(world: &mut World) {
+    let mut all = world.query::<&SceneId>();
+    let mut all: Vec<SceneId> = all.iter(world).copied().collect();
+    all.sort_unstable();
+    select(world, all);
+}
+
+fn select_none(world: &mut World) {
+    select(world, Vec::new());
+    world.trigger(Escaped);
+}
+
+fn selected(world: &World) -> Vec<SceneId> {
+    world.resource::<Selection>().ids().to_vec()
+}
+
+/// Makes a step of what `change` does; it tells how the step is to be called.
+pub(in crate::editor) fn step(
+    world: &mut World,
+    change: impl FnOnce(&mut World) -> Option<String>,
+) {
     // What was changed before is a step of its own.
     world.resource_mut::<Gesture>().end();
     commit(world);
-    if let Some(name) = change(world, action) {
+    if let Some(name) = change(world) {
         world.resource_mut::<History>().name_next(name);
     }
     commit(world);
-    true
 }
 
-/// Does it; how the step is to be called.
-fn change(world: &mut World, action: &Action) -> Option<String> {
-    let selected = world.resource::<Selection>().ids().to_vec();
-    match action {
-        Action::Add(what) => {
-            let at = *world.resource::<AddAt>();
-            match add(world, what, at) {
-                Some(id) => {
-                    select(world, vec![id]);
-                    return Some(format!("Add {}", name_of(world, id)));
-                }
-                None => {
-                    let text = format!("{what:?} is no shape that can be added");
-                    world.resource_mut::<Notices>().fault(text);
-                }
-            }
-        }
-        Action::Import(file) => return add_file(world, file),
-        Action::Paste => {
-            let clipboard = world.resource::<Clipboard>().clone();
-            match paste(world, &clipboard) {
-                Ok(new) if !new.is_empty() => {
-                    let name = format!("Paste {}", call(world, &new));
-                    select(world, new);
-                    return Some(name);
-                }
-                Ok(_) => {}
-                Err(error) => world.resource_mut::<Notices>().fault(error.to_string()),
-            }
-        }
-        Action::Duplicate if !selected.is_empty() => {
-            let name = format!("Duplicate {}", call(world, &selected));
-            let new = duplicate(world, &selected);
+/// Adds one thing where the view looks, and selects it.
+pub(in crate::editor) fn step_add(world: &mut World, what: &Addition) {
+    step(world, |world| {
+        let at = *world.resource::<AddAt>();
+        let Some(id) = add(world, what, at) else {
+            let text = format!("{what:?} is no shape that can be added");
+            world.resource_mut::<Notices>().fault(text);
+            return None;
+        };
+        select(world, vec![id]);
+        Some(format!("Add {}", name_of(world, id)))
+    });
+}
+
+/// Gives an entity a name.
+pub(in crate::editor) fn step_rename(world: &mut World, id: SceneId, name: &str) {
+    step(world, |world| {
+        let old = name_of(world, id);
+        rename(world, id, name);
+        Some(format!("Rename {old} to {name}"))
+    });
+}
+
+/// Puts entities below another one, or at the top.
+pub(in crate::editor) fn step_reparent(
+    world: &mut World,
+    ids: &[SceneId],
+    parent: Option<SceneId>,
+) {
+    step(world, |world| {
+        let whose = call(world, ids);
+        reparent(world, ids, parent);
+        Some(match parent {
+            Some(parent) => format!("Put {whose} below {}", name_of(world, parent)),
+            None => format!("Put {whose} at the top"),
+        })
+    });
+}
+
+/// Adds a model's content to the scene, and selects it.
+pub(in crate::editor) fn step_import(world: &mut World, file: &Path) {
+    step(world, |world| add_file(world, file));
+}
+
+fn step_paste(world: &mut World) -> Option<String> {
+    let clipboard = world.resource::<Clipboard>().clone();
+    match paste(world, &clipboard) {
+        Ok(new) if !new.is_empty() => {
+            let name = format!("Paste {}", call(world, &new));
             select(world, new);
-            return Some(name);
+            Some(name)
         }
-        Action::Delete if !selected.is_empty() => {
-            let name = format!("Delete {}", call(world, &selected));
-            delete(world, &selected);
-            return Some(name);
+        Ok(_) => None,
+        Err(error) => {
+            world.resource_mut::<Notices>().fault(error.to_string());
+            None
         }
-        Action::Rename(id, name) => {
-            let old = name_of(world, *id);
-            rename(world, *id, name);
-            return Some(format!("Rename {old} to {name}"));
-        }
-        Action::Reparent(ids, parent) => {
-            let whose = call(world, ids);
-            reparent(world, ids, *parent);
-            return Some(match parent {
-                Some(parent) => format!("Put {whose} below {}", name_of(world, *parent)),
-                None => format!("Put {whose} at the top"),
-            });
-        }
-        Action::ToggleVisible if !selected.is_empty() => {
-            let shown = |&id: &SceneId| {
-                let entity = scene_entity(world, id);
-                let now = entity.and_then(|entity| world.get::<Visibility>(entity));
-                now.is_some_and(|now| *now != Visibility::Hidden)
-            };
-            let show = !selected.iter().any(shown);
-            let verb = if show { "Show" } else { "Hide" };
-            let name = format!("{verb} {}", call(world, &selected));
-            set_visible(world, &selected, show);
-            return Some(name);
-        }
-        _ => {}
     }
-    None
+}
+
+fn step_duplicate(world: &mut World) -> Option<String> {
+    let ids = selected(world);
+    let name = format!("Duplicate {}", call(world, &ids));
+    let new = duplicate(world, &ids);
+    select(world, new);
+    Some(name)
+}
+
+fn step_delete(world: &mut World) -> Option<String> {
+    let ids = selected(world);
+    let name = format!("Delete {}", call(world, &ids));
+    delete(world, &ids);
+    Some(name)
+}
+
+fn step_hide(world: &mut World) -> Option<String> {
+    let ids = selected(world);
+    let shown = |&id: &SceneId| {
+        let entity = scene_entity(world, id);
+        let now = entity.and_then(|entity| world.get::<Visibility>(entity));
+        now.is_some_and(|now| *now != Visibility::Hidden)
+    };
+    let show = !ids.iter().any(shown);
+    let verb = if show { "Show" } else { "Hide" };
+    let name = format!("{verb} {}", call(world, &ids));
+    set_visible(world, &ids, show);
+    Some(name)
 }
 
 fn add_file(world: &mut World, file: &Path) -> Option<String> {
@@ -195,7 +272,8 @@ fn add_file(world: &mut World, file: &Path) -> Option<String> {
     }
 }
 
-fn select(world: &mut World, ids: Vec<SceneId>) {
+/// Selects these, as far as they are entities of the scene, and no others.
+pub(in crate::editor) fn select(world: &mut World, ids: Vec<SceneId>) {
     let index = world.resource::<SceneIndex>();
     let ids: Vec<SceneId> = ids
         .into_iter()
@@ -215,19 +293,15 @@ fn call(world: &World, ids: &[SceneId]) -> String {
     }
 }
 
-fn tell(world: &mut World, done: bool, verb: &str, text: Option<String>, nothing: &str) {
-    let text = match (done, text) {
-        (true, Some(text)) => format!("{verb}: {text}"),
-        (true, None) => verb.to_owned(),
-        (false, _) => nothing.to_owned(),
-    };
+fn tell(world: &mut World, verb: &str, text: Option<String>) {
+    let text = text.map_or_else(|| verb.to_owned(), |text| format!("{verb}: {text}"));
     world.resource_mut::<Notices>().tell(text);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::editor::action::Addition;
+    use crate::editor::action::{Action, Addition};
     use crate::editor::headless_editor;
     use crate::sync::Traced;
 

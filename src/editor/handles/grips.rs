@@ -3,10 +3,12 @@
 use super::super::edits::scene_entity;
 use super::super::extent::{lamp_points, world_from_entity};
 use super::super::history::Gesture;
+use super::super::keys::Modifiers;
 use super::super::pick;
 use super::super::pointer::PointerUse;
 use super::super::selection::Selection;
 use super::super::viewport::Viewport;
+use super::surface::{Shaping, Surface, shaped};
 use super::{ActiveGrip, Tools};
 use crate::scene::{ParallelogramLamp, SceneId, SegmentLamp};
 use bevy::ecs::change_detection::DetectChanges;
@@ -55,44 +57,46 @@ pub(super) fn place(world: &mut World, grip: Grip) -> Option<Vec3> {
     Some(world_from_entity(world, entity)?.transform_point(point))
 }
 
-/// Puts a point somewhere in the world; the rest of the light follows.
+/// Puts a point somewhere in the world; the rest of the light follows, a parallelogram as
+/// [`Shaping::Sides`] does.
 pub(super) fn put(world: &mut World, grip: Grip, to: Vec3) {
+    let Some(to) = in_own_space(world, grip, to) else {
+        return;
+    };
     let Some(entity) = scene_entity(world, grip.id) else {
         return;
     };
-    let Some(place) = world_from_entity(world, entity) else {
-        return;
-    };
-    let to = place.affine().inverse().transform_point3(to);
-    if !to.is_finite() {
-        return;
-    }
     if let Some(mut lamp) = world.get_mut::<SegmentLamp>(entity) {
         if lamp.ends.get(grip.index).is_some_and(|end| *end != to) {
             lamp.ends[grip.index] = to;
         }
-    } else if let Some(mut lamp) = world.get_mut::<ParallelogramLamp>(entity) {
-        let (corner, edges) = with_corner(&lamp, grip.index, to);
-        if (lamp.corner, lamp.edges) != (corner, edges) {
-            (lamp.corner, lamp.edges) = (corner, edges);
-        }
+    } else if let Some(lamp) = world.get::<ParallelogramLamp>(entity) {
+        let surface = (lamp.corner, lamp.edges);
+        set_surface(world, grip, shaped(surface, grip.index, to, Shaping::Sides));
     }
 }
 
-/// The parallelogram one of whose corners was moved: the opposite one stays, and those beside it
-/// go half as far.
-fn with_corner(lamp: &ParallelogramLamp, index: usize, to: Vec3) -> (Vec3, [Vec3; 2]) {
-    let [along, across] = lamp.edges;
-    let (u, v) = ((index & 1) as f32, (index >> 1) as f32);
-    let by = to - (lamp.corner + u * along + v * across);
-    // How far the corner at (0, 0) and the ends of its edges go.
-    let part = |x: f32, y: f32| 1.0 - 0.5 * ((x - u).abs() + (y - v).abs());
-    let corner = part(0.0, 0.0);
-    let edges = [
-        along + (part(1.0, 0.0) - corner) * by,
-        across + (part(0.0, 1.0) - corner) * by,
-    ];
-    (lamp.corner + corner * by, edges)
+/// A place in the world as the light's entity has it.
+fn in_own_space(world: &World, grip: Grip, to: Vec3) -> Option<Vec3> {
+    let place = world_from_entity(world, scene_entity(world, grip.id)?)?;
+    let to = place.affine().inverse().transform_point3(to);
+    to.is_finite().then_some(to)
+}
+
+/// The surface of a parallelogram light, in its entity's space.
+fn surface_of(world: &World, grip: Grip) -> Option<Surface> {
+    let lamp = world.get::<ParallelogramLamp>(scene_entity(world, grip.id)?)?;
+    Some((lamp.corner, lamp.edges))
+}
+
+fn set_surface(world: &mut World, grip: Grip, (corner, edges): Surface) {
+    let entity = scene_entity(world, grip.id);
+    let lamp = entity.and_then(|entity| world.get_mut::<ParallelogramLamp>(entity));
+    if let Some(mut lamp) = lamp
+        && (lamp.corner, lamp.edges) != (corner, edges)
+    {
+        (lamp.corner, lamp.edges) = (corner, edges);
+    }
 }
 
 /// What the step is called that moves this point.
@@ -120,7 +124,8 @@ pub(in super::super) fn grip_at(world: &mut World, at: Vec2) -> Option<Grip> {
         .map(|(_, grip)| grip)
 }
 
-/// A point that is being dragged, in the plane through it that faces the view.
+/// A point that is being dragged: a light's corner in the light's plane, an end in the plane through it that faces the
+/// view.
 #[derive(Clone, Debug)]
 pub(in super::super) struct GripDrag {
     grip: Grip,
@@ -128,15 +133,30 @@ pub(in super::super) struct GripDrag {
     normal: Vec3,
     /// Where in that plane it was taken hold of.
     held_at: Vec3,
+    /// Of a parallelogram, as it was.
+    surface: Option<Surface>,
     begun: bool,
 }
+
+/// Cosine between the view's direction and a light's normal below which its plane is seen from its edge, and a small
+/// movement of the pointer would be a large one in it.
+const EDGE_ON: f32 = 0.1;
 
 impl GripDrag {
     /// Takes hold of a point. The gizmo goes there too.
     pub fn begin(world: &mut World, grip: Grip, at: Vec2) -> Option<Self> {
         let start = place(world, grip)?;
         let (_, view) = pick::camera(world)?;
-        let normal = *view.forward();
+        let surface = surface_of(world, grip);
+        let entity = scene_entity(world, grip.id)?;
+        let of_world = world_from_entity(world, entity)?.affine();
+        let plane = surface.map(|(_, edges)| {
+            let [a, b] = edges.map(|edge| of_world.transform_vector3(edge));
+            a.cross(b).normalize_or_zero()
+        });
+        let forward = *view.forward();
+        let seen = plane.filter(|normal| normal.dot(forward).abs() > EDGE_ON);
+        let normal = seen.unwrap_or(forward);
         let held_at = in_plane(world, at, start, normal)?;
         world.resource_mut::<ActiveGrip>().0 = Some(grip);
         Some(Self {
@@ -144,12 +164,13 @@ impl GripDrag {
             start,
             normal,
             held_at,
+            surface,
             begun: false,
         })
     }
 
-    /// The pointer went there.
-    pub fn follow(&mut self, world: &mut World, at: Vec2) {
+    /// The pointer went there. For a corner Alt shears, Shift keeps the ratio of the sides, and Ctrl the middle.
+    pub fn follow(&mut self, world: &mut World, at: Vec2, modifiers: Modifiers) {
         let Some(now) = in_plane(world, at, self.start, self.normal) else {
             return;
         };
@@ -163,7 +184,21 @@ impl GripDrag {
         if tools.snap && tools.move_step > 0.0 {
             to = (to / tools.move_step).round() * tools.move_step;
         }
-        put(world, self.grip, to);
+        let Some(surface) = self.surface else {
+            return put(world, self.grip, to);
+        };
+        let how = match modifiers {
+            Modifiers { alt: true, .. } => Shaping::Shear,
+            Modifiers { shift, ctrl, .. } => match (shift, ctrl) {
+                (false, false) => Shaping::Sides,
+                (true, false) => Shaping::Ratio,
+                (false, true) => Shaping::Middle,
+                (true, true) => Shaping::MiddleRatio,
+            },
+        };
+        if let Some(to) = in_own_space(world, self.grip, to) {
+            set_surface(world, self.grip, shaped(surface, self.grip.index, to, how));
+        }
     }
 
     /// Lets go.
@@ -175,7 +210,10 @@ impl GripDrag {
 
     /// Puts the point back.
     pub fn cancel(self, world: &mut World) {
-        put(world, self.grip, self.start);
+        match self.surface {
+            Some(surface) => set_surface(world, self.grip, surface),
+            None => put(world, self.grip, self.start),
+        }
         self.end(world);
     }
 }
@@ -244,42 +282,6 @@ pub(super) fn draw_grips(world: &mut World) {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn corners(corner: Vec3, [along, across]: [Vec3; 2]) -> [Vec3; 4] {
-        [
-            corner,
-            corner + along,
-            corner + across,
-            corner + along + across,
-        ]
-    }
-
-    #[test]
-    fn a_moved_corner_goes_where_it_is_put_and_the_opposite_one_stays() {
-        let lamp = ParallelogramLamp {
-            corner: Vec3::new(1.0, 2.0, 3.0),
-            edges: [Vec3::new(1.0, 0.5, 0.0), Vec3::new(-0.2, 0.0, 2.0)],
-            ..ParallelogramLamp::default()
-        };
-        let before = corners(lamp.corner, lamp.edges);
-        let by = Vec3::new(0.3, -0.6, 0.2);
-        for index in 0..4 {
-            let (corner, edges) = with_corner(&lamp, index, before[index] + by);
-            let after = corners(corner, edges);
-            for (other, (a, b)) in before.into_iter().zip(after).enumerate() {
-                let part = match index ^ other {
-                    0 => 1.0,
-                    3 => 0.0,
-                    _ => 0.5,
-                };
-                assert!(
-                    (b - a - part * by).length() < 1e-5,
-                    "corner {index} moved, corner {other} went {}",
-                    b - a
-                );
-            }
-        }
-    }
 
     #[test]
     fn an_end_is_put_in_the_world_whatever_the_light_hangs_on() {

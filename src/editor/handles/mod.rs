@@ -4,21 +4,21 @@
 //! The arrows, rings and cubes are Bevy's own gizmo, which moves one transform: that of a
 //! stand-in. What the stand-in does, the selection does.
 
+mod aim;
 mod bodies;
 mod gizmo;
 mod grips;
+mod surface;
 
+pub(super) use aim::aim;
 pub(super) use gizmo::cancel;
 pub(super) use grips::{Grip, GripDrag, grip_at, grips_of_selection};
 
-use super::action::Action;
-use super::pointer::use_pointer;
-use super::schedule::EditorUpdate;
+use super::command::{AddCommands, Command, Over, State, commands};
+use super::schedule::{Dispatch, EditorUpdate};
 use crate::view::HandleCameraPlugin;
 use bevy::app::{App, Plugin, PostUpdate, Startup};
-use bevy::ecs::message::{MessageCursor, Messages};
 use bevy::ecs::resource::Resource;
-use bevy::ecs::system::Local;
 use bevy::ecs::world::World;
 use bevy::gizmos::transform_gizmo::TransformGizmoSystems;
 use bevy::prelude::IntoScheduleConfigs;
@@ -81,20 +81,20 @@ impl Plugin for HandlesPlugin {
     fn build(&self, app: &mut App) {
         app.add_plugins(HandleCameraPlugin)
             .init_resource::<Tools>()
+            .add_commands(commands())
             .init_resource::<ActiveGrip>()
             .init_resource::<gizmo::GizmoDrag>()
             .add_systems(Startup, gizmo::spawn_stand_in)
             .add_systems(
                 EditorUpdate,
                 (
-                    obey,
                     grips::forget_grips,
                     gizmo::carry,
                     gizmo::place_stand_in,
                     gizmo::set_up,
                 )
                     .chain()
-                    .after(use_pointer),
+                    .after(Dispatch),
             )
             .configure_sets(
                 PostUpdate,
@@ -108,18 +108,27 @@ impl Plugin for HandlesPlugin {
     }
 }
 
-fn obey(world: &mut World, mut cursor: Local<MessageCursor<Action>>) {
-    let messages = world.resource::<Messages<Action>>();
-    let actions: Vec<Action> = cursor.read(messages).cloned().collect();
-    for action in actions {
-        let mut tools = world.resource_mut::<Tools>();
-        match action {
-            Action::Move => tools.tool = Tool::Move,
-            Action::Turn => tools.tool = Tool::Turn,
-            Action::Scale => tools.tool = Tool::Scale,
-            Action::ToggleLocal => tools.local = !tools.local,
-            Action::ToggleSnap => tools.snap = !tools.snap,
-            _ => {}
-        }
+fn commands() -> Vec<Command> {
+    commands! {
+        "tool.move" "Move" ["W"] "Drag the arrows to move the selection"
+            => |world| world.resource_mut::<Tools>().tool = Tool::Move; button("tools", "Move"); state(|world| has(world, Tool::Move)),
+        "tool.turn" "Turn" ["E"] "Drag the rings to turn the selection"
+            => |world| world.resource_mut::<Tools>().tool = Tool::Turn; button("tools", "Turn"); state(|world| has(world, Tool::Turn)),
+        "tool.scale" "Scale" ["T"] "Drag the cubes to scale the selection"
+            => |world| world.resource_mut::<Tools>().tool = Tool::Scale; button("tools", "Scale"); state(|world| has(world, Tool::Scale)),
+        "tool.local" "World or local axes" ["L"] "Whether handles follow the world's axes or the object's own"
+            => |world| flip(&mut world.resource_mut::<Tools>().local); button("tools", "Local"); state(|world| State::switch(world.resource::<Tools>().local)),
+        "tool.snap" "Snap" ["N"] "Handles move in steps; right click on the button: how large"
+            => |world| flip(&mut world.resource_mut::<Tools>().snap); button("tools", "Snap"); state(|world| State::switch(world.resource::<Tools>().snap)),
+        "tool.aim" "Aim at…" [] "The next click in the view turns the selected lights and cameras to what is there"
+            => aim::arm; menu("Edit", 2); over(&[Over::Entity]); state(aim::may_aim),
     }
+}
+
+fn has(world: &World, tool: Tool) -> State {
+    State::switch(world.resource::<Tools>().tool == tool)
+}
+
+fn flip(switch: &mut bool) {
+    *switch = !*switch;
 }

@@ -4,15 +4,16 @@ use super::debug_ray::{DebugRay, NO_VIEW, Shot};
 use super::list::{Arrangement, List};
 use super::stepper::Stepper;
 use super::view_of;
-use crate::editor::action::Action;
+use crate::editor::command::{Command, Over, State, commands};
 use crate::editor::notice::Notices;
 use crate::editor::preferences::Preferences;
+use crate::editor::selection::Escaped;
 use crate::inspect::{InspectSettings, Stands, Traversal};
 use crate::sync::Traced;
 use crate::trace;
-use bevy::ecs::message::{MessageCursor, Messages};
+use bevy::ecs::observer::On;
 use bevy::ecs::resource::Resource;
-use bevy::ecs::system::{Local, Res, ResMut};
+use bevy::ecs::system::{Res, ResMut};
 use bevy::ecs::world::World;
 use bevy::math::UVec2;
 use std::sync::Arc;
@@ -105,48 +106,56 @@ impl Inspected {
     }
 }
 
-/// What keys and menus ask for.
-pub(super) fn obey(world: &mut World, mut cursor: Local<MessageCursor<Action>>) {
-    let messages = world.resource::<Messages<Action>>();
-    let actions: Vec<Action> = cursor.read(messages).cloned().collect();
-    for action in actions {
-        match action {
-            Action::SelectNone => {
-                let mut inspected = world.resource_mut::<Inspected>();
-                inspected.ray = None;
-                inspected.node = None;
-            }
-            Action::ToggleRays => {
-                if let Some(mut preferences) = world.get_resource_mut::<Preferences>() {
-                    preferences.show_rays = !preferences.show_rays;
-                }
-            }
-            Action::ShootPixel(column, row) => shoot_pixel(world, UVec2::new(column, row)),
-            Action::StepForward => step(world, Stepper::forward),
-            Action::StepBack => step(world, Stepper::back),
-            Action::PlaySteps => step(world, Stepper::toggle),
-            _ => {}
-        }
+/// Nothing is chosen any more.
+pub(super) fn let_go(_: On<Escaped>, mut inspected: ResMut<Inspected>) {
+    inspected.ray = None;
+    inspected.node = None;
+}
+
+/// Whether there is a ray to step through.
+fn has_ray(world: &World) -> State {
+    State::when(
+        world.resource::<Inspected>().ray.is_some(),
+        "Steps are those of a debug ray: shoot one (R), and choose a ray of the list or of the view",
+    )
+}
+
+pub(super) fn commands() -> Vec<Command> {
+    commands! {
+        "rays.inspector" "Ray inspector" ["Shift+R"] "The debug ray's rays as a tree with all their numbers, below the picture"
+            => toggle_inspector; menu("View", 5); over(&[Over::Ray, Over::Box]); state(is_inspector_shown),
+        "rays.forward" "Next step" ["."] "One step of the chosen ray's way through the trees on"
+            => |world| step(world, Stepper::forward); over(&[Over::Ray]); repeats(); state(has_ray),
+        "rays.back" "Step before" [","] "One step of the chosen ray's way through the trees back"
+            => |world| step(world, Stepper::back); over(&[Over::Ray]); repeats(); state(has_ray),
+        "rays.play" "Play steps" ["Space"] "Plays the chosen ray's way through the trees, or stops"
+            => |world| step(world, Stepper::toggle); over(&[Over::Ray]); state(has_ray),
     }
 }
 
-/// Plays the chosen ray; where none is, says how one is chosen.
+fn toggle_inspector(world: &mut World) {
+    if let Some(mut preferences) = world.get_resource_mut::<Preferences>() {
+        preferences.show_rays = !preferences.show_rays;
+    }
+}
+
+fn is_inspector_shown(world: &World) -> State {
+    let preferences = world.get_resource::<Preferences>();
+    State::switch(preferences.is_some_and(|preferences| preferences.show_rays))
+}
+
 fn step(world: &mut World, how: impl FnOnce(&mut Stepper)) {
     let mut inspected = world.resource_mut::<Inspected>();
-    if inspected.ray.is_some() {
-        inspected.side = Side::Steps;
-        how(&mut inspected.stepper);
-    } else {
-        world.resource_mut::<Notices>().tell(
-            "Steps are those of a debug ray: shoot one (R), and choose a ray of the list or of the view",
-        );
-    }
+    inspected.side = Side::Steps;
+    how(&mut inspected.stepper);
 }
 
 /// A pixel of the picture as the view shows it now.
 pub(in crate::editor) fn shoot_pixel(world: &mut World, pixel: UVec2) {
     let view = view_of(world);
-    let mut ray = world.resource_mut::<DebugRay>();
+    let Some(mut ray) = world.get_resource_mut::<DebugRay>() else {
+        return;
+    };
     let known = ray.shot().cloned();
     let shot = match (view, known) {
         (Some((camera, size)), _) => Shot {
@@ -244,6 +253,7 @@ fn keep_node(inspected: &mut Inspected, world: &Arc<trace::World>) {
 mod tests {
     use super::super::tests::Bench;
     use super::*;
+    use crate::editor::action::Action;
     use crate::editor::inspection::Which;
 
     #[test]
@@ -279,7 +289,7 @@ mod tests {
         assert!(inspected.click(node, &world));
         assert!(!inspected.click(node, &world));
         assert!(!inspected.click(Stands::Camera, &world));
-        bench.act(Action::SelectNone);
+        bench.act(Action::run("select.none"));
         assert_eq!(bench.inspected().ray(), None);
         assert!(bench.inspected().node().is_none());
     }
@@ -287,14 +297,14 @@ mod tests {
     #[test]
     fn keys_play_the_steps_of_the_chosen_ray_and_say_so_where_there_is_none() {
         let mut bench = Bench::open("cornell-box");
-        bench.act(Action::StepForward);
+        bench.act(Action::run("rays.forward"));
         assert!(!bench.app.world().resource::<Notices>().is_empty());
         bench.shoot([300, 240]);
         bench.inspected().choose_ray(Some(0), false);
         bench.app.update();
-        bench.act(Action::StepForward);
-        bench.act(Action::StepForward);
-        bench.act(Action::StepBack);
+        bench.act(Action::run("rays.forward"));
+        bench.act(Action::run("rays.forward"));
+        bench.act(Action::run("rays.back"));
         assert_eq!(bench.inspected().stepper.at(), 1);
         assert_eq!(bench.inspected().side, Side::Steps);
     }

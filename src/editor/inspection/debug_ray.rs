@@ -4,18 +4,17 @@
 use super::addition::Addition;
 use super::names::Names;
 use super::view_of;
-use crate::editor::action::Action;
+use crate::editor::command::{Command, Over, State, commands};
 use crate::editor::notice::Notices;
 use crate::editor::viewport::Viewport;
 use crate::scene::{Output, RenderSettings};
 use crate::sync::Traced;
 use crate::trace::{Camera, RayTree, Samples, World, probe, samples_per_pixel};
-use bevy::ecs::message::{MessageCursor, Messages};
 use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
-use bevy::ecs::system::{Local, Res, ResMut};
+use bevy::ecs::system::{Res, ResMut};
 use bevy::ecs::world;
-use bevy::math::UVec2;
+use bevy::math::{UVec2, Vec2};
 use bevy::window::{PrimaryWindow, Window};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Arc, Mutex};
@@ -300,41 +299,51 @@ impl DebugRay {
     }
 }
 
-/// What R and clicks with Alt ask for: the pixel under the pointer. Beside the picture it takes the
-/// rays away.
-pub(super) fn shoot_at_pointer(world: &mut world::World, mut cursor: Local<MessageCursor<Action>>) {
-    let messages = world.resource::<Messages<Action>>();
-    let (mut asked, mut toggled) = (false, false);
-    for action in cursor.read(messages) {
-        asked |= *action == Action::ShootRay;
-        toggled ^= *action == Action::ToggleAllSamples;
+pub(super) fn commands() -> Vec<Command> {
+    commands! {
+        "rays.shoot" "Debug ray" ["R"] "Traces the pixel under the pointer again and draws its rays, as a click with Alt does; beside the picture it takes them away"
+            => shoot_at_pointer,
+        "rays.all-samples" "Rays of all samples" ["Ctrl+Shift+R"] "Draws the debug rays of all samples of the picked pixel, or again those of its first one"
+            => toggle_all_samples; menu("View/Rays and trees", 0); over(&[Over::Ray]); state(|world| State::switch(world.resource::<DebugRay>().which == Which::All)),
     }
-    if toggled {
-        let mut ray = world.resource_mut::<DebugRay>();
-        ray.which = match ray.which {
-            Which::All => Which::First,
-            _ => Which::All,
-        };
-    }
-    if !asked {
-        return;
-    }
+}
+
+fn toggle_all_samples(world: &mut world::World) {
+    let mut ray = world.resource_mut::<DebugRay>();
+    ray.which = match ray.which {
+        Which::All => Which::First,
+        _ => Which::All,
+    };
+}
+
+/// The pixel under the pointer. Beside the picture it takes the rays away.
+fn shoot_at_pointer(world: &mut world::World) {
     let mut windows = world.query_filtered::<&Window, With<PrimaryWindow>>();
     let pointer = windows.single(world).ok().and_then(Window::cursor_position);
     let viewport = world.resource::<Viewport>();
-    let place = pointer.map(|at| viewport.place(at));
-    let inside = place.filter(|at| at.min_element() >= 0.0 && at.max_element() < 1.0);
-    let Some(place) = inside else {
-        world.resource_mut::<DebugRay>().clear();
-        return;
-    };
-    if !viewport.hovered {
+    match pointer.filter(|&at| is_inside(viewport.place(at))) {
         // A panel lies over that place of the picture.
-        return;
+        Some(_) if !viewport.hovered => {}
+        Some(at) => {
+            shoot_at(world, at);
+        }
+        None => world.resource_mut::<DebugRay>().clear(),
+    }
+}
+
+fn is_inside(place: Vec2) -> bool {
+    place.min_element() >= 0.0 && place.max_element() < 1.0
+}
+
+/// The pixel at a place of the window, in logical pixels. `false` where none is traced there.
+pub(in crate::editor) fn shoot_at(world: &mut world::World, at: Vec2) -> bool {
+    let place = world.resource::<Viewport>().place(at);
+    if !is_inside(place) {
+        return false;
     }
     let Some((camera, size)) = view_of(world) else {
         world.resource_mut::<Notices>().tell(NO_VIEW);
-        return;
+        return false;
     };
     let pixel = (place * size.as_vec2()).as_uvec2().min(size - 1);
     world.resource_mut::<DebugRay>().shoot(Shot {
@@ -342,6 +351,7 @@ pub(super) fn shoot_at_pointer(world: &mut world::World, mut cursor: Local<Messa
         camera,
         size,
     });
+    true
 }
 
 /// The picked pixel, whenever the scene is another.

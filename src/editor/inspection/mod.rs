@@ -31,13 +31,14 @@ pub(super) mod names;
 pub(super) mod stepper;
 pub(super) mod tell;
 
-pub(super) use choice::Inspected;
+pub(super) use choice::{Inspected, shoot_pixel};
 pub(super) use debug_ray::{DebugRay, Which};
 pub(super) use draw::Drawings;
 pub(super) use drawn_set::{DrawnSet, Source};
 pub(super) use hover::Hovered;
 pub(super) use names::Names;
 
+use super::command::AddCommands;
 use super::document::SceneOpened;
 use super::schedule::EditorUpdate;
 use super::viewport::EditorCamera;
@@ -60,14 +61,15 @@ pub(super) struct RaysPlugin;
 
 impl Plugin for RaysPlugin {
     fn build(&self, app: &mut App) {
-        app.add_message::<super::action::Action>()
-            .init_resource::<InspectSettings>()
+        app.init_resource::<InspectSettings>()
             .init_resource::<super::notice::Notices>()
             .init_resource::<DebugRay>()
             .init_resource::<Inspected>()
             .init_resource::<Names>()
             .add_observer(forget_scene)
-            .add_systems(EditorUpdate, choice::obey)
+            .add_observer(choice::let_go)
+            .add_commands(choice::commands())
+            .add_commands(debug_ray::commands())
             .add_systems(
                 PostUpdate,
                 (
@@ -104,8 +106,7 @@ impl Plugin for InspectionPlugin {
             .init_resource::<Hovered>()
             .add_systems(
                 EditorUpdate,
-                (debug_ray::shoot_at_pointer, hover::find_hovered)
-                    .after(super::pointer::use_pointer),
+                hover::find_hovered.after(super::pointer::use_pointer),
             )
             .add_systems(
                 PostUpdate,

@@ -5,21 +5,23 @@
 //! projection are followed. Moving the view then leaves the camera, or, where it is locked to the
 //! view, moves it.
 
+mod commands;
 mod drag;
 mod eye;
 mod lens;
-mod obey;
 mod place;
 mod through;
 
+pub(super) use commands::look_through;
 pub(super) use drag::{ViewDrag, begin_drag, drag, end_drag, wheel};
 pub use eye::Eye;
 pub(super) use lens::{field_of_view, set_field_of_view, widen};
 
+use super::command::AddCommands;
 use super::document::SceneOpened;
 use super::edits::AddAt;
 use super::extent::scene_extent;
-use super::schedule::EditorUpdate;
+use super::schedule::{Dispatch, EditorUpdate};
 use super::viewport::Viewport;
 use crate::scene::{Projection as SceneProjection, SceneCamera, SceneId};
 use bevy::app::{App, Plugin, PostUpdate};
@@ -31,6 +33,7 @@ use bevy::ecs::world::World;
 use bevy::prelude::IntoScheduleConfigs;
 use bevy::transform::TransformSystems;
 use bevy::transform::components::Transform;
+use bevy_egui::EguiPostUpdateSet;
 use through::move_camera;
 
 /// Frames after which a scene's places and sizes are known: one to resolve its meshes, one to place
@@ -47,21 +50,18 @@ impl Plugin for NavigationPlugin {
             .init_resource::<LookThrough>()
             .init_resource::<drag::FlySpeed>()
             .add_observer(start)
+            .add_commands(commands::commands())
             .add_systems(
                 EditorUpdate,
-                (
-                    obey::obey,
-                    drag::fly,
-                    through::see_through,
-                    settle,
-                    aim_additions,
-                )
+                (drag::fly, through::see_through, settle, aim_additions)
                     .chain()
-                    .after(super::pointer::use_pointer),
+                    .after(Dispatch),
             )
             .add_systems(
                 PostUpdate,
+                // The panels' pass draws over the view as it will be seen.
                 place::place_view
+                    .before(EguiPostUpdateSet::EndPass)
                     .before(TransformSystems::Propagate)
                     .before(bevy::camera::CameraUpdateSystems),
             );
@@ -115,7 +115,7 @@ fn settle(world: &mut World) {
         return;
     };
     if world.resource::<LookThrough>().camera.is_none() {
-        obey::frame(world, true);
+        commands::frame(world, true);
         return;
     }
     let mut eye = world.resource_mut::<Eye>();

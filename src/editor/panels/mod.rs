@@ -7,7 +7,7 @@
 //!
 //! | module | draws |
 //! |---|---|
-//! | [`menu_bar`], [`toolbar`] | what is above; its entries are those of the table of actions |
+//! | [`menu_bar`], [`toolbar`] | what is above; made of the table of commands |
 //! | [`hierarchy`] | the list of entities, from the [`outline`] |
 //! | [`inspector`] | the tabs Object, Render, Debug and BVH |
 //! | [`status`] | the line below |
@@ -15,21 +15,30 @@
 //! | [`line_legend`], [`pattern`] | what the tracer's lines mean, and where a pixel's samples lie |
 //! | [`tree_pair`] | which builder's trees are on which side |
 //! | [`rays`] | the ray inspector, below the picture or over it |
+//! | [`answer`], [`first_steps`] | why a pixel is as it is; three things to try |
 //! | [`told`], [`readout`] | what is under the pointer: a line of the gizmos, a pixel |
+//! | [`context_menu`], [`palette`] | the table of commands: what fits a right click, and all of it |
 //! | [`dialogs`] | what is in front of everything |
 
+mod answer;
+mod bindings;
+mod commands;
 mod compare;
+mod context_menu;
 mod dialogs;
 mod fields;
+mod first_steps;
 mod gesture;
 mod hierarchy;
 mod inspector;
+mod kind_icons;
 mod line_legend;
 mod menu_bar;
 mod notices;
 mod outline;
 mod outline_rows;
 mod overlays;
+mod palette;
 mod pattern;
 mod rays;
 mod readout;
@@ -45,17 +54,25 @@ mod tree_pair;
 #[cfg(test)]
 mod tests;
 
+use super::command::AddCommands;
+use super::dispatch::dispatch;
 use super::document::Document;
 use super::embed::Editing;
 use super::history::within;
 use super::preferences::{Preferences, PreferencesPlugin};
 use super::viewport::Viewport;
-use bevy::app::{App, Plugin};
+use crate::sync::SyncSystems;
+use bevy::app::{App, Plugin, PostUpdate};
+use bevy::asset::AssetEventSystems;
+use bevy::camera::visibility::VisibilitySystems;
 use bevy::ecs::query::With;
 use bevy::ecs::schedule::IntoScheduleConfigs;
 use bevy::ecs::world::World;
 use bevy::math::{Rect, Vec2};
-use bevy_egui::{EguiContext, EguiPlugin, EguiPrimaryContextPass, PrimaryEguiContext, egui};
+use bevy::transform::TransformSystems;
+use bevy_egui::{
+    EguiContext, EguiPlugin, EguiPostUpdateSet, EguiPrimaryContextPass, PrimaryEguiContext, egui,
+};
 use outline::{Outline, outline_scene};
 use state::Panels;
 
@@ -73,9 +90,33 @@ impl Plugin for PanelsPlugin {
         }
         app.add_plugins(PreferencesPlugin)
             .init_resource::<Panels>()
-            .init_resource::<Outline>()
-            .add_systems(EguiPrimaryContextPass, (outline_scene, draw).chain());
+            .init_resource::<Outline>();
+        add_commands(app);
+        order_pass(app);
+        app.add_systems(EguiPrimaryContextPass, (outline_scene, draw).chain());
     }
+}
+
+/// What is edited in the panels' pass is traced in the same frame: the pass comes before all that is derived from the
+/// scene.
+fn order_pass(app: &mut App) {
+    app.configure_sets(
+        PostUpdate,
+        EguiPostUpdateSet::EndPass
+            .before(AssetEventSystems)
+            .before(TransformSystems::Propagate)
+            .before(VisibilitySystems::VisibilityPropagate)
+            .before(SyncSystems),
+    );
+}
+
+/// The commands of the panels, and what they hear of.
+fn add_commands(app: &mut App) {
+    app.add_commands(commands::commands())
+        .add_observer(commands::let_go)
+        .add_observer(answer::note_question)
+        .add_observer(answer::forget_question)
+        .add_observer(context_menu::note_right_click);
 }
 
 fn draw(world: &mut World) {
@@ -105,17 +146,24 @@ fn panels_ui(context: &egui::Context, world: &mut World) {
         let panels = &mut *panels;
         forget_scene(world, panels);
         inspector::settle(context, world, panels);
-        dialogs::answer_actions(world, panels);
         let free = around_ui(&mut ui, world, panels, &preferences);
         compare::compare_ui(&mut ui, free, world, panels);
         let over_overlay = overlays::overlays_ui(&mut ui, free, world, panels);
         readout::readout_ui(&ui, free, world, panels);
         told::told_ui(context, free, world, panels);
         rays::window_ui(context, free, world, panels);
+        context_menu::context_menu_ui(context, world, panels);
         dialogs::dialogs_ui(context, world, panels);
+        palette::palette_ui(context, world, panels);
         gesture::note_gesture(context, world, panels);
-        note_viewport(context, free, over_overlay, world);
+        note_viewport(
+            context,
+            free,
+            [over_overlay, panels.list_keys.focused],
+            world,
+        );
     });
+    dispatch(world);
 }
 
 /// Lets go of what belongs to the scene that was open before.
@@ -141,7 +189,7 @@ fn around_ui(
     let bar = |margin| egui::Frame::new().fill(fill).inner_margin(margin);
     egui::Panel::top("menu")
         .frame(bar(egui::Margin::symmetric(6, 2)))
-        .show_inside(ui, |ui| menu_bar::menu_bar_ui(ui, world, panels));
+        .show_inside(ui, |ui| menu_bar::menu_bar_ui(ui, world));
     egui::Panel::top("toolbar")
         .frame(bar(egui::Margin::symmetric(6, 4)))
         .show_inside(ui, |ui| toolbar::toolbar_ui(ui, world, panels));
@@ -205,7 +253,12 @@ fn contained(ui: &mut egui::Ui, body: impl FnOnce(&mut egui::Ui)) {
 }
 
 /// Tells the rest of the editor where the picture is, and whether pointer and keys are meant for it.
-fn note_viewport(context: &egui::Context, free: egui::Rect, over_overlay: bool, world: &mut World) {
+fn note_viewport(
+    context: &egui::Context,
+    free: egui::Rect,
+    [over_overlay, letters_taken]: [bool; 2],
+    world: &mut World,
+) {
     let zoom = context.zoom_factor();
     let rect = Rect {
         min: Vec2::new(free.min.x, free.min.y) * zoom,
@@ -222,11 +275,49 @@ fn note_viewport(context: &egui::Context, free: egui::Rect, over_overlay: bool, 
         && !context.egui_is_using_pointer();
     let modal = context.memory(|memory| memory.top_modal_layer().is_some());
     let takes_keys = !modal && !context.egui_wants_keyboard_input() && !context.any_popup_open();
+    let takes_letters = takes_keys && !letters_taken;
     let viewport = world.resource::<Viewport>();
-    if viewport.rect != rect || viewport.hovered != hovered || viewport.takes_keys != takes_keys {
+    let keys = [takes_keys, takes_letters];
+    if viewport.rect != rect
+        || viewport.hovered != hovered
+        || [viewport.takes_keys, viewport.takes_letters] != keys
+    {
         let mut viewport = world.resource_mut::<Viewport>();
         viewport.rect = rect;
         viewport.hovered = hovered;
-        viewport.takes_keys = takes_keys;
+        [viewport.takes_keys, viewport.takes_letters] = keys;
+    }
+}
+
+#[cfg(test)]
+mod pass_tests {
+    use super::*;
+    use crate::editor::headless_editor;
+    use crate::io::{OpenOptions, SceneSource, builtin, open};
+    use crate::scene::PointLamp;
+    use crate::sync::Traced;
+    use bevy::ecs::system::{Local, Query};
+    use bevy::transform::components::Transform;
+
+    #[test]
+    fn what_is_edited_in_the_panels_pass_is_traced_in_that_frame() {
+        let mut app = headless_editor();
+        order_pass(&mut app);
+        let edit = |mut lamps: Query<&mut Transform, With<PointLamp>>, mut frame: Local<f32>| {
+            *frame += 1.0;
+            for mut place in &mut lamps {
+                place.translation.y = *frame;
+            }
+        };
+        let source = SceneSource::Builtin(builtin::find("cornell-box").unwrap());
+        open(app.world_mut(), &source, OpenOptions::default()).unwrap();
+        app.update();
+        app.add_systems(PostUpdate, edit.in_set(EguiPostUpdateSet::EndPass));
+        for frame in 1..=5 {
+            app.update();
+            let traced = &app.world().resource::<Traced>().world;
+            let height = traced.lights.points[0].position.y;
+            assert_eq!(height, frame as f32, "in frame {frame}");
+        }
     }
 }

@@ -1,8 +1,7 @@
-//! Messages over the picture, and the hint of the first run.
+//! Messages over the picture.
 
 use super::says::Says;
 use crate::editor::notice::{Notice, Notices};
-use crate::editor::preferences::Preferences;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{self, Align2, Id, Label, Rect, RichText, Ui, vec2};
 
@@ -150,29 +149,4 @@ fn lines_ui(ui: &mut Ui, notice: &Notice) -> Option<Read> {
 pub(super) fn is_over(context: &egui::Context, rect: Rect) -> bool {
     let pointer = context.pointer_latest_pos();
     pointer.is_some_and(|at| rect.contains(at))
-}
-
-/// How one begins, until it was read once.
-pub(super) fn hint_ui(context: &egui::Context, free: Rect, world: &mut World) {
-    if world.resource::<Preferences>().hint_seen {
-        return;
-    }
-    let text = "Click selects · middle drag turns the view, with Shift moves it · wheel zooms · W E T: move, turn, scale · F1: all keys";
-    let top = free.min.y + 10.0;
-    let middle = free.center().x - context.viewport_rect().center().x;
-    egui::Area::new(Id::new("hint"))
-        .anchor(Align2::CENTER_TOP, vec2(middle, top))
-        .order(egui::Order::Middle)
-        .show(context, |ui| {
-            ui.set_max_width((free.width() - 40.0).max(160.0));
-            egui::Frame::popup(ui.style()).show(ui, |ui| {
-                ui.horizontal_wrapped(|ui| {
-                    ui.label(text);
-                    let close = ui.small_button("Got it");
-                    if close.says("Does not show this line again").clicked() {
-                        world.resource_mut::<Preferences>().hint_seen = true;
-                    }
-                });
-            });
-        });
 }

@@ -17,7 +17,7 @@ use bevy::mesh::Mesh3d;
 use bevy::platform::collections::HashMap;
 
 /// What an entity is, by its components.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Kind {
     Object,
     Material,
@@ -30,20 +30,6 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    /// A character of egui's own fonts.
-    pub fn glyph(self) -> &'static str {
-        match self {
-            Self::Object => "■",
-            Self::Material => "🎨",
-            Self::PointLamp => "💡",
-            Self::DirectionalLamp => "☀",
-            Self::SegmentLamp => "╱",
-            Self::ParallelogramLamp => "▱",
-            Self::Camera => "🎥",
-            Self::Group => "🗀",
-        }
-    }
-
     /// In words.
     pub fn name(self) -> &'static str {
         match self {
@@ -55,6 +41,38 @@ impl Kind {
             Self::ParallelogramLamp => "parallelogram light",
             Self::Camera => "camera",
             Self::Group => "group",
+        }
+    }
+}
+
+/// Kinds that the list shows alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Shown {
+    #[default]
+    All,
+    Objects,
+    Lights,
+    Cameras,
+    Materials,
+    Groups,
+}
+
+impl Shown {
+    /// Whether it shows such an entity.
+    pub fn has(self, kind: Kind) -> bool {
+        match self {
+            Self::All => true,
+            Self::Objects => kind == Kind::Object,
+            Self::Lights => matches!(
+                kind,
+                Kind::PointLamp
+                    | Kind::DirectionalLamp
+                    | Kind::SegmentLamp
+                    | Kind::ParallelogramLamp
+            ),
+            Self::Cameras => kind == Kind::Camera,
+            Self::Materials => kind == Kind::Material,
+            Self::Groups => kind == Kind::Group,
         }
     }
 }
@@ -88,9 +106,22 @@ pub(super) struct Outline {
 }
 
 impl Outline {
+    /// Where in the list the entity of that number is.
+    pub fn place(&self, id: SceneId) -> Option<usize> {
+        self.places.get(&id).copied()
+    }
+
+    /// Where the parent of an item is.
+    pub fn parent(&self, at: usize) -> Option<usize> {
+        let depth = self.items[at].depth.checked_sub(1)?;
+        (0..at)
+            .rev()
+            .find(|&before| self.items[before].depth == depth)
+    }
+
     /// The entity of that number.
     pub fn find(&self, id: SceneId) -> Option<&Item> {
-        self.items.get(*self.places.get(&id)?)
+        self.items.get(self.place(id)?)
     }
 }
 
@@ -105,7 +136,7 @@ type OfKind = Or<(
     Added<SceneCamera>,
 )>;
 
-type Shown = Or<(
+type ShowsChange = Or<(
     Changed<SceneId>,
     Changed<Name>,
     Changed<ChildOf>,
@@ -143,7 +174,7 @@ type Gone<'w, 's> = (
 
 /// Makes the list again where anything that it shows changed.
 pub(super) fn outline_scene(
-    changed: Query<(), (With<SceneId>, Shown)>,
+    changed: Query<(), (With<SceneId>, ShowsChange)>,
     mut gone: Gone,
     all: Query<Parts>,
     mut outline: ResMut<Outline>,

@@ -1,37 +1,98 @@
-//! Which rows of the list are to be seen: what is folded away or not searched for is left out.
+//! Which rows of the list are to be seen: what is folded away or not searched for is left out, and
+//! shared materials stand in a folder of their own, below the rest.
 
-use super::outline::Outline;
+use super::outline::{Item, Kind, Outline, Shown};
 use crate::scene::SceneId;
 use bevy::platform::collections::HashSet;
 use std::sync::Arc;
 
+/// A row of the list.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Row {
+    /// A place in [`Outline::items`].
+    Item(usize),
+    /// The folder of so many materials.
+    Materials(usize),
+}
+
+impl Row {
+    /// Its place in [`Outline::items`]; `None` for a folder.
+    pub fn item(self) -> Option<usize> {
+        match self {
+            Self::Item(at) => Some(at),
+            Self::Materials(_) => None,
+        }
+    }
+}
+
+/// What is searched for.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Filter {
+    /// A part of a name or of a kind; nothing for all.
+    pub text: String,
+    pub shown: Shown,
+}
+
+impl Filter {
+    /// Whether it leaves nothing out.
+    pub fn is_off(&self) -> bool {
+        self.text.trim().is_empty() && self.shown == Shown::All
+    }
+}
+
+/// Whether it stands in the folder of materials: one that is part of an object's group stays there.
+pub(super) fn is_in_folder(item: &Item) -> bool {
+    item.kind == Kind::Material && item.depth == 0
+}
+
 impl Outline {
     /// What is to be seen of the list: nothing below a folded entity; while something is searched
-    /// for, what contains it and the ancestors of that. Places in [`Self::items`].
-    fn rows(&self, folded: &HashSet<SceneId>, search: &str) -> Vec<usize> {
-        let needle = search.trim().to_lowercase();
-        let mut rows = Vec::with_capacity(self.items.len());
-        if needle.is_empty() {
-            let mut at = 0;
-            while let Some(item) = self.items.get(at) {
-                rows.push(at);
+    /// for, what fits and the ancestors of that.
+    fn rows(&self, folded: &HashSet<SceneId>, folder_folded: bool, filter: &Filter) -> Vec<Row> {
+        let mut rows = self.rows_of(folded, filter, false);
+        let materials = self.rows_of(folded, filter, true);
+        let top = materials.iter().filter_map(|row| row.item());
+        let count = top.filter(|&at| self.items[at].depth == 0).count();
+        if count > 0 {
+            rows.push(Row::Materials(count));
+            if !folder_folded || !filter.is_off() {
+                rows.extend(materials);
+            }
+        }
+        rows
+    }
+
+    /// The rows in the folder of materials, or all others.
+    fn rows_of(&self, folded: &HashSet<SceneId>, filter: &Filter, in_folder: bool) -> Vec<Row> {
+        let mut rows = Vec::with_capacity(if in_folder { 0 } else { self.items.len() });
+        let mut at = 0;
+        let needle = filter.text.trim().to_lowercase();
+        let mut ancestors: Vec<usize> = Vec::new();
+        let mut shown = 0;
+        while let Some(item) = self.items.get(at) {
+            if item.depth == 0 && is_in_folder(item) != in_folder {
+                at = item.end;
+                continue;
+            }
+            if filter.is_off() {
+                rows.push(Row::Item(at));
                 at = if folded.contains(&item.id) {
                     item.end
                 } else {
                     at + 1
                 };
+                continue;
             }
-            return rows;
-        }
-        let mut ancestors: Vec<usize> = Vec::new();
-        for (at, item) in self.items.iter().enumerate() {
             ancestors.truncate(item.depth as usize);
             ancestors.push(at);
-            if item.lower_name.contains(&needle) || item.kind.name().contains(&needle) {
+            let fits = item.lower_name.contains(&needle) || item.kind.name().contains(&needle);
+            if fits && filter.shown.has(item.kind) {
                 // Those of them that an earlier match has not shown yet.
-                let shown = rows.last().map_or(0, |&last: &usize| last + 1);
-                rows.extend(ancestors.iter().copied().filter(|&place| place >= shown));
+                let new = ancestors.iter().filter(|&&place| place >= shown);
+                rows.extend(new.map(|&place| Row::Item(place)));
+                shown = at + 1;
             }
+            at += 1;
         }
         rows
     }
@@ -41,6 +102,8 @@ impl Outline {
 #[derive(Default)]
 pub(super) struct Folded {
     ids: HashSet<SceneId>,
+    /// The folder of materials is.
+    folder: bool,
     /// Another number for other entities.
     version: u64,
 }
@@ -51,6 +114,11 @@ impl Folded {
         self.ids.contains(&id)
     }
 
+    /// Whether the materials are not shown.
+    pub fn folder(&self) -> bool {
+        self.folder
+    }
+
     /// Folds it where it is not, and the other way round.
     pub fn toggle(&mut self, id: SceneId) {
         if !self.ids.remove(&id) {
@@ -59,10 +127,33 @@ impl Folded {
         self.version += 1;
     }
 
+    /// Folds the materials away where they are shown, and the other way round.
+    pub fn toggle_folder(&mut self) {
+        self.folder = !self.folder;
+        self.version += 1;
+    }
+
     /// Everything is shown again.
     pub fn clear(&mut self) {
         self.ids.clear();
+        self.folder = false;
         self.version += 1;
+    }
+
+    /// Shows all that an item is below.
+    pub fn reveal(&mut self, outline: &Outline, at: usize) {
+        let mut above = Some(at);
+        while let Some(at) = above {
+            if is_in_folder(&outline.items[at]) && self.folder {
+                self.toggle_folder();
+            }
+            above = outline.parent(at);
+            if let Some(id) = above.map(|at| outline.items[at].id)
+                && self.contains(id)
+            {
+                self.toggle(id);
+            }
+        }
     }
 }
 
@@ -71,18 +162,18 @@ impl Folded {
 pub(super) struct Rows {
     /// Of the list and of what is folded.
     versions: Option<(u64, u64)>,
-    search: String,
-    rows: Arc<Vec<usize>>,
+    filter: Filter,
+    rows: Arc<Vec<Row>>,
 }
 
 impl Rows {
     /// The rows as they are now.
-    pub fn of(&mut self, outline: &Outline, folded: &Folded, search: &str) -> Arc<Vec<usize>> {
+    pub fn of(&mut self, outline: &Outline, folded: &Folded, filter: &Filter) -> Arc<Vec<Row>> {
         let versions = (outline.versions, folded.version);
-        if self.versions != Some(versions) || self.search != search {
-            self.rows = Arc::new(outline.rows(&folded.ids, search));
+        if self.versions != Some(versions) || self.filter != *filter {
+            self.rows = Arc::new(outline.rows(&folded.ids, folded.folder, filter));
             self.versions = Some(versions);
-            search.clone_into(&mut self.search);
+            self.filter = filter.clone();
         }
         self.rows.clone()
     }
@@ -92,18 +183,33 @@ impl Rows {
 mod tests {
     use super::super::outline::tests::{spawn, village};
     use super::*;
+    use crate::scene::Phong;
 
-    fn names<'a>(outline: &'a Outline, rows: &[usize]) -> Vec<&'a str> {
+    fn names<'a>(outline: &'a Outline, rows: &[Row]) -> Vec<&'a str> {
         rows.iter()
-            .map(|&at| outline.items[at].name.as_str())
+            .map(|row| {
+                row.item()
+                    .map_or("(materials)", |at| &outline.items[at].name)
+            })
             .collect()
+    }
+
+    fn text(text: &str) -> Filter {
+        Filter {
+            text: text.into(),
+            shown: Shown::All,
+        }
     }
 
     #[test]
     fn a_folded_entity_hides_what_is_below_it_only() {
         let app = village();
         let outline = app.world().resource::<Outline>();
-        let rows = outline.rows(&HashSet::from_iter([SceneId(11), SceneId(20)]), "");
+        let rows = outline.rows(
+            &HashSet::from_iter([SceneId(11), SceneId(20)]),
+            false,
+            &text(""),
+        );
         assert_eq!(names(outline, &rows), ["House", "Roof", "Door", "Garden"]);
     }
 
@@ -112,7 +218,7 @@ mod tests {
         let app = village();
         let outline = app.world().resource::<Outline>();
         let folded = HashSet::from_iter([SceneId(10)]);
-        let found = |search| names(outline, &outline.rows(&folded, search));
+        let found = |search| names(outline, &outline.rows(&folded, false, &text(search)));
         assert_eq!(found(" tIL "), ["House", "Roof", "Tile"]);
         assert_eq!(
             found("o"),
@@ -127,17 +233,63 @@ mod tests {
         let mut app = village();
         let (mut rows, mut folded) = (Rows::default(), Folded::default());
         let outline = app.world().resource::<Outline>();
-        let first = rows.of(outline, &folded, "");
+        let first = rows.of(outline, &folded, &text(""));
         assert_eq!(first.len(), 6);
-        assert!(Arc::ptr_eq(&first, &rows.of(outline, &folded, "")));
-        assert_eq!(rows.of(outline, &folded, "door").len(), 2);
+        assert!(Arc::ptr_eq(&first, &rows.of(outline, &folded, &text(""))));
+        assert_eq!(rows.of(outline, &folded, &text("door")).len(), 2);
         folded.toggle(SceneId(10));
-        assert_eq!(rows.of(outline, &folded, "").len(), 3);
+        assert_eq!(rows.of(outline, &folded, &text("")).len(), 3);
         folded.clear();
-        assert_eq!(rows.of(outline, &folded, "").len(), 6);
+        assert_eq!(rows.of(outline, &folded, &text("")).len(), 6);
         spawn(app.world_mut(), 30, "Well", None);
         app.update();
         let outline = app.world().resource::<Outline>();
-        assert_eq!(rows.of(outline, &folded, "").len(), 7);
+        assert_eq!(rows.of(outline, &folded, &text("")).len(), 7);
+    }
+
+    #[test]
+    fn shared_materials_stand_in_a_folder_below_the_rest_that_folds() {
+        let mut app = village();
+        let world = app.world_mut();
+        for (id, name) in [(5, "Brick"), (6, "Slate")] {
+            let entity = spawn(world, id, name, None);
+            world.entity_mut(entity).insert(Phong::default());
+        }
+        app.update();
+        let outline = app.world().resource::<Outline>();
+        let rows = |folder_folded, filter: &Filter| {
+            names(
+                outline,
+                &outline.rows(&HashSet::default(), folder_folded, filter),
+            )
+        };
+        let all = rows(false, &text(""));
+        assert_eq!(all[6..], ["(materials)", "Brick", "Slate"]);
+        assert_eq!(rows(true, &text("")).len(), 7);
+        assert_eq!(rows(true, &text("slate")), ["(materials)", "Slate"]);
+        let shown = Shown::Groups;
+        let groups = Filter {
+            shown,
+            ..Filter::default()
+        };
+        assert_eq!(rows(false, &groups).len(), 6);
+        let both = Filter {
+            shown,
+            ..text("tile")
+        };
+        assert_eq!(rows(false, &both), ["House", "Roof", "Tile"]);
+    }
+
+    #[test]
+    fn what_is_revealed_is_shown_with_all_that_it_is_below() {
+        let app = village();
+        let outline = app.world().resource::<Outline>();
+        let mut folded = Folded::default();
+        for id in [10, 11, 20] {
+            folded.toggle(SceneId(id));
+        }
+        folded.reveal(outline, outline.place(SceneId(12)).unwrap());
+        assert!(!folded.contains(SceneId(10)) && !folded.contains(SceneId(11)));
+        assert!(folded.contains(SceneId(20)));
     }
 }

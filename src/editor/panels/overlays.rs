@@ -1,8 +1,10 @@
 //! What lies over the picture: the divider of the split view, the legend of a heatmap, the frame of
 //! a region; [`notices`](super::notices) has the rest.
 
+use super::answer::{answer_ui, armed_ui};
+use super::first_steps::first_steps_ui;
 use super::line_legend::line_legend_ui;
-use super::notices::{hint_ui, is_over, notices_ui};
+use super::notices::{is_over, notices_ui};
 use super::pattern::pattern_ui;
 use super::readout::PixelValue;
 use super::says::Says;
@@ -45,8 +47,10 @@ pub(super) fn overlays_ui(ui: &mut Ui, free: Rect, world: &mut World, panels: &m
     pattern_ui(ui, free, world, panels);
     over |= line_legend_ui(ui, free, world, panels);
     over |= notices_ui(ui.ctx(), free, world);
+    over |= answer_ui(ui.ctx(), free, world, panels);
+    armed_ui(ui.ctx(), world);
     if !panels.only_picture {
-        hint_ui(ui.ctx(), free, world);
+        over |= first_steps_ui(ui.ctx(), free, world, panels);
     }
     over
 }

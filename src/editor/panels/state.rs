@@ -1,18 +1,21 @@
 //! What the panels remember between two frames, and forget when the editor is closed.
 
+use super::answer::Asked;
 use super::compare::Kept;
 use super::dialogs::{Gallery, RenderForm};
+use super::hierarchy::ListKeys;
 use super::inspector::{Builders, ErrorCurve, PerformanceForm, Thumbnails, Trees, Turns};
 use super::line_legend::LineTexts;
-use super::outline_rows::{Folded, Rows};
+use super::outline_rows::{Filter, Folded, Rows};
+use super::palette::Palette;
 use super::pattern::PatternOf;
 use super::rays::RaysPanel;
 use super::status::{Memory, Numbers};
 use super::told::Tales;
-use crate::editor::action::Action;
+use crate::editor::command::Over;
+use crate::editor::pointer::RightClicked;
 use crate::scene::SceneId;
 use crate::trace::{Camera, FirstHit};
-use bevy::ecs::message::MessageCursor;
 use bevy::ecs::resource::Resource;
 use bevy::math::UVec2;
 use bevy_egui::egui::Pos2;
@@ -64,11 +67,21 @@ pub(super) struct Panels {
     /// A path that is being typed for the document.
     pub typed_path: Option<String>,
     pub render_form: RenderForm,
-    /// How far actions were read.
-    pub heard: MessageCursor<Action>,
+    pub palette: Option<Palette>,
+    /// A pixel that was asked about.
+    pub asked: Option<Asked>,
+    /// Which of the first steps were tried.
+    pub first_steps: [bool; 3],
+    /// What is searched for among the keys.
+    pub bindings_search: String,
+    /// A right click that was not answered yet.
+    pub right_click: Option<RightClicked>,
+    /// Where the menu of a right click stands, and what was clicked.
+    pub menu_over: Option<(Pos2, Over)>,
     pub gallery: Gallery,
     /// What is searched for in the hierarchy.
-    pub search: String,
+    pub filter: Filter,
+    pub list_keys: ListKeys,
     /// Entities whose descendants the hierarchy does not show.
     pub folded: Folded,
     /// What the hierarchy shows.
@@ -116,6 +129,7 @@ impl Panels {
         self.renaming = None;
         self.naming = None;
         self.under_pointer = None;
+        self.asked = None;
         self.thumbnails.forget_fields();
     }
 }

@@ -2,73 +2,57 @@
 
 use super::compare::keep_ui;
 use super::fields::{Number, angle};
-use super::menu_bar::lines_ui;
+use super::menu_bar::menu_ui;
 use super::says::Says;
 use super::state::Panels;
 use crate::editor::action::Action;
-use crate::editor::handles::{Tool, Tools};
+use crate::editor::command::{CommandTable, tooltip};
+use crate::editor::handles::Tools;
 use crate::editor::preferences::Preferences;
-use crate::editor::viewport::{EditorCamera, Show, Viewport};
+use crate::editor::viewport::EditorCamera;
 use crate::film::views::View;
 use crate::scene::RenderSettings;
 use crate::view::TracedView;
 use bevy::ecs::query::With;
 use bevy::ecs::world::World;
-use bevy_egui::egui::{Button, ComboBox, DragValue, Popup, PopupCloseBehavior, Response, Ui};
+use bevy_egui::egui::{Button, ComboBox, DragValue, Popup, PopupCloseBehavior, Ui};
 
 pub(super) fn toolbar_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     ui.horizontal(|ui| {
-        tools_ui(ui, world);
+        group_ui(ui, world, "tools");
         ui.separator();
-        let show = world.resource::<Viewport>().show;
-        for (action, name, is) in [
-            (Action::ShowRaster, "Raster", Show::Raster),
-            (Action::ShowTraced, "Traced", Show::Traced),
-            (Action::ShowSplit, "Split", Show::Split),
-        ] {
-            action_ui(ui, world, &action, name, show == is);
-        }
+        group_ui(ui, world, "show");
         ui.separator();
         traced_ui(ui, world, panels);
-        ui.menu_button("Rays and trees", |ui| lines_ui(ui, world))
-            .response
-            .says("What is drawn of the tracer's rays and trees, and ready answers to three questions");
+        ui.menu_button("Rays and trees", |ui| {
+            menu_ui(ui, world, "View/Rays and trees");
+        })
+        .response
+        .says("What is drawn of the tracer's rays and trees, and ready answers to three questions");
+        group_ui(ui, world, "questions");
         ui.separator();
         exposure_ui(ui, world);
     });
 }
 
-/// A button for an action of the table, pressed in where it is what holds.
-fn action_ui(
-    ui: &mut Ui,
-    world: &mut World,
-    action: &Action,
-    name: &str,
-    on: bool,
-) -> Option<Response> {
-    let entry = action.entry()?;
-    let says = match entry.keys.first() {
-        Some(keys) => format!("{} ({})", entry.says, keys.text()),
-        None => entry.says.to_owned(),
-    };
-    let response = ui.add(Button::selectable(on, name)).says(&says);
-    if response.clicked() {
-        world.write_message(action.clone());
-    }
-    Some(response)
-}
-
-fn tools_ui(ui: &mut Ui, world: &mut World) {
-    let tools = world.get_resource::<Tools>().cloned().unwrap_or_default();
-    for (action, name, on) in [
-        (Action::Move, "Move", tools.tool == Tool::Move),
-        (Action::Turn, "Turn", tools.tool == Tool::Turn),
-        (Action::Scale, "Scale", tools.tool == Tool::Scale),
-        (Action::ToggleLocal, "Local", tools.local),
-        (Action::ToggleSnap, "Snap", tools.snap),
-    ] {
-        let response = action_ui(ui, world, &action, name, on);
-        if let (Action::ToggleSnap, Some(response)) = (&action, response) {
+/// The buttons of the commands that belong to a group of the toolbar, pressed in where they are on.
+fn group_ui(ui: &mut Ui, world: &mut World, group: &str) {
+    let rows = world.resource::<CommandTable>().rows().to_vec();
+    for row in rows {
+        let Some((_, text)) = row.button.filter(|(of, _)| *of == group) else {
+            continue;
+        };
+        let state = row.state_in(world);
+        let button = Button::selectable(state.on == Some(true), text);
+        let response = ui.add_enabled(state.why_not.is_none(), button);
+        let response = match &state.why_not {
+            Some(why) => response.says(why),
+            None => response.says(&tooltip(world, &row.id)),
+        };
+        if response.clicked() {
+            world.write_message(Action::Run(row.id.clone()));
+        }
+        if row.id == "tool.snap" {
             Popup::context_menu(&response)
                 .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
                 .show(|ui| steps_ui(ui, world));
@@ -124,10 +108,7 @@ fn traced_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     if view.view != before.view {
         view.range = None;
     }
-    let paused = before.paused;
-    let glyph = if paused { "▶" } else { "⏸" };
-    action_ui(ui, world, &Action::TogglePause, glyph, paused);
-    action_ui(ui, world, &Action::Restart, "⟲", false);
+    group_ui(ui, world, "traced");
     let on = panels.drags_region || view.region.is_some();
     let region = ui.add(Button::selectable(on, "Region")).says(
         "Only a part of the view is traced: press, then drag a frame over the picture; press again for all",

@@ -1,6 +1,7 @@
 //! Plays a script: a movement, a press or a release a frame, as the window would send them.
 
 use super::super::action::Action;
+use super::super::command;
 use super::super::document::give_up_work;
 use super::super::selection::Selection;
 use super::super::viewport::EditorCamera;
@@ -221,6 +222,15 @@ fn begin(world: &mut World, player: &mut Player, step: Step) -> Result<(), Strin
                     player.moves.push_back(Move::Letter(letter, state));
                 }
             }
+            player.settle();
+        }
+        Step::Run(id) => {
+            let command =
+                command::find(world, &id).ok_or_else(|| format!("there is no command {id:?}"))?;
+            if let Some(why) = command.state_in(world).why_not {
+                return Err(format!("{id:?} cannot be run: {why}"));
+            }
+            world.write_message(Action::Run(id.into()));
             player.settle();
         }
         Step::Action(action) => {

@@ -32,7 +32,9 @@ pub(super) enum Step {
     /// Types a text.
     Type(String),
     // Without pointer and keyboard
-    /// What menus and keys send.
+    /// Runs a command by its id.
+    Run(String),
+    /// What needs a further word: `Open("teapot")`.
     Action(Action),
     /// Selects entities by their names.
     Select(Vec<String>),

@@ -6,16 +6,17 @@
 //! | [`background`] | work on a thread of its own, with progress and an end |
 //! | [`measure`] | compares the builders and times pictures |
 //! | [`pair`], [`cameras`] | two builders' trees over the left and the right of the view |
-//! | [`obey`] | what the actions about lines and boxes do |
+//! | [`commands`] | the commands about lines and boxes |
 
 pub(super) mod background;
 mod cameras;
+mod commands;
 pub(super) mod measure;
-mod obey;
 pub(super) mod pair;
 
-pub(super) use obey::BoxRanges;
+pub(super) use commands::{BoxRanges, show_preset};
 
+use super::command::AddCommands;
 use super::schedule::EditorUpdate;
 use crate::bvh;
 use crate::inspect::InspectSettings;
@@ -30,13 +31,13 @@ pub(super) struct TreeStudyPlugin;
 
 impl Plugin for TreeStudyPlugin {
     fn build(&self, app: &mut App) {
-        app.add_message::<super::action::Action>()
-            .init_resource::<InspectSettings>()
+        app.init_resource::<InspectSettings>()
             .init_resource::<super::notice::Notices>()
             .init_resource::<measure::Measurements>()
             .init_resource::<pair::TreePair>()
             .init_resource::<BoxRanges>()
-            .add_systems(EditorUpdate, (measure::carry_on, obey::obey))
+            .add_commands(commands::commands())
+            .add_systems(EditorUpdate, measure::carry_on)
             .add_systems(PostUpdate, pair::build_pair.after(SyncSystems));
     }
 }

@@ -1,12 +1,14 @@
-//! Every key, from the table of actions, and what the mouse does.
+//! What the mouse does, and every key.
 
-use crate::editor::action::{ACTIONS, Keys};
+use super::super::bindings::bindings_ui;
+use super::super::state::Panels;
+use bevy::ecs::world::World;
 use bevy_egui::egui::{Grid, Label, RichText, Ui};
 
 /// How much room keys get, in points: the longest of them.
 const KEYS: f32 = 215.0;
 
-/// What is no action of the table: held keys and the mouse.
+/// What is no command of the table: held keys and the mouse.
 const MOUSE: &[(&str, &str)] = &[
     (
         "Click",
@@ -37,41 +39,23 @@ const MOUSE: &[(&str, &str)] = &[
     ("Shift while dragging a number", "Changes it in small steps"),
 ];
 
-pub(super) fn keys_ui(ui: &mut Ui) {
+pub(super) fn keys_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     ui.weak("On a Mac, Command works as Ctrl.");
     ui.add_space(4.0);
     ui.label(RichText::new("Mouse and held keys").strong());
-    grid_ui(
-        ui,
-        "mouse",
-        MOUSE.iter().map(|&(key, says)| (key.to_owned(), says)),
-    );
-    ui.add_space(8.0);
-    ui.label(RichText::new("Keys").strong());
-    let rows = ACTIONS.iter().filter(|entry| !entry.keys.is_empty());
-    grid_ui(
-        ui,
-        "keys",
-        rows.map(|entry| {
-            let keys: Vec<String> = entry.keys.iter().map(Keys::text).collect();
-            (keys.join(", "), entry.says)
-        }),
-    );
-}
-
-fn grid_ui<'a>(ui: &mut Ui, id: &str, rows: impl Iterator<Item = (String, &'a str)>) {
-    let width = ui.available_width();
-    Grid::new(id)
+    Grid::new("mouse")
         .num_columns(2)
         .min_col_width(KEYS)
-        .max_col_width(width - KEYS - 30.0)
+        .max_col_width(ui.available_width() - KEYS - 30.0)
         .striped(true)
         .spacing([18.0, 3.0])
         .show(ui, |ui| {
-            for (key, says) in rows {
-                ui.label(RichText::new(key).monospace());
-                ui.add(Label::new(says).wrap());
+            for (key, says) in MOUSE {
+                ui.label(RichText::new(*key).monospace());
+                ui.add(Label::new(*says).wrap());
                 ui.end_row();
             }
         });
+    ui.add_space(8.0);
+    bindings_ui(ui, world, panels);
 }

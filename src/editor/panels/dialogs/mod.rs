@@ -10,37 +10,11 @@ mod scenes;
 
 use super::says::Says;
 use super::state::{Dialog, Panels};
-use crate::editor::action::Action;
-use bevy::ecs::message::Messages;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{self, Id, Modal, RichText, ScrollArea, Ui};
 
 pub(super) use render::RenderForm;
 pub(super) use scenes::Gallery;
-
-/// Opens and closes what actions ask for.
-pub(super) fn answer_actions(world: &World, panels: &mut Panels) {
-    let Some(messages) = world.get_resource::<Messages<Action>>() else {
-        return;
-    };
-    for action in panels.heard.read(messages) {
-        match action {
-            Action::ToggleHelp => {
-                panels.dialog = match panels.dialog {
-                    Some(Dialog::Keys) => None,
-                    _ => Some(Dialog::Keys),
-                };
-            }
-            Action::RenderDialog => {
-                panels.render_form.open(world);
-                panels.dialog = Some(Dialog::Render);
-            }
-            Action::TogglePanels => panels.only_picture = !panels.only_picture,
-            Action::SelectNone => panels.only_picture = false,
-            _ => {}
-        }
-    }
-}
 
 /// A dialog's title, and its width in points.
 pub(super) fn frame_of(dialog: Dialog) -> (&'static str, f32) {
@@ -65,7 +39,7 @@ pub(super) fn dialogs_ui(context: &egui::Context, world: &mut World, panels: &mu
     };
     let (title, width) = frame_of(dialog);
     let stays = modal_ui(context, title, width, |ui| match dialog {
-        Dialog::Keys => keys::keys_ui(ui),
+        Dialog::Keys => keys::keys_ui(ui, world, panels),
         Dialog::About => about::about_ui(ui),
         Dialog::Preferences => preferences::preferences_ui(ui, world),
         Dialog::Scenes => scenes::scenes_ui(ui, world, panels),

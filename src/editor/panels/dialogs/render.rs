@@ -45,8 +45,8 @@ impl Default for RenderForm {
 
 impl RenderForm {
     /// Takes the scene's settings over when it is opened.
-    pub fn open(&mut self, world: &World) {
-        self.settings = Some(world.resource::<RenderSettings>().clone());
+    pub fn open(&mut self, settings: RenderSettings) {
+        self.settings = Some(settings);
         self.refused = None;
     }
 }

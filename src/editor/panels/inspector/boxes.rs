@@ -185,8 +185,12 @@ fn leaf_ui(ui: &mut Ui, world: &mut World, boxes: &mut BoxSettings, range: BoxRa
         let slider = Slider::new(&mut boxes.leaf, 0..=last).clamping(SliderClamping::Edits);
         ui.add(slider).says(says);
         for (name, says, action) in [
-            ("◀", "The leaf before (A)", Action::PreviousLeaf),
-            ("▶", "The next leaf (S)", Action::NextLeaf),
+            (
+                "◀",
+                "The leaf before (A)",
+                Action::run("boxes.previous-leaf"),
+            ),
+            ("▶", "The next leaf (S)", Action::run("boxes.next-leaf")),
         ] {
             if ui.small_button(name).says(says).clicked() {
                 world.write_message(action);

@@ -1,6 +1,7 @@
 //! The tab Object: name, place and components of what is selected.
 
 use super::super::fields::row;
+use super::super::kind_icons::kind_ui;
 use super::super::outline::{Kind, Outline};
 use super::super::says::Says;
 use super::super::state::{Panels, Renaming};
@@ -33,7 +34,7 @@ pub(super) fn object_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     }
     let others = entities.len() - 1;
     ui.horizontal(|ui| {
-        ui.monospace(active.kind.glyph());
+        kind_ui(ui, active.kind);
         ui.strong(active.kind.name());
         if others > 0 {
             ui.weak(format!("and {others} more: fields change all of them"));

@@ -1,7 +1,7 @@
 //! Above the list: which pixel, which of its samples, which kinds of rays, and the search.
 
 use super::super::says::Says;
-use crate::editor::action::Action;
+use crate::editor::command::{find, shortcut};
 use crate::editor::inspection::choice::shoot_pixel;
 use crate::editor::inspection::json::json;
 use crate::editor::inspection::{DebugRay, Inspected, Which};
@@ -220,15 +220,11 @@ fn copy_ui(ui: &mut Ui, world: &mut World) {
 /// Where the inspector stands, and closing it.
 fn place_ui(ui: &mut Ui, world: &mut World) {
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-        let keys = Action::ToggleRays
-            .entry()
-            .and_then(|entry| entry.keys.first())
-            .map_or_else(String::new, |keys| format!(" ({})", keys.text()));
         let close = ui.small_button("✖");
-        if close
-            .says(&format!("Closes the ray inspector{keys}"))
-            .clicked()
-        {
+        let keys = find(world, "rays.inspector").and_then(|row| shortcut(world, &row));
+        let keys = keys.map_or_else(String::new, |keys| format!(" ({keys})"));
+        let says = format!("Closes the ray inspector{keys}");
+        if close.says(&says).clicked() {
             world.resource_mut::<Preferences>().show_rays = false;
         }
         let floats = world.resource::<Preferences>().rays_float;

@@ -2,7 +2,7 @@
 
 use super::super::says::Says;
 use super::none_chosen_ui;
-use crate::editor::action::Action;
+use crate::editor::command::tooltip;
 use crate::editor::inspection::tell::tree_name;
 use crate::editor::inspection::{DebugRay, Inspected, Names};
 use crate::inspect::{Step, StepKind};
@@ -36,7 +36,7 @@ pub(super) fn steps_ui(
         ui.weak("This ray was not traced, so it went through no tree.");
         return;
     }
-    controls_ui(ui, inspected);
+    controls_ui(ui, world, inspected);
     // The steps are those of the world that the ray was traced in; the scene may have moved on.
     let traced_with = world.resource::<DebugRay>().traced_with();
     let present = &world.resource::<Traced>().world;
@@ -60,7 +60,7 @@ pub(super) fn steps_ui(
     list_ui(ui, inspected, &tell);
 }
 
-fn controls_ui(ui: &mut Ui, inspected: &mut Inspected) {
+fn controls_ui(ui: &mut Ui, world: &world::World, inspected: &mut Inspected) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
         let stepper = &mut inspected.stepper;
@@ -70,19 +70,19 @@ fn controls_ui(ui: &mut Ui, inspected: &mut Inspected) {
         }
         if ui
             .small_button("<")
-            .says(&with_key(Action::StepBack))
+            .says(&tooltip(world, "rays.back"))
             .clicked()
         {
             stepper.back();
         }
         let name = if stepper.playing { "⏸" } else { "▶" };
         let play = Button::selectable(stepper.playing, name);
-        if ui.add(play).says(&with_key(Action::PlaySteps)).clicked() {
+        if ui.add(play).says(&tooltip(world, "rays.play")).clicked() {
             stepper.toggle();
         }
         if ui
             .small_button(">")
-            .says(&with_key(Action::StepForward))
+            .says(&tooltip(world, "rays.forward"))
             .clicked()
         {
             stepper.forward();
@@ -111,16 +111,6 @@ fn controls_ui(ui: &mut Ui, inspected: &mut Inspected) {
             stepper.go(at - 1);
         }
     });
-}
-
-fn with_key(action: Action) -> String {
-    let Some(entry) = action.entry() else {
-        return String::new();
-    };
-    match entry.keys.first() {
-        Some(keys) => format!("{} ({})", entry.says, keys.text()),
-        None => entry.says.into(),
-    }
 }
 
 /// Puts steps into words.

@@ -21,7 +21,7 @@ const SIZE: UVec2 = UVec2::new(600, 480);
 fn open(scene: &str) -> Desk {
     let mut desk = Desk::open(scene);
     desk.world().resource_mut::<RenderSettings>().spp = 64;
-    desk.world().write_message(Action::ToggleRays);
+    desk.world().write_message(Action::run("rays.inspector"));
     desk.settle();
     assert!(desk.world().resource::<Preferences>().show_rays);
     desk

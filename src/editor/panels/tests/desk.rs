@@ -1,8 +1,8 @@
 //! An editor without a window, and a hand.
 
 use super::super::outline::{Outline, outline_scene};
-use super::super::panels_ui;
 use super::super::state::Panels;
+use super::super::{add_commands, panels_ui};
 use crate::editor::headless_editor;
 use crate::editor::inspection::RaysPlugin;
 use crate::editor::plugins::StatePlugin;
@@ -58,6 +58,7 @@ impl Desk {
         .init_resource::<Panels>()
         .init_resource::<Outline>()
         .add_systems(Last, outline_scene);
+        add_commands(&mut app);
         app.world_mut().spawn((EditorCamera, TracedView::default()));
         let context = egui::Context::default();
         context.options_mut(|options| options.max_passes = std::num::NonZero::new(1).unwrap());

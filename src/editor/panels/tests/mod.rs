@@ -1,6 +1,7 @@
 //! The panels as a person meets them: drawn by egui without a window, and operated by pointer and
 //! keys at the places where their texts stand.
 
+mod commands;
 mod desk;
 mod drawn;
 mod operated;

@@ -4,7 +4,8 @@ use super::super::outline::Outline;
 use super::super::state::{Dialog, Panels, Renaming, Tab};
 use super::desk::{Desk, USUAL};
 use crate::editor::action::Action;
-use crate::editor::document::adopt;
+use crate::editor::document::{Document, Purpose, Question, adopt};
+use crate::editor::edits::name_of;
 use crate::editor::inspection::DebugRay;
 use crate::editor::inspection::debug_ray::Shot;
 use crate::editor::render_job::{RenderFrom, RenderJob, RenderRequest, start_render};
@@ -15,7 +16,6 @@ use crate::scene::{PointLamp, RenderSettings, SceneId};
 use crate::sync::TracedCameras;
 use crate::view::TracedView;
 use bevy::ecs::entity::Entity;
-use bevy::ecs::message::Messages;
 use bevy::ecs::name::Name;
 use bevy::ecs::query::With;
 use bevy::math::{Rect, UVec2, Vec2};
@@ -103,13 +103,16 @@ fn a_press_that_is_let_go_late_is_still_a_click() {
 }
 
 #[test]
-fn menus_send_what_they_say() {
+fn menus_do_what_they_say() {
     let mut desk = Desk::open("triangle");
     desk.click_on("File");
     desk.click_on("Save");
-    let messages = desk.world().resource::<Messages<Action>>();
-    let mut cursor = messages.get_cursor();
-    assert!(cursor.read(messages).any(|action| *action == Action::Save));
+    let question = desk.world().resource::<Document>().question.clone();
+    let purpose = Purpose::SaveAs;
+    assert!(
+        matches!(&question, Some(Question::Path { purpose: asked, .. } | Question::Waiting { purpose: asked }) if *asked == purpose),
+        "{question:?}"
+    );
 }
 
 #[test]
@@ -155,7 +158,7 @@ fn the_pointer_and_the_keys_are_the_scene_s_only_where_no_panel_wants_them() {
 #[test]
 fn a_dialog_takes_everything_until_escape() {
     let mut desk = Desk::open("triangle");
-    desk.world().write_message(Action::ToggleHelp);
+    desk.world().write_message(Action::run("help.keys"));
     desk.settle();
     assert_eq!(desk.world().resource::<Panels>().dialog, Some(Dialog::Keys));
     assert!(desk.find("Keys and mouse").is_some());
@@ -174,7 +177,7 @@ fn a_dialog_takes_everything_until_escape() {
 fn a_dialog_that_had_less_to_show_grows_again() {
     let folder = tempfile::tempdir().unwrap();
     let mut desk = Desk::open("triangle");
-    desk.world().write_message(Action::RenderDialog);
+    desk.world().write_message(Action::run("file.render"));
     desk.settle();
     let height = |desk: &Desk| {
         let area = Id::new("Render to a file");
@@ -209,10 +212,10 @@ fn unsaved_changes_are_asked_about_and_cancel_leaves_everything() {
     let mut desk = Desk::open("triangle");
     let ids = desk.ids();
     desk.select([ids[0]]);
-    desk.world().write_message(Action::Duplicate);
+    desk.world().write_message(Action::run("edit.duplicate"));
     desk.settle();
     assert_eq!(desk.ids().len(), ids.len() + 1);
-    desk.world().write_message(Action::New);
+    desk.world().write_message(Action::run("file.new"));
     desk.settle();
     assert!(desk.find("Don't save").is_some());
     desk.click_on("Cancel");
@@ -239,11 +242,11 @@ fn the_picture_alone_fills_the_window_until_escape() {
     let mut desk = Desk::open("cornell-box");
     let rect = |desk: &mut Desk| desk.world().resource::<Viewport>().rect;
     let before = rect(&mut desk);
-    desk.world().write_message(Action::TogglePanels);
+    desk.world().write_message(Action::run("view.only-picture"));
     desk.settle();
     assert_eq!(rect(&mut desk).size(), Vec2::new(USUAL[0], USUAL[1]));
     assert_eq!(desk.find("Object"), None);
-    desk.world().write_message(Action::SelectNone);
+    desk.world().write_message(Action::run("select.none"));
     desk.settle();
     assert_eq!(rect(&mut desk), before);
     assert!(desk.find("Object").is_some());
@@ -326,4 +329,69 @@ fn what_was_picked_and_folded_in_a_scene_is_forgotten_with_it() {
     assert_eq!((view.region, view.range), (None, None));
     let panels = desk.world().resource::<Panels>();
     assert!(!panels.folded.contains(id) && panels.anchor.is_none());
+}
+
+#[test]
+fn arrows_go_through_the_rows_and_fold_them_and_letters_find_names() {
+    let mut desk = Desk::open("cornell-box");
+    let names = first_names(&mut desk);
+    let selected = |desk: &mut Desk| {
+        let id = desk.world().resource::<Selection>().active().unwrap();
+        name_of(desk.world(), id)
+    };
+    desk.click_on(&names[0]);
+    assert!(desk.world().resource::<Viewport>().takes_letters);
+    desk.key(Key::ArrowDown);
+    assert_eq!(selected(&mut desk), names[1]);
+    desk.key(Key::ArrowUp);
+    assert_eq!(selected(&mut desk), names[0]);
+    desk.settle();
+    let viewport = desk.world().resource::<Viewport>().clone();
+    assert!(viewport.takes_keys && !viewport.takes_letters);
+    desk.frame(vec![Event::Text("l".into())]);
+    desk.frame(vec![Event::Text("a".into())]);
+    assert_eq!(selected(&mut desk), "Lamp");
+    desk.key(Key::Escape);
+    desk.settle();
+    assert!(desk.world().resource::<Viewport>().takes_letters);
+
+    let (_, lamp) = desk.named("Lamp");
+    let (_, first) = desk.named(&names[0]);
+    let parent = Some(first);
+    desk.world()
+        .write_message(Action::Reparent(vec![lamp], parent));
+    desk.select([first]);
+    let at = desk.place_of(&names[0]);
+    desk.click(at);
+    desk.key(Key::ArrowLeft);
+    desk.settle();
+    assert_eq!(desk.find("Lamp"), None, "it is folded away");
+    desk.key(Key::ArrowRight);
+    desk.key(Key::ArrowRight);
+    assert_eq!(selected(&mut desk), "Lamp");
+    desk.key(Key::ArrowLeft);
+    assert_eq!(selected(&mut desk), names[0]);
+}
+
+#[test]
+fn of_ten_thousand_rows_only_those_that_are_seen_are_laid_out_and_the_last_is_reached_by_name() {
+    let mut desk = Desk::open("triangle");
+    for i in 0..10_000 {
+        let id = SceneId(1000 + i);
+        let name = Name::new(format!("Thing {i}"));
+        desk.world().spawn((id, name));
+    }
+    desk.settle();
+    let drawn = desk.world().resource::<Panels>().rows_drawn;
+    assert!((10..60).contains(&drawn), "{drawn} rows");
+    let top = desk.world().resource::<Outline>().items[0].name.clone();
+    desk.click_on(&top);
+    desk.key(Key::ArrowDown);
+    for letter in "thing 9999".chars() {
+        desk.frame(vec![Event::Text(letter.to_string())]);
+    }
+    desk.settle();
+    desk.place_of("Thing 9999");
+    let drawn = desk.world().resource::<Panels>().rows_drawn;
+    assert!((10..60).contains(&drawn), "{drawn} rows");
 }

@@ -122,7 +122,7 @@ fn a_click_on_a_builder_switches_to_it_as_a_step_and_makes_nothing_stale() {
     });
     assert_eq!(desk.stale(), None);
     assert_eq!(desk.world().resource::<History>().position(), steps + 1);
-    desk.world().write_message(Action::Undo);
+    desk.world().write_message(Action::run("edit.undo"));
     desk.settle();
     assert_eq!(builder(&mut desk), scene::Builder::Sah);
     // Other leaves are other trees.
@@ -268,26 +268,27 @@ fn a_and_s_step_through_the_leaves_and_stop_at_the_ends() {
         leaf(desk)
     };
     // Boxes are not drawn.
-    assert_eq!(step(&mut desk, Action::NextLeaf), 0);
+    assert_eq!(step(&mut desk, Action::run("boxes.next-leaf")), 0);
     let boxes = &mut desk.world().resource_mut::<InspectSettings>().boxes;
     (boxes.on, boxes.choice) = (true, BoxChoice::Leaf);
     let boxes = boxes.clone();
-    assert_eq!(step(&mut desk, Action::NextLeaf), 1);
-    assert_eq!(step(&mut desk, Action::PreviousLeaf), 0);
-    assert_eq!(step(&mut desk, Action::PreviousLeaf), 0);
+    assert_eq!(step(&mut desk, Action::run("boxes.next-leaf")), 1);
+    assert_eq!(step(&mut desk, Action::run("boxes.previous-leaf")), 0);
+    assert_eq!(step(&mut desk, Action::run("boxes.previous-leaf")), 0);
     let traced = desk.world().resource::<Traced>().world.clone();
     let last = BoxRange::of(&traced, &boxes).leaves as u32 - 1;
     assert!(last > 100, "{last}");
     desk.world().resource_mut::<InspectSettings>().boxes.leaf = last;
-    assert_eq!(step(&mut desk, Action::NextLeaf), last);
+    assert_eq!(step(&mut desk, Action::run("boxes.next-leaf")), last);
 }
 
 #[test]
 fn each_question_sets_its_lines_and_the_master_switch_keeps_them() {
     let mut desk = Desk::open("triangle");
     desk.world().resource_mut::<InspectSettings>().max_lines = 1234;
-    for preset in InspectPreset::ALL {
-        desk.world().write_message(Action::Inspect(preset));
+    let ids = ["lines.why-black", "lines.is-tree-good", "lines.noise"];
+    for (preset, id) in InspectPreset::ALL.into_iter().zip(ids) {
+        desk.world().write_message(Action::run(id));
         desk.settle();
         let wanted = InspectSettings {
             max_lines: 1234,
@@ -295,7 +296,7 @@ fn each_question_sets_its_lines_and_the_master_switch_keeps_them() {
         };
         assert_eq!(*desk.world().resource::<InspectSettings>(), wanted);
         assert!(desk.find(preset.says()).is_some(), "{}", preset.question());
-        desk.world().write_message(Action::ToggleGizmos);
+        desk.world().write_message(Action::run("lines.show"));
         desk.settle();
         let off = desk.world().resource::<InspectSettings>().clone();
         assert_eq!(

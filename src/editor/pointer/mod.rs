@@ -4,24 +4,21 @@
 //! The window's events are read one after the other, as they came, so that a press, a movement and
 //! a release within one frame mean what they meant.
 
+mod clicks;
+
 use super::action::Action;
-use super::extent::own_extent;
+use super::command::Over;
 use super::handles::{self, GripDrag, grip_at};
-use super::inspection::Inspected;
-use super::inspection::hover::line_at;
 use super::keys::Modifiers;
 use super::navigation::{self, LookThrough, ViewDrag};
 use super::pick;
-use super::schedule::EditorUpdate;
+use super::schedule::{Dispatch, EditorUpdate};
 use super::selection::Selection;
 use super::viewport::Viewport;
-use crate::scene::SceneId;
-use crate::sync::Traced;
 use crate::view::{Outlined, Symbols};
 use bevy::app::{App, Plugin};
-use bevy::ecs::entity::Entity;
+use bevy::ecs::event::Event;
 use bevy::ecs::message::{MessageCursor, Messages};
-use bevy::ecs::query::{Or, With};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::schedule::IntoScheduleConfigs;
 use bevy::ecs::system::{Local, Res, ResMut};
@@ -30,9 +27,9 @@ use bevy::gizmos::transform_gizmo::TransformGizmoState;
 use bevy::input::ButtonState;
 use bevy::input::mouse::{MouseButton, MouseScrollUnit};
 use bevy::math::{Rect, Vec2};
-use bevy::mesh::Mesh3d;
 use bevy::window::WindowEvent;
 use bevy_egui::{EguiPrimaryContextPass, egui};
+use clicks::{answer_target, click, right_click, select_box};
 use std::time::{Duration, Instant};
 
 /// How far a click may move, in logical pixels.
@@ -48,8 +45,15 @@ pub(super) struct PointerPlugin;
 impl Plugin for PointerPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<PointerUse>()
+            .init_resource::<Armed>()
             .init_resource::<Pointer>()
-            .add_systems(EditorUpdate, (use_pointer, outline_selection).chain())
+            .add_systems(
+                EditorUpdate,
+                (
+                    use_pointer.before(Dispatch),
+                    outline_selection.after(Dispatch),
+                ),
+            )
             .add_systems(EguiPrimaryContextPass, draw_box);
     }
 }
@@ -69,14 +73,44 @@ pub(super) enum PointerUse {
     Click { at: Vec2 },
     /// With Alt: as long as it does not move it is a debug ray, and then turns the view.
     Ray { at: Vec2 },
+    /// A click on what a command waits for.
+    Target { at: Vec2 },
     /// A box is drawn around what shall be selected.
     Box { from: Vec2, to: Vec2 },
+}
+
+/// A command waits for a click in the view. Escape ends that.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Armed {
+    #[default]
+    No,
+    /// Why a pixel has its value.
+    Why,
+    /// What the selected lights and cameras shall look at.
+    Aim,
+}
+
+/// It was asked why the pixel there has its value; its rays are being traced.
+#[derive(Event, Clone, Copy, Debug)]
+pub(super) struct PixelAsked {
+    /// Logical pixels of the window.
+    pub at: Vec2,
+}
+
+/// The right button was clicked over the scene, which otherwise flies the view.
+#[derive(Event, Clone, Copy, Debug)]
+pub(super) struct RightClicked {
+    /// Logical pixels of the window.
+    pub at: Vec2,
+    pub over: Over,
 }
 
 #[derive(Resource, Default)]
 struct Pointer {
     at: Option<Vec2>,
     held: Option<MouseButton>,
+    /// Where and when it was pressed, while the pointer has not moved since.
+    pressed: Option<(Vec2, Instant)>,
     modifiers: Modifiers,
     last_click: Option<(Instant, Vec2)>,
 }
@@ -111,7 +145,9 @@ fn take_use(world: &mut World) -> PointerUse {
 }
 
 fn go(world: &mut World, to: Vec2) {
-    let Some(from) = world.resource_mut::<Pointer>().at.replace(to) else {
+    let mut pointer = world.resource_mut::<Pointer>();
+    pointer.pressed = pointer.pressed.filter(|(at, _)| at.distance(to) <= STILL);
+    let Some(from) = pointer.at.replace(to) else {
         return;
     };
     let next = match take_use(world) {
@@ -120,7 +156,8 @@ fn go(world: &mut World, to: Vec2) {
             PointerUse::View(kind)
         }
         PointerUse::Grip(mut drag) => {
-            drag.follow(world, to);
+            let modifiers = world.resource::<Pointer>().modifiers;
+            drag.follow(world, to, modifiers);
             PointerUse::Grip(drag)
         }
         PointerUse::Click { at } if at.distance(to) > STILL => PointerUse::Box { from: at, to },
@@ -146,11 +183,11 @@ fn press(world: &mut World, button: MouseButton) {
     if !matches!(world.resource::<PointerUse>(), PointerUse::Free) || !is_over_scene(world, at) {
         return;
     }
+    // Alt is also a way of dragging a light's corner.
+    let alt = modifiers.alt && grip_at(world, at).is_none();
     let drag = match button {
         MouseButton::Right => Some(ViewDrag::Fly),
-        MouseButton::Middle | MouseButton::Left
-            if button == MouseButton::Middle || modifiers.alt =>
-        {
+        MouseButton::Middle | MouseButton::Left if button == MouseButton::Middle || alt => {
             Some(match (modifiers.shift, modifiers.ctrl) {
                 (true, _) => ViewDrag::Pan,
                 (false, true) => ViewDrag::Dolly,
@@ -169,12 +206,17 @@ fn press(world: &mut World, button: MouseButton) {
     } else {
         return;
     };
-    world.resource_mut::<Pointer>().held = Some(button);
+    let mut pointer = world.resource_mut::<Pointer>();
+    pointer.held = Some(button);
+    pointer.pressed = Some((at, Instant::now()));
     *world.resource_mut::<PointerUse>() = next;
 }
 
 /// What the left button takes hold of there.
 fn take_hold(world: &mut World, at: Vec2) -> PointerUse {
+    if *world.resource::<Armed>() != Armed::No {
+        return PointerUse::Target { at };
+    }
     if let Some(grip) = grip_at(world, at)
         && let Some(drag) = GripDrag::begin(world, grip, at)
     {
@@ -191,14 +233,25 @@ fn release(world: &mut World, button: MouseButton) {
     if world.resource::<Pointer>().held != Some(button) {
         return;
     }
-    world.resource_mut::<Pointer>().held = None;
+    let mut pointer = world.resource_mut::<Pointer>();
+    pointer.held = None;
+    let pressed = pointer.pressed.take();
     match take_use(world) {
         PointerUse::Free | PointerUse::Gizmo => {}
-        PointerUse::View(_) => navigation::end_drag(world),
+        PointerUse::View(kind) => {
+            navigation::end_drag(world);
+            // A short press that moved nothing is a click.
+            if let (ViewDrag::Fly, Some((at, when))) = (kind, pressed)
+                && when.elapsed() <= DOUBLE
+            {
+                right_click(world, at);
+            }
+        }
         PointerUse::Grip(drag) => drag.end(world),
         PointerUse::Click { at } => click(world, at),
+        PointerUse::Target { at } => answer_target(world, at),
         PointerUse::Ray { .. } => {
-            world.write_message(Action::ShootRay);
+            world.write_message(Action::run("rays.shoot"));
         }
         PointerUse::Box { from, to } => select_box(world, from, to),
     }
@@ -209,7 +262,7 @@ fn let_go(world: &mut World) {
     if let Some(button) = world.resource::<Pointer>().held {
         let is_click = matches!(
             world.resource::<PointerUse>(),
-            PointerUse::Click { .. } | PointerUse::Ray { .. }
+            PointerUse::Click { .. } | PointerUse::Ray { .. } | PointerUse::Target { .. }
         );
         if is_click {
             take_use(world);
@@ -220,6 +273,10 @@ fn let_go(world: &mut World) {
 
 /// Takes back what is being dragged. `false` where nothing is.
 pub(super) fn cancel(world: &mut World) -> bool {
+    if std::mem::take(&mut *world.resource_mut::<Armed>()) != Armed::No {
+        take_use(world);
+        return true;
+    }
     match take_use(world) {
         PointerUse::Grip(drag) => {
             drag.cancel(world);
@@ -231,7 +288,10 @@ pub(super) fn cancel(world: &mut World) -> bool {
             *world.resource_mut::<PointerUse>() = PointerUse::View(kind);
             false
         }
-        PointerUse::Free | PointerUse::Click { .. } | PointerUse::Ray { .. } => false,
+        PointerUse::Free
+        | PointerUse::Click { .. }
+        | PointerUse::Ray { .. }
+        | PointerUse::Target { .. } => false,
     }
 }
 
@@ -273,81 +333,6 @@ fn is_over_scene(world: &mut World, at: Vec2) -> bool {
     let layer = context.layer_id_at(place);
     layer.is_none_or(|layer| layer.order == egui::Order::Background)
         && !context.egui_is_using_pointer()
-}
-
-fn click(world: &mut World, at: Vec2) {
-    if click_line(world, at) {
-        // Two clicks on two things are no double click.
-        world.resource_mut::<Pointer>().last_click = None;
-        return;
-    }
-    let found = pick::at(world, at).map(|found| found.id);
-    let pointer = world.resource::<Pointer>();
-    let adds = pointer.modifiers.ctrl;
-    let now = Instant::now();
-    let again = pointer.last_click.is_some_and(|(when, place)| {
-        now.duration_since(when) <= DOUBLE && place.distance(at) <= STILL
-    });
-    world.resource_mut::<Pointer>().last_click = (!again).then_some((now, at));
-    if again && !adds {
-        if found.is_some() {
-            world.write_message(Action::FrameSelected);
-        }
-        return;
-    }
-    let mut wanted = world.resource::<Selection>().clone();
-    match (found, adds) {
-        (Some(id), true) => wanted.toggle(id),
-        (Some(id), false) => wanted.set([id]),
-        (None, true) => {}
-        (None, false) => wanted.set([]),
-    }
-    select(world, wanted);
-}
-
-/// Whether the click is for a line that shows what the tracer did.
-fn click_line(world: &mut World, at: Vec2) -> bool {
-    let Some((stands, _)) = line_at(world, at) else {
-        return false;
-    };
-    let traced = world.resource::<Traced>().world.clone();
-    world.resource_mut::<Inspected>().click(stands, &traced)
-}
-
-fn select(world: &mut World, wanted: Selection) {
-    if *world.resource::<Selection>() != wanted {
-        *world.resource_mut::<Selection>() = wanted;
-    }
-}
-
-/// Selects the objects, lights and cameras whose middle is seen in the box.
-fn select_box(world: &mut World, from: Vec2, to: Vec2) {
-    let area = Rect::from_corners(from, to);
-    let mut all = world.query_filtered::<(Entity, &SceneId), Or<(With<Mesh3d>, pick::Symbol)>>();
-    let all: Vec<(Entity, SceneId)> = all.iter(world).map(|(e, id)| (e, *id)).collect();
-    let Some((camera, view)) = pick::camera(world) else {
-        return;
-    };
-    let seen = |entity: Entity| {
-        let middle = own_extent(world.get_entity(entity).ok()?)?.centre();
-        camera.world_to_viewport(&view, middle).ok()
-    };
-    let mut inside: Vec<SceneId> = all
-        .iter()
-        .filter(|(entity, _)| pick::is_shown(world, *entity))
-        .filter(|(entity, _)| seen(*entity).is_some_and(|at| area.contains(at)))
-        .map(|(_, id)| *id)
-        .collect();
-    inside.sort_unstable();
-    let mut wanted = world.resource::<Selection>().clone();
-    if world.resource::<Pointer>().modifiers.ctrl {
-        for id in inside {
-            wanted.add(id);
-        }
-    } else {
-        wanted.set(inside);
-    }
-    select(world, wanted);
 }
 
 /// What is selected is outlined; a camera that is looked through is not drawn.

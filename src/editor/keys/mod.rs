@@ -1,24 +1,72 @@
-//! Keys: the table of actions says what each does.
+//! Keys, as the window sends them.
+//!
+//! | module | does |
+//! |---|---|
+//! | [`name`] | what keys are called |
+//! | [`bindings`] | which command each sends |
 
-use super::action::{ACTIONS, Action, Keys};
+mod bindings;
+mod name;
+
+pub use bindings::Bindings;
+pub use name::Keys;
+pub(super) use name::{letter_key, named_key};
+
+use super::action::Action;
+use super::command::CommandTable;
+use super::notice::Notices;
 use super::pointer::{self, PointerUse};
-use super::schedule::EditorUpdate;
+use super::preferences::Preferences;
+use super::schedule::{Dispatch, EditorUpdate};
 use super::viewport::Viewport;
 use bevy::app::{App, Plugin};
 use bevy::ecs::message::{MessageCursor, Messages};
-use bevy::ecs::system::Local;
-use bevy::ecs::world::World;
+use bevy::ecs::resource::Resource;
+use bevy::ecs::system::{Local, Res, ResMut};
+use bevy::ecs::world::{Mut, World};
 use bevy::input::ButtonState;
 use bevy::input::keyboard::{Key, KeyCode, KeyboardInput};
 use bevy::prelude::IntoScheduleConfigs;
 use bevy::window::WindowEvent;
+use std::str::FromStr;
 
-/// Turns keys into actions.
+/// The command that the next key is to be given to, by its id.
+#[derive(Resource, Default)]
+pub(super) struct Recording(pub Option<String>);
+
+/// Turns keys into commands.
 pub(super) struct KeysPlugin;
 
 impl Plugin for KeysPlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(EditorUpdate, press_keys.before(pointer::use_pointer));
+        app.init_resource::<Recording>().add_systems(
+            EditorUpdate,
+            (
+                press_keys.before(pointer::use_pointer).before(Dispatch),
+                name_conflicts,
+            ),
+        );
+    }
+}
+
+/// Names keys that several commands want, as after the file of preferences was edited by hand.
+fn name_conflicts(
+    table: Res<CommandTable>,
+    preferences: Option<Res<Preferences>>,
+    mut notices: ResMut<Notices>,
+    mut done: Local<bool>,
+) {
+    let Some(preferences) = preferences.filter(|_| !*done) else {
+        return;
+    };
+    *done = true;
+    for (keys, rows) in table.conflicts(&preferences.keys) {
+        let names: Vec<&str> = rows.iter().map(|row| &*row.name).collect();
+        notices.fault(format!(
+            "{} is wanted by several commands and sends the first: {}. Help, Keys and mouse changes that.",
+            keys.text(),
+            names.join(", ")
+        ));
     }
 }
 
@@ -66,10 +114,7 @@ fn press_keys(
         let WindowEvent::KeyboardInput(input) = event else {
             continue;
         };
-        if input.state != ButtonState::Pressed
-            || modifiers.alt
-            || !world.resource::<Viewport>().takes_keys
-        {
+        if input.state != ButtonState::Pressed || modifiers.alt {
             continue;
         }
         let keys = Keys {
@@ -77,8 +122,67 @@ fn press_keys(
             shift: modifiers.shift,
             key: meant_key(&input),
         };
+        if record(world, keys) {
+            continue;
+        }
+        let viewport = world.resource::<Viewport>();
+        let writes = matches!(input.logical_key, Key::Character(_) | Key::Space);
+        // The list of entities has letters, and Escape, which gives them back.
+        let for_list = writes && !keys.ctrl || keys.key == KeyCode::Escape;
+        if !viewport.takes_keys || for_list && !viewport.takes_letters {
+            continue;
+        }
         press(world, keys, input.repeat);
     }
+}
+
+/// Gives the keys to the command that waits for them; `false` where none does.
+fn record(world: &mut World, keys: Keys) -> bool {
+    use KeyCode::{
+        AltLeft, AltRight, ControlLeft, ControlRight, ShiftLeft, ShiftRight, SuperLeft, SuperRight,
+    };
+    let modifiers = [
+        ControlLeft,
+        ControlRight,
+        ShiftLeft,
+        ShiftRight,
+        AltLeft,
+        AltRight,
+        SuperLeft,
+        SuperRight,
+    ];
+    let Some(id) = world.resource::<Recording>().0.clone() else {
+        return false;
+    };
+    if modifiers.contains(&keys.key) {
+        return true;
+    }
+    world.resource_mut::<Recording>().0 = None;
+    if keys.key == KeyCode::Escape {
+        return true;
+    }
+    if let Err(text) = Keys::from_str(&keys.text()) {
+        world.resource_mut::<Notices>().tell(text);
+        return true;
+    }
+    world.resource_scope(|world, table: Mut<CommandTable>| {
+        let mut preferences = world.resource_mut::<Preferences>();
+        let Some(command) = table.find(&id) else {
+            return;
+        };
+        let had = table.of_keys(keys, &preferences.keys).cloned();
+        preferences.keys.bind(&table, command, vec![keys]);
+        if let Some(had) = had.filter(|had| had.id != command.id) {
+            let text = format!(
+                "{} sends {} now, and no more {}.",
+                keys.text(),
+                command.name,
+                had.name
+            );
+            world.resource_mut::<Notices>().tell(text);
+        }
+    });
+    true
 }
 
 fn press(world: &mut World, keys: Keys, repeats: bool) {
@@ -89,22 +193,15 @@ fn press(world: &mut World, keys: Keys, repeats: bool) {
     if !matches!(world.resource::<PointerUse>(), PointerUse::Free) {
         return;
     }
-    let Some(action) = action_of(keys) else {
+    let table = world.resource::<CommandTable>();
+    let bindings = &world.resource::<Preferences>().keys;
+    let Some(command) = table.of_keys(keys, bindings) else {
         return;
     };
-    let may_repeat = matches!(
-        action,
-        Action::Undo | Action::Redo | Action::StepForward | Action::StepBack
-    );
-    if !repeats || may_repeat {
-        world.write_message(action);
+    if !repeats || command.repeats {
+        let id = command.id.clone();
+        world.write_message(Action::Run(id));
     }
-}
-
-/// What the table says about a key.
-fn action_of(keys: Keys) -> Option<Action> {
-    let entry = ACTIONS.iter().find(|entry| entry.keys.contains(&keys))?;
-    Some(entry.action.clone())
 }
 
 /// The key by what is written on it, for letters: Ctrl+Z is where the Z is, whatever the layout.
@@ -118,19 +215,6 @@ fn meant_key(input: &KeyboardInput) -> KeyCode {
         (Some(letter), None) => letter_key(letter).unwrap_or(input.key_code),
         _ => input.key_code,
     }
-}
-
-/// The key of a letter of the Latin alphabet.
-pub(super) fn letter_key(letter: char) -> Option<KeyCode> {
-    use KeyCode::*;
-    const LETTERS: [KeyCode; 26] = [
-        KeyA, KeyB, KeyC, KeyD, KeyE, KeyF, KeyG, KeyH, KeyI, KeyJ, KeyK, KeyL, KeyM, KeyN, KeyO,
-        KeyP, KeyQ, KeyR, KeyS, KeyT, KeyU, KeyV, KeyW, KeyX, KeyY, KeyZ,
-    ];
-    let letter = letter.to_ascii_lowercase();
-    letter
-        .is_ascii_lowercase()
-        .then(|| LETTERS[usize::from(letter as u8 - b'a')])
 }
 
 #[cfg(test)]
@@ -157,21 +241,6 @@ mod tests {
         // A Cyrillic one is meant by its place, and so is a digit with Shift.
         assert_eq!(meant_key(&input(KeyCode::KeyZ, "я")), KeyCode::KeyZ);
         assert_eq!(meant_key(&input(KeyCode::Digit1, "!")), KeyCode::Digit1);
-    }
-
-    #[test]
-    fn every_key_of_the_table_sends_its_action() {
-        for entry in ACTIONS {
-            for keys in entry.keys {
-                assert_eq!(action_of(*keys), Some(entry.action.clone()));
-            }
-        }
-        let none = Keys {
-            ctrl: true,
-            shift: true,
-            key: KeyCode::F9,
-        };
-        assert_eq!(action_of(none), None);
     }
 
     #[test]

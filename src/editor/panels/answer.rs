@@ -1,0 +1,190 @@
+//! Why a pixel has its value, in one sentence beside it; and what the pointer is waited for with.
+
+use super::says::Says;
+use super::state::Panels;
+use crate::editor::action::Action;
+use crate::editor::inspection::{DebugRay, Names};
+use crate::editor::pick::to_points;
+use crate::editor::pointer::{Armed, PixelAsked};
+use crate::editor::preferences::Preferences;
+use crate::editor::selection::Escaped;
+use crate::editor::trees::show_preset;
+use crate::editor::viewport::Viewport;
+use crate::inspect::{InspectPreset, answer};
+use crate::scene::SceneId;
+use crate::trace::RayKind;
+use bevy::ecs::observer::On;
+use bevy::ecs::system::{Res, ResMut};
+use bevy::ecs::world::World;
+use bevy::math::Vec2;
+use bevy_egui::egui::{
+    self, Align2, Area, CursorIcon, Id, Label, Order, Rect, RichText, Stroke, vec2,
+};
+
+/// Points.
+const WIDTH: f32 = 300.0;
+
+/// A pixel that was asked about.
+pub(super) struct Asked {
+    /// Logical pixels of the window.
+    at: Vec2,
+    /// Which of the debug ray's shots it is.
+    shots: u64,
+    /// The sentence, of which rays with which names.
+    known: Option<((u64, u64), String)>,
+}
+
+/// The next click in the view asks.
+pub(super) fn arm(world: &mut World) {
+    *world.resource_mut::<Armed>() = Armed::Why;
+}
+
+pub(super) fn note_question(asked: On<PixelAsked>, ray: Res<DebugRay>, mut panels: ResMut<Panels>) {
+    panels.asked = Some(Asked {
+        at: asked.at,
+        shots: ray.shots(),
+        known: None,
+    });
+}
+
+pub(super) fn forget_question(_: On<Escaped>, mut panels: ResMut<Panels>) {
+    panels.asked = None;
+}
+
+/// The cross of a command that waits for a click.
+pub(super) fn armed_ui(context: &egui::Context, world: &World) {
+    let text = match world.get_resource::<Armed>() {
+        None | Some(Armed::No) => return,
+        Some(Armed::Why) => "Click a pixel: why has it its value? (Esc: none)",
+        Some(Armed::Aim) => "Click what shall be aimed at (Esc: nothing)",
+    };
+    let pointer = context.pointer_latest_pos();
+    let Some(at) = pointer.filter(|_| world.resource::<Viewport>().hovered) else {
+        return;
+    };
+    context.set_cursor_icon(CursorIcon::Crosshair);
+    Area::new(Id::new("what is waited for"))
+        .order(Order::Tooltip)
+        .interactable(false)
+        .fixed_pos(at + vec2(16.0, 16.0))
+        .show(context, |ui| {
+            egui::Frame::popup(ui.style()).show(ui, |ui| ui.label(text));
+        });
+}
+
+/// The sentence, and where to go from it; true where the pointer is over it.
+pub(super) fn answer_ui(
+    context: &egui::Context,
+    free: Rect,
+    world: &mut World,
+    panels: &mut Panels,
+) -> bool {
+    let Some(asked) = &mut panels.asked else {
+        return false;
+    };
+    let ray = world.resource::<DebugRay>();
+    if ray.shots() != asked.shots {
+        panels.asked = None;
+        return false;
+    }
+    let names = world.resource::<Names>();
+    let of = (ray.number(), names.version);
+    let rays = ray.rays();
+    if let Some(rays) = rays
+        && asked.known.as_ref().is_none_or(|(known, _)| *known != of)
+    {
+        asked.known = Some((of, answer(rays, &names.things)));
+    }
+    let text = asked.known.as_ref().map_or("…", |(_, text)| text);
+    let camera = rays.and_then(|rays| rays.rays.iter().find(|ray| ray.kind == RayKind::Camera));
+    let met = camera
+        .and_then(|ray| ray.hit)
+        .map(|hit| SceneId(hit.object));
+    let at = to_points(context, asked.at);
+    let below = at.y < free.center().y;
+    let right = at.x < free.center().x;
+    let pivot = match (right, below) {
+        (true, true) => Align2::LEFT_TOP,
+        (true, false) => Align2::LEFT_BOTTOM,
+        (false, true) => Align2::RIGHT_TOP,
+        (false, false) => Align2::RIGHT_BOTTOM,
+    };
+    let away = |far: bool| if far { 14.0 } else { -14.0 };
+    let mut wish = None;
+    let area = Area::new(Id::new("why a pixel is as it is"))
+        .order(Order::Middle)
+        .pivot(pivot)
+        .fixed_pos(at + vec2(away(right), away(below)))
+        .constrain_to(free)
+        .show(context, |ui| {
+            egui::Frame::popup(ui.style()).show(ui, |ui| {
+                ui.set_max_width(WIDTH.min(free.width() - 20.0));
+                ui.add(Label::new(RichText::new(text).strong()).wrap());
+                ui.horizontal(|ui| {
+                    for (name, says, what) in [
+                        (
+                            "Show rays",
+                            "Draws the pixel's rays, each in the light that it carries",
+                            Wish::Rays,
+                        ),
+                        (
+                            "Ray tree",
+                            "Lists the pixel's rays with all their numbers",
+                            Wish::Tree,
+                        ),
+                    ] {
+                        if ui.small_button(name).says(says).clicked() {
+                            wish = Some(what);
+                        }
+                    }
+                    let go = ui.add_enabled(met.is_some(), egui::Button::new("Go there").small());
+                    if go.says("Selects the object there, and frames it").clicked() {
+                        wish = met.map(Wish::Go);
+                    }
+                    if ui.small_button("✖").says("Closes this (Esc)").clicked() {
+                        wish = Some(Wish::Close);
+                    }
+                });
+            });
+        });
+    let ink = context
+        .style_of(context.theme())
+        .visuals
+        .selection
+        .stroke
+        .color;
+    let cross = context.layer_painter(egui::LayerId::background());
+    let cross = cross.with_clip_rect(free);
+    for side in [
+        vec2(1.0, 0.0),
+        vec2(-1.0, 0.0),
+        vec2(0.0, 1.0),
+        vec2(0.0, -1.0),
+    ] {
+        for (width, ink) in [(3.0, egui::Color32::from_black_alpha(160)), (1.2, ink)] {
+            let line = [at + 4.0 * side, at + 11.0 * side];
+            cross.line_segment(line, Stroke::new(width, ink));
+        }
+    }
+    match wish {
+        Some(Wish::Rays) => show_preset(world, InspectPreset::WhyBlack),
+        Some(Wish::Tree) => world.resource_mut::<Preferences>().show_rays = true,
+        Some(Wish::Go(id)) => {
+            world.write_message(Action::Select(vec![id]));
+            world.write_message(Action::run("view.frame-selected"));
+            panels.asked = None;
+        }
+        Some(Wish::Close) => panels.asked = None,
+        None => {}
+    }
+    let pointer = context.pointer_latest_pos();
+    pointer.is_some_and(|at| area.response.rect.contains(at))
+}
+
+/// What a person wants next.
+enum Wish {
+    Rays,
+    Tree,
+    Go(SceneId),
+    Close,
+}

@@ -1,0 +1,88 @@
+//! The commands that open, close and move panels and dialogs.
+
+use super::palette::Palette;
+use super::state::{Dialog, Panels, Renaming};
+use super::{answer, first_steps};
+use crate::editor::command::{Command, Over, State, commands};
+use crate::editor::edits::name_of;
+use crate::editor::preferences::Preferences;
+use crate::editor::selection::{Escaped, Selection};
+use crate::scene::RenderSettings;
+use bevy::ecs::observer::On;
+use bevy::ecs::system::ResMut;
+use bevy::ecs::world::World;
+
+pub(super) fn commands() -> Vec<Command> {
+    commands! {
+        "file.scenes" "Built-in scenes…" [] "Opens one of the scenes that come with Glassbox"
+            => |world| toggle(world, Dialog::Scenes); menu("File", 0),
+        "file.render" "Render to file…" ["F12"] "Renders a picture to a file while you go on editing"
+            => open_render; menu("File", 3),
+        "file.preferences" "Preferences…" [] "Theme and size of the panels"
+            => |world| toggle(world, Dialog::Preferences); menu("File", 4),
+        "edit.history" "History…" [] "All steps, to go back and forth between"
+            => |world| toggle(world, Dialog::History); menu("Edit", 0),
+        "edit.rename" "Rename" ["F2"] "Gives the selected entity another name, in the list"
+            => rename; menu("Edit", 2); over(&[Over::Entity]); state(is_one_selected),
+        "view.hierarchy" "Hierarchy" [] "Shows the list of entities on the left"
+            => |world| flip(&mut world.resource_mut::<Preferences>().show_hierarchy); menu("View", 5); state(|world| State::switch(world.resource::<Preferences>().show_hierarchy)),
+        "view.inspector" "Inspector" [] "Shows the properties on the right"
+            => |world| flip(&mut world.resource_mut::<Preferences>().show_inspector); menu("View", 5); state(|world| State::switch(world.resource::<Preferences>().show_inspector)),
+        "view.only-picture" "Only the picture" ["Ctrl+Space"] "Takes the panels away, so that the picture fills the window; again, or Escape, brings them back"
+            => |world| flip(&mut world.resource_mut::<Panels>().only_picture); menu("View", 5); over(&[Over::Nothing]),
+        "why.black" "Why is this pixel black?" ["Shift+W"] "The next click in the view answers in a sentence why the pixel there has its value"
+            => answer::arm; menu("View/Rays and trees", 1); button("questions", "Why black?"); over(&[Over::Nothing, Over::Entity]),
+        "help.keys" "Keys and mouse" ["F1", "?"] "Shows every key, and changes them"
+            => |world| toggle(world, Dialog::Keys); menu("Help", 0),
+        "help.palette" "Find a command…" ["Ctrl+P"] "Lists all commands, to be found by a few letters of their names"
+            => |world| world.resource_mut::<Panels>().palette = Some(Palette::default()); menu("Help", 0),
+        "help.first-steps" "First steps" [] "Shows the card with three things to try"
+            => first_steps::toggle; menu("Help", 0); state(first_steps::is_shown),
+        "help.about" "About Glassbox" [] "Version, licences, and what it is made with"
+            => |world| toggle(world, Dialog::About); menu("Help", 1),
+    }
+}
+
+fn toggle(world: &mut World, dialog: Dialog) {
+    let mut panels = world.resource_mut::<Panels>();
+    let again = panels.dialog == Some(dialog);
+    panels.dialog = (!again).then_some(dialog);
+}
+
+fn flip(switch: &mut bool) {
+    *switch = !*switch;
+}
+
+fn open_render(world: &mut World) {
+    let settings = world.resource::<RenderSettings>().clone();
+    let mut panels = world.resource_mut::<Panels>();
+    panels.render_form.open(settings);
+    panels.dialog = Some(Dialog::Render);
+}
+
+fn is_one_selected(world: &World) -> State {
+    let one = world.resource::<Selection>().ids().len() == 1;
+    State::when(one, "One entity has to be selected.")
+}
+
+fn rename(world: &mut World) {
+    let Some(id) = world.resource::<Selection>().active() else {
+        return;
+    };
+    let text = name_of(world, id);
+    world.resource_mut::<Preferences>().show_hierarchy = true;
+    let mut panels = world.resource_mut::<Panels>();
+    panels.only_picture = false;
+    panels.filter = Default::default();
+    panels.list_keys.reveal = Some(id);
+    panels.renaming = Some(Renaming {
+        id,
+        text,
+        focused: false,
+    });
+}
+
+/// The panels come back.
+pub(super) fn let_go(_: On<Escaped>, mut panels: ResMut<Panels>) {
+    panels.only_picture = false;
+}

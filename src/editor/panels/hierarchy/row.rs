@@ -1,0 +1,193 @@
+//! One row: fold, icon, name, eye.
+
+use super::super::kind_icons::{draw_eye, draw_fold, draw_kind};
+use super::super::outline::{Item, Kind, Outline};
+use super::super::outline_rows::{Row, is_in_folder};
+use super::super::says::Says;
+use super::super::state::{Panels, Renaming};
+use super::{Deed, EYE, INDENT, ROW, landing};
+use crate::editor::selection::Selection;
+use bevy_egui::egui::{
+    self, Color32, Pos2, Rect, Response, Sense, TextEdit, TextStyle, TextWrapMode, Ui, WidgetText,
+    pos2, vec2,
+};
+
+/// What the rows are drawn of.
+pub(super) struct List<'a> {
+    pub outline: &'a Outline,
+    pub selection: &'a Selection,
+    pub rows: &'a [Row],
+}
+
+impl List<'_> {
+    pub fn row_ui(&self, ui: &mut Ui, index: usize, panels: &mut Panels, deeds: &mut Vec<Deed>) {
+        match self.rows[index] {
+            Row::Item(at) => self.item_ui(ui, index, at, panels, deeds),
+            Row::Materials(count) => folder_ui(ui, count, panels, deeds),
+        }
+    }
+
+    fn item_ui(
+        &self,
+        ui: &mut Ui,
+        index: usize,
+        at: usize,
+        panels: &mut Panels,
+        deeds: &mut Vec<Deed>,
+    ) {
+        let item = &self.outline.items[at];
+        let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
+        let body = Rect::from_min_max(rect.min, pos2(rect.max.x - EYE, rect.max.y));
+        let id = ui.id().with(("row", item.id.0));
+        let response = ui.interact(body, id, Sense::click_and_drag());
+        let selected = self.selection.contains(item.id);
+        let (ink, icon_ink) = inks(ui, rect, &response, selected, item.unseen);
+        let depth = item.depth + u32::from(is_in_folder(item));
+        let x = rect.min.x + 2.0 + INDENT * depth as f32;
+        let y = rect.center().y;
+        if item.end > at + 1 {
+            let folded = panels.folded.contains(item.id) && panels.filter.is_off();
+            if fold_ui(ui, pos2(x, y), item.id.0, folded) {
+                deeds.push(Deed::Fold(item.id));
+            }
+        }
+        draw_kind(ui.painter(), pos2(x + INDENT + 8.0, y), item.kind, icon_ink);
+        let field = Rect::from_min_max(pos2(x + INDENT + 19.0, rect.min.y), body.max);
+        if let Some(renaming) = panels.renaming.as_mut().filter(|r| r.id == item.id) {
+            if rename_ui(ui, field, renaming) {
+                deeds.push(Deed::Rename(at));
+            }
+        } else {
+            name_ui(ui, field, &item.name, ink);
+        }
+        if eye_ui(ui, item, rect, selected) {
+            deeds.push(Deed::Hide(at));
+        }
+        if response.clicked() {
+            deeds.push(Deed::Click(at));
+        }
+        if response.secondary_clicked() {
+            deeds.push(Deed::Menu(at));
+        }
+        if response.double_clicked() {
+            deeds.push(Deed::StartName(at));
+        }
+        deeds.extend(landing::drag_ui(ui, self, index, at, body, &response));
+    }
+}
+
+/// Fills the row; the colours of text and icon.
+fn inks(
+    ui: &Ui,
+    rect: Rect,
+    response: &Response,
+    selected: bool,
+    unseen: bool,
+) -> (Color32, Color32) {
+    let visuals = ui.visuals();
+    let fill = match (selected, response.hovered()) {
+        (true, _) => visuals.selection.bg_fill,
+        (false, true) => visuals.widgets.noninteractive.bg_stroke.color,
+        _ => Color32::TRANSPARENT,
+    };
+    ui.painter().rect_filled(rect, 3.0, fill);
+    let ink = match (unseen, selected) {
+        (true, _) => visuals.weak_text_color().gamma_multiply(0.6),
+        (false, true) => visuals.selection.stroke.color,
+        _ => visuals.widgets.inactive.fg_stroke.color,
+    };
+    (
+        ink,
+        if selected {
+            ink
+        } else {
+            ink.gamma_multiply(0.8)
+        },
+    )
+}
+
+/// The name, ending in an ellipsis where there is no more room.
+fn name_ui(ui: &Ui, rect: Rect, name: &str, ink: Color32) {
+    let wrap = Some(TextWrapMode::Truncate);
+    let room = (rect.width() - 4.0).max(8.0);
+    let galley = WidgetText::from(name).into_galley(ui, wrap, room, TextStyle::Body);
+    let at = pos2(rect.min.x + 1.0, rect.center().y - 0.5 * galley.size().y);
+    ui.painter()
+        .galley_with_override_text_color(at, galley, ink);
+}
+
+/// The folder of shared materials: no entity, so that it can only be folded.
+fn folder_ui(ui: &mut Ui, count: usize, panels: &Panels, deeds: &mut Vec<Deed>) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
+    let response = response.says("Materials that several objects can use; a click folds them away");
+    let (ink, icon_ink) = inks(ui, rect, &response, false, false);
+    let (x, y) = (rect.min.x + 2.0, rect.center().y);
+    let folded = panels.folded.folder() && panels.filter.is_off();
+    draw_fold(ui.painter(), pos2(x + 5.0, y), folded, icon_ink);
+    draw_kind(
+        ui.painter(),
+        pos2(x + INDENT + 8.0, y),
+        Kind::Group,
+        icon_ink,
+    );
+    let field = Rect::from_min_max(pos2(x + INDENT + 19.0, rect.min.y), rect.max);
+    name_ui(ui, field, &format!("Materials ({count})"), ink);
+    if response.clicked() {
+        deeds.push(Deed::FoldMaterials);
+    }
+}
+
+/// The triangle that folds; true where it was clicked.
+fn fold_ui(ui: &Ui, left: Pos2, id: u64, folded: bool) -> bool {
+    let rect = Rect::from_center_size(left + vec2(5.0, 0.0), vec2(14.0, ROW));
+    let response = ui.interact(rect, ui.id().with(("fold", id)), Sense::click());
+    let ink = ui.style().interact(&response).fg_stroke.color;
+    draw_fold(ui.painter(), rect.center(), folded, ink);
+    response.clicked()
+}
+
+/// The eye that hides; true where it was clicked.
+fn eye_ui(ui: &Ui, item: &Item, row: Rect, selected: bool) -> bool {
+    let rect = Rect::from_min_max(pos2(row.max.x - EYE, row.min.y), row.max);
+    let response = ui
+        .interact(rect, ui.id().with(("eye", item.id.0)), Sense::click())
+        .says("Hides or shows it and what is below it; what is hidden is not traced");
+    let strength = match (item.hidden, response.hovered()) {
+        (_, true) => 1.0,
+        (true, _) => 0.6,
+        (false, _) => 0.55,
+    };
+    let ink = if selected {
+        ui.visuals().selection.stroke.color
+    } else {
+        ui.visuals().widgets.inactive.fg_stroke.color
+    };
+    let ink = ink.gamma_multiply(strength);
+    draw_eye(ui.painter(), rect.center(), item.hidden, ink);
+    response.clicked()
+}
+
+/// The field for a name; true when it is finished.
+fn rename_ui(ui: &mut Ui, rect: Rect, renaming: &mut Renaming) -> bool {
+    let field = TextEdit::singleline(&mut renaming.text)
+        .margin(egui::Margin::symmetric(3, 1))
+        .char_limit(200);
+    let output = ui
+        .scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| {
+            field.desired_width(rect.width() - 8.0).show(ui)
+        })
+        .inner;
+    if renaming.focused {
+        return output.response.lost_focus();
+    }
+    output.response.request_focus();
+    renaming.focused = true;
+    // What is typed replaces the name.
+    let mut state = output.state;
+    let end = renaming.text.chars().count();
+    let all =
+        egui::text::CCursorRange::two(egui::text::CCursor::new(0), egui::text::CCursor::new(end));
+    state.cursor.set_char_range(Some(all));
+    state.store(ui.ctx(), output.response.id);
+    false
+}

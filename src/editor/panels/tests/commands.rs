@@ -1,0 +1,270 @@
+//! The table of commands as a person meets it: in menus, on keys, in the palette, by a right click.
+
+use super::Desk;
+use crate::editor::command::{AddCommands, Command, CommandTable, Over, State};
+use crate::editor::inspection::debug_ray::Shot;
+use crate::editor::inspection::{DebugRay, Names};
+use crate::editor::keys::Keys;
+use crate::editor::notice::Notices;
+use crate::editor::panels::state::{Dialog, Panels};
+use crate::editor::pointer::{PixelAsked, RightClicked};
+use crate::editor::preferences::Preferences;
+use crate::editor::selection::Selection;
+use crate::editor::{Action, edits};
+use crate::inspect::{InspectPreset, InspectSettings, answer};
+use crate::scene::SceneId;
+use crate::sync::TracedCameras;
+use bevy::ecs::resource::Resource;
+use bevy::ecs::world::World;
+use bevy::math::{UVec2, Vec2};
+use bevy_egui::egui::{Event, Key, PointerButton};
+use std::collections::HashSet;
+use std::time::Instant;
+
+/// How often the command of an app was run.
+#[derive(Resource, Default)]
+struct Runs(u32);
+
+fn with_row(row: Command) -> Desk {
+    let mut desk = Desk::open("triangle");
+    desk.app.init_resource::<Runs>().add_commands([row]);
+    desk.settle();
+    desk
+}
+
+fn start() -> Command {
+    let run = |world: &mut World| world.resource_mut::<Runs>().0 += 1;
+    Command::new(
+        "game.start",
+        "Start the game",
+        "Begins the first level",
+        run,
+    )
+    .keys(&["Ctrl+Shift+G"])
+    .menu("Game", 0)
+    .over(&[Over::Nothing])
+}
+
+fn palette(desk: &mut Desk, text: &str) {
+    desk.world().write_message(Action::run("help.palette"));
+    desk.settle();
+    desk.frame(vec![Event::Text(text.into())]);
+    desk.frame(Vec::new());
+}
+
+#[test]
+fn a_row_that_an_app_adds_stands_in_its_menu_the_palette_the_keys_and_the_menu_of_a_right_click() {
+    let mut desk = with_row(start());
+    let runs = |desk: &mut Desk| desk.world().resource::<Runs>().0;
+    desk.click_on("Game");
+    assert!(desk.find("Ctrl+Shift+G").is_some(), "menus show keys");
+    desk.click_on("Start the game");
+    assert_eq!(runs(&mut desk), 1, "by the menu");
+
+    palette(&mut desk, "sttgm");
+    desk.place_of("Start the game");
+    desk.key(Key::Enter);
+    assert_eq!(runs(&mut desk), 2, "by the palette");
+    assert!(desk.world().resource::<Panels>().palette.is_none());
+
+    let keys: Keys = "Ctrl+Shift+G".parse().unwrap();
+    let table = desk.world().resource::<CommandTable>();
+    let bindings = Default::default();
+    let row = table.of_keys(keys, &bindings).expect("it has keys");
+    assert_eq!(row.id, "game.start");
+    desk.world().write_message(Action::run("help.keys"));
+    desk.settle();
+    desk.world().resource_mut::<Panels>().bindings_search = "start the".into();
+    desk.settle();
+    desk.place_of("Ctrl+Shift+G");
+    desk.key(Key::Escape);
+
+    desk.settle();
+    let (at, over) = (Vec2::new(640.0, 300.0), Over::Nothing);
+    desk.world().trigger(RightClicked { at, over });
+    desk.settle();
+    desk.click_on("Start the game");
+    assert_eq!(runs(&mut desk), 3, "by a right click");
+}
+
+#[test]
+fn what_cannot_be_run_says_why_and_does_nothing() {
+    let mut desk = with_row(start().state(|_| State::when(false, "The level is not built.")));
+    palette(&mut desk, "start the game");
+    desk.place_of("Start the game");
+    desk.place_of("The level is not built.");
+    desk.key(Key::Enter);
+    assert!(
+        desk.world().resource::<Panels>().palette.is_some(),
+        "it stays"
+    );
+    desk.key(Key::Escape);
+    desk.settle();
+    assert!(desk.world().resource::<Panels>().palette.is_none());
+    desk.world().write_message(Action::run("game.start"));
+    desk.settle();
+    assert_eq!(desk.world().resource::<Runs>().0, 0);
+    let said = |desk: &mut Desk, text: &str| {
+        let mut notices = desk.world().resource_mut::<Notices>();
+        notices
+            .shown()
+            .iter()
+            .any(|notice| notice.text.contains(text))
+    };
+    assert!(said(&mut desk, "The level is not built."));
+    desk.world().write_message(Action::run("game.stop"));
+    desk.settle();
+    assert!(said(&mut desk, "game.stop"), "an id that is none is named");
+}
+
+#[test]
+fn the_palette_finds_by_letters_and_runs_what_is_chosen_with_the_arrows() {
+    let mut desk = Desk::open("cornell-box");
+    palette(&mut desk, "select");
+    desk.place_of("Select all");
+    assert_eq!(desk.find("Duplicate"), None);
+    for _ in 0..2 {
+        desk.key(Key::ArrowDown);
+    }
+    for _ in 0..2 {
+        desk.key(Key::ArrowUp);
+    }
+    desk.key(Key::Enter);
+    desk.settle();
+    let all = desk.ids().len();
+    assert_eq!(desk.world().resource::<Selection>().ids().len(), all);
+    desk.click_on("Edit");
+    desk.click_on("Delete");
+    assert!(desk.ids().is_empty());
+}
+
+#[test]
+fn every_row_has_an_id_a_name_and_keys_of_its_own() {
+    let mut desk = Desk::open("triangle");
+    let table = desk.world().resource::<CommandTable>();
+    let (mut ids, mut names) = (HashSet::new(), HashSet::new());
+    for row in table.rows() {
+        assert!(ids.insert(row.id.clone()), "{}", row.id);
+        assert!(names.insert(row.name.clone()), "{}", row.name);
+        assert!(row.id.contains('.') && !row.help.is_empty(), "{}", row.id);
+    }
+    let conflicts = table.conflicts(&Default::default());
+    let conflicts: Vec<String> = conflicts.iter().map(|(keys, _)| keys.text()).collect();
+    assert_eq!(conflicts, [""; 0]);
+}
+
+#[test]
+fn what_a_panel_asks_for_is_done_in_the_same_frame() {
+    let mut desk = Desk::open("cornell-box");
+    let all = desk.ids().len();
+    desk.world().write_message(Action::run("select.all"));
+    desk.draw(Vec::new());
+    assert_eq!(desk.world().resource::<Selection>().ids().len(), all);
+}
+
+#[test]
+fn a_right_click_on_a_row_selects_it_and_offers_what_fits_it() {
+    let mut desk = Desk::open("cornell-box");
+    let (_, lamp) = desk.named("Lamp");
+    let at = desk.place_of("Lamp");
+    desk.point(at);
+    for pressed in [true, false] {
+        desk.frame(vec![Event::PointerButton {
+            pos: at,
+            button: PointerButton::Secondary,
+            pressed,
+            modifiers: Default::default(),
+        }]);
+    }
+    desk.settle();
+    assert_eq!(desk.world().resource::<Selection>().ids(), [lamp]);
+    desk.place_of("Duplicate");
+    assert_eq!(desk.find("Select all"), None, "that fits no entity");
+    desk.click_on("Rename");
+    desk.settle();
+    desk.frame(vec![Event::Text("Moon".into())]);
+    desk.key(Key::Enter);
+    desk.settle();
+    assert_eq!(edits::name_of(desk.world(), lamp), "Moon");
+}
+
+#[test]
+fn keys_that_were_chosen_are_shown_and_kept() {
+    let mut desk = Desk::open("triangle");
+    let world = desk.world();
+    let row = crate::editor::command::find(world, "edit.duplicate").unwrap();
+    world.resource_scope(|world, table: bevy::prelude::Mut<CommandTable>| {
+        let keys = vec!["Ctrl+J".parse().unwrap()];
+        let mut preferences = world.resource_mut::<Preferences>();
+        preferences.keys.bind(&table, &row, keys);
+    });
+    let folder = tempfile::tempdir().unwrap();
+    let preferences = desk.world().resource::<Preferences>().clone();
+    preferences.save(folder.path()).unwrap();
+    assert_eq!(Preferences::load(folder.path()), (preferences, None));
+    desk.click_on("Edit");
+    desk.place_of("Ctrl+J");
+    assert_eq!(desk.find("Ctrl+D"), None);
+    desk.key(Key::Escape);
+    desk.world().write_message(Action::run("help.keys"));
+    desk.settle();
+    assert_eq!(desk.world().resource::<Panels>().dialog, Some(Dialog::Keys));
+    desk.click_on("Reset all");
+    desk.settle();
+    let keys = &desk.world().resource::<Preferences>().keys;
+    assert!(!keys.is_chosen(&row));
+}
+
+#[test]
+fn a_pixel_that_was_asked_about_is_answered_in_a_sentence_until_another_is_shot() {
+    let mut desk = Desk::open("cornell-box");
+    let camera = desk.world().resource::<TracedCameras>().0[0].camera.clone();
+    let shot = Shot {
+        pixel: UVec2::new(300, 400),
+        camera,
+        size: UVec2::new(600, 480),
+    };
+    desk.world().resource_mut::<DebugRay>().shoot(shot);
+    let at = Vec2::new(600.0, 300.0);
+    desk.world().trigger(PixelAsked { at });
+    let start = Instant::now();
+    while desk.world().resource::<DebugRay>().is_busy() {
+        assert!(start.elapsed().as_secs() < 60, "no rays came");
+        desk.settle();
+    }
+    desk.settle();
+    let rays = desk.world().resource::<DebugRay>().rays().unwrap().clone();
+    let sentence = answer(&rays, &desk.world().resource::<Names>().things);
+    desk.place_of(&sentence);
+    desk.click_on("Ray tree");
+    assert!(desk.world().resource::<Preferences>().show_rays);
+    desk.click_on("Show rays");
+    let wanted = InspectPreset::WhyBlack.settings().rays;
+    assert_eq!(desk.world().resource::<InspectSettings>().rays, wanted);
+    desk.click_on("Go there");
+    desk.settle();
+    let met = rays.rays[0].hit.unwrap().object;
+    assert_eq!(desk.world().resource::<Selection>().ids(), [SceneId(met)]);
+    assert_eq!(desk.find(&sentence), None);
+}
+
+#[test]
+fn the_card_of_the_first_start_does_each_thing_with_a_click_and_comes_back_only_when_asked() {
+    let mut desk = Desk::open("cornell-box");
+    let card = "Three things to try";
+    assert_eq!(desk.find(card), None);
+    desk.world().write_message(Action::run("help.first-steps"));
+    desk.settle();
+    desk.place_of(card);
+    desk.click_on("➡  Drag the lamp");
+    let (_, lamp) = desk.named("Lamp");
+    assert_eq!(desk.world().resource::<Selection>().ids(), [lamp]);
+    desk.click_on("➡  Look at the tree");
+    let wanted = InspectPreset::IsTheTreeGood.settings().boxes;
+    assert_eq!(desk.world().resource::<InspectSettings>().boxes, wanted);
+    desk.place_of("✔  Look at the tree");
+    desk.click_on("Close");
+    desk.settle();
+    assert_eq!(desk.find(card), None);
+    assert!(desk.world().resource::<Preferences>().hint_seen);
+}

@@ -1,0 +1,133 @@
+//! What a click means: choosing, selecting, a menu, an answer.
+
+use super::super::action::Action;
+use super::super::command::Over;
+use super::super::extent::own_extent;
+use super::super::inspection::Inspected;
+use super::super::inspection::debug_ray::shoot_at;
+use super::super::inspection::hover::line_at;
+use super::super::selection::Selection;
+use super::super::{handles, pick};
+use super::{Armed, DOUBLE, PixelAsked, Pointer, RightClicked, STILL};
+use crate::inspect::Stands;
+use crate::scene::SceneId;
+use crate::sync::Traced;
+use bevy::ecs::entity::Entity;
+use bevy::ecs::query::{Or, With};
+use bevy::ecs::world::World;
+use bevy::math::{Rect, Vec2};
+use bevy::mesh::Mesh3d;
+use std::time::Instant;
+
+pub(super) fn click(world: &mut World, at: Vec2) {
+    if click_line(world, at) {
+        // Two clicks on two things are no double click.
+        world.resource_mut::<Pointer>().last_click = None;
+        return;
+    }
+    let found = pick::at(world, at).map(|found| found.id);
+    let pointer = world.resource::<Pointer>();
+    let adds = pointer.modifiers.ctrl;
+    let now = Instant::now();
+    let again = pointer.last_click.is_some_and(|(when, place)| {
+        now.duration_since(when) <= DOUBLE && place.distance(at) <= STILL
+    });
+    world.resource_mut::<Pointer>().last_click = (!again).then_some((now, at));
+    if again && !adds {
+        if found.is_some() {
+            world.write_message(Action::run("view.frame-selected"));
+        }
+        return;
+    }
+    let mut wanted = world.resource::<Selection>().clone();
+    match (found, adds) {
+        (Some(id), true) => wanted.toggle(id),
+        (Some(id), false) => wanted.set([id]),
+        (None, true) => {}
+        (None, false) => wanted.set([]),
+    }
+    select(world, wanted);
+}
+
+/// The click that a command waited for.
+pub(super) fn answer_target(world: &mut World, at: Vec2) {
+    match std::mem::take(&mut *world.resource_mut::<Armed>()) {
+        Armed::No => {}
+        Armed::Why => {
+            if shoot_at(world, at) {
+                world.trigger(PixelAsked { at });
+            }
+        }
+        Armed::Aim => handles::aim(world, at),
+    }
+}
+
+/// Chooses what is there, as a click does, and has its menu opened.
+pub(super) fn right_click(world: &mut World, at: Vec2) {
+    let line = line_at(world, at).map(|(stands, _)| stands);
+    let over = match line {
+        Some(stands @ (Stands::Ray(_) | Stands::Node { .. })) => {
+            let traced = world.resource::<Traced>().world.clone();
+            world.resource_mut::<Inspected>().click(stands, &traced);
+            match stands {
+                Stands::Ray(_) => Over::Ray,
+                _ => Over::Box,
+            }
+        }
+        _ => match pick::at(world, at) {
+            Some(found) => {
+                if !world.resource::<Selection>().contains(found.id) {
+                    world.resource_mut::<Selection>().set([found.id]);
+                }
+                Over::Entity
+            }
+            None => Over::Nothing,
+        },
+    };
+    world.trigger(RightClicked { at, over });
+}
+
+/// Whether the click is for a line that shows what the tracer did.
+fn click_line(world: &mut World, at: Vec2) -> bool {
+    let Some((stands, _)) = line_at(world, at) else {
+        return false;
+    };
+    let traced = world.resource::<Traced>().world.clone();
+    world.resource_mut::<Inspected>().click(stands, &traced)
+}
+
+fn select(world: &mut World, wanted: Selection) {
+    if *world.resource::<Selection>() != wanted {
+        *world.resource_mut::<Selection>() = wanted;
+    }
+}
+
+/// Selects the objects, lights and cameras whose middle is seen in the box.
+pub(super) fn select_box(world: &mut World, from: Vec2, to: Vec2) {
+    let area = Rect::from_corners(from, to);
+    let mut all = world.query_filtered::<(Entity, &SceneId), Or<(With<Mesh3d>, pick::Symbol)>>();
+    let all: Vec<(Entity, SceneId)> = all.iter(world).map(|(e, id)| (e, *id)).collect();
+    let Some((camera, view)) = pick::camera(world) else {
+        return;
+    };
+    let seen = |entity: Entity| {
+        let middle = own_extent(world.get_entity(entity).ok()?)?.centre();
+        camera.world_to_viewport(&view, middle).ok()
+    };
+    let mut inside: Vec<SceneId> = all
+        .iter()
+        .filter(|(entity, _)| pick::is_shown(world, *entity))
+        .filter(|(entity, _)| seen(*entity).is_some_and(|at| area.contains(at)))
+        .map(|(_, id)| *id)
+        .collect();
+    inside.sort_unstable();
+    let mut wanted = world.resource::<Selection>().clone();
+    if world.resource::<Pointer>().modifiers.ctrl {
+        for id in inside {
+            wanted.add(id);
+        }
+    } else {
+        wanted.set(inside);
+    }
+    select(world, wanted);
+}

@@ -1,0 +1,148 @@
+//! Why a pixel has its value, in one sentence: what the camera meets there, and what is in the way
+//! of its light.
+
+use super::document::named;
+use crate::trace::{RayEnd, RayKind, RayTree, TracedRay};
+use glam::Vec3;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Mirrors that are followed before the sentence ends: more than two make it no clearer.
+const MIRRORS: usize = 2;
+
+/// One sentence on the first sample's camera ray: where its light is blocked, and through mirrors.
+pub fn answer(tree: &RayTree, names: &BTreeMap<u64, String>) -> String {
+    let of = Tree { tree, names };
+    let camera = (0..)
+        .zip(&tree.rays)
+        .find(|(_, ray)| ray.kind == RayKind::Camera);
+    let Some((index, camera)) = camera else {
+        return "Nothing was traced there.".into();
+    };
+    let sentence = match camera.end {
+        RayEnd::Background => "Nothing is there: it shows the background".into(),
+        RayEnd::Light => match camera.met_light {
+            Some(light) => format!("It shows the light {}", named(names, light)),
+            None => "It shows a light".into(),
+        },
+        _ => {
+            let (name, clause) = of.surface(index, camera, MIRRORS);
+            format!("{name} {clause}")
+        }
+    };
+    format!("{sentence}.")
+}
+
+struct Tree<'a> {
+    tree: &'a RayTree,
+    names: &'a BTreeMap<u64, String>,
+}
+
+impl Tree<'_> {
+    fn children(&self, parent: u32) -> impl Iterator<Item = (u32, &TracedRay)> {
+        let rays = (0..).zip(&self.tree.rays);
+        rays.filter(move |(_, ray)| ray.parent == Some(parent))
+    }
+
+    /// What the surface is called, and a clause on where its light is.
+    fn surface(&self, index: u32, ray: &TracedRay, mirrors: usize) -> (String, String) {
+        let hit = ray.hit.map(|hit| named(self.names, hit.object));
+        let name = hit.unwrap_or_else(|| "a surface".into());
+        let light = self.light(index);
+        let mut children = self.children(index);
+        let bounce = children.find(|(_, child)| child.light.is_none());
+        let Some((child_index, child)) = bounce.filter(|_| mirrors > 0 && !light.arrives) else {
+            return (name, light.clause);
+        };
+        let verb = match child.kind {
+            RayKind::Mirror | RayKind::Gloss => "is a mirror that sees",
+            _ => "is transparent, and behind it is",
+        };
+        let seen = match (child.end, child.met_light) {
+            (RayEnd::Background, _) => "the background".into(),
+            (RayEnd::Light, Some(light)) => format!("the light {}", named(self.names, light)),
+            (RayEnd::Light, None) => "a light".into(),
+            _ => {
+                let (seen, clause) = self.surface(child_index, child, mirrors - 1);
+                format!("{seen}, which {clause}")
+            }
+        };
+        (name, format!("{verb} {seen}"))
+    }
+
+    /// What became of the shadow rays that left a surface.
+    fn light(&self, index: u32) -> Light {
+        let mut arriving = BTreeSet::new();
+        let mut blocked: BTreeMap<u64, BTreeSet<u64>> = BTreeMap::new();
+        let (mut behind, mut unlit) = (BTreeSet::new(), BTreeSet::new());
+        let mut carried = Vec3::ZERO;
+        for (_, ray) in self.children(index) {
+            let Some(light) = ray.light else {
+                continue;
+            };
+            match ray.end {
+                RayEnd::Blocked => {
+                    let blockers = blocked.entry(light.id).or_default();
+                    blockers.extend(ray.hit.map(|hit| hit.object));
+                }
+                RayEnd::Unlit if light.n_dot_l <= 0.0 => {
+                    behind.insert(light.id);
+                }
+                RayEnd::Unlit => {
+                    unlit.insert(light.id);
+                }
+                _ => {
+                    arriving.insert(light.id);
+                    carried += ray.carried;
+                }
+            }
+        }
+        let list = |ids: &mut dyn Iterator<Item = u64>| {
+            let names: Vec<String> = ids.map(|id| named(self.names, id)).collect();
+            names.join(" and ")
+        };
+        let shadows: Vec<String> = blocked
+            .iter()
+            .filter(|(light, _)| !arriving.contains(light))
+            .map(|(&light, blockers)| {
+                let light = named(self.names, light);
+                format!(
+                    "in the shadow of {}, from {light}",
+                    list(&mut blockers.iter().copied())
+                )
+            })
+            .collect();
+        let clause = if !arriving.is_empty() {
+            let lit = format!("is lit by {}", list(&mut arriving.iter().copied()));
+            let dark = match carried.max_element() > 0.0 {
+                true => "",
+                false => ", and reflects none of that light",
+            };
+            match shadows.is_empty() {
+                true => format!("{lit}{dark}"),
+                false => format!("{lit}{dark}, and lies {}", shadows.join(" and ")),
+            }
+        } else if !shadows.is_empty() {
+            format!("is {}", shadows.join(" and "))
+        } else if !behind.is_empty() {
+            format!("is turned away from {}", list(&mut behind.iter().copied()))
+        } else if !unlit.is_empty() {
+            format!(
+                "is of a colour that reflects nothing of {}",
+                list(&mut unlit.iter().copied())
+            )
+        } else {
+            "is reached by no light: the scene has none, or shading is off".into()
+        };
+        Light {
+            arrives: !arriving.is_empty(),
+            clause,
+        }
+    }
+}
+
+/// What there is to say of a surface's direct light.
+struct Light {
+    /// Some of it comes.
+    arrives: bool,
+    clause: String,
+}
