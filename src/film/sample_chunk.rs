@@ -7,7 +7,7 @@ use super::tiles::Tile;
 use super::unmet::{NO_OCTAVES, Octaves, octave};
 use crate::scene::RenderSettings;
 use crate::trace::lights::sample_count;
-use crate::trace::{Camera, RayCounts, SampleId, Workspace, World, radiance};
+use crate::trace::{Camera, Dome, RayCounts, SampleId, Workspace, World, radiance};
 use glam::{UVec2, Vec3};
 use std::cell::RefCell;
 use std::ops::Range;
@@ -85,6 +85,9 @@ fn rays_of_first_hit(subject: &Subject) -> u64 {
         for light in &lights.parallelograms {
             rays += count(light.samples, light.area_normal().length());
         }
+    }
+    if let Some(dome) = Dome::of(&world.environment, settings) {
+        rays += u64::from(dome.sample_count(settings));
     }
     if features.glossy {
         rays += u64::from(settings.gloss_samples);

@@ -12,7 +12,7 @@ use super::radiance::{Batch, Vertex};
 use super::recorder::{Adding, LightKind, LitPoint, Recorder};
 use super::sampler::Purpose;
 use super::shading::reflected;
-use super::{Lights, SampleId, Surface};
+use super::{DOME, Dome, Lights, SampleId, Surface, World};
 use crate::bvh::{Aggregate, Hit, Order, Ray};
 use crate::scene::{Lighting, RenderSettings};
 use glam::Vec3;
@@ -54,6 +54,7 @@ enum Lamp<'a> {
     Directional(&'a DirectionalLight),
     Segment(usize, &'a SegmentLight),
     Parallelogram(usize, &'a ParallelogramLight),
+    Dome(Dome<'a>),
 }
 
 impl Lamp<'_> {
@@ -63,6 +64,7 @@ impl Lamp<'_> {
             Self::Directional(_) => LightKind::Directional,
             Self::Segment(..) => LightKind::Segment,
             Self::Parallelogram(..) => LightKind::Parallelogram,
+            Self::Dome(_) => LightKind::Dome,
         }
     }
 
@@ -72,13 +74,17 @@ impl Lamp<'_> {
             Self::Directional(light) => light.id,
             Self::Segment(_, light) => light.id,
             Self::Parallelogram(_, light) => light.id,
+            Self::Dome(_) => DOME,
         }
     }
 
-    /// Shadow rays at a first hit, and what they are counted per (m, m² or sr); `None` of a light without extent.
-    fn samples(self) -> Option<(u32, f32)> {
+    /// Shadow rays at a first hit, and what they are counted per (m, m² or sr); `None` of a light without extent, and of
+    /// one that is taken for its middle. A dome has none that could stand for it.
+    fn samples(self, soft_shadows: bool) -> Option<(u32, f32)> {
         match self {
+            Self::Dome(dome) => Some((dome.samples(), dome.solid_angle())),
             Self::Point(_) => None,
+            _ if !soft_shadows => None,
             Self::Directional(light) => {
                 (light.disc.is_some()).then(|| (light.samples, light.solid_angle()))
             }
@@ -92,7 +98,7 @@ impl Lamp<'_> {
     /// What choosing its points for a surface needs to know of it; nothing where all points are alike.
     fn frame(self) -> Option<Frame> {
         match self {
-            Self::Point(_) | Self::Directional(_) => None,
+            Self::Point(_) | Self::Directional(_) | Self::Dome(_) => None,
             Self::Segment(_, light) => light.frame().map(Frame::Segment),
             Self::Parallelogram(_, light) => light.frame().map(Frame::Parallelogram),
         }
@@ -102,16 +108,23 @@ impl Lamp<'_> {
     fn chosen(self, from: Vec3, chosen: ChosenPlace) -> Option<LightPoint> {
         let ChosenPlace { place, arriving } = chosen;
         match self {
-            Self::Point(_) | Self::Directional(_) => None,
+            Self::Point(_) | Self::Directional(_) | Self::Dome(_) => None,
             Self::Segment(_, light) => light.chosen(from, place[0], arriving),
             Self::Parallelogram(_, light) => light.chosen(from, place, arriving),
         }
     }
 
-    /// The point that the numbers choose where all points are alike.
+    /// The point that the numbers choose where it has no frame.
     #[inline(always)]
-    fn point(self, from: Vec3, u: [f32; 2], lighting: Lighting) -> Option<LightPoint> {
+    fn point(
+        self,
+        surface: &Surface,
+        from: Vec3,
+        u: [f32; 2],
+        lighting: Lighting,
+    ) -> Option<LightPoint> {
         match self {
+            Self::Dome(dome) => dome.point_for(surface, u),
             Self::Point(light) => light.point(from, lighting),
             Self::Directional(light) => Some(light.point(u, lighting)),
             Self::Segment(_, light) => light.point(from, u[0], lighting),
@@ -120,17 +133,17 @@ impl Lamp<'_> {
     }
 
     /// The point that stands for the whole light where there are no soft shadows.
-    fn middle(self, from: Vec3, lighting: Lighting) -> Option<LightPoint> {
+    fn middle(self, surface: &Surface, from: Vec3, lighting: Lighting) -> Option<LightPoint> {
         match self {
             Self::Directional(light) => Some(light.middle()),
-            _ => self.point(from, MIDDLE, lighting),
+            _ => self.point(surface, from, MIDDLE, lighting),
         }
     }
 
     /// What the points have to add on average, where the light is close by and that is known.
     fn expected(self, near: &NearLights, surface: &Surface, from: Vec3) -> Option<Vec3> {
         match self {
-            Self::Point(_) | Self::Directional(_) => None,
+            Self::Point(_) | Self::Directional(_) | Self::Dome(_) => None,
             Self::Segment(i, light) => near.segment(i, light, surface, from),
             Self::Parallelogram(i, light) => near.parallelogram(i, light, surface, from),
         }
@@ -158,7 +171,8 @@ impl<R: Recorder> Batch<'_, R> {
         let parallelograms = lights.parallelograms.iter().enumerate();
         let lamps = (points.chain(directionals))
             .chain(segments.map(|(i, light)| Lamp::Segment(i, light)))
-            .chain(parallelograms.map(|(i, light)| Lamp::Parallelogram(i, light)));
+            .chain(parallelograms.map(|(i, light)| Lamp::Parallelogram(i, light)))
+            .chain(Dome::of(&self.world.environment, self.settings).map(Lamp::Dome));
         for lamp in lamps {
             let frame = if is_even { None } else { lamp.frame() };
             self.gather(lamp, frame.as_ref(), vertices, shadow_rays, near);
@@ -184,7 +198,7 @@ impl<R: Recorder> Batch<'_, R> {
         let lights = &*world.lights;
         let lighting = self.settings.lighting;
         let features = &self.settings.features;
-        let samples = lamp.samples().filter(|_| features.soft_shadows);
+        let samples = lamp.samples(features.soft_shadows);
         let at_first_hits = samples
             .map(|(samples, size)| sample_count(samples, size, features.scale_light_samples));
         let count_at = |vertex: &Vertex| match at_first_hits {
@@ -221,8 +235,11 @@ impl<R: Recorder> Batch<'_, R> {
             let first = shadow_rays.rays.len();
             for _ in 0..count {
                 let point = match (samples, frame) {
-                    (None, _) => lamp.middle(from, lighting),
-                    (Some(_), None) => lamp.point(from, shadow_rays.numbers.get(asked), lighting),
+                    (None, _) => lamp.middle(surface, from, lighting),
+                    (Some(_), None) => {
+                        let numbers = shadow_rays.numbers.get(asked);
+                        lamp.point(surface, from, numbers, lighting)
+                    }
                     (Some(_), Some(_)) => lamp.chosen(from, shadow_rays.chosen.get(asked)),
                 };
                 asked += 1;
@@ -378,17 +395,22 @@ fn shadow_ray(aggregate: &Aggregate, surface: &Surface, point: &LightPoint, time
     }
 }
 
-impl Lights {
-    /// How many shadow rays the area light with this `SceneId` gets at a first hit; `None` where there
+impl World {
+    /// How many shadow rays the area light with this `SceneId`, or the [`DOME`], gets at a first hit; `None` where there
     /// is no such light.
-    pub fn samples_of(&self, id: u64, settings: &RenderSettings) -> Option<u32> {
-        let directional =
-            (self.directionals.iter()).map(|light| (light.id, light.samples, light.solid_angle()));
-        let segments = self.segments.iter().map(|light| {
+    pub fn light_samples(&self, id: u64, settings: &RenderSettings) -> Option<u32> {
+        if id == DOME {
+            let dome = Dome::of(&self.environment, settings)?;
+            return Some(dome.sample_count(settings));
+        }
+        let lights = &self.lights;
+        let directional = (lights.directionals.iter())
+            .map(|light| (light.id, light.samples, light.solid_angle()));
+        let segments = lights.segments.iter().map(|light| {
             let length = (light.ends[1] - light.ends[0]).length();
             (light.id, light.samples, length)
         });
-        let parallelograms = self.parallelograms.iter().map(|light| {
+        let parallelograms = lights.parallelograms.iter().map(|light| {
             let area = light.area_normal().length();
             (light.id, light.samples, area)
         });
@@ -400,7 +422,9 @@ impl Lights {
             settings.features.scale_light_samples,
         ))
     }
+}
 
+impl Lights {
     /// How many there are of all kinds.
     pub fn count(&self) -> usize {
         self.points.len()
