@@ -6,7 +6,7 @@ use crate::app::headless_app;
 use crate::io::place::world_from;
 use crate::io::{FileNote, LoadProblems, OpenOptions, SceneSource, open};
 use crate::scene::{
-    DirectionalLamp, ParallelogramLamp, Phong, PointLamp, SceneCamera, SegmentLamp,
+    DirectionalLamp, Environment, ParallelogramLamp, Phong, PointLamp, SceneCamera, SegmentLamp,
 };
 use bevy::asset::Assets;
 use bevy::ecs::component::Component;
@@ -135,7 +135,8 @@ fn check(world: &mut World, file: &Path, allow_outside: bool) -> Checked {
             checked.lights = count::<PointLamp>(world)
                 + count::<DirectionalLamp>(world)
                 + count::<SegmentLamp>(world)
-                + count::<ParallelogramLamp>(world);
+                + count::<ParallelogramLamp>(world)
+                + usize::from(world.resource::<Environment>().lights);
             checked.cameras = count::<SceneCamera>(world);
             checked.notes = opened.notes.iter().map(noted).collect();
             let problems = &world.resource::<LoadProblems>().problems;

@@ -102,7 +102,7 @@ fn same_planes(old: &Subject, new: &Subject) -> Option<Vec<Option<usize>>> {
     let mut stale = vec![false; new.planes()];
     for kept in &after {
         let same = find(kept.lamp.id())
-            .filter(|was| was.lamp == kept.lamp && was.velocity == kept.velocity);
+            .filter(|was| was.lamp.is_same(kept.lamp) && was.velocity == kept.velocity);
         if same.is_none() && kept.lamp.is_seen() {
             return None;
         }

@@ -9,7 +9,7 @@ use crate::scene::RenderSettings;
 use crate::trace::lights::sample_count;
 use crate::trace::planes::OWN;
 use crate::trace::{
-    Camera, PlaneSet, RayCounts, SampleId, Untinted, Workspace, World, radiance_in_planes,
+    Camera, Dome, PlaneSet, RayCounts, SampleId, Untinted, Workspace, World, radiance_in_planes,
 };
 use glam::{UVec2, Vec3};
 use std::cell::RefCell;
@@ -126,6 +126,9 @@ fn rays_of_first_hit(subject: &Subject) -> u64 {
         for light in &lights.parallelograms {
             rays += count(light.samples, light.area_normal().length());
         }
+    }
+    if let Some(dome) = Dome::of(&world.environment, settings) {
+        rays += u64::from(dome.sample_count(settings));
     }
     if features.glossy {
         rays += u64::from(settings.gloss_samples);

@@ -3,7 +3,7 @@
 use super::explain::{Source, sources};
 use super::{LineSet, Pattern, Traversal};
 use crate::scene::{RenderSettings, SETTINGS};
-use crate::trace::{Lights, RayTree, TracedRay, World};
+use crate::trace::{DOME, Dome, Lights, RayTree, TracedRay, World};
 use glam::{UVec2, Vec3};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -37,6 +37,8 @@ pub struct Document<'a> {
     pub lights: &'a Lights,
     /// What a ray carries that meets nothing, where there is no map.
     pub background: Vec3,
+    /// Whether the environment lights, as the light number 0.
+    pub environment_lights: bool,
     /// Names of objects and lights, by their `SceneId`.
     pub names: &'a BTreeMap<u64, String>,
     /// What is drawn.
@@ -73,6 +75,7 @@ impl<'a> Document<'a> {
             sources: sources(rays),
             lights: &world.lights,
             background: world.environment.background,
+            environment_lights: Dome::of(&world.environment, settings).is_some(),
             names,
             lines: &[],
             pattern: None,
@@ -168,9 +171,13 @@ impl RayLine {
 }
 
 /// A thing's name, or what to call it by its number.
-pub(super) fn named(names: &BTreeMap<u64, String>, id: u64) -> String {
-    let name = names.get(&id).filter(|name| !name.is_empty());
-    name.cloned().unwrap_or_else(|| format!("#{id}"))
+/// What an object or a light is called, or what to call it by its number.
+pub fn named(names: &BTreeMap<u64, String>, id: u64) -> String {
+    match names.get(&id) {
+        Some(name) if !name.is_empty() => name.clone(),
+        _ if id == DOME => "Environment".into(),
+        _ => format!("#{id}"),
+    }
 }
 
 fn rgb(v: Vec3) -> String {

@@ -3,7 +3,7 @@
 use super::color::of_radiance;
 use super::line_set::{LineSet, Stands};
 use super::{Subject, System};
-use crate::trace::{ParallelogramLight, PointLight};
+use crate::trace::{DOME, Dome, ParallelogramLight, PointLight};
 use bevy::color::LinearRgba;
 use glam::Vec3;
 
@@ -16,11 +16,16 @@ const POINT_SIZE: f32 = 0.02;
 /// A directional light's arrows are as long as this part of the distance to the scene's middle.
 const ARROW_SIZE: f32 = 0.25;
 
-/// Lights as lines: what has an extent with its gradient, a spot with its cone.
+/// Directions of a dome that are drawn: so many that a sun stands out from the sky.
+const DOME_DIRECTIONS: u32 = 128;
+
+/// Lights as lines: what has an extent with its gradient, a spot with its cone, a dome with directions that it is sampled
+/// in.
 pub(super) fn lights(subject: &Subject) -> LineSet {
     let mut set = LineSet::new(System::Lights);
     let lights = &subject.world.lights;
-    if lights.count() == 0 {
+    let dome = Dome::of(&subject.world.environment, subject.settings);
+    if lights.count() == 0 && dome.is_none() {
         set.notes.push("there is no light".into());
     }
     let size = subject.distance(subject.middle());
@@ -59,7 +64,30 @@ pub(super) fn lights(subject: &Subject) -> LineSet {
     for light in &lights.parallelograms {
         draw_parallelogram(&mut set, light);
     }
+    if let Some(dome) = &dome {
+        draw_dome(&mut set, subject, dome);
+    }
     set
+}
+
+/// A short line for each direction, on a sphere around the scene, in the colour of what comes from there: many where it is
+/// bright.
+fn draw_dome(set: &mut LineSet, subject: &Subject, dome: &Dome) {
+    let stands = Stands::Light(DOME);
+    let (middle, far) = (subject.middle(), subject.far());
+    let exposure = subject.settings.output.exposure;
+    for i in 0..DOME_DIRECTIONS {
+        // The golden ratio's multiples beside an even sequence: Fibonacci's lattice.
+        let u = [
+            (f64::from(i) * 0.618_033_988_749_894_9).fract() as f32,
+            (i as f32 + 0.5) / DOME_DIRECTIONS as f32,
+        ];
+        let direction = dome.direction(u);
+        let color = of_radiance(dome.radiance(direction), exposure);
+        let ends = [1.0, 1.0 - POINT_SIZE].map(|part| middle + far * part * direction);
+        set.line(ends, color, stands);
+        set.dot(ends[1], color, stands);
+    }
 }
 
 /// Colours of one light, so that its ends or corners can be compared.

@@ -56,7 +56,7 @@ pub use builders::{
     BuilderFigures, BuilderRates, Tell, build_time, builder_name, compare_builders,
     compare_builders_told, csv, markdown, rebuilt, same_geometry,
 };
-pub use document::{Document, RayLine};
+pub use document::{Document, RayLine, named};
 pub use explain::{Cause, Source, explanation, sources};
 pub use legend::{Meaning, legend};
 pub use line_set::{CIRCLE_SEGMENTS, Dot, Label, LineSet, Panel, Segment, Stands, Thinned};

@@ -278,7 +278,7 @@ pub struct PatternSettings {
     pub x: Dimension,
     /// The number downwards.
     pub y: Dimension,
-    /// For `LightU` and `LightV`: the light's `SceneId`.
+    /// For `LightU` and `LightV`: the light's `SceneId`; 0 for the dome.
     pub light: u64,
 }
 

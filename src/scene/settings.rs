@@ -24,6 +24,10 @@ pub struct Environment {
     pub rotation: f32,
     /// Multiplies the map, ≥ 0.
     pub intensity: f32,
+    /// Whether it lights the scene, from everywhere: a dome. Not with Classic lighting.
+    pub lights: bool,
+    /// Shadow rays at the first hit, 1–1000; used where it lights.
+    pub samples: u32,
 }
 
 impl Default for Environment {
@@ -33,6 +37,8 @@ impl Default for Environment {
             map: None,
             rotation: 0.0,
             intensity: 1.0,
+            lights: false,
+            samples: 1,
         }
     }
 }

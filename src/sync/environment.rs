@@ -66,6 +66,8 @@ pub(super) fn sync_environment(
         intensity: reader
             .number("intensity", environment.intensity, 0.0..=f32::MAX)
             .unwrap_or(1.0),
+        lights: environment.lights,
+        samples: reader.samples(environment.samples),
     };
     if !same(&new, &draft.world.environment) {
         draft.world.environment = new;
@@ -83,4 +85,5 @@ fn same(a: &trace::Environment, b: &trace::Environment) -> bool {
         && a.background == b.background
         && a.rotation == b.rotation
         && a.intensity == b.intensity
+        && (a.lights, a.samples) == (b.lights, b.samples)
 }

@@ -56,6 +56,9 @@ pub fn digest(world: &World, camera: &Camera, settings: &RenderSettings) -> Dige
         environment.rotation,
         environment.intensity,
     ));
+    if environment.lights {
+        hash.text(&("dome", environment.samples));
+    }
     if let Some(map) = &environment.map {
         hash.texture(map);
     }

@@ -9,7 +9,7 @@ use super::radiance::{Batch, Vertex};
 use super::recorder::{Adding, LitPoint, Recorder};
 use super::sampler::Purpose;
 use super::shading::reflected;
-use super::{Lights, SampleId, Surface};
+use super::{DOME, Dome, Lights, SampleId, Surface, World};
 use crate::bvh::{Aggregate, Hit, Order, Ray};
 use crate::scene::{Lighting, RenderSettings};
 use glam::Vec3;
@@ -54,7 +54,8 @@ impl<R: Recorder> Batch<'_, R> {
         let is_even =
             self.settings.lighting == Lighting::Classic || !self.settings.features.soft_shadows;
         let lights = &*self.world.lights;
-        for (i, lamp) in lights.all().enumerate() {
+        let dome = Dome::of(&self.world.environment, self.settings).map(Lamp::Dome);
+        for (i, lamp) in lights.all().chain(dome).enumerate() {
             let plane = self.planes.of_light(i);
             if !self.wanted.has(plane) {
                 continue;
@@ -82,7 +83,7 @@ impl<R: Recorder> Batch<'_, R> {
         let lights = &*world.lights;
         let lighting = self.settings.lighting;
         let features = &self.settings.features;
-        let samples = lamp.samples().filter(|_| features.soft_shadows);
+        let samples = lamp.samples(features.soft_shadows);
         let at_first_hits = samples
             .map(|(samples, size)| sample_count(samples, size, features.scale_light_samples));
         let count_at = |vertex: &Vertex| match at_first_hits {
@@ -118,8 +119,11 @@ impl<R: Recorder> Batch<'_, R> {
             let from = from(vertex);
             for _ in 0..count {
                 let point = match (samples, frame) {
-                    (None, _) => lamp.middle(from, lighting),
-                    (Some(_), None) => lamp.point(from, shadow_rays.numbers.get(asked), lighting),
+                    (None, _) => lamp.middle(surface, from, lighting),
+                    (Some(_), None) => {
+                        let numbers = shadow_rays.numbers.get(asked);
+                        lamp.point(surface, from, numbers, lighting)
+                    }
                     (Some(_), Some(_)) => lamp.chosen(from, shadow_rays.chosen.get(asked)),
                 };
                 asked += 1;
@@ -271,17 +275,22 @@ fn shadow_ray(aggregate: &Aggregate, surface: &Surface, point: &LightPoint, time
     }
 }
 
-impl Lights {
-    /// How many shadow rays the area light with this `SceneId` gets at a first hit; `None` where there
+impl World {
+    /// How many shadow rays the area light with this `SceneId`, or the [`DOME`], gets at a first hit; `None` where there
     /// is no such light.
-    pub fn samples_of(&self, id: u64, settings: &RenderSettings) -> Option<u32> {
-        let directional =
-            (self.directionals.iter()).map(|light| (light.id, light.samples, light.solid_angle()));
-        let segments = self.segments.iter().map(|light| {
+    pub fn light_samples(&self, id: u64, settings: &RenderSettings) -> Option<u32> {
+        if id == DOME {
+            let dome = Dome::of(&self.environment, settings)?;
+            return Some(dome.sample_count(settings));
+        }
+        let lights = &self.lights;
+        let directional = (lights.directionals.iter())
+            .map(|light| (light.id, light.samples, light.solid_angle()));
+        let segments = lights.segments.iter().map(|light| {
             let length = (light.ends[1] - light.ends[0]).length();
             (light.id, light.samples, length)
         });
-        let parallelograms = self.parallelograms.iter().map(|light| {
+        let parallelograms = lights.parallelograms.iter().map(|light| {
             let area = light.area_normal().length();
             (light.id, light.samples, area)
         });

@@ -14,6 +14,10 @@ pub struct Environment {
     pub rotation: f32,
     /// Multiplies the map.
     pub intensity: f32,
+    /// Whether it is a light, too: a [`Dome`](super::Dome).
+    pub lights: bool,
+    /// Shadow rays at the first hit, where it lights.
+    pub samples: u32,
 }
 
 impl Environment {
@@ -33,8 +37,18 @@ impl Environment {
             (None, None) => true,
             _ => false,
         };
-        maps && (self.background, self.rotation, self.intensity)
-            == (other.background, other.rotation, other.intensity)
+        let of = |environment: &Self| {
+            let Self {
+                background,
+                rotation,
+                intensity,
+                lights,
+                samples,
+                ..
+            } = *environment;
+            (background, rotation, intensity, lights, samples)
+        };
+        maps && of(self) == of(other)
     }
 
     /// The largest radiance of any direction, channel by channel; of the background alone where the map
@@ -56,6 +70,17 @@ pub fn equirectangular(direction: Vec3, rotation: f32) -> Vec2 {
     Vec2::new((around / TAU + 0.5).rem_euclid(1.0), across / PI)
 }
 
+/// The direction, a unit vector, of a place in an equirectangular picture.
+pub fn direction_at(place: Vec2, rotation: f32) -> Vec3 {
+    let (sin_around, cos_around) = ((place.x - 0.5) * TAU - rotation).sin_cos();
+    let (sin_across, cos_across) = (place.y * PI).sin_cos();
+    Vec3::new(
+        sin_across * sin_around,
+        cos_across,
+        -sin_across * cos_around,
+    )
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -67,6 +92,23 @@ mod tests {
         assert!((equirectangular(Vec3::X, 0.0) - Vec2::new(0.75, 0.5)).length() < 1e-6);
         assert_eq!(equirectangular(Vec3::Y, 0.0).y, 0.0);
         assert_eq!(equirectangular(Vec3::NEG_Y, 0.0).y, 1.0);
+    }
+
+    #[test]
+    fn a_direction_comes_back_from_its_place() {
+        for rotation in [0.0, 0.7, -9.0] {
+            for i in 1..1000 {
+                let place = Vec2::new((i as f32 * 0.618).fract(), i as f32 / 1000.0);
+                let direction = direction_at(place, rotation);
+                assert!((direction.length() - 1.0).abs() < 1e-6);
+                let back = direction_at(equirectangular(direction, rotation), rotation);
+                // Angles of up to 9 + 2π radians in f32.
+                assert!(
+                    (back - direction).length() < 4e-6,
+                    "{place}: {direction} {back}"
+                );
+            }
+        }
     }
 
     /// A map without a jump of its own at the seam, and with one at every texel elsewhere.

@@ -1,23 +1,25 @@
 //! Lights of all kinds as one list: what a stage that goes from light to light wants to know of each.
 
-use super::Lights;
 use super::chosen_places::ChosenPlace;
 use super::light_frames::Frame;
 use super::lights::{
     DirectionalLight, LightPoint, MIDDLE, ParallelogramLight, PointLight, SegmentLight,
 };
 use super::recorder::LightKind;
+use super::{DOME, Dome, Lights, Surface};
 use crate::scene::Lighting;
 use glam::Vec3;
 
 /// A light of any kind.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 #[expect(missing_docs, reason = "the names say it all")]
 pub enum Lamp<'a> {
     Point(&'a PointLight),
     Directional(&'a DirectionalLight),
     Segment(&'a SegmentLight),
     Parallelogram(&'a ParallelogramLight),
+    /// The environment, where it lights.
+    Dome(Dome<'a>),
 }
 
 impl Lamp<'_> {
@@ -27,23 +29,28 @@ impl Lamp<'_> {
             Self::Directional(_) => LightKind::Directional,
             Self::Segment(_) => LightKind::Segment,
             Self::Parallelogram(_) => LightKind::Parallelogram,
+            Self::Dome(_) => LightKind::Dome,
         }
     }
 
-    /// The entity's `SceneId`.
+    /// The entity's `SceneId`, or [`DOME`].
     pub fn id(self) -> u64 {
         match self {
             Self::Point(light) => light.id,
             Self::Directional(light) => light.id,
             Self::Segment(light) => light.id,
             Self::Parallelogram(light) => light.id,
+            Self::Dome(_) => DOME,
         }
     }
 
-    /// Shadow rays at a first hit, and what they are counted per (m, m² or sr); `None` of a light without extent.
-    pub(super) fn samples(self) -> Option<(u32, f32)> {
+    /// Shadow rays at a first hit, and what they are counted per (m, m² or sr); `None` of a light without extent, and of
+    /// one that is taken for its middle. A dome has none that could stand for it.
+    pub(super) fn samples(self, soft_shadows: bool) -> Option<(u32, f32)> {
         match self {
+            Self::Dome(dome) => Some((dome.samples(), dome.solid_angle())),
             Self::Point(_) => None,
+            _ if !soft_shadows => None,
             Self::Directional(light) => {
                 (light.disc.is_some()).then(|| (light.samples, light.solid_angle()))
             }
@@ -55,7 +62,7 @@ impl Lamp<'_> {
     /// What choosing its points for a surface needs to know of it; nothing where all points are alike.
     pub(super) fn frame(self) -> Option<Frame> {
         match self {
-            Self::Point(_) | Self::Directional(_) => None,
+            Self::Point(_) | Self::Directional(_) | Self::Dome(_) => None,
             Self::Segment(light) => light.frame().map(Frame::Segment),
             Self::Parallelogram(light) => light.frame().map(Frame::Parallelogram),
         }
@@ -65,16 +72,23 @@ impl Lamp<'_> {
     pub(super) fn chosen(self, from: Vec3, chosen: ChosenPlace) -> Option<LightPoint> {
         let ChosenPlace { place, arriving } = chosen;
         match self {
-            Self::Point(_) | Self::Directional(_) => None,
+            Self::Point(_) | Self::Directional(_) | Self::Dome(_) => None,
             Self::Segment(light) => light.chosen(from, place[0], arriving),
             Self::Parallelogram(light) => light.chosen(from, place, arriving),
         }
     }
 
-    /// The point that the numbers choose where all points are alike.
+    /// The point that the numbers choose where it has no frame.
     #[inline(always)]
-    pub(super) fn point(self, from: Vec3, u: [f32; 2], lighting: Lighting) -> Option<LightPoint> {
+    pub(super) fn point(
+        self,
+        surface: &Surface,
+        from: Vec3,
+        u: [f32; 2],
+        lighting: Lighting,
+    ) -> Option<LightPoint> {
         match self {
+            Self::Dome(dome) => dome.point_for(surface, u),
             Self::Point(light) => light.point(from, lighting),
             Self::Directional(light) => Some(light.point(u, lighting)),
             Self::Segment(light) => light.point(from, u[0], lighting),
@@ -83,10 +97,26 @@ impl Lamp<'_> {
     }
 
     /// The point that stands for the whole light where there are no soft shadows.
-    pub(super) fn middle(self, from: Vec3, lighting: Lighting) -> Option<LightPoint> {
+    pub(super) fn middle(
+        self,
+        surface: &Surface,
+        from: Vec3,
+        lighting: Lighting,
+    ) -> Option<LightPoint> {
         match self {
             Self::Directional(light) => Some(light.middle()),
-            _ => self.point(from, MIDDLE, lighting),
+            _ => self.point(surface, from, MIDDLE, lighting),
+        }
+    }
+
+    /// Whether it is the same light in another world.
+    pub fn is_same(self, other: Lamp) -> bool {
+        match (self, other) {
+            (Self::Point(a), Lamp::Point(b)) => a == b,
+            (Self::Directional(a), Lamp::Directional(b)) => a == b,
+            (Self::Segment(a), Lamp::Segment(b)) => a == b,
+            (Self::Parallelogram(a), Lamp::Parallelogram(b)) => a == b,
+            _ => false,
         }
     }
 
@@ -97,7 +127,7 @@ impl Lamp<'_> {
 }
 
 impl Lights {
-    /// All of them, kind by kind.
+    /// All of them, kind by kind. A dome is not among them: it belongs to the environment.
     pub fn all(&self) -> impl Iterator<Item = Lamp<'_>> {
         let points = self.points.iter().map(Lamp::Point);
         let directionals = self.directionals.iter().map(Lamp::Directional);

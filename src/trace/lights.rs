@@ -7,12 +7,13 @@
 //! | directional | `E`, W/m²; of a disc of directions as [`SunDisc`] has it |
 //! | segment | `I'(x) / (p(x) d²)` for a point x of it |
 //! | parallelogram | `L(x) · cos θ / (p(x) d²)` for a point x of it, θ at the emitter |
+//! | dome | `L(ω) / p(ω)` for a direction ω; it is no light of these arrays, but the environment ([`Dome`](super::Dome)) |
 //!
 //! p is the density with which the point is chosen: one over length or area where all points are alike, else what
-//! `segment_warp` and `parallelogram_warp` take for the surface that sees it.
+//! `segment_warp`, `parallelogram_warp` and `dome` take for the surface that sees it.
 //!
 //! With Classic lighting the colour itself arrives, whatever the distance and the angle, and points are chosen evenly;
-//! a parallelogram shines to both sides then, as in simple Phong ray tracers.
+//! a parallelogram shines to both sides then, as in simple Phong ray tracers, and there is no dome.
 //!
 //! A light may move while the shutter is open. Few do, so their velocities stand apart, and the kinds
 //! know nothing of them: a light that moves by `velocity · t` is, seen from x, what the same light
@@ -111,11 +112,11 @@ pub struct ParallelogramLight {
 pub struct LightPoint {
     /// Unit vector from the shading point.
     pub direction: Vec3,
-    /// From the shading point; infinite for directional lights.
+    /// From the shading point; infinite for directional lights and the dome.
     pub distance: f32,
     /// What arrives if nothing is in the way, before the surface's cosine.
     pub arriving: Vec3,
-    /// Where on the light, in [0, 1]²; a segment uses the first number.
+    /// Where on the light, in [0, 1]²; a segment uses the first number, of a dome it is the place in its map.
     pub place: [f32; 2],
     /// How likely that place is, as a multiple of what it is where points are chosen evenly over the light.
     pub density: f32,

@@ -30,6 +30,8 @@ mod cut_out;
 mod digest;
 mod direct;
 mod disc;
+mod dome;
+mod dome_table;
 mod emitters;
 mod environment;
 mod first_hit;
@@ -69,6 +71,7 @@ mod wrap;
 
 pub use camera::{Camera, ImagePlane, Optics};
 pub use digest::{Digest, digest};
+pub use dome::{DOME, Dome};
 pub use emitters::emitters;
 pub use environment::Environment;
 pub use first_hit::{FirstHit, central_hits, central_ray, first_hits};

@@ -228,15 +228,15 @@ pub struct RayHit {
 pub struct LightSample {
     /// Which array the light is in.
     pub kind: LightKind,
-    /// The light's `SceneId`.
+    /// The light's `SceneId`; 0 of the dome.
     pub id: u64,
-    /// Where on the light, in [0, 1]²; a segment uses the first number.
+    /// Where on the light, in [0, 1]²; a segment uses the first number, of a dome it is the place in its map.
     pub place: [f32; 2],
     /// How likely that place is, as a multiple of what it is where points are chosen evenly over the light.
     pub density: f32,
     /// Unit vector from the surface.
     pub direction: Vec3,
-    /// In metres; infinite for a directional light.
+    /// In metres; infinite for a directional light and the dome.
     pub distance: f32,
     /// What arrives if nothing is in the way, before the surface's cosine.
     pub arriving: Vec3,

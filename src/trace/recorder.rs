@@ -6,7 +6,7 @@ use super::{LightPoint, Surface};
 use crate::bvh::{Hit, Ray};
 use glam::Vec3;
 
-/// Which of the four arrays of [`Lights`](super::Lights) a light is in.
+/// Which of the four arrays of [`Lights`](super::Lights) a light is in, or that it is the environment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[expect(missing_docs, reason = "the names say it all")]
@@ -15,6 +15,7 @@ pub enum LightKind {
     Directional,
     Segment,
     Parallelogram,
+    Dome,
 }
 
 /// How a path goes on from a surface.

@@ -1,3 +1,4 @@
+use super::dome_table::DomeTable;
 use super::mipmap::{self, Weight};
 use super::texels::Texels;
 use super::wrap::{self, Reading};
@@ -18,6 +19,8 @@ pub struct Texture {
     cut_out_levels: OnceLock<Vec<Texture>>,
     /// Looked for when first asked for.
     brightest: OnceLock<Vec3>,
+    /// Where light comes from, if it is an environment that lights; likewise.
+    dome_table: OnceLock<Option<Box<DomeTable>>>,
 }
 
 /// Why texels are no picture.
@@ -74,6 +77,7 @@ impl Texture {
             levels: OnceLock::new(),
             cut_out_levels: OnceLock::new(),
             brightest: OnceLock::new(),
+            dome_table: OnceLock::new(),
         }
     }
 
@@ -128,6 +132,12 @@ impl Texture {
             let rows = (0..self.height).flat_map(|y| (0..self.width).map(move |x| (x, y)));
             rows.fold(Vec3::ZERO, |most, (x, y)| most.max(self.texel(x, y, false)))
         })
+    }
+
+    /// Where light comes from around an equirectangular map; `None` of one that is the same everywhere.
+    pub(super) fn dome_table(&self) -> Option<&DomeTable> {
+        let table = || DomeTable::new(self).map(Box::new);
+        self.dome_table.get_or_init(table).as_deref()
     }
 
     /// Colour at `uv`. `footprint` is the edge of the square that the ray covers, in texture

@@ -1,5 +1,6 @@
 //! The picture against closed forms: what the tracer computes is compared with what it should be.
 
+mod dome;
 mod irradiance;
 mod light_points;
 mod materials;

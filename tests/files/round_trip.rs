@@ -119,6 +119,8 @@ fn rich_scene(world: &mut World, picture: &str) {
     world.insert_resource(Environment {
         rotation: 1.25,
         map: Some(TextureSource::new(picture)),
+        lights: true,
+        samples: 5,
         ..Default::default()
     });
 }
@@ -408,6 +410,32 @@ fn material_of_version(version: u32, phong: &str) -> Phong {
     let (mut app, _) = opened(&file);
     let material = by_id(app.world_mut(), 1);
     app.world().get::<Phong>(material).cloned().unwrap()
+}
+
+#[test]
+fn an_environment_that_says_nothing_of_light_gives_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.scn.ron");
+    let text = |fields: &str| {
+        format!(
+            "(resources: {{\"glassbox::io::FileVersion\": (2), \"glassbox::scene::Environment\": \
+             (background: (red: 0.5, green: 0.5, blue: 0.5, alpha: 1.0){fields})}}, entities: {{}})"
+        )
+    };
+    for (fields, lights, samples) in [("", false, 1), (", lights: true, samples: 9", true, 9)] {
+        fs::write(&file, text(fields)).unwrap();
+        let (app, _) = opened(&file);
+        let environment = app.world().resource::<Environment>();
+        assert_eq!((environment.lights, environment.samples), (lights, samples));
+    }
+    fs::write(&file, text(", lights: true, samples: 0")).unwrap();
+    let mut app = app();
+    let source = SceneSource::named(&file);
+    let refused = open(app.world_mut(), &source, OpenOptions::default()).unwrap_err();
+    assert!(
+        refused.to_string().contains("Environment.samples"),
+        "{refused}"
+    );
 }
 
 #[test]

@@ -6,8 +6,8 @@ use glam::{Vec2, Vec3};
 use glassbox::inspect::{InspectSettings, LineSet, MissColor, RaySettings, System};
 use glassbox::scene::{Lighting, PhongMap, PixelSampling, Projection};
 use glassbox::trace::{
-    Camera, Environment, Lights, Map, Material, Mesh, Object, ParallelogramLight, PointLight,
-    SegmentLight, Texels, Texture,
+    Camera, DOME, Environment, Lights, Map, Material, Mesh, Object, ParallelogramLight, PointLight,
+    Samples, SegmentLight, Texels, Texture,
 };
 use std::f32::consts::PI;
 use std::sync::Arc;
@@ -224,6 +224,55 @@ fn s4_every_light_sample_has_its_ray_and_area_lights_show_their_gradients() {
         let found = color_at(corner);
         assert!(is_color(found, color), "at {corner}: {found:?}");
     }
+}
+
+#[test]
+fn a_dome_is_drawn_as_directions_that_point_in_from_where_it_is_bright() {
+    let mut world = world(vec![object(1, &floor(), 0)], vec![matt(Vec3::ONE)]);
+    // A sun of one texel at 45° above -Z.
+    let texels = (0..64 * 32).map(|i| match (i % 64, i / 64) {
+        (32, 8) => [900.0, 0.0, 0.0],
+        _ => [0.0, 0.0, 1.0],
+    });
+    let map = Texture::new(64, 32, Texels::Linear32(texels.collect())).unwrap();
+    world.environment = Environment {
+        map: Some(Arc::new(map)),
+        intensity: 1.0,
+        lights: true,
+        samples: 16,
+        ..Environment::default()
+    };
+    let scene = Scene::of(world, camera());
+    let lights = scene.lines(System::Lights, &InspectSettings::default());
+    assert!(lights.notes.is_empty(), "{:?}", lights.notes);
+    assert_eq!(lights.segments.len(), 128);
+    let (around, across) = (PI / 64.0, PI * 8.5 / 32.0);
+    let sun = Vec3::new(
+        across.sin() * around.sin(),
+        across.cos(),
+        -across.sin() * around.cos(),
+    );
+    let mut to_sun = 0;
+    for segment in &lights.segments {
+        let [outer, inner] = segment.ends;
+        let direction = outer.normalize();
+        // The scene's middle is the origin.
+        assert!((outer - inner).normalize().dot(direction) > 0.999);
+        if direction.dot(sun) > 0.97 {
+            to_sun += 1;
+            // Within half of a texel.
+            assert!(segment.colors[0].red > 0.0 || direction.dot(sun) < 0.999);
+        }
+    }
+    // Its light is half of all, and so are its directions.
+    assert!((56..=80).contains(&to_sun), "{to_sun} of 128");
+    let to_light = rays(&scene);
+    let far = to_light.segments.iter().filter(|s| s.ends[1].y > 2.0);
+    assert!(far.count() >= 8, "{:?}", to_light.segments);
+    scene.probe(Samples::All).rays.iter().for_each(|ray| {
+        let is_of_dome = ray.light.is_none_or(|light| light.id == DOME);
+        assert!(is_of_dome, "{ray:?}");
+    });
 }
 
 #[test]

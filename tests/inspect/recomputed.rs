@@ -8,7 +8,7 @@ use glassbox::film::{Sum, render_samples};
 use glassbox::inspect::Document;
 use glassbox::io::builtin::SCENES;
 use glassbox::scene::Lighting;
-use glassbox::trace::{Lights, MovingLight, Samples, probe};
+use glassbox::trace::{Environment, Lights, MovingLight, Samples, probe};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -163,6 +163,9 @@ impl Recomputed {
     fn arriving(&self, ray: &Value, hit: &Value) -> DVec3 {
         let sample = &ray["light"];
         let kind = sample["kind"].as_str().unwrap();
+        if kind == "dome" {
+            return self.arriving_from_dome(sample, hit);
+        }
         let light = self.light(&format!("{kind}s"), &sample["id"]);
         let (u, v) = (number(&sample["place"][0]), number(&sample["place"][1]));
         // As seen by one who moves with the light.
@@ -224,6 +227,26 @@ impl Recomputed {
             "{kind}: {arriving} arrives, the document says {said}"
         );
         // Taken as the document has it: at the rim of a spot, and along a light's own plane, f32 cancels.
+        said
+    }
+
+    /// Of a dome of one colour, whose directions are chosen by the cosine at a matt surface.
+    fn arriving_from_dome(&self, sample: &Value, hit: &Value) -> DVec3 {
+        let density = number(&sample["density"]);
+        let said = vector(&sample["arriving"]);
+        let arriving = vector(&self.json["background"]) * (4.0 * PI / density);
+        let error = (arriving - said).abs().max_element();
+        assert!(
+            self.json["environment_lights"] == true
+                && error <= 1e-5 * said.abs().max_element() + 1e-12,
+            "{arriving} arrives from the dome, the document says {said}"
+        );
+        if vector(&hit["specular"]) == DVec3::ZERO {
+            let expected = 4.0 * number(&sample["n_dot_l"]);
+            // Along the surface f32 cancels.
+            let error = (density - expected).abs();
+            assert!(error <= 1e-4 * expected + 1e-5, "{density}, not {expected}");
+        }
         said
     }
 
@@ -351,6 +374,14 @@ fn so_they_are_with_every_effect_and_with_the_classic_lighting() {
     scene.camera.optics.velocity = glam::Vec3::X * 0.3;
     scene.camera.optics.motion_samples = 8;
     check(&scene, "lens and motion", 60);
+    scene = open();
+    scene.world.environment = Environment {
+        background: glam::Vec3::new(0.4, 0.6, 0.9),
+        lights: true,
+        samples: 3,
+        ..Environment::default()
+    };
+    check(&scene, "a dome that lights", 60);
     scene = open();
     let mut lights = Lights::clone(&scene.world.lights);
     let ids = (lights.points.iter().map(|light| light.id))

@@ -4,7 +4,7 @@
 use super::column::Column;
 use super::names::Names;
 use crate::inspect::RaySettings;
-use crate::trace::{RayKind, RayTree, TracedRay};
+use crate::trace::{DOME, RayKind, RayTree, TracedRay};
 use bevy::platform::collections::HashSet;
 
 /// How the list is arranged.
@@ -215,10 +215,8 @@ impl Search {
         let things = match text.is_empty() {
             true => HashSet::default(),
             false => {
-                let named = names.things.iter();
-                named
-                    .filter(|(_, name)| name.to_lowercase().contains(&text))
-                    .map(|(id, _)| *id)
+                let ids = names.things.keys().copied().chain([DOME]);
+                ids.filter(|&id| names.of(id).to_lowercase().contains(&text))
                     .collect()
             }
         };

@@ -1,5 +1,6 @@
 //! What objects, lights and materials are called.
 
+use crate::inspect::named;
 use crate::scene::{SceneId, UsesMaterial};
 use crate::sync::Traced;
 use crate::trace::Object;
@@ -27,10 +28,7 @@ pub(in crate::editor) struct Names {
 impl Names {
     /// A thing's name, or what to call it by its number.
     pub fn of(&self, id: u64) -> String {
-        match self.things.get(&id) {
-            Some(name) if !name.is_empty() => name.clone(),
-            _ => format!("#{id}"),
-        }
+        named(&self.things, id)
     }
 
     /// A material's name; an object's own has its number alone.

@@ -5,7 +5,7 @@ use crate::editor::inspection::DebugRay;
 use crate::editor::selection::Selection;
 use crate::inspect::{Dimension, InspectSettings, Pattern, PatternSettings, pattern};
 use crate::scene::RenderSettings;
-use crate::trace::{Lights, World, samples_per_pixel};
+use crate::trace::{DOME, Lights, World, samples_per_pixel};
 use bevy::ecs::world::World as Scene;
 use bevy::math::UVec2;
 use bevy_egui::egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, StrokeKind, Ui, pos2, vec2};
@@ -77,7 +77,7 @@ pub(super) fn pattern_ui(ui: &Ui, free: Rect, scene: &Scene, panels: &mut Panels
     }
 }
 
-/// The light that is asked for; else a selected one, else the first one that has an extent.
+/// The light that is asked for; else a selected one, else the first one that has an extent, else the dome.
 fn light_of(lights: &Lights, choice: &PatternSettings, selected: &[u64]) -> u64 {
     let segments = lights.segments.iter().map(|light| light.id);
     let parallelograms = lights.parallelograms.iter().map(|light| light.id);
@@ -85,7 +85,7 @@ fn light_of(lights: &Lights, choice: &PatternSettings, selected: &[u64]) -> u64 
     let mut all = parallelograms.chain(segments).chain(suns);
     let chosen = all.clone().find(|id| *id == choice.light);
     let chosen = chosen.or_else(|| all.clone().find(|id| selected.contains(id)));
-    chosen.or_else(|| all.next()).unwrap_or(0)
+    chosen.or_else(|| all.next()).unwrap_or(DOME)
 }
 
 /// The square's side, in points.

@@ -161,16 +161,12 @@ impl Numbers {
             return self;
         }
         let objects = world.objects.iter();
-        let lights = &world.lights;
         *self = Self {
             of: Some(world.clone()),
             triangles: objects
                 .map(|object| object.mesh.tree.triangles().len() as u64)
                 .sum(),
-            lights: lights.points.len()
-                + lights.directionals.len()
-                + lights.segments.len()
-                + lights.parallelograms.len(),
+            lights: world.lights.count() + usize::from(world.environment.lights),
         };
         self
     }

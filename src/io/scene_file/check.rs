@@ -27,7 +27,10 @@ pub(super) fn check_value(value: &dyn PartialReflect) -> Checked {
         RenderSettings => settings,
         Phong => phong,
         SceneCamera => camera,
-        Environment => |e| at_least_0("Environment.intensity", e.intensity),
+        Environment => |e| {
+            at_least_0("Environment.intensity", e.intensity)?;
+            samples("Environment.samples", e.samples)
+        },
         Lens => |l| {
             at_least_0("Lens.aperture_radius", l.aperture_radius)?;
             above_0("Lens.focus_distance", l.focus_distance)?;

@@ -3,6 +3,7 @@
 mod background;
 mod cut_outs;
 mod dice;
+mod domes;
 mod edits;
 mod lights;
 mod motions;
