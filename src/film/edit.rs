@@ -372,7 +372,7 @@ mod tests {
         let before = lit();
         let subject = |world: &World, lights| Subject {
             light: Untinted::of(world, lights),
-            ..Subject::new(world.clone(), camera(), settings(SIZE, 1))
+            ..Subject::new(world.clone(), camera(), settings(SIZE, 1), true)
         };
         let planes = |world: &World, lights| {
             super::same_planes(&subject(&before, lights), &subject(world, lights))

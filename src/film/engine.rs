@@ -27,8 +27,6 @@ use std::time::Duration;
 pub(super) struct Mode {
     /// Someone looks on: coarse pictures come first, then one sample of each pixel, then two.
     pub watched: bool,
-    /// Its lights may be edited: their planes stay apart.
-    pub editable: bool,
     /// Which samples of each pixel.
     pub samples: Range<u64>,
     /// Only the tiles that this touches, in pixels.
@@ -93,7 +91,7 @@ impl Engine {
         Self {
             tiles: grid
                 .tiles()
-                .map(|tile| Mutex::new(TileState::new(tile, mode.editable)))
+                .map(|tile| Mutex::new(TileState::new(tile)))
                 .collect(),
             preview: Mutex::default(),
             queue: Mutex::default(),

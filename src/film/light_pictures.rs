@@ -41,12 +41,11 @@ pub fn render_lights(
 ) -> (Rendered, LightPictures) {
     let subject = Subject {
         light: Untinted::of(world, LightPictures::MOST),
-        ..Subject::new(world.clone(), camera.clone(), settings.clone())
+        ..Subject::new(world.clone(), camera.clone(), settings.clone(), true)
     };
     let samples: Range<u64> = 0..samples_per_pixel(world, camera, settings).into();
     let mode = Mode {
         watched: false,
-        editable: true,
         samples,
         region: None,
     };

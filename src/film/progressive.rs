@@ -65,10 +65,9 @@ impl Progressive {
         region: Option<URect>,
     ) -> io::Result<Self> {
         let samples = 0..u64::from(samples_per_pixel(&world, &camera, &settings));
-        let subject = Subject::new(world, camera, settings);
+        let subject = Subject::new(world, camera, settings, purpose == Purpose::View);
         let mode = Mode {
             watched: true,
-            editable: purpose == Purpose::View,
             samples,
             region,
         };

@@ -81,10 +81,9 @@ fn run(
     told: &(dyn Fn(&Engine) + Sync),
 ) -> Rendered {
     let engine = Engine::new(
-        Subject::new(world.clone(), camera.clone(), settings.clone()),
+        Subject::new(world.clone(), camera.clone(), settings.clone(), false),
         Mode {
             watched: false,
-            editable: false,
             samples,
             region: None,
         },

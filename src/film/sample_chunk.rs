@@ -11,7 +11,7 @@ use crate::trace::planes::OWN;
 use crate::trace::{
     Camera, Dome, PlaneSet, RayCounts, SampleId, Untinted, Workspace, World, radiance_in_planes,
 };
-use glam::{UVec2, Vec3};
+use glam::{DVec3, UVec2, Vec3};
 use std::cell::RefCell;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -25,6 +25,8 @@ pub(super) struct Subject {
     pub settings: RenderSettings,
     /// The same world as it is traced: its lights without the tints that can be changed afterwards.
     pub light: Untinted,
+    /// Whether the film keeps its planes.
+    pub stays_apart: bool,
     /// Counts its edits.
     pub edit: u32,
 }
@@ -37,9 +39,11 @@ fn lights_apart(size: UVec2) -> usize {
 }
 
 impl Subject {
-    /// Of a world, seen in some way.
-    pub fn new(world: World, camera: Camera, settings: RenderSettings) -> Self {
+    /// Of a world, seen in some way. Where its lights may be edited, their planes stay apart; else they are added up as
+    /// soon as they have been summed.
+    pub fn new(world: World, camera: Camera, settings: RenderSettings, stays_apart: bool) -> Self {
         Self {
+            stays_apart,
             light: Untinted::of(&world, lights_apart(settings.size)),
             edit: 0,
             world,
@@ -52,8 +56,18 @@ impl Subject {
     pub fn edited(&self, world: World) -> Self {
         Self {
             edit: self.edit + 1,
-            ..Self::new(world, self.camera.clone(), self.settings.clone())
+            ..Self::new(
+                world,
+                self.camera.clone(),
+                self.settings.clone(),
+                self.stays_apart,
+            )
         }
+    }
+
+    /// How many the film keeps.
+    pub fn kept_planes(&self) -> usize {
+        if self.stays_apart { self.planes() } else { 1 }
     }
 
     /// How many planes the light has.
@@ -154,7 +168,7 @@ pub(super) struct Scratch {
     workspace: Workspace,
     /// When others last had the core for the asking.
     gave_way: Option<Instant>,
-    /// `TILE_PIXELS` for each plane of each segment of the chunk.
+    /// `TILE_PIXELS` for each segment of the chunk, or for each plane of each where they stay apart.
     pub sums: Vec<Sum>,
     /// How bright the chunk's samples are.
     pub octaves: Octaves,
@@ -205,7 +219,7 @@ impl Scratch {
         let mut places = std::mem::take(&mut self.places);
         let complete = chunk.segments().all(|segment| {
             let first = self.sums.len();
-            let sums = first + subject.planes() * TILE_PIXELS;
+            let sums = first + subject.kept_planes() * TILE_PIXELS;
             self.sums.resize(sums, Sum::default());
             places.clear();
             places.extend(
@@ -270,10 +284,15 @@ impl Scratch {
             }
         }
         for plane in 0..planes {
-            let first = first + plane * TILE_PIXELS;
+            let (kept, factor) = if subject.stays_apart {
+                (plane, DVec3::ONE)
+            } else {
+                (OWN, subject.light.tints[plane].as_dvec3())
+            };
+            let sums = &mut self.sums[first + kept * TILE_PIXELS..][..TILE_PIXELS];
             for (i, &(_, at)) in places.iter().enumerate() {
                 let sum = self.columns.get(plane * places.len() + i);
-                self.sums[first + at].merge(&sum);
+                sums[at].merge_scaled(&sum, factor);
             }
         }
         Some(rays)

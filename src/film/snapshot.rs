@@ -162,10 +162,9 @@ mod tests {
 
     fn engine() -> Engine {
         let settings = test_scene::settings(SIZE, 2);
-        let subject = Subject::new(test_scene::world(), test_scene::camera(), settings);
+        let subject = Subject::new(test_scene::world(), test_scene::camera(), settings, true);
         let mode = Mode {
             watched: true,
-            editable: true,
             samples: 0..2,
             region: None,
         };

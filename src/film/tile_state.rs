@@ -9,7 +9,6 @@ use super::{Sum, TILE};
 use crate::trace::PlaneSet;
 use crate::trace::planes::OWN;
 use glam::{UVec2, Vec3};
-use std::borrow::Cow;
 use std::ops::Range;
 
 pub(super) const TILE_PIXELS: usize = (TILE * TILE) as usize;
@@ -77,9 +76,7 @@ pub(super) struct TileState {
     pub tile: Tile,
     /// `TILE_PIXELS`, or none before the first pass: a render begins without waiting for memory.
     pub pixels: Box<[FilmPixel]>,
-    /// Whether the planes stay apart.
-    editable: bool,
-    /// What the pixels are the sum of, where they do.
+    /// What the pixels are the sum of, where planes stay apart.
     planes: Option<Box<TilePlanes>>,
     /// The edit by whose tints they are.
     edit: u32,
@@ -102,11 +99,10 @@ struct Pending {
 }
 
 impl TileState {
-    pub fn new(tile: Tile, editable: bool) -> Self {
+    pub fn new(tile: Tile) -> Self {
         Self {
             tile,
             pixels: Box::default(),
-            editable,
             planes: None,
             edit: 0,
             pending: None,
@@ -117,10 +113,10 @@ impl TileState {
         }
     }
 
-    /// Takes the sums of a chunk, `TILE_PIXELS` for each plane of each of its segments. True where they complete the pass
+    /// Takes the sums of a chunk, `TILE_PIXELS` for each of its segments, or for each plane of each where they stay apart. True where they complete the pass
     /// and so have entered the pixels.
     pub fn absorb(&mut self, subject: &Subject, chunk: &Chunk, sums: &[Sum], rays: u64) -> bool {
-        let each = subject.planes() * TILE_PIXELS;
+        let each = subject.kept_planes() * TILE_PIXELS;
         let length = chunk.range.end - chunk.range.start;
         self.rays += rays;
         self.samples += length
@@ -175,12 +171,11 @@ impl TileState {
         if self.pixels.is_empty() {
             self.pixels = vec![FilmPixel::default(); TILE_PIXELS].into();
         }
-        if self.editable {
+        if subject.stays_apart {
             self.commit_apart(subject, chunk, sums, count);
             return;
         }
         let pixels = chunk.pixels;
-        let sums = together(sums, &subject.light.tints);
         let doubles = |pixel: &FilmPixel| u64::from(pixel.count) == count;
         for (_, at) in self.tile.pixels().filter(|(_, at)| pixels.has(*at)) {
             let pixel = &mut self.pixels[at];
@@ -291,21 +286,6 @@ impl TileState {
     }
 }
 
-/// All planes of a tile's sums as one.
-fn together<'a>(sums: &'a [Sum], tints: &[Vec3]) -> Cow<'a, [Sum]> {
-    let (own, lights) = sums.split_at(TILE_PIXELS);
-    if lights.is_empty() {
-        return Cow::Borrowed(own);
-    }
-    let mut folded = own.to_vec();
-    for (plane, tint) in lights.chunks_exact(TILE_PIXELS).zip(&tints[OWN + 1..]) {
-        for (sum, light) in folded.iter_mut().zip(plane) {
-            sum.merge_scaled(light, tint.as_dvec3());
-        }
-    }
-    Cow::Owned(folded)
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::test_scene;
@@ -318,7 +298,7 @@ mod tests {
             origin: UVec2::new(16, 32),
             extent: UVec2::new(16, 5),
         };
-        TileState::new(tile, false)
+        TileState::new(tile)
     }
 
     fn chunk(range: Range<u64>, of: u64, pixels: Pixels) -> Chunk {
@@ -337,7 +317,7 @@ mod tests {
             lights: Arc::default(),
             ..test_scene::world()
         };
-        Subject::new(world, test_scene::camera(), settings)
+        Subject::new(world, test_scene::camera(), settings, false)
     }
 
     fn sums(values: Range<u64>) -> Vec<Sum> {
