@@ -2,6 +2,7 @@
 
 use super::error::Place;
 use super::notes::Notes;
+use bevy::math::{DVec3, Vec3};
 use std::path::Path;
 
 /// Where the first vertex of a model may lie without being far off, in its units: below this, floats tell 0.001 apart.
@@ -41,29 +42,23 @@ impl FarOff {
             return;
         }
         self.rests.resize(positions.len(), [0.0; 3]);
-        let (mut least, mut most) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for position in positions.iter().filter(|p| p.iter().all(|v| v.is_finite())) {
-            for axis in 0..3 {
-                least[axis] = least[axis].min(position[axis].into());
-                most[axis] = most[axis].max(position[axis].into());
-            }
-        }
-        let middle = [0, 1, 2].map(|axis| f64::midpoint(least[axis], most[axis]).round());
-        let size = (0..3).map(|axis| most[axis] - least[axis]);
-        let size = size.fold(0.0, f64::max);
-        let distance = middle
-            .iter()
-            .fold(0.0_f64, |far, value| far.max(value.abs()));
+        let places = || positions.iter().map(|&position| Vec3::from(position));
+        let finite = || places().filter(|place| place.is_finite());
+        let bounds = finite().reduce(Vec3::min).zip(finite().reduce(Vec3::max));
+        let Some((least, most)) = bounds else {
+            return;
+        };
+        let (least, most) = (least.as_dvec3(), most.as_dvec3());
+        let middle = least.midpoint(most).round();
+        let (size, distance) = ((most - least).max_element(), middle.abs().max_element());
         if distance < NEAR || distance < SIZES * size {
             return;
         }
-        for (position, rest) in positions.iter_mut().zip(&self.rests) {
-            *position = [0, 1, 2].map(|axis| {
-                let exact = f64::from(position[axis]) + f64::from(rest[axis]);
-                (exact - middle[axis]) as f32
-            });
+        for (position, &rest) in positions.iter_mut().zip(&self.rests) {
+            let exact = Vec3::from(*position).as_dvec3() + Vec3::from(rest).as_dvec3();
+            *position = (exact - middle).as_vec3().to_array();
         }
-        let [x, y, z] = middle;
+        let DVec3 { x, y, z } = middle;
         let what = format!("a model that lies far off, around {x} {y} {z}");
         let instead = "moved to the origin, so that no digits are lost";
         notes.add(file, Place::Whole, what, instead);

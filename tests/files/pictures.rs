@@ -280,6 +280,11 @@ fn a_dds_without_compression_is_read_by_its_masks() {
             plain_dds(0x2_0000, 8, [0xff, 0, 0, 0], &[0; 4], &[255]),
             [1.0; 3],
         ),
+        (
+            "brightness with masks of more bits than there are",
+            plain_dds(0x2_0000, 8, [0xff00_0000, 0, 0, 0], &[0; 4], &[255]),
+            [1.0; 3],
+        ),
         ("RGBA", plain_dds(4, 0, [0; 4], b"DX10", &newer(28)), blue),
         ("BGRA", plain_dds(4, 0, [0; 4], b"DX10", &newer(87)), red),
     ] {

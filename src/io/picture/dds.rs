@@ -81,16 +81,20 @@ fn layout(word: &impl Fn(usize) -> u32, reader: &mut impl Read) -> io::Result<Op
         };
         return Ok(Some(Layout { bytes: 4, masks }));
     }
-    let masks = [word(92), word(96), word(100), word(104)];
-    let [red, green, blue, alpha] = masks;
+    if !matches!(bits, 8 | 16 | 24 | 32) {
+        return Ok(None);
+    }
+    let all = u32::MAX >> (32 - bits);
+    let [red, green, blue, alpha] = [92, 96, 100, 104].map(|at| word(at) & all);
     let alpha = if flags & HAS_ALPHA != 0 { alpha } else { 0 };
     let masks = match flags {
         _ if flags & HAS_COLORS != 0 => [red, green, blue, alpha],
+        // Some programs write masks for more bits than there are.
+        _ if flags & HAS_LUMINANCE != 0 && red == 0 => [all, all, all, 0],
         _ if flags & HAS_LUMINANCE != 0 => [red, red, red, alpha],
         _ => return Ok(None),
     };
-    let is_known = matches!(bits, 8 | 16 | 24 | 32);
-    Ok(is_known.then_some(Layout {
+    Ok(Some(Layout {
         bytes: bits as usize / 8,
         masks,
     }))
