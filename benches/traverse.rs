@@ -1,23 +1,13 @@
-//! Time of a batch of rays through one mesh: our kernel, our watched walk of the binary tree, and obvhs' own two
-//! traversals, over a bumpy sphere and a knot.
+//! Time of a batch of rays through one mesh: our kernel, and obvhs' own two traversals, over a bumpy sphere and a knot.
 //!
 //! `cargo bench --bench traverse --no-default-features`
 //!
-//! Nothing that looks into a traversal slows it while nobody does: the watched walk with the empty visitor against a
-//! control without any, in instructions, which are repeatable. It fails beyond 0.5 %. Valgrind knows no AVX-512; the
-//! wide kernel that it sees is that of AVX2.
+//! Nothing that looks into a traversal slows it while nobody does: the walk with the empty visitor, ray by ray, is that of a
+//! batch, but for what a call costs; in instructions, which are repeatable, it may take 5 % more. Valgrind knows no AVX-512;
+//! the walk that it sees is that of AVX2.
 //!
 //! `cargo bench --bench traverse --no-default-features -- instructions`
 
-#[allow(
-    dead_code,
-    unused_imports,
-    reason = "the library's own source, for its insides"
-)]
-#[path = "../src/bvh/mod.rs"]
-mod bvh;
-#[path = "shared/control.rs"]
-mod control;
 #[path = "shared/instructions.rs"]
 mod instructions;
 #[path = "shared/surfaces.rs"]
@@ -77,15 +67,6 @@ fn closest_ours(bencher: Bencher, name: &str) {
     bencher
         .counter(ItemsCount::new(rays.len()))
         .bench_local(|| aggregate.closest_hits(black_box(rays), &mut hits));
-}
-
-#[divan::bench(args = NAMES)]
-fn closest_ours_watched(bencher: Bencher, name: &str) {
-    let Subject {
-        aggregate, rays, ..
-    } = of(name);
-    let hit = |ray: &Ray| aggregate.closest_hit_with(ray, &mut ()).is_some();
-    one_by_one(bencher, rays, hit);
 }
 
 #[divan::bench(args = NAMES)]

@@ -35,6 +35,8 @@ pub struct WideStats {
 pub struct WideBox {
     /// Wide nodes above it; the root's box has 0.
     pub depth: u32,
+    /// The node of the binary tree whose box it is.
+    pub node: u32,
     /// A leaf of up to eight triangles (in a tree over instances, of one instance).
     pub is_leaf: bool,
     /// Its corners, in the tree's space.
@@ -48,6 +50,8 @@ pub(crate) struct WideTree {
     /// A node or a leaf, as a child is numbered; `None` in a tree over nothing.
     pub(super) root: Option<u32>,
     leaves: usize,
+    /// Which node of the binary tree each node stands for, and each leaf, by its number.
+    sources: [Vec<u32>; 2],
     /// Entries of a stack that the walk needs.
     most_pending: usize,
 }
@@ -66,23 +70,19 @@ impl WideTree {
             return wide;
         };
         if plan.is_leaf {
-            wide.leaves = 1;
-            wide.root = Some(LEAF | leaf(primitives_below(tree, 0)));
+            wide.root = Some(wide.add_leaf(0, leaf(primitives_below(tree, 0))));
             return wide;
         }
-        wide.root = Some(0);
-        wide.nodes.push(WideNode::EMPTY);
+        wide.root = Some(wide.add_node(0));
         let mut pending = vec![(0, 0)];
         while let Some((from, to)) = pending.pop() {
             let (children, count) = collapse::children(tree, &plans, from);
             let mut node = WideNode::EMPTY;
             for (lane, &child) in children[..count].iter().enumerate() {
                 let number = if plans[child].is_leaf {
-                    wide.leaves += 1;
-                    LEAF | leaf(primitives_below(tree, child))
+                    wide.add_leaf(child, leaf(primitives_below(tree, child)))
                 } else {
-                    wide.nodes.push(WideNode::EMPTY);
-                    wide.nodes.len() as u32 - 1
+                    wide.add_node(child)
                 };
                 node.set(lane, tree.nodes[child].aabb(), number);
                 if number & LEAF == 0 {
@@ -92,8 +92,37 @@ impl WideTree {
             wide.nodes[to] = node;
         }
         wide.nodes.shrink_to_fit();
+        wide.sources.iter_mut().for_each(Vec::shrink_to_fit);
         wide.most_pending = wide.count_pending();
         wide
+    }
+
+    /// Adds a leaf that stands for that node of the binary tree; what it is as a child.
+    fn add_leaf(&mut self, source: usize, leaf: u32) -> u32 {
+        self.leaves += 1;
+        let [_, sources] = &mut self.sources;
+        // Leaves of several blocks take as many numbers.
+        sources.resize(leaf as usize + 1, source as u32);
+        LEAF | leaf
+    }
+
+    /// Adds a node that stands for that node of the binary tree; what it is as a child.
+    fn add_node(&mut self, source: usize) -> u32 {
+        let [sources, _] = &mut self.sources;
+        sources.push(source as u32);
+        self.nodes.push(WideNode::EMPTY);
+        self.nodes.len() as u32 - 1
+    }
+
+    /// The node of the binary tree that a child stands for.
+    #[inline(always)]
+    pub(super) fn source(&self, child: u32) -> u32 {
+        let [nodes, leaves] = &self.sources;
+        if child & LEAF == 0 {
+            nodes[child as usize]
+        } else {
+            leaves[(child & !LEAF) as usize]
+        }
     }
 
     /// While one child is walked the others wait. Children stand after their parents.
@@ -138,6 +167,7 @@ impl WideTree {
         };
         let wide_box = |bounds: &Aabb, depth, child: u32| WideBox {
             depth,
+            node: self.source(child),
             is_leaf: child & LEAF != 0,
             bounds: [bounds.min.into(), bounds.max.into()],
         };
@@ -158,7 +188,10 @@ impl WideTree {
 
     /// Memory of the nodes, in bytes.
     pub(crate) fn bytes(&self) -> usize {
+        let [nodes, leaves] = &self.sources;
         size_of_val(self.nodes.as_slice())
+            + size_of_val(nodes.as_slice())
+            + size_of_val(leaves.as_slice())
     }
 
     /// The root and all that is below it, as (box of the child, child) lists.
