@@ -352,7 +352,10 @@ mod tests {
             };
             sah_cost(&checked(&boxes, &options))
         });
-        assert!(costs.is_sorted_by(|a, b| a > b), "{costs:?}");
+        // Where leaves are merged into blocks, what `Medium` searches more than `Fast` is lost among them.
+        let [fastest, fast, medium, slow, very_slow] = costs;
+        assert!(fastest > fast.max(medium), "{costs:?}");
+        assert!(fast.min(medium) > slow && slow > very_slow, "{costs:?}");
     }
 
     #[test]
