@@ -12,7 +12,6 @@ use super::{
     instance::Instance,
     options::{BuildOptions, Levels},
     stats::TreeStats,
-    triangle::LeafTriangle,
     wide::{TriangleBlock, WideBox, WideStats, WideTree},
 };
 
@@ -24,7 +23,7 @@ pub struct Aggregate {
     pub(super) tree: Bvh2,
     /// What a leaf of `tree` holds, in leaf order.
     pub(crate) places: Places,
-    /// The tree as rays walk it when nobody watches.
+    /// The tree as rays walk it.
     pub(super) wide: WideTree,
     /// What its leaves hold: ranges of the places of instances, or of the blocks.
     pub(super) wide_leaves: Vec<Range<usize>>,
@@ -127,11 +126,9 @@ impl Aggregate {
                 for same in pairs.chunk_by(|a, b| a.0 == b.0) {
                     let number = same[0].0;
                     let mesh = &instances[number as usize].mesh;
-                    let triangles: Vec<LeafTriangle> = same
-                        .iter()
-                        .map(|&(_, place)| mesh.leaf_triangle(place))
-                        .collect();
-                    TriangleBlock::append(&triangles, &mut blocks);
+                    let places = same.iter().map(|&(_, place)| place as usize);
+                    let triangles: Vec<u32> = places.map(|place| mesh.triangle_at(place)).collect();
+                    TriangleBlock::append(&triangles, mesh.triangles(), &mut blocks);
                     block_instances.resize(blocks.len(), number);
                 }
                 *leaf = first..blocks.len();
@@ -197,7 +194,7 @@ impl Aggregate {
         }
     }
 
-    /// Statistics of the top tree's form that rays walk when nobody watches.
+    /// Statistics of the top tree's form that rays walk.
     pub fn wide_stats(&self) -> WideStats {
         let nodes = self.wide.stats();
         let triangles = match &self.places {
@@ -212,7 +209,7 @@ impl Aggregate {
         }
     }
 
-    /// The boxes of the top tree's form that rays walk when nobody watches, parents before children.
+    /// The boxes of the top tree's form that rays walk, parents before children.
     pub fn wide_boxes(&self) -> Vec<WideBox> {
         let root = self.tree.nodes.first().map(|root| *root.aabb());
         self.wide.boxes(&root.unwrap_or_default())

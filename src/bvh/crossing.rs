@@ -12,7 +12,7 @@ impl Aggregate {
         self.crossing_behind(after, |last| self.closest_hit_after(ray, last))
     }
 
-    /// The next crossing behind `after`, watched: found in the binary trees.
+    /// [`Self::next_crossing`], watched.
     pub fn next_crossing_with<V: Visitor>(
         &self,
         ray: &Ray,
@@ -41,8 +41,13 @@ impl Aggregate {
         None
     }
 
+    /// Whether a hit lies on an edge of its triangle, or in a corner.
+    pub(super) fn is_on_an_edge(&self, hit: &Hit) -> bool {
+        self.touched(hit).is_some()
+    }
+
     /// Whether two hits lie on the same edge, or in the same corner, of neighbouring triangles.
-    fn same_crossing(&self, a: &Hit, b: &Hit) -> bool {
+    pub(super) fn same_crossing(&self, a: &Hit, b: &Hit) -> bool {
         if a.instance != b.instance {
             return false;
         }

@@ -1,41 +1,15 @@
-//! What a leaf of an aggregate's tree holds, and how a ray crosses it.
-
-use std::marker::PhantomData;
+//! What the leaves of the trees hold, and how a ray meets it.
 
 use super::{
     aggregate::Aggregate,
-    goal::Goal,
-    mesh_tree::ObjectRay,
-    ray::Hit,
+    goal::{Goal, Question, STOP},
+    mesh_tree::{MeshTree, ObjectRay},
     safe_ray::SafeRay,
     slab::SlabRay,
-    traverse::STOP,
-    triangle::{Crossing, Shear},
-    wide::{Eight, Leaves},
+    triangle::Shear,
+    visitor::{TreeRef, Visitor},
+    wide::{Eight, Leaves, Sight, WideRay, walk},
 };
-
-/// Calls `at(hit, limit)` if the crossing lies on the ray, not beyond the limit.
-#[inline(always)]
-pub(super) fn offer(
-    ray: &SafeRay,
-    (instance, triangle): (u32, u32),
-    Crossing { t, u, v }: Crossing,
-    limit: f32,
-    at: &mut impl FnMut(Hit, f32) -> f32,
-) -> f32 {
-    if t <= limit && ray.reaches(t) {
-        let hit = Hit {
-            t,
-            instance,
-            triangle,
-            u,
-            v,
-        };
-        at(hit, limit)
-    } else {
-        limit
-    }
-}
 
 impl Aggregate {
     /// The ray as the boxes of the top tree need it.
@@ -44,53 +18,107 @@ impl Aggregate {
         let pad = world.origin.abs().max_element() * self.ray_pad;
         world.slab.with_pad(world.origin, pad)
     }
+}
 
-    /// The ray in an instance's space and its frame there, made anew when the instance is not the last one; `None`
-    /// where the instance cannot be met.
+/// A mesh's leaf is blocks of triangles, and each a leaf of the wide tree.
+pub(super) struct MeshLeaves<'a> {
+    pub(super) mesh: &'a MeshTree,
+    pub(super) instance: u32,
+    /// In the mesh's space.
+    pub(super) ray: &'a ObjectRay,
+    /// Made at the first leaf: many rays meet none.
+    shear: Option<Shear>,
+}
+
+impl<'a> MeshLeaves<'a> {
     #[inline(always)]
-    pub(crate) fn object_ray<'a>(
-        &self,
-        ray: &SafeRay,
-        number: u32,
-        last: &'a mut Option<(u32, Option<(ObjectRay, Shear)>)>,
-    ) -> Option<&'a (ObjectRay, Shear)> {
-        if last.as_ref().is_none_or(|(of, _)| *of != number) {
-            let instance = &self.instances()[number as usize];
-            let object = instance.to_object_ray(&ray.world, ray.time);
-            let with_frame = |object: ObjectRay| {
-                let shear = Shear::new(object.origin, object.direction);
-                (object, shear)
-            };
-            *last = Some((number, object.map(with_frame)));
+    pub(super) fn new(mesh: &'a MeshTree, instance: u32, ray: &'a ObjectRay) -> Self {
+        Self {
+            mesh,
+            instance,
+            ray,
+            shear: None,
         }
-        last.as_ref().and_then(|(_, object)| object.as_ref())
+    }
+
+    /// Walks the mesh's tree along its ray, from the first `t` of the span to the second, the limit; returns the new one.
+    #[inline(always)]
+    pub(super) fn walk<E: Eight, G: Goal, V: Visitor>(
+        mut self,
+        stack: &mut [u64],
+        (start, limit): (f32, f32),
+        question: &mut Question<G, V>,
+    ) -> f32 {
+        let tree = &self.mesh.wide;
+        let ray = WideRay::<E>::new(&self.ray.slab, start);
+        walk(tree, stack, &ray, limit, &mut self, question)
+    }
+}
+
+impl<E: Eight, G: Goal, V: Visitor> Leaves<E, G, V> for MeshLeaves<'_> {
+    #[inline(always)]
+    fn tree(&self) -> TreeRef {
+        TreeRef::Mesh(self.instance)
+    }
+
+    #[inline(always)]
+    fn visit(
+        &mut self,
+        block: u32,
+        limit: f32,
+        _: &mut [u64],
+        question: &mut Question<G, V>,
+    ) -> f32 {
+        let ray = self.ray;
+        let shear = match &mut self.shear {
+            Some(shear) => shear,
+            none => none.insert(Shear::new(ray.origin, ray.direction)),
+        };
+        let sight = Sight {
+            instance: self.instance,
+            shear,
+            slab: &ray.slab,
+            reach: self.mesh.reach(),
+        };
+        self.mesh.blocks[block as usize].cross::<E, G, V>(&sight, limit, question)
+    }
+
+    #[inline(always)]
+    fn rest(&self, block: u32) -> Option<u32> {
+        let continues = self.mesh.blocks[block as usize].continues();
+        continues.then_some(block + 1)
     }
 }
 
 /// Two levels: a leaf of the top tree is an instance, or several where they could not be told apart.
-pub(super) struct InstanceLeaves<'a, At, G> {
-    pub(super) goal: PhantomData<G>,
+pub(super) struct InstanceLeaves<'a> {
     pub(super) scene: &'a Aggregate,
     pub(super) places: &'a [u32],
     pub(super) ray: &'a SafeRay,
-    pub(super) at: At,
 }
 
-impl<E: Eight, At: FnMut(Hit, f32) -> f32, G: Goal> Leaves<E> for InstanceLeaves<'_, At, G> {
+impl<E: Eight, G: Goal, V: Visitor> Leaves<E, G, V> for InstanceLeaves<'_> {
     #[inline(always)]
-    fn visit(&mut self, leaf: u32, mut limit: f32, stack: &mut [u64]) -> f32 {
+    fn tree(&self) -> TreeRef {
+        TreeRef::Top
+    }
+
+    #[inline(always)]
+    fn visit(
+        &mut self,
+        leaf: u32,
+        mut limit: f32,
+        stack: &mut [u64],
+        question: &mut Question<G, V>,
+    ) -> f32 {
         let ray = self.ray;
         for &number in &self.places[self.scene.wide_leaves[leaf as usize].clone()] {
             let instance = &self.scene.instances()[number as usize];
             let Some(object) = instance.to_object_ray(&ray.world, ray.time) else {
                 continue;
             };
-            let at = |triangle, crossing, limit| {
-                offer(ray, (number, triangle), crossing, limit, &mut self.at)
-            };
-            let mesh = &instance.mesh;
-            let span = (ray.start, limit);
-            limit = mesh.walk_wide::<E, G>(&object, stack, span, at);
+            let leaves = MeshLeaves::new(&instance.mesh, number, &object);
+            limit = leaves.walk::<E, G, V>(stack, (ray.start, limit), question);
             if limit == STOP {
                 break;
             }
@@ -100,28 +128,58 @@ impl<E: Eight, At: FnMut(Hit, f32) -> f32, G: Goal> Leaves<E> for InstanceLeaves
 }
 
 /// One level: a leaf of the tree is blocks of triangles, each of one instance.
-pub(super) struct FlatLeaves<'a, At, G> {
-    pub(super) goal: PhantomData<G>,
+pub(super) struct FlatLeaves<'a> {
     pub(super) scene: &'a Aggregate,
     pub(super) ray: &'a SafeRay,
+    /// The instance met last, with the ray in its space and its frame there; `None` where it cannot be met.
     pub(super) last: Option<(u32, Option<(ObjectRay, Shear)>)>,
-    pub(super) at: At,
 }
 
-impl<E: Eight, At: FnMut(Hit, f32) -> f32, G: Goal> Leaves<E> for FlatLeaves<'_, At, G> {
+impl FlatLeaves<'_> {
+    /// The ray in an instance's space and its frame there, made anew when the instance is not the last one; `None`
+    /// where the instance cannot be met.
     #[inline(always)]
-    fn visit(&mut self, leaf: u32, mut limit: f32, _: &mut [u64]) -> f32 {
-        let (scene, ray) = (self.scene, self.ray);
+    fn object_ray(&mut self, number: u32) -> Option<&(ObjectRay, Shear)> {
+        if self.last.as_ref().is_none_or(|(of, _)| *of != number) {
+            let instance = &self.scene.instances()[number as usize];
+            let object = instance.to_object_ray(&self.ray.world, self.ray.time);
+            let with_frame = |object: ObjectRay| {
+                let shear = Shear::new(object.origin, object.direction);
+                (object, shear)
+            };
+            self.last = Some((number, object.map(with_frame)));
+        }
+        self.last.as_ref().and_then(|(_, object)| object.as_ref())
+    }
+}
+
+impl<E: Eight, G: Goal, V: Visitor> Leaves<E, G, V> for FlatLeaves<'_> {
+    #[inline(always)]
+    fn tree(&self) -> TreeRef {
+        TreeRef::Top
+    }
+
+    #[inline(always)]
+    fn visit(
+        &mut self,
+        leaf: u32,
+        mut limit: f32,
+        _: &mut [u64],
+        question: &mut Question<G, V>,
+    ) -> f32 {
+        let scene = self.scene;
         for block in scene.wide_leaves[leaf as usize].clone() {
             let number = scene.block_instances[block];
-            let Some((object, shear)) = scene.object_ray(ray, number, &mut self.last) else {
+            let Some((object, shear)) = self.object_ray(number) else {
                 continue;
             };
-            let reach = scene.instances()[number as usize].mesh.reach();
-            let mut at = |triangle, crossing, limit| {
-                offer(ray, (number, triangle), crossing, limit, &mut self.at)
+            let sight = Sight {
+                instance: number,
+                shear,
+                slab: &object.slab,
+                reach: scene.instances()[number as usize].mesh.reach(),
             };
-            limit = scene.blocks[block].cross::<E, G>(shear, &object.slab, reach, limit, &mut at);
+            limit = scene.blocks[block].cross::<E, G, V>(&sight, limit, question);
             if limit == STOP {
                 break;
             }

@@ -1,21 +1,21 @@
 //! How the wide trees of an aggregate hang together, and the questions that are compiled for each way apart: what a
 //! scene does not have costs nothing, not even the registers.
 
-use std::marker::PhantomData;
+use glam::Vec3;
 
 #[cfg(test)]
 use super::wide::answer_with_each;
 use super::{
     aggregate::{Aggregate, Places},
-    goal::{Any, Goal, Nearest},
-    leaves::{FlatLeaves, InstanceLeaves, offer},
+    goal::{Any, Goal, Nearest, Question},
+    leaves::{FlatLeaves, InstanceLeaves, MeshLeaves},
     mesh_tree::MeshTree,
     order::Order,
-    packets::{Packet, PacketOfInstances, trace_packet},
-    queries::Best,
+    packets::{Packet, PacketOfInstances, PacketOfMesh, trace_packet},
     ray::{Hit, Ray},
     safe_ray::SafeRay,
-    traverse::STOP,
+    transmit::Transmit,
+    visitor::Visitor,
     wide::{
         Answers, Eight, FEW, Found, Group, InstructionSet, Lanes, MANY, Query, View, WideRay,
         answer, few_hold, walk, walk_packet,
@@ -30,14 +30,30 @@ pub(super) trait Arrangement: Copy {
     /// Entries of a stack that a walk needs.
     fn most_pending(self) -> usize;
 
-    /// Hands the hits on the ray whose `t` is not beyond the limit to `at(hit, limit)`, which returns the new limit, or
-    /// [`STOP`]. `t` is the [`SafeRay`]'s. The order is that of [`walk`].
-    fn each_hit<E: Eight, G: Goal>(
+    /// Walks along the ray until the question has its answer.
+    fn walk<E: Eight, G: Goal, V: Visitor>(
         self,
         ray: &SafeRay,
         stack: &mut [u64],
-        at: impl FnMut(Hit, f32) -> f32,
+        question: &mut Question<G, V>,
     );
+
+    /// Walks along the ray until the goal is reached.
+    #[inline(always)]
+    fn pursue<E: Eight, G: Goal, V: Visitor>(
+        self,
+        ray: &SafeRay,
+        stack: &mut [u64],
+        goal: &mut G,
+        visitor: &mut V,
+    ) {
+        let mut question = Question {
+            measure: ray.measure,
+            goal,
+            visitor,
+        };
+        self.walk::<E, G, V>(ray, stack, &mut question);
+    }
 
     /// Walks with a group of a packet's rays, where there are packets.
     fn packet<S: InstructionSet, G: Goal>(
@@ -82,41 +98,64 @@ impl Aggregate {
         arranged!(self, of => answer(AnyOf { of, order, rays, occluded }));
     }
 
-    /// [`Arrangement::each_hit`].
-    pub(super) fn ask_every<G: Goal>(&self, ray: &SafeRay, at: impl FnMut(Hit, f32) -> f32) {
-        arranged!(self, of => answer(Every::<_, _, G> { of, ray, at, goal: PhantomData }));
+    /// Multiplies `passing`, all one before, by what each ray's crossings let through.
+    pub(super) fn ask_transmittances(
+        &self,
+        order: Order,
+        rays: &[Ray],
+        through: impl FnMut(usize, &Hit) -> Vec3,
+        passing: &mut [Vec3],
+    ) {
+        let aggregate = self;
+        arranged!(self, of => answer(Passing { of, aggregate, order, rays, through, passing }));
+    }
+
+    /// Walks along one ray until the goal is reached, watched.
+    pub(super) fn pursue<G: Goal, V: Visitor>(&self, ray: &SafeRay, goal: &mut G, visitor: &mut V) {
+        arranged!(self, of => answer(One { of, ray, goal, visitor }));
     }
 }
 
 #[cfg(test)]
 impl Aggregate {
-    /// What [`Aggregate::closest_hits_in`] and [`Aggregate::occlusions_in`] find with each instruction set of this
-    /// machine; the names of those that it lacks.
+    /// What [`Aggregate::closest_hits_in`], [`Aggregate::occlusions_in`] and [`Aggregate::transmittances_in`] find with
+    /// each instruction set of this machine; the names of those that it lacks.
     pub(super) fn ask_with_each(
         &self,
         order: Order,
         rays: &[Ray],
-        mut check: impl FnMut(&str, Vec<Option<Hit>>, Vec<bool>),
+        through: fn(&Hit) -> Vec3,
+        check: impl FnMut(&str, Answered),
     ) -> Vec<&'static str> {
-        let both = || Both {
+        let every = || Asked {
             aggregate: self,
             order,
             rays,
+            through,
         };
-        answer_with_each(both, |name, (hits, occluded)| check(name, hits, occluded))
+        answer_with_each(every, check)
     }
 }
 
+/// The answers to [`Aggregate::ask_with_each`].
 #[cfg(test)]
-struct Both<'a> {
-    aggregate: &'a Aggregate,
-    order: Order,
-    rays: &'a [Ray],
+pub(super) struct Answered {
+    pub(super) hits: Vec<Option<Hit>>,
+    pub(super) occluded: Vec<bool>,
+    pub(super) passing: Vec<Vec3>,
 }
 
 #[cfg(test)]
-impl Query for Both<'_> {
-    type Answer = (Vec<Option<Hit>>, Vec<bool>);
+struct Asked<'a> {
+    aggregate: &'a Aggregate,
+    order: Order,
+    rays: &'a [Ray],
+    through: fn(&Hit) -> Vec3,
+}
+
+#[cfg(test)]
+impl Query for Asked<'_> {
+    type Answer = Answered;
 
     #[inline(always)]
     fn ask<S: InstructionSet>(self) -> Self::Answer {
@@ -124,14 +163,22 @@ impl Query for Both<'_> {
             aggregate,
             order,
             rays,
+            through,
         } = self;
-        let (mut all_hits, mut all_occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
-        let (hits, occluded) = (all_hits.as_mut_slice(), all_occluded.as_mut_slice());
+        let mut answered = Answered {
+            hits: vec![None; rays.len()],
+            occluded: vec![false; rays.len()],
+            passing: vec![Vec3::ONE; rays.len()],
+        };
+        let through = |_, hit: &Hit| through(hit);
+        let (hits, occluded) = (&mut answered.hits[..], &mut answered.occluded[..]);
+        let passing = &mut answered.passing[..];
         arranged!(aggregate, of => {
             Closest { of, order, rays, hits }.ask::<S>();
             AnyOf { of, order, rays, occluded }.ask::<S>();
+            Passing { of, aggregate, order, rays, through, passing }.ask::<S>();
         });
-        (all_hits, all_occluded)
+        answered
     }
 }
 
@@ -174,10 +221,9 @@ impl<Of: Arrangement> Query for Closest<'_, Of> {
         }
         for (ray, closest) in self.rays.iter().zip(self.hits) {
             if let Some(ray) = SafeRay::new(ray) {
-                let mut best = Best::NONE;
-                let offer = |hit, limit| best.offer(hit, limit);
-                self.of.each_hit::<S::Eight, Nearest>(&ray, stack, offer);
-                *closest = best.found(&ray);
+                let mut goal = Nearest::NONE;
+                (self.of).pursue::<S::Eight, _, _>(&ray, stack, &mut goal, &mut ());
+                *closest = goal.found(&ray.measure);
             }
         }
     }
@@ -208,35 +254,75 @@ impl<Of: Arrangement> Query for AnyOf<'_, Of> {
         }
         for (ray, occluded) in self.rays.iter().zip(self.occluded) {
             if let Some(ray) = SafeRay::new(ray) {
-                self.of.each_hit::<S::Eight, Any>(&ray, stack, |_, _| {
-                    *occluded = true;
-                    STOP
-                });
+                let mut goal = Any::default();
+                (self.of).pursue::<S::Eight, _, _>(&ray, stack, &mut goal, &mut ());
+                *occluded = goal.is_hit;
             }
         }
     }
 }
 
-/// Every hit of one ray up to a limit that may shrink.
-struct Every<'a, Of, At, G> {
+/// How much of a light passes on each ray.
+struct Passing<'a, Of, F> {
     of: Of,
-    ray: &'a SafeRay,
-    at: At,
-    goal: PhantomData<G>,
+    aggregate: &'a Aggregate,
+    order: Order,
+    rays: &'a [Ray],
+    through: F,
+    passing: &'a mut [Vec3],
 }
 
-impl<Of, At, G> Query for Every<'_, Of, At, G>
-where
-    G: Goal,
-    Of: Arrangement,
-    At: FnMut(Hit, f32) -> f32,
-{
+impl<Of: Arrangement, F: FnMut(usize, &Hit) -> Vec3> Query for Passing<'_, Of, F> {
+    type Answer = ();
+
+    #[inline(always)]
+    fn ask<S: InstructionSet>(mut self) {
+        let Self {
+            of, order, rays, ..
+        } = self;
+        // Most rays meet nothing: packets find that out.
+        let has_packets = Of::HAS_PACKETS && order != Order::None;
+        let mut met = vec![!has_packets; rays.len()];
+        if has_packets {
+            let occluded = met.as_mut_slice();
+            AnyOf {
+                of,
+                order,
+                rays,
+                occluded,
+            }
+            .ask::<S>();
+        }
+        stack_for!(of, stack);
+        let mut crossings = Vec::new();
+        for (i, (ray, passing)) in rays.iter().zip(self.passing).enumerate() {
+            if met[i]
+                && let Some(ray) = SafeRay::new(ray)
+            {
+                let through = |hit: &Hit| (self.through)(i, hit);
+                let mut goal = Transmit::new(self.aggregate, &ray, through, &mut crossings);
+                of.pursue::<S::Eight, _, _>(&ray, stack, &mut goal, &mut ());
+                *passing = goal.product();
+            }
+        }
+    }
+}
+
+/// One ray, watched.
+struct One<'a, Of, G, V> {
+    of: Of,
+    ray: &'a SafeRay,
+    goal: &'a mut G,
+    visitor: &'a mut V,
+}
+
+impl<Of: Arrangement, G: Goal, V: Visitor> Query for One<'_, Of, G, V> {
     type Answer = ();
 
     #[inline(always)]
     fn ask<S: InstructionSet>(self) {
         stack_for!(self.of, stack);
-        (self.of).each_hit::<S::Eight, G>(self.ray, stack, self.at);
+        (self.of).pursue::<S::Eight, G, V>(self.ray, stack, self.goal, self.visitor);
     }
 }
 
@@ -253,15 +339,14 @@ impl Arrangement for OneMesh<'_> {
     }
 
     #[inline(always)]
-    fn each_hit<E: Eight, G: Goal>(
+    fn walk<E: Eight, G: Goal, V: Visitor>(
         self,
         ray: &SafeRay,
         stack: &mut [u64],
-        mut at: impl FnMut(Hit, f32) -> f32,
+        question: &mut Question<G, V>,
     ) {
-        let at = |triangle, crossing, limit| offer(ray, (0, triangle), crossing, limit, &mut at);
-        let span = (ray.start, ray.end);
-        (self.0).walk_wide::<E, G>(&ray.world, stack, span, at);
+        let leaves = MeshLeaves::new(self.0, 0, &ray.world);
+        leaves.walk::<E, G, V>(stack, (ray.start, ray.end), question);
     }
 
     #[inline(always)]
@@ -272,7 +357,8 @@ impl Arrangement for OneMesh<'_> {
         found: &mut Found<S::Packet>,
         stack: &mut [u64],
     ) {
-        (self.0).walk_packet::<S, G>(&packet.world, group, 0, found, stack);
+        let leaves = PacketOfMesh::<S, G>::new(self.0, &packet.world, 0);
+        leaves.walk(group, found, stack);
     }
 }
 
@@ -289,22 +375,16 @@ impl Arrangement for TwoLevels<'_> {
     }
 
     #[inline(always)]
-    fn each_hit<E: Eight, G: Goal>(
+    fn walk<E: Eight, G: Goal, V: Visitor>(
         self,
         ray: &SafeRay,
         stack: &mut [u64],
-        at: impl FnMut(Hit, f32) -> f32,
+        question: &mut Question<G, V>,
     ) {
         let Self(scene, places) = self;
-        let mut leaves = InstanceLeaves::<_, G> {
-            scene,
-            places,
-            ray,
-            at,
-            goal: PhantomData,
-        };
-        let top = WideRay::new(&scene.top_slab(&ray.world), ray.start);
-        walk::<E, G>(&scene.wide, stack, &top, ray.end, &mut leaves);
+        let mut leaves = InstanceLeaves { scene, places, ray };
+        let top = WideRay::<E>::new(&scene.top_slab(&ray.world), ray.start);
+        walk(&scene.wide, stack, &top, ray.end, &mut leaves, question);
     }
 
     #[inline(always)]
@@ -322,7 +402,7 @@ impl Arrangement for TwoLevels<'_> {
             scene,
             places,
             packet,
-            goal: PhantomData,
+            goal: std::marker::PhantomData,
         };
         walk_packet::<S, G>(
             &scene.wide,
@@ -348,22 +428,20 @@ impl Arrangement for OneLevel<'_> {
     }
 
     #[inline(always)]
-    fn each_hit<E: Eight, G: Goal>(
+    fn walk<E: Eight, G: Goal, V: Visitor>(
         self,
         ray: &SafeRay,
         stack: &mut [u64],
-        at: impl FnMut(Hit, f32) -> f32,
+        question: &mut Question<G, V>,
     ) {
         let scene = self.0;
-        let mut leaves = FlatLeaves::<_, G> {
+        let mut leaves = FlatLeaves {
             scene,
             ray,
             last: None,
-            at,
-            goal: PhantomData,
         };
-        let top = WideRay::new(&scene.top_slab(&ray.world), ray.start);
-        walk::<E, G>(&scene.wide, stack, &top, ray.end, &mut leaves);
+        let top = WideRay::<E>::new(&scene.top_slab(&ray.world), ray.start);
+        walk(&scene.wide, stack, &top, ray.end, &mut leaves, question);
     }
 
     #[inline(always)]

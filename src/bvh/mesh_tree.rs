@@ -1,9 +1,6 @@
 //! One mesh and its tree: built once, shared by every instance.
 
-use std::{
-    marker::PhantomData,
-    time::{Duration, Instant},
-};
+use std::time::{Duration, Instant};
 
 use glam::Vec3A;
 use obvhs::{aabb::Aabb, bvh2::Bvh2};
@@ -11,34 +8,26 @@ use rayon::prelude::*;
 
 use super::{
     build_tree,
-    goal::Goal,
     options::BuildOptions,
-    ray::Hit,
     slab::{SlabRay, triangle_box},
     stats::TreeStats,
-    traverse::{STOP, Stack, walk},
-    triangle::{Crossing, LeafTriangle, Shear, cross},
     triangles::Triangles,
-    visitor::{TreeRef, Visitor},
     wedges::Wedges,
-    wide::{
-        self, Eight, Found, Group, InstructionSet, Leaves, PacketLeaves, PacketRays, TriangleBlock,
-        View, WideBox, WideRay, WideStats, WideTree, lanes_of,
-    },
+    wide::{TriangleBlock, WideBox, WideStats, WideTree},
 };
 
 /// Below this many triangles a pass over them takes less time than handing it to other threads.
 const PARALLEL_SIZE: usize = 1 << 13;
 
-/// A mesh's triangles, the tree over them, and their corners again in the order of the tree's leaves. And the same in
-/// the form in which rays walk it when nobody watches.
+/// A mesh's triangles, the tree over them as it was built, and the same in the form in which rays walk it.
 #[derive(Clone)]
 pub struct MeshTree {
     triangles: Triangles,
     tree: Bvh2,
-    pub(crate) leaves: Vec<LeafTriangle>,
-    wide: WideTree,
-    blocks: Vec<TriangleBlock>,
+    /// The numbers of the triangles that are traced, in leaf order.
+    order: Vec<u32>,
+    pub(super) wide: WideTree,
+    pub(super) blocks: Vec<TriangleBlock>,
     wedges: Wedges,
     /// The largest coordinate of a traced triangle, without its sign.
     reach: f32,
@@ -54,7 +43,7 @@ impl MeshTree {
             .with_min_len(PARALLEL_SIZE)
             .filter(|&triangle| triangles.is_traced(triangle))
             .collect();
-        let ((tree, leaves, wide, blocks), wedges) = rayon::join(
+        let ((tree, order, wide, blocks), wedges) = rayon::join(
             || tree_over(&triangles, &numbers, options),
             || Wedges::of(&triangles, &numbers),
         );
@@ -67,7 +56,7 @@ impl MeshTree {
             wedges,
             triangles,
             tree,
-            leaves,
+            order,
             wide,
             blocks,
             build_time: start.elapsed(),
@@ -87,12 +76,12 @@ impl MeshTree {
 
     /// The number of the triangle at a place in leaf order (`first_index ..` of a leaf).
     pub fn triangle_at(&self, place: usize) -> u32 {
-        self.leaves[place].number
+        self.order[place]
     }
 
     /// How many triangles are traced.
     pub fn traced(&self) -> usize {
-        self.leaves.len()
+        self.order.len()
     }
 
     /// The box around all traced triangles (a few units in the last place wider), or `None` when there is none.
@@ -110,11 +99,11 @@ impl MeshTree {
         &self.wedges
     }
 
-    /// Memory held, in bytes: mesh, tree and leaves.
+    /// Memory held, in bytes: mesh and both forms of the tree.
     pub fn bytes(&self) -> usize {
         size_of_val(self.triangles.positions())
             + size_of_val(self.triangles.indices())
-            + size_of_val(self.leaves.as_slice())
+            + size_of_val(self.order.as_slice())
             + size_of_val(self.tree.nodes.as_slice())
             + size_of_val(self.tree.primitive_indices.as_slice())
             + self.wide.bytes()
@@ -127,7 +116,7 @@ impl MeshTree {
         TreeStats::of(&self.tree)
     }
 
-    /// Statistics of the form that rays walk when nobody watches.
+    /// Statistics of the form that rays walk.
     pub fn wide_stats(&self) -> WideStats {
         let nodes = self.wide.stats();
         WideStats {
@@ -138,7 +127,7 @@ impl MeshTree {
         }
     }
 
-    /// The boxes of the form that rays walk when nobody watches, parents before children.
+    /// The boxes of the form that rays walk, parents before children.
     pub fn wide_boxes(&self) -> Vec<WideBox> {
         let root = self.bounds().unwrap_or_default();
         self.wide.boxes(&root)
@@ -155,228 +144,35 @@ impl MeshTree {
         (&self.wide, &self.blocks)
     }
 
-    /// Entries of a stack that [`Self::walk_wide`] needs.
+    /// Entries of a stack that a walk through it needs.
     pub(crate) fn most_pending(&self) -> usize {
         self.wide.most_pending()
     }
 
-    /// Walks the tree along a ray in object space, from the first `t` of the span to the second, the limit, unwatched:
-    /// [`walk`](wide::walk). `at(triangle number, crossing, limit)` returns the new limit, or [`STOP`].
-    #[inline(always)]
-    pub(crate) fn walk_wide<E: Eight, G: Goal>(
-        &self,
-        ray: &ObjectRay,
-        stack: &mut [u64],
-        (start, limit): (f32, f32),
-        at: impl FnMut(u32, Crossing, f32) -> f32,
-    ) -> f32 {
-        let mut leaves = MeshLeaves::<_, G> {
-            blocks: &self.blocks,
-            reach: self.reach,
-            ray,
-            shear: None,
-            at,
-            goal: PhantomData,
-        };
-        let wide_ray = WideRay::new(&ray.slab, start);
-        wide::walk::<E, G>(&self.wide, stack, &wide_ray, limit, &mut leaves)
-    }
-
-    /// Walks the tree with a group of a packet's rays in object space.
-    #[inline(always)]
-    pub(crate) fn walk_packet<S: InstructionSet, G: Goal>(
-        &self,
-        rays: &PacketRays<S::Packet>,
-        group: &Group,
-        instance: u32,
-        found: &mut Found<S::Packet>,
-        stack: &mut [u64],
-    ) {
-        let mut view = View::<S>::new(rays, group);
-        let mut leaves = PacketOfMesh::<S, G> {
-            mesh: self,
-            rays,
-            instance,
-            goal: PhantomData,
-        };
-        wide::walk_packet::<S, G>(
-            &self.wide,
-            stack,
-            &mut view,
-            group.lanes,
-            found,
-            &mut leaves,
-        );
-    }
-
-    /// Walks the tree along a ray in object space, from the first `t` of the span to the second, the limit. `at(triangle
-    /// number, crossing, limit)` returns the new one.
-    #[inline(always)]
-    pub(crate) fn walk<V: Visitor>(
-        &self,
-        ray: &ObjectRay,
-        stack: &mut Stack,
-        span: (f32, f32),
-        instance: u32,
-        visitor: &mut V,
-        mut at: impl FnMut(u32, Option<Crossing>, f32, &mut V) -> f32,
-    ) -> f32 {
-        let mut shear = None;
-        walk(
-            &self.tree.nodes,
-            stack,
-            &ray.slab,
-            span,
-            TreeRef::Mesh(instance),
-            visitor,
-            |first, count, mut limit, visitor| {
-                let shear = shear.get_or_insert_with(|| Shear::new(ray.origin, ray.direction));
-                let first = first as usize;
-                for triangle in &self.leaves[first..first + count as usize] {
-                    let crossing = cross(shear, &ray.slab, triangle, limit);
-                    limit = at(triangle.number, crossing, limit, visitor);
-                    if limit == STOP {
-                        break;
-                    }
-                }
-                limit
-            },
-        )
-    }
-
-    /// A triangle by its place in leaf order.
-    pub(crate) fn leaf_triangle(&self, place: u32) -> LeafTriangle {
-        self.leaves[place as usize]
-    }
-
     /// The padded box of a triangle by its place in leaf order, in object space.
     pub(crate) fn box_at(&self, place: usize) -> Aabb {
-        triangle_box(self.leaves[place].corners().map(Vec3A::from))
-    }
-
-    /// One triangle by its place in leaf order, tested against a ray in object space.
-    #[inline(always)]
-    pub(crate) fn cross_at(
-        &self,
-        shear: &Shear,
-        ray: &ObjectRay,
-        place: u32,
-        limit: f32,
-    ) -> (u32, Option<Crossing>) {
-        let triangle = &self.leaves[place as usize];
-        (triangle.number, cross(shear, &ray.slab, triangle, limit))
+        let corners = self.triangles.corners(self.order[place]);
+        triangle_box(corners.map(Vec3A::from))
     }
 }
 
-/// The tree over the triangles of these numbers, their corners in the order of its leaves, and both in the form in which rays
-/// walk it when nobody watches.
+/// The tree over the triangles of these numbers, those in the order of its leaves, and both in the form in which rays walk it.
 fn tree_over(
     triangles: &Triangles,
     numbers: &[u32],
     options: &BuildOptions,
-) -> (Bvh2, Vec<LeafTriangle>, WideTree, Vec<TriangleBlock>) {
+) -> (Bvh2, Vec<u32>, WideTree, Vec<TriangleBlock>) {
     let boxes: Vec<Aabb> = (numbers.par_iter().with_min_len(PARALLEL_SIZE))
         .map(|&triangle| triangle_box(triangles.corners(triangle).map(Vec3A::from)))
         .collect();
     let tree = build_tree(&boxes, options);
     drop(boxes);
-    let leaves: Vec<LeafTriangle> = (tree.primitive_indices.par_iter())
-        .with_min_len(PARALLEL_SIZE)
-        .map(|&slot| {
-            let number = numbers[slot as usize];
-            LeafTriangle::new(triangles.corners(number), number)
-        })
-        .collect();
+    let slots = tree.primitive_indices.iter();
+    let order: Vec<u32> = slots.map(|&slot| numbers[slot as usize]).collect();
     let (wide, blocks) = WideTree::new(&tree, TriangleBlock::CAPACITY, |places, blocks| {
-        TriangleBlock::append(&leaves[places], blocks);
+        TriangleBlock::append(&order[places], triangles, blocks);
     });
-    (tree, leaves, wide, blocks)
-}
-
-/// The blocks of a mesh's wide tree, with a ray.
-struct MeshLeaves<'a, At, G> {
-    blocks: &'a [TriangleBlock],
-    reach: f32,
-    ray: &'a ObjectRay,
-    /// Made at the first leaf: many rays meet none.
-    shear: Option<Shear>,
-    at: At,
-    goal: PhantomData<G>,
-}
-
-impl<E: Eight, At: FnMut(u32, Crossing, f32) -> f32, G: Goal> Leaves<E> for MeshLeaves<'_, At, G> {
-    #[inline(always)]
-    fn visit(&mut self, block: u32, limit: f32, _: &mut [u64]) -> f32 {
-        let ray = self.ray;
-        let shear = match &mut self.shear {
-            Some(shear) => shear,
-            none => none.insert(Shear::new(ray.origin, ray.direction)),
-        };
-        self.blocks[block as usize].cross::<E, G>(shear, &ray.slab, self.reach, limit, &mut self.at)
-    }
-
-    #[inline(always)]
-    fn rest(&self, block: u32) -> Option<u32> {
-        let continues = self.blocks[block as usize].continues();
-        continues.then_some(block + 1)
-    }
-}
-
-/// A mesh's wide tree, with a group of a packet's rays.
-struct PacketOfMesh<'a, S: InstructionSet, G> {
-    mesh: &'a MeshTree,
-    rays: &'a PacketRays<S::Packet>,
-    instance: u32,
-    goal: PhantomData<G>,
-}
-
-impl<S: InstructionSet, G: Goal> PacketLeaves<S> for PacketOfMesh<'_, S, G> {
-    #[inline(always)]
-    fn visit(
-        &mut self,
-        leaf: u32,
-        lanes: u32,
-        view: &mut View<S>,
-        found: &mut Found<S::Packet>,
-        _: &mut [u64],
-    ) {
-        for block in &self.mesh.blocks[leaf as usize..] {
-            block.cross_packet::<S, G>(self.rays, view, lanes, self.instance, found);
-            if !block.continues() {
-                break;
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn alone(&mut self, child: u32, lanes: u32, found: &mut Found<S::Packet>, stack: &mut [u64]) {
-        let mesh = self.mesh;
-        for lane in lanes_of(lanes) {
-            let ray = self.rays.ray(lane);
-            let mut alone = found.alone(lane);
-            let limit = alone.limit;
-            let mut leaves = MeshLeaves::<_, G> {
-                blocks: &mesh.blocks,
-                reach: mesh.reach,
-                ray: &ray,
-                shear: None,
-                at: |triangle, Crossing { t, u, v }, limit| {
-                    let hit = Hit {
-                        t,
-                        instance: self.instance,
-                        triangle,
-                        u,
-                        v,
-                    };
-                    alone.offer::<G>(hit, limit)
-                },
-                goal: PhantomData,
-            };
-            let wide_ray = WideRay::new(&ray.slab, 0.0);
-            wide::walk_from::<S::Eight, G>(&mesh.wide, child, stack, &wide_ray, limit, &mut leaves);
-            found.rejoin::<G>(alone);
-        }
-    }
+    (tree, order, wide, blocks)
 }
 
 /// A ray in a mesh's own space, with what the slab test needs.

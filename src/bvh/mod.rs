@@ -15,8 +15,9 @@
 //! 4. An [`Aggregate`] holds the instances, and a tree over them ([`Levels::Two`]) or over all their triangles
 //!    ([`Levels::One`]). Moving an instance rebuilds this one only.
 //! 5. A [`Ray`] asks it for the nearest hit ([`Aggregate::closest_hit`]), for any ([`Aggregate::occluded`]), for the next
-//!    one behind a hit, for all; one ray at a time or in batches. A [`Visitor`] may watch every node and triangle.
-//!    They walk a wide form of the trees, many boxes and triangles at once (`wide`); a visitor sees the binary form.
+//!    one behind a hit, for all, for how much of a light passes them; one ray at a time or in batches. They walk a wide form of the trees, many boxes and
+//!    triangles at once (`wide`). It is one walk, whatever is asked ([`Aggregate`] → `levels` → `leaves` → `wide::walk` →
+//!    `wide::block` → `triangle`), and a [`Visitor`] may watch its every node and triangle.
 //!    Of a batch whose [`Order`] says that its rays go the same way, many walk together (`wide::packet`).
 //! 6. [`Instance::surface_point`] tells where a [`Hit`] lies, and [`Aggregate::leave`] where a ray starts that leaves it.
 //!
@@ -69,12 +70,11 @@ mod surface_point;
 #[cfg(test)]
 mod tests;
 mod top_down;
-mod traverse;
+mod transmit;
 mod treelets;
 pub(crate) mod triangle;
 mod triangles;
 mod visitor;
-mod watched;
 mod wedges;
 mod wide;
 

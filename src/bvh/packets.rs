@@ -4,17 +4,16 @@ use std::marker::PhantomData;
 
 use super::{
     aggregate::Aggregate,
-    goal::Goal,
-    leaves::InstanceLeaves,
+    goal::{Any, Goal, Nearest},
+    leaves::{InstanceLeaves, MeshLeaves},
     levels::Arrangement,
-    queries::Best,
+    mesh_tree::MeshTree,
     ray::Ray,
     safe_ray::{ORDINARY, SafeRay},
-    traverse::STOP,
     triangles::REACH,
     wide::{
-        Answers, Found, InstructionSet, Lanes, PacketLeaves, PacketRays, View, Ways, WideRay,
-        by_axis, lanes_of, largest_size, walk_from,
+        Answers, Found, Group, InstructionSet, Lanes, PacketLeaves, PacketRays, View, Ways,
+        WideRay, by_axis, lanes_of, largest_size, walk_from, walk_packet,
     },
 };
 
@@ -96,13 +95,18 @@ pub(super) fn trace_packet<Of: Arrangement, S: InstructionSet, G: Goal>(
     for lane in lanes_of(alone) {
         // Otherwise a miss.
         if let Some(ray) = SafeRay::new(&rays[lane]) {
-            let mut best = Best::NONE;
-            let offer = |hit, limit| {
-                let new = best.offer(hit, limit);
-                if G::ANY { STOP } else { new }
-            };
-            of.each_hit::<S::Eight, G>(&ray, stack, offer);
-            answers.set(lane, best.found(&ray));
+            match answers {
+                Answers::Closest(closest) => {
+                    let mut goal = Nearest::NONE;
+                    of.pursue::<S::Eight, _, _>(&ray, stack, &mut goal, &mut ());
+                    closest[lane] = goal.found(&ray.measure);
+                }
+                Answers::Any(any) => {
+                    let mut goal = Any::default();
+                    of.pursue::<S::Eight, _, _>(&ray, stack, &mut goal, &mut ());
+                    any[lane] = goal.is_hit;
+                }
+            }
         }
     }
 }
@@ -136,7 +140,8 @@ impl<S: InstructionSet, G: Goal> PacketLeaves<S> for PacketOfInstances<'_, S, G>
             let ways = Ways::of(&rays);
             let mut left = lanes & in_range;
             while let Some(group) = ways.next_group(&mut left) {
-                (instance.mesh).walk_packet::<S, G>(&rays, &group, number, found, stack);
+                let leaves = PacketOfMesh::<S, G>::new(&instance.mesh, &rays, number);
+                leaves.walk(&group, found, stack);
             }
         }
     }
@@ -148,18 +153,85 @@ impl<S: InstructionSet, G: Goal> PacketLeaves<S> for PacketOfInstances<'_, S, G>
             let Some(ray) = &SafeRay::new(&self.packet.rays[lane]) else {
                 continue;
             };
-            let mut alone = found.alone(lane);
+            let mut alone = found.alone::<G>(lane);
             let limit = alone.limit;
-            let mut leaves = InstanceLeaves::<_, G> {
-                scene,
-                places,
-                ray,
-                at: |hit, limit| alone.offer::<G>(hit, limit),
-                goal: PhantomData,
-            };
-            let top = WideRay::new(&scene.top_slab(&ray.world), 0.0);
-            walk_from::<S::Eight, G>(&scene.wide, child, stack, &top, limit, &mut leaves);
-            found.rejoin::<G>(alone);
+            let mut leaves = InstanceLeaves { scene, places, ray };
+            let top = WideRay::<S::Eight>::new(&scene.top_slab(&ray.world), 0.0);
+            let mut nobody = ();
+            let question = &mut alone.question(&mut nobody);
+            walk_from(
+                &scene.wide,
+                child,
+                stack,
+                &top,
+                limit,
+                &mut leaves,
+                question,
+            );
+            found.rejoin(alone);
+        }
+    }
+}
+
+/// A mesh's wide tree, with a packet's rays in its space.
+pub(super) struct PacketOfMesh<'a, S: InstructionSet, G> {
+    mesh: &'a MeshTree,
+    rays: &'a PacketRays<S::Packet>,
+    instance: u32,
+    goal: PhantomData<G>,
+}
+
+impl<'a, S: InstructionSet, G: Goal> PacketOfMesh<'a, S, G> {
+    #[inline(always)]
+    pub(super) fn new(mesh: &'a MeshTree, rays: &'a PacketRays<S::Packet>, instance: u32) -> Self {
+        Self {
+            mesh,
+            rays,
+            instance,
+            goal: PhantomData,
+        }
+    }
+
+    /// Walks the mesh's tree with a group of the rays.
+    #[inline(always)]
+    pub(super) fn walk(mut self, group: &Group, found: &mut Found<S::Packet>, stack: &mut [u64]) {
+        let mut view = View::<S>::new(self.rays, group);
+        let tree = &self.mesh.wide;
+        walk_packet::<S, G>(tree, stack, &mut view, group.lanes, found, &mut self);
+    }
+}
+
+impl<S: InstructionSet, G: Goal> PacketLeaves<S> for PacketOfMesh<'_, S, G> {
+    #[inline(always)]
+    fn visit(
+        &mut self,
+        leaf: u32,
+        lanes: u32,
+        view: &mut View<S>,
+        found: &mut Found<S::Packet>,
+        _: &mut [u64],
+    ) {
+        for block in &self.mesh.blocks[leaf as usize..] {
+            block.cross_packet::<S, G>(self.rays, view, lanes, self.instance, found);
+            if !block.continues() {
+                break;
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn alone(&mut self, child: u32, lanes: u32, found: &mut Found<S::Packet>, stack: &mut [u64]) {
+        for lane in lanes_of(lanes) {
+            let ray = self.rays.ray(lane);
+            let mut alone = found.alone::<G>(lane);
+            let limit = alone.limit;
+            let tree = &self.mesh.wide;
+            let mut leaves = MeshLeaves::new(self.mesh, self.instance, &ray);
+            let ray = WideRay::<S::Eight>::new(&ray.slab, 0.0);
+            let mut nobody = ();
+            let question = &mut alone.question(&mut nobody);
+            walk_from(tree, child, stack, &ray, limit, &mut leaves, question);
+            found.rejoin(alone);
         }
     }
 }

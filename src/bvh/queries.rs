@@ -1,14 +1,15 @@
-//! What a tracer asks: the nearest hit, any hit, the next hit, all hits. Answered from the wide form of the trees
-//! ([`super::wide`]); [`super::watched`] answers the first two from the binary one.
+//! What a tracer asks: the nearest hit, any hit, the next hit, all hits. All are answered by one walk through the wide form
+//! of the trees ([`super::wide`]), which a [`Visitor`] may watch.
 
 use std::slice;
 
 use super::{
     Aggregate,
-    goal::{All, Nearest},
+    goal::{All, Any, Behind, Nearest},
     order::Order,
     ray::{Hit, Ray},
     safe_ray::SafeRay,
+    visitor::Visitor,
 };
 
 impl Aggregate {
@@ -63,16 +64,38 @@ impl Aggregate {
     /// The next hit behind `after`, a hit of the same ray: the ray goes straight on through what it met, and meets every
     /// crossing exactly once, however close they lie. What lies before `after` is not walked again.
     pub fn closest_hit_after(&self, ray: &Ray, after: &Hit) -> Option<Hit> {
+        self.closest_hit_after_with(ray, after, &mut ())
+    }
+
+    /// [`Self::closest_hit`], watched.
+    pub fn closest_hit_with<V: Visitor>(&self, ray: &Ray, visitor: &mut V) -> Option<Hit> {
+        let ray = SafeRay::new(ray)?;
+        let mut goal = Nearest::NONE;
+        self.pursue(&ray, &mut goal, visitor);
+        goal.found(&ray.measure)
+    }
+
+    /// [`Self::closest_hit_after`], watched.
+    pub fn closest_hit_after_with<V: Visitor>(
+        &self,
+        ray: &Ray,
+        after: &Hit,
+        visitor: &mut V,
+    ) -> Option<Hit> {
         let (ray, after) = SafeRay::from_hit(ray, after)?;
-        let mut best = Best::NONE;
-        self.ask_every::<Nearest>(&ray, |hit, limit| {
-            if after.beats(&hit) {
-                best.offer(hit, limit)
-            } else {
-                limit
-            }
-        });
-        best.found(&ray)
+        let nearest = Nearest::NONE;
+        let mut goal = Behind { after, nearest };
+        self.pursue(&ray, &mut goal, visitor);
+        goal.nearest.found(&ray.measure)
+    }
+
+    /// [`Self::occluded`], watched.
+    pub fn occluded_with<V: Visitor>(&self, ray: &Ray, visitor: &mut V) -> bool {
+        let mut goal = Any::default();
+        if let Some(ray) = SafeRay::new(ray) {
+            self.pursue(&ray, &mut goal, visitor);
+        }
+        goal.is_hit
     }
 
     /// Every hit with `0 < t < t_max`, nearest first, equal `t` by (instance, triangle). `hits` is cleared first; it
@@ -82,55 +105,12 @@ impl Aggregate {
         let Some(ray) = SafeRay::new(ray) else {
             return;
         };
-        self.ask_every::<All>(&ray, |hit, limit| {
-            hits.push(ray.scaled(hit));
-            limit
-        });
+        self.pursue(&ray, &mut All(hits), &mut ());
+        for hit in hits.iter_mut() {
+            *hit = ray.measure.scaled(*hit);
+        }
         hits.sort_unstable_by(|a, b| {
             (a.t.total_cmp(&b.t)).then((a.instance, a.triangle).cmp(&(b.instance, b.triangle)))
         });
-    }
-}
-
-/// The nearest hit so far, in a [`SafeRay`]'s `t`.
-pub(super) struct Best(pub(super) Hit);
-
-impl Best {
-    /// None yet: what any hit beats.
-    pub(super) const NONE: Self = Self(Hit {
-        t: f32::INFINITY,
-        instance: u32::MAX,
-        triangle: u32::MAX,
-        u: 0.0,
-        v: 0.0,
-    });
-
-    /// That hit.
-    #[inline(always)]
-    pub(super) fn of(hit: Hit) -> Self {
-        Self(hit)
-    }
-
-    /// Takes a hit if it is nearer, and returns the `t` beyond which nothing matters any more.
-    #[inline(always)]
-    pub(super) fn offer(&mut self, hit: Hit, limit: f32) -> f32 {
-        if hit.beats(&self.0) {
-            self.0 = hit;
-            hit.t
-        } else {
-            limit
-        }
-    }
-
-    /// Whether this is the hit.
-    #[inline(always)]
-    pub(super) fn is(&self, hit: &Hit) -> bool {
-        (self.0.instance, self.0.triangle) == (hit.instance, hit.triangle)
-    }
-
-    /// The hit, as the caller measures it.
-    #[inline(always)]
-    pub(super) fn found(&self, ray: &SafeRay) -> Option<Hit> {
-        (self.0.instance != u32::MAX).then(|| ray.scaled(self.0))
     }
 }

@@ -19,8 +19,41 @@ pub(crate) struct SafeRay {
     pub(crate) end: f32,
     /// When it is shot.
     pub(crate) time: f32,
+    /// How the caller measures it.
+    pub(crate) measure: Measure,
+}
+
+/// How the caller measures a ray.
+#[derive(Clone, Copy)]
+pub(crate) struct Measure {
+    /// The caller's `t` in one of the [`SafeRay`]'s: a power of two.
     scale: f32,
+    /// Where the ray ends, in the caller's `t`.
     t_max: f32,
+}
+
+impl Measure {
+    /// Of a ray that is safe as it is.
+    #[inline(always)]
+    pub(crate) fn unscaled(t_max: f32) -> Self {
+        Self { scale: 1.0, t_max }
+    }
+
+    /// Whether a hit at the [`SafeRay`]'s `t` lies on the caller's ray.
+    #[inline(always)]
+    pub(crate) fn reaches(&self, t: f32) -> bool {
+        let t = t * self.scale;
+        t > 0.0 && t < self.t_max
+    }
+
+    /// A hit as the caller measures it.
+    #[inline(always)]
+    pub(crate) fn scaled(&self, hit: Hit) -> Hit {
+        Hit {
+            t: hit.t * self.scale,
+            ..hit
+        }
+    }
 }
 
 /// Directions this long, or as much longer than 1, stay in range through every instance's transform.
@@ -51,25 +84,11 @@ impl SafeRay {
             start: 0.0,
             end: ray.t_max / scale,
             time: ray.time,
-            scale,
-            t_max: ray.t_max,
+            measure: Measure {
+                scale,
+                t_max: ray.t_max,
+            },
         })
-    }
-
-    /// Whether a hit at this ray's `t` lies on the caller's ray.
-    #[inline(always)]
-    pub(crate) fn reaches(&self, t: f32) -> bool {
-        let t = t * self.scale;
-        t > 0.0 && t < self.t_max
-    }
-
-    /// A hit as the caller measures it.
-    #[inline(always)]
-    pub(crate) fn scaled(&self, hit: Hit) -> Hit {
-        Hit {
-            t: hit.t * self.scale,
-            ..hit
-        }
     }
 
     /// The rest of the ray from a hit of the caller's on, and that hit as this ray measures it.
@@ -79,7 +98,7 @@ impl SafeRay {
     #[inline(always)]
     pub(crate) fn from_hit(ray: &Ray, hit: &Hit) -> Option<(Self, Hit)> {
         let mut safe = Self::new(ray)?;
-        safe.start = hit.t / safe.scale;
+        safe.start = hit.t / safe.measure.scale;
         let hit = Hit {
             t: safe.start,
             ..*hit

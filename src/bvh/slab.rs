@@ -96,14 +96,6 @@ impl SlabRay {
         )
     }
 
-    /// The same for the part of the line from `start` on: `entry` is not before.
-    #[inline(always)]
-    pub(crate) fn span_from(&self, start: f32, bounds: &Aabb) -> (f32, f32) {
-        let (entry, exit) = self.span(bounds);
-        // One instruction; `f32::max` takes five, for NaNs that cannot occur.
-        (if entry > start { entry } else { start }, exit)
-    }
-
     /// The slack that the object-space test of a ray from `origin` needs.
     #[inline(always)]
     pub(crate) fn pad_of(origin: Vec3A) -> f32 {

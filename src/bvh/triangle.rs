@@ -25,47 +25,12 @@
 //! passed the tests above and may be the nearest pay for it, one or two a ray; measured, it costs at most a few per
 //! cent of a ray.
 
-use glam::{Vec3, Vec3A, Vec3Swizzles};
+use glam::{Vec3, Vec3A};
 
 use super::{
-    goal::{Goal, Nearest},
+    goal::Goal,
     slab::{SlabRay, triangle_box},
 };
-
-/// A triangle as a leaf holds it: 40 bytes, its coordinates axis by axis.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct LeafTriangle {
-    axes: [Vec3; 3],
-    /// The triangle's number in its mesh.
-    pub(crate) number: u32,
-}
-
-impl LeafTriangle {
-    pub(crate) fn new([a, b, c]: [Vec3; 3], number: u32) -> Self {
-        let axis = |i: usize| Vec3::new(a[i], b[i], c[i]);
-        Self {
-            axes: [axis(0), axis(1), axis(2)],
-            number,
-        }
-    }
-
-    /// One coordinate of the three corners.
-    #[inline(always)]
-    fn axis(&self, axis: usize) -> Vec3A {
-        self.axes[axis].into()
-    }
-
-    /// The corners.
-    #[inline(always)]
-    pub(crate) fn corners(&self) -> [Vec3; 3] {
-        let [x, y, z] = self.axes;
-        [
-            Vec3::new(x.x, y.x, z.x),
-            Vec3::new(x.y, y.y, z.y),
-            Vec3::new(x.z, y.z, z.z),
-        ]
-    }
-}
 
 /// The ray's frame: which axis is z, and the shear that turns the direction into it.
 #[derive(Clone, Copy, Debug)]
@@ -135,35 +100,8 @@ pub(crate) struct Crossing {
     pub(crate) v: f32,
 }
 
-/// Where the ray crosses the triangle, `0 < t <= limit`.
-#[inline(always)]
-pub(crate) fn cross(
-    shear: &Shear,
-    slab: &SlabRay,
-    triangle: &LeafTriangle,
-    limit: f32,
-) -> Option<Crossing> {
-    let [x, y, z] = shear.axes;
-    // A lane is a corner.
-    let [right, up, depth] = shear.from;
-    let depth = triangle.axis(z) - Vec3A::splat(depth);
-    let right = triangle.axis(x) - Vec3A::splat(right) - depth * shear.slope[0];
-    let up = triangle.axis(y) - Vec3A::splat(up) - depth * shear.slope[1];
-    // An edge function a lane: corner 2 x 1, 0 x 2, 1 x 0.
-    let edges = right.zxy() * up.yzx() - up.zxy() * right.yzx();
-    if edges.cmplt(Vec3A::ZERO).any() && edges.cmpgt(Vec3A::ZERO).any() {
-        return None;
-    }
-    let edges = edges.to_array();
-    let det = edges[0] + edges[1] + edges[2];
-    // Also false for a NaN.
-    if !(det != 0.0 && det.is_finite()) {
-        return None;
-    }
-    accept::<Nearest>(shear, slab, triangle.corners(), edges, limit)
-}
-
-/// The rest of [`cross`], for a triangle whose edge functions do not differ in sign and have a finite sum, not zero.
+/// Where the ray crosses a triangle, `0 < t <= limit`, whose edge functions do not differ in sign and have a finite sum, not
+/// zero: the rest of the test, for the few that get so far ([`super::wide`] has its beginning, for several at once).
 /// With [`Goal::ANY`] only that there is a crossing is right, and the crossing is not, where the triangle's box tells already.
 #[inline(always)]
 pub(crate) fn accept<G: Goal>(

@@ -274,7 +274,7 @@ impl Picked<'_> {
         let first = rays.samples.first().map_or(0, |sample| sample.index);
         say(format_args!(
             "rays of sample {first} (for every sample, what its rays add sums to its value, bit for \
-             bit: {}; node and triangle counts are those of the single-ray traversal):",
+             bit: {}; node and triangle counts are those of the walk that traces pictures):",
             if equal { "yes" } else { "NO" },
         ))?;
         let mut rows = vec![RayLine::HEADER.map(String::from).to_vec()];
@@ -374,7 +374,7 @@ fn steps_text(traversal: &Traversal) -> String {
     let count = |kind: StepKind| traversal.steps.iter().filter(|s| s.kind == kind).count();
     format!(
         "{}{} nodes entered, {} boxes missed, {} pruned, {} triangles tested; \
-         single-ray traversal of the binary trees\n",
+         the walk that traces pictures, through the trees' wide form\n",
         aligned(&rows),
         count(StepKind::Entered),
         count(StepKind::Missed),

@@ -45,7 +45,7 @@ pub(super) fn boxes(subject: &Subject) -> LineSet {
     };
     let views: Vec<TreeView> = trees(world).filter(|view| wanted(settings, view)).collect();
     if settings.form == TreeForm::Wide {
-        wide_boxes(&mut set, subject, &views);
+        wide_boxes(&mut set, subject, &views, visits.as_ref());
         return set;
     }
     let chosen: Vec<Vec<Chosen>> = choose(settings, world, &views, &mut set);
@@ -80,7 +80,7 @@ pub(super) fn boxes(subject: &Subject) -> LineSet {
     }
     if drawn > 0 {
         set.notes.push(
-            "the binary form of the trees, which debug rays walk; pictures are traced through the wide form made of it"
+            "the binary form of the trees, as it was built; rays are traced through the wide form made of it"
                 .into(),
         );
     }

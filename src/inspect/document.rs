@@ -9,7 +9,8 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// What the counters of rays count.
-const COUNTERS: &str = "single-ray traversal of the binary trees, without caches or packets";
+const COUNTERS: &str =
+    "the walk that traces pictures, ray by ray, through the wide form of the trees";
 
 /// The document. Vectors are arrays; numbers that are not finite are `null` (a ray without an end).
 #[derive(Serialize)]

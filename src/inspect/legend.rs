@@ -43,6 +43,11 @@ pub fn legend(system: System, inspect: &InspectSettings, rays: Option<&RayTree>)
                 _ if boxes.choice == BoxChoice::Leaf && boxes.form == TreeForm::Binary => {
                     say(&[of_scale(1.0)], "the leaf's box");
                 }
+                BoxColor::Level | BoxColor::LeafSize | BoxColor::Cost
+                    if boxes.form == TreeForm::Wide =>
+                {
+                    say(&scale, "boxes, from the root's level to the deepest");
+                }
                 BoxColor::Level => say(&scale, "boxes, from the root's level to the deepest"),
                 BoxColor::LeafSize => {
                     say(&scale, "leaves, from few triangles to many");

@@ -128,11 +128,11 @@ impl Default for PairSettings {
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[reflect(Default, Clone, PartialEq, Debug, Hash)]
 pub enum TreeForm {
-    /// Two children a node, as the builder made it: what debug rays are traced through.
+    /// Two children a node, as the builder made it.
     #[default]
     Binary,
-    /// Up to eight children a node, made of the binary form: what pictures are traced through. Its
-    /// levels are drawn and nothing else.
+    /// Up to eight children a node: some of the binary form's nodes, the levels between them left out. Rays
+    /// are traced through it, those of pictures and debug rays. Its levels are drawn, by level or by visits.
     Wide,
 }
 
@@ -173,7 +173,7 @@ pub enum BoxColor {
     LeafSize,
     /// Its part of the tree's SAH cost.
     Cost,
-    /// How often the debug rays entered it.
+    /// How often the debug rays entered it: nodes that are left out of the wide form never.
     Visits,
 }
 

@@ -6,14 +6,16 @@ use crate::scene::RenderSettings;
 use crate::trace::{RayTree, World};
 use serde::Serialize;
 
-/// The single-ray traversal of the binary trees by one debug ray, from its first box to its last.
-/// A ray that asks several times (through transparent surfaces) starts several times at the root.
+/// The walk of one debug ray through the trees, from its first box to its last: the one that traces pictures, without
+/// packets. It goes through the trees' wide form, whose boxes are those of some nodes of the binary one, and have their
+/// numbers. A ray that asks several times (straight on from an edge that triangles share) starts several times at a root.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Traversal {
     /// What happened, in order.
     pub steps: Vec<Step>,
     /// The stacks after each step, one behind the other: (instance or `None` for the top tree, node),
-    /// the next to be looked at last.
+    /// the next to be looked at last. Children that are put onto it together with a step's box stand
+    /// in the stack of the step after it.
     pub stack: Vec<StackEntry>,
 }
 
@@ -41,7 +43,7 @@ pub struct Step {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum StepKind {
-    /// The box was hit, and its turn came.
+    /// The box was hit, and its turn came; or it is a tree's root.
     Entered,
     /// The ray misses the box.
     Missed,
@@ -74,7 +76,7 @@ impl Traversal {
         if (index as usize) < rays.rays.len() {
             rays.retrace(world, settings, index, &mut events);
         }
-        events.with_stacks(world)
+        events.0
     }
 
     /// The stack after a step, the next node to be looked at last.
@@ -85,129 +87,55 @@ impl Traversal {
     }
 }
 
-/// Steps as they happen; the visitor is not told of stacks.
+/// Steps as they happen, the node that was entered last, in which tree, and the stack.
 #[derive(Default)]
-struct Events {
-    steps: Vec<Step>,
-    /// The node that was entered last, in which tree.
-    leaf: (Option<u32>, u32),
+struct Events(Traversal, StackEntry, Vec<StackEntry>);
+
+impl Events {
+    fn add(&mut self, kind: StepKind, triangle: Option<[u32; 2]>, t: Option<f32>, at: StackEntry) {
+        let Self(Traversal { steps, stack }, _, waiting) = self;
+        let from = stack.len() as u32;
+        stack.extend_from_slice(waiting);
+        steps.push(Step {
+            kind,
+            instance: at.0,
+            node: at.1,
+            triangle,
+            t,
+            stack: [from, stack.len() as u32],
+        });
+    }
+}
+
+fn entry(tree: TreeRef, node: u32) -> StackEntry {
+    match tree {
+        TreeRef::Top => (None, node),
+        TreeRef::Mesh(instance) => (Some(instance), node),
+    }
 }
 
 impl Visitor for Events {
     fn node(&mut self, tree: TreeRef, node: u32, event: NodeEvent, t_entry: f32) {
-        let instance = match tree {
-            TreeRef::Top => None,
-            TreeRef::Mesh(instance) => Some(instance),
-        };
+        let here = entry(tree, node);
         let (kind, t) = match event {
             NodeEvent::Entered => (StepKind::Entered, Some(t_entry)),
             NodeEvent::Pruned => (StepKind::Pruned, Some(t_entry)),
             NodeEvent::Missed => (StepKind::Missed, None),
         };
+        // What waited has its turn.
+        self.2.pop_if(|top| *top == here);
         if kind == StepKind::Entered {
-            self.leaf = (instance, node);
+            self.1 = here;
         }
-        self.steps.push(Step {
-            kind,
-            instance,
-            node,
-            triangle: None,
-            t,
-            stack: [0; 2],
-        });
+        self.add(kind, None, t, here);
+    }
+
+    fn waits(&mut self, tree: TreeRef, node: u32, _: f32) {
+        self.2.push(entry(tree, node));
     }
 
     fn triangle(&mut self, instance: u32, triangle: u32, hit: bool) {
-        let (tree, node) = self.leaf;
-        self.steps.push(Step {
-            kind: if hit { StepKind::Hit } else { StepKind::NotHit },
-            instance: tree,
-            node,
-            triangle: Some([instance, triangle]),
-            t: None,
-            stack: [0; 2],
-        });
+        let kind = if hit { StepKind::Hit } else { StepKind::NotHit };
+        self.add(kind, Some([instance, triangle]), None, self.1);
     }
-}
-
-impl Events {
-    /// Works out the stacks. Both boxes of an inner node's children are tested when it is entered;
-    /// those that are missed or pruned at once are told of at once; of two that are left the nearer is
-    /// entered next, and the other goes onto the stack.
-    fn with_stacks(self, world: &World) -> Traversal {
-        let mut traversal = Traversal {
-            steps: self.steps,
-            stack: Vec::new(),
-        };
-        let mut stack: Vec<StackEntry> = Vec::new();
-        // Per level of trees the last inner node entered, and its children that are done with.
-        let mut parents: Vec<Parent> = Vec::new();
-        for step in &mut traversal.steps {
-            let here = (step.instance, step.node);
-            if step.triangle.is_none() {
-                // Back in the top tree, or at a root again: what was left of another tree is dropped.
-                while parents.last().is_some_and(|p| p.instance != step.instance)
-                    && parents.iter().any(|p| p.instance == step.instance)
-                {
-                    let gone = parents.pop().map(|p| p.instance);
-                    stack.retain(|entry| Some(entry.0) != gone);
-                }
-                if step.node == 0 {
-                    parents.retain(|p| p.instance != step.instance);
-                    stack.retain(|entry| entry.0 != step.instance);
-                    if step.instance.is_none() {
-                        parents.clear();
-                        stack.clear();
-                    }
-                }
-                let children = parents
-                    .last()
-                    .filter(|p| p.instance == step.instance)
-                    .map(|p| (p.left, p.done));
-                if stack.last() == Some(&here) {
-                    stack.pop();
-                } else if let Some((left, done)) = children
-                    && (left..=left + 1).contains(&step.node)
-                {
-                    let side = (step.node - left) as usize;
-                    if step.kind == StepKind::Entered && !done[1 - side] {
-                        stack.push((step.instance, left + 1 - side as u32));
-                    }
-                    if let Some(parent) = parents.last_mut() {
-                        parent.done[side] = true;
-                    }
-                }
-                if step.kind == StepKind::Entered
-                    && let Some(left) = left_child(world, step.instance, step.node)
-                {
-                    parents.retain(|p| p.instance != step.instance);
-                    parents.push(Parent {
-                        instance: step.instance,
-                        left,
-                        done: [false; 2],
-                    });
-                }
-            }
-            let from = traversal.stack.len() as u32;
-            traversal.stack.extend_from_slice(&stack);
-            step.stack = [from, traversal.stack.len() as u32];
-        }
-        traversal
-    }
-}
-
-struct Parent {
-    instance: Option<u32>,
-    left: u32,
-    done: [bool; 2],
-}
-
-/// The left child of a node; `None` for a leaf.
-fn left_child(world: &World, instance: Option<u32>, node: u32) -> Option<u32> {
-    let tree = match instance {
-        None => world.aggregate.tree(),
-        Some(instance) => world.aggregate.instances()[instance as usize].mesh.tree(),
-    };
-    let node = &tree.nodes[node as usize];
-    (!node.is_leaf()).then_some(node.first_index)
 }

@@ -10,8 +10,8 @@ use crate::scene::RenderSettings;
 use crate::trace::{RayTree, TracedRay, World};
 use bevy::platform::collections::HashMap;
 
-/// How often each node was entered, and how often it was hit but pruned, by the single-ray traversal
-/// of some rays.
+/// How often each node was entered, and how often it was hit but pruned, by the walk of some rays that
+/// traces pictures. Nodes of the binary trees that are no boxes of their wide form are never met.
 #[derive(Clone, Debug, Default)]
 pub struct Visits {
     nodes: HashMap<(TreeRef, u32), [u32; 2]>,
@@ -84,8 +84,9 @@ pub(super) fn visits(subject: &Subject) -> LineSet {
             is_shown(settings, ray)
         }),
     };
-    set.notes
-        .push("as the single-ray traversal of the binary trees visits them".into());
+    set.notes.push(
+        "as the walk that traces pictures visits them: the boxes of the trees' wide form".into(),
+    );
     let nodes: Vec<_> = visits
         .nodes()
         .into_iter()

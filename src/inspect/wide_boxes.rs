@@ -1,13 +1,19 @@
-//! Boxes of the wide form of the trees, through which pictures are traced.
+//! Boxes of the wide form of the trees, through which rays are traced.
 
 use super::Subject;
 use super::color::of_scale;
 use super::line_set::{LineSet, Stands, Thinned, box_corners};
 use super::trees::TreeView;
+use super::visits::Visits;
 use crate::bvh::WideBox;
 
-/// Boxes of the wide form: a range of its levels, coloured by level.
-pub(super) fn wide_boxes(set: &mut LineSet, subject: &Subject, views: &[TreeView]) {
+/// Boxes of the wide form: a range of its levels, coloured by level, or by visits.
+pub(super) fn wide_boxes(
+    set: &mut LineSet,
+    subject: &Subject,
+    views: &[TreeView],
+    visits: Option<&Visits>,
+) {
     let settings = &subject.inspect.boxes;
     let levels = settings.from_level..=settings.to_level;
     let mut boxes: Vec<(&TreeView, WideBox)> = Vec::new();
@@ -25,23 +31,27 @@ pub(super) fn wide_boxes(set: &mut LineSet, subject: &Subject, views: &[TreeView
             .push(format!("the wide form has no box at levels {from} to {to}"));
         return;
     }
-    let deepest = boxes.iter().map(|(_, b)| b.depth).max().unwrap_or(0);
+    let value = |view: &TreeView, b: &WideBox| match visits {
+        Some(visits) => visits.entered(view.name, b.node),
+        None => b.depth,
+    };
+    let highest = boxes.iter().map(|(view, b)| value(view, b)).max();
+    let highest = highest.unwrap_or(0).max(1) as f32;
     let most = subject.inspect.max_lines as usize / 12;
     let of = boxes.len();
     boxes.sort_by_key(|(_, b)| b.depth);
     boxes.truncate(most);
-    for (view, WideBox { depth, bounds, .. }) in &boxes {
-        let [min, max] = *bounds;
-        // A wide box has no node of its own in the binary form: it stands for its tree.
+    for (view, b) in &boxes {
+        let [min, max] = b.bounds;
         let stands = Stands::Node {
             instance: view.instance().map(|(instance, _)| instance),
-            node: 0,
+            node: b.node,
         };
-        let color = of_scale(*depth as f32 / deepest.max(1) as f32);
+        let color = of_scale(value(view, b) as f32 / highest);
         set.edges(&view.place(box_corners(min, max)), color, stands);
     }
     set.notes
-        .push("the wide form of the trees, through which pictures are traced".into());
+        .push("the wide form of the trees, through which rays are traced".into());
     if of > boxes.len() {
         set.thinned = Some(Thinned {
             what: "boxes",

@@ -9,6 +9,7 @@ use super::radiance::{Batch, Vertex};
 use super::recorder::{Adding, LitPoint, Recorder};
 use super::sampler::Purpose;
 use super::shading::reflected;
+use super::transmittance::through;
 use super::{DOME, Dome, Lights, SampleId, Surface, World};
 use crate::bvh::{Aggregate, Hit, Order, Ray};
 use crate::scene::{Lighting, RenderSettings};
@@ -33,6 +34,8 @@ pub(super) struct ShadowRays {
     /// What each ray adds to which sample, if the light arrives, and the number of its point.
     shadows: Vec<Shadow>,
     occluded: Vec<bool>,
+    /// How much of the light passes what lies on each ray, where anything lets light through.
+    passing: Vec<Vec3>,
 }
 
 /// What a shadow ray adds to which sample, if the light arrives.
@@ -167,12 +170,15 @@ impl<R: Recorder> Batch<'_, R> {
             rays,
             shadows,
             occluded,
+            passing,
             ..
         } = shadow_rays;
         self.counts.shadow += rays.len() as u64;
         if self.settings.features.transparency && self.world.needs.transparency {
-            for (shadow, ray) in shadows.iter().zip(rays) {
-                let transmittance = self.transmittance(ray, shadow.point);
+            let (world, settings) = (self.world, self.settings);
+            let through = |ray: usize, hit: &Hit| through(world, settings, &rays[ray], hit);
+            (world.aggregate).transmittances_in(Order::Light, rays, through, passing);
+            for (shadow, &transmittance) in shadows.iter().zip(&*passing) {
                 self.recorder.arrived(shadow.point, transmittance);
                 let value = shadow.value * transmittance;
                 self.add(shadow.sample, plane, Adding::Light(shadow.point), value);
@@ -192,29 +198,6 @@ impl<R: Recorder> Batch<'_, R> {
                     shadow.value,
                 );
             }
-        }
-    }
-
-    /// What a shadow ray lets through: the product of `(1-d) · lerp(1, kd, d)` over its crossings.
-    fn transmittance(&mut self, ray: &Ray, point: u32) -> Vec3 {
-        let mut transmittance = Vec3::ONE;
-        let mut after: Option<Hit> = None;
-        loop {
-            let aggregate = &self.world.aggregate;
-            let hit = match &after {
-                None => aggregate.closest_hit(ray),
-                Some(after) => aggregate.next_crossing(ray, after),
-            };
-            let Some(hit) = hit else { return transmittance };
-            // The finest level: a shadow ray's own width is not known.
-            let surface = Surface::at(self.world, self.settings, ray, 0.0, &hit);
-            self.recorder.crossed(point, &hit, &surface);
-            let d = surface.opacity;
-            transmittance *= (1.0 - d) * Vec3::ONE.lerp(surface.diffuse, d);
-            if transmittance == Vec3::ZERO {
-                return Vec3::ZERO;
-            }
-            after = Some(hit);
         }
     }
 }

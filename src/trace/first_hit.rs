@@ -18,7 +18,7 @@ pub struct FirstHit {
     pub depth: f32,
     /// The object; `None` for a miss.
     pub object: Option<SceneId>,
-    /// What the traversal of this single ray cost, whatever kernel the picture was traced with.
+    /// What the walk of this ray cost, without packets.
     pub cost: Counters,
 }
 

@@ -65,6 +65,7 @@ mod sun_disc;
 mod surface;
 mod texels;
 mod texture;
+mod transmittance;
 mod vectors;
 mod world;
 mod wrap;

@@ -15,18 +15,22 @@ pub struct Needs {
 impl Needs {
     /// Looks through a world's objects, materials and lights.
     pub fn of(world: &World) -> Self {
-        let transparent = |object: &Object| {
-            let material = &world.materials[object.material as usize];
-            let vertices_fade = !object.mesh.alphas.is_empty() && material.alpha != Alpha::Opaque;
-            vertices_fade || material.is_transparent()
-        };
         let objects = world.objects.iter().map(|object| object.motion_samples);
         let lights = world.lights.moving.iter().map(|light| light.samples);
         Self {
-            transparency: world.objects.iter().any(transparent),
+            transparency: world.objects.iter().any(|o| world.lets_light_through(o)),
             visible_lights: world.lights.parallelograms.iter().any(|l| l.visible),
             motion_samples: objects.chain(lights).max().unwrap_or(0),
         }
+    }
+}
+
+impl World {
+    /// Whether an object may be transparent anywhere.
+    pub(super) fn lets_light_through(&self, object: &Object) -> bool {
+        let material = &self.materials[object.material as usize];
+        let vertices_fade = !object.mesh.alphas.is_empty() && material.alpha != Alpha::Opaque;
+        vertices_fade || material.is_transparent()
     }
 }
 

@@ -6,6 +6,7 @@ use super::ray_tree::{
 };
 use super::recorder::{Adding, LitPoint, Recorder, Way};
 use super::shading::{cosines, reflected};
+use super::transmittance::crossings;
 use super::{Camera, SampleId, Surface, Workspace, World, samples_per_pixel};
 use crate::bvh::{Counters, Hit, Ray};
 use crate::scene::{Lighting, RenderSettings};
@@ -218,6 +219,17 @@ impl<'a> Recording<'a> {
             let mut cost = Counters::default();
             let found = tree.retrace(self.world, self.settings, i as u32, &mut cost);
             tree.rays[i].cost = cost.into();
+            if tree.rays[i].asks_what_passes(self.world, self.settings) {
+                let crossings = crossings(self.world, self.settings, &tree.rays[i].ray());
+                let crossings = crossings.iter().map(|(hit, surface)| Crossing {
+                    object: self.world.objects[hit.instance as usize].id,
+                    triangle: hit.triangle,
+                    t: hit.t,
+                    diffuse: surface.diffuse,
+                    opacity: surface.opacity,
+                });
+                tree.rays[i].crossings = crossings.collect();
+            }
             if tree.rays[i].end == RayEnd::Blocked
                 && let Some(hit) = found
             {
@@ -346,17 +358,6 @@ impl Recorder for Recording<'_> {
         }
         ray.after = next.after.map_or(0.0, |hit| hit.t);
         self.next.push(index);
-    }
-
-    fn crossed(&mut self, point: u32, hit: &Hit, surface: &Surface) {
-        let object = self.world.objects[hit.instance as usize].id;
-        self.ray_of(Adding::Light(point)).crossings.push(Crossing {
-            object,
-            triangle: hit.triangle,
-            t: hit.t,
-            diffuse: surface.diffuse,
-            opacity: surface.opacity,
-        });
     }
 
     fn arrived(&mut self, point: u32, transmittance: Vec3) {

@@ -2,6 +2,7 @@
 
 use super::World;
 use super::recorder::LightKind;
+use super::transmittance::{crossings, through};
 use crate::bvh::{Counters, Hit, Ray, Visitor};
 use crate::scene::RenderSettings;
 use glam::{UVec2, Vec3};
@@ -90,7 +91,7 @@ pub struct TracedRay {
     pub carried: Vec3,
     /// What it added to the sample's value by itself.
     pub added: Vec3,
-    /// What the single-ray traversal of it costs, whatever kernel the picture is traced with.
+    /// What the walk that traces pictures costs for it alone, without packets.
     pub cost: RayCost,
 }
 
@@ -263,12 +264,12 @@ pub struct Crossing {
     pub opacity: f32,
 }
 
-/// What the single-ray traversal of a ray costs.
+/// What walking the trees costs for a ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct RayCost {
     /// Nodes entered.
     pub nodes: u64,
-    /// Boxes tested.
+    /// Boxes tested, and roots entered.
     pub boxes: u64,
     /// Triangles tested.
     pub triangles: u64,
@@ -300,7 +301,7 @@ impl RayTree {
         (sum / self.samples.len().max(1) as f64).as_vec3()
     }
 
-    /// Traces a ray once more, by itself, through the binary trees, watched: the queries that the
+    /// Traces a ray once more, by itself, watched: the queries that the
     /// tracer made of them. Of a blocked shadow ray the nearest blocker is found, which the tracer does
     /// not look for; that part is not watched. A ray that was not traced is none now.
     ///
@@ -329,20 +330,16 @@ impl RayTree {
                 None => aggregate.closest_hit_with(&ray, visitor),
             };
         }
-        if !(settings.features.transparency && world.needs.transparency) {
+        if !traced.asks_what_passes(world, settings) {
             let occluded = aggregate.occluded_with(&ray, visitor);
             return aggregate.closest_hit(&ray).filter(|_| occluded);
         }
-        // One query for each crossing, and one that finds no more.
-        let queries = traced.crossings.len() + usize::from(traced.end == RayEnd::Arrived);
-        let mut last = None;
-        for _ in 0..queries {
-            last = match &last {
-                None => aggregate.closest_hit_with(&ray, visitor),
-                Some(last) => aggregate.next_crossing_with(&ray, last, visitor),
-            };
+        let through = |hit: &Hit| through(world, settings, &ray, hit);
+        if aggregate.transmittance_with(&ray, through, visitor) != Vec3::ZERO {
+            return None;
         }
-        last
+        let last = crossings(world, settings, &ray).pop();
+        last.map(|(hit, _)| hit)
     }
 
     /// The hit behind which a straight continuation goes on: its parent's.
@@ -379,6 +376,14 @@ impl TracedRay {
             t_max: self.t_max,
             time: self.time,
         }
+    }
+
+    /// Whether it asks how much of a light passes, and not just whether anything is in the way.
+    pub(super) fn asks_what_passes(&self, world: &World, settings: &RenderSettings) -> bool {
+        self.kind.is_for_light()
+            && self.end.is_traced()
+            && settings.features.transparency
+            && world.needs.transparency
     }
 
     /// The point at `t`.

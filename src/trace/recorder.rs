@@ -76,9 +76,6 @@ pub(super) trait Recorder {
     /// It gets a shadow ray.
     #[inline(always)]
     fn shadow_ray(&mut self, _point: u32, _ray: &Ray) {}
-    /// The shadow ray crosses a surface that may let light through.
-    #[inline(always)]
-    fn crossed(&mut self, _point: u32, _hit: &Hit, _surface: &Surface) {}
     /// That part of the light arrives. Not called where a shadow ray is blocked outright.
     #[inline(always)]
     fn arrived(&mut self, _point: u32, _transmittance: Vec3) {}

@@ -36,7 +36,7 @@ fn a_pixel_is_explained_as_text_and_as_json_and_both_say_the_same() {
     }
     let rays = json["rays"].as_array().unwrap();
     assert!(rays.iter().all(|ray| ray["cost"]["boxes"].is_u64()));
-    assert!(json["counters"].as_str().unwrap().contains("single-ray"));
+    assert!(json["counters"].as_str().unwrap().contains("ray by ray"));
     assert_eq!(json["lines"][0]["system"], "rays");
     let one: Value =
         serde_json::from_str(&run(folder.path(), &format!("{line} --json --sample 2"))).unwrap();

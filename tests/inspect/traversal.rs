@@ -1,9 +1,9 @@
-//! Visited and pruned nodes, and the stepper's stack, against a plain recursive traversal in f64.
+//! Visited and pruned nodes, and the stepper's stack, against a plain recursive traversal of the trees' wide form in f64.
 
 use super::Scene;
 use crate::analytic::Numbers;
 use glam::{DVec3, UVec2};
-use glassbox::bvh::{Counters, TreeRef};
+use glassbox::bvh::{Counters, Primitive, TreeRef, WideBox, primitives_below};
 use glassbox::inspect::{StackEntry, StepKind, Traversal, TreeView, Visits};
 use glassbox::scene::{Levels, RenderSettings};
 use glassbox::trace::{RayTree, Samples, TracedRay, World, probe};
@@ -20,6 +20,7 @@ struct Oracle<'a> {
     entered: Vec<StackEntry>,
     pruned: BTreeSet<StackEntry>,
     triangles: u64,
+    boxes: u64,
     /// The stack when each node was entered.
     stacks: Vec<Vec<StackEntry>>,
     pending: Vec<StackEntry>,
@@ -40,6 +41,7 @@ impl<'a> Oracle<'a> {
             entered: Vec::new(),
             pruned: BTreeSet::new(),
             triangles: 0,
+            boxes: 0,
             stacks: Vec::new(),
             pending: Vec::new(),
             unsure: false,
@@ -48,7 +50,21 @@ impl<'a> Oracle<'a> {
             origin: ray.origin.as_dvec3(),
             direction: ray.direction.as_dvec3(),
         };
-        oracle.root(TreeRef::Top, ray);
+        // A mesh that stands alone where it was modelled needs no tree above it.
+        let alone = match world.aggregate.instances() {
+            [one] => {
+                *one.world_from_object() == glam::Affine3A::IDENTITY
+                    && one.velocity() == glam::Vec3::ZERO
+                    && world.aggregate.options().levels == glassbox::bvh::Levels::Two
+            }
+            _ => false,
+        };
+        let name = if alone {
+            TreeRef::Mesh(0)
+        } else {
+            TreeRef::Top
+        };
+        oracle.root(name, ray);
         oracle
     }
 
@@ -81,76 +97,70 @@ impl<'a> Oracle<'a> {
         (entry, exit)
     }
 
+    /// The root is entered without a test.
     fn root(&mut self, name: TreeRef, ray: Ray64) {
         let Some(view) = TreeView::new(self.world, name) else {
             return;
         };
-        if view.tree.nodes.is_empty() {
-            return;
+        let boxes = boxes_of(self.world, &view);
+        if let Some(root) = boxes.first() {
+            self.enter(&view, &boxes, root, ray);
         }
-        let (entry, exit) = self.span(&view, 0, ray);
-        self.close(entry, self.limit);
-        if entry > exit {
-            return;
-        }
-        if entry > self.limit {
-            self.pruned.insert(place(&view, 0));
-            return;
-        }
-        self.enter(&view, 0, ray);
     }
 
-    fn enter(&mut self, view: &TreeView, node: u32, ray: Ray64) {
-        self.entered.push(place(view, node));
+    fn enter(&mut self, view: &TreeView, boxes: &[WideBox], here: &WideBox, ray: Ray64) {
+        self.entered.push(place(view, here.node));
         self.stacks.push(self.pending.clone());
-        let here = &view.tree.nodes[node as usize];
-        if here.is_leaf() {
-            return self.leaf(view, node, ray);
+        self.boxes += 1;
+        if here.is_leaf {
+            return self.leaf(view, here.node, ray);
         }
-        let left = here.first_index;
-        let mut hit = Vec::new();
-        for child in [left, left + 1] {
-            let (entry, exit) = self.span(view, child, ray);
+        let mut hit: Vec<(&WideBox, f64)> = Vec::new();
+        for child in children(view, boxes, here) {
+            let (entry, exit) = self.span(view, child.node, ray);
             if entry > exit {
+                self.boxes += 1;
                 continue;
             }
             self.close(entry, self.limit);
             if entry > self.limit {
-                self.pruned.insert(place(view, child));
+                self.boxes += 1;
+                self.pruned.insert(place(view, child.node));
             } else {
                 hit.push((child, entry));
             }
         }
-        if let [(_, a), (_, b)] = hit[..]
-            && (a > 0.0 || b > 0.0)
-        {
-            self.close(a, b);
+        // Stable: nodes before leaves where both begin inside, and else in the order of the node.
+        hit.sort_by(|a, b| (a.1.total_cmp(&b.1)).then(a.0.is_leaf.cmp(&b.0.is_leaf)));
+        for pair in hit.windows(2) {
+            if pair[1].1 > 0.0 {
+                self.close(pair[0].1, pair[1].1);
+            }
         }
-        // Stable: the left one first where both begin inside.
-        hit.sort_by(|a, b| a.1.total_cmp(&b.1));
-        match hit[..] {
-            [(near, _), (far, entry)] => {
-                self.pending.push(place(view, far));
-                self.enter(view, near, ray);
+        let bottom = self.pending.len();
+        let far = hit.iter().skip(1).rev();
+        (self.pending).extend(far.map(|(child, _)| place(view, child.node)));
+        for (i, (child, entry)) in hit.into_iter().enumerate() {
+            if i > 0 {
                 self.pending.pop();
                 self.close(entry, self.limit);
-                if entry <= self.limit {
-                    self.enter(view, far, ray);
-                } else {
-                    self.pruned.insert(place(view, far));
-                }
             }
-            [(only, _)] => self.enter(view, only, ray),
-            _ => {}
+            if entry <= self.limit {
+                self.enter(view, boxes, child, ray);
+            } else {
+                self.boxes += 1;
+                self.pruned.insert(place(view, child.node));
+            }
         }
+        assert_eq!(self.pending.len(), bottom);
     }
 
     fn leaf(&mut self, view: &TreeView, leaf: u32, ray: Ray64) {
-        if view.name == TreeRef::Top && view.triangles(leaf).is_empty() {
-            let node = &view.tree.nodes[leaf as usize];
-            for place in node.first_index..node.first_index + node.prim_count {
-                let Some(glassbox::bvh::Primitive::Instance(instance)) =
-                    self.world.aggregate.primitive(place as usize)
+        let places = primitives_below(view.tree, leaf as usize);
+        let first = self.world.aggregate.primitive(places.start);
+        if view.name == TreeRef::Top && matches!(first, Some(Primitive::Instance(_))) {
+            for place in places {
+                let Some(Primitive::Instance(instance)) = self.world.aggregate.primitive(place)
                 else {
                     continue;
                 };
@@ -172,7 +182,7 @@ impl<'a> Oracle<'a> {
             }
             return;
         }
-        for (instance, triangle) in view.triangles(leaf) {
+        for (instance, triangle) in triangles(view, self.world, leaf) {
             self.triangles += 1;
             let of = &self.world.aggregate.instances()[instance as usize];
             let corners = of.mesh.triangles().corners(triangle).map(|corner| {
@@ -203,6 +213,46 @@ impl<'a> Oracle<'a> {
         if margin >= 0.0 && t > 0.0 && t < self.limit {
             self.limit = t;
         }
+    }
+}
+
+/// The wide form of a tree, parents before children.
+fn boxes_of(world: &World, view: &TreeView) -> Vec<WideBox> {
+    match view.instance() {
+        Some((_, instance)) => instance.mesh.wide_boxes(),
+        None => world.aggregate.wide_boxes(),
+    }
+}
+
+/// The boxes of a wide node's children: those nearest below it in the binary tree, in the order of the wide form.
+fn children<'b>(view: &TreeView, boxes: &'b [WideBox], of: &WideBox) -> Vec<&'b WideBox> {
+    let mut found = Vec::new();
+    let mut pending = vec![view.tree.nodes[of.node as usize].first_index];
+    while let Some(left) = pending.pop() {
+        for child in [left, left + 1] {
+            match boxes.iter().position(|b| b.node == child) {
+                Some(place) => found.push(place),
+                None => pending.push(view.tree.nodes[child as usize].first_index),
+            }
+        }
+    }
+    found.sort_unstable();
+    found.into_iter().map(|place| &boxes[place]).collect()
+}
+
+/// The triangles of a leaf of the wide form, as (instance, triangle).
+fn triangles(view: &TreeView, world: &World, leaf: u32) -> Vec<(u32, u32)> {
+    let places = primitives_below(view.tree, leaf as usize);
+    match view.instance() {
+        Some((number, instance)) => places
+            .map(|place| (number, instance.mesh.triangle_at(place)))
+            .collect(),
+        None => places
+            .filter_map(|place| match world.aggregate.primitive(place) {
+                Some(Primitive::Triangle { instance, triangle }) => Some((instance, triangle)),
+                _ => None,
+            })
+            .collect(),
     }
 }
 
@@ -282,6 +332,7 @@ fn check(scene: &Scene, tree: &RayTree, index: u32, oracle: &Oracle, name: &str)
     let cost = tree.rays[index as usize].cost;
     assert_eq!(cost.nodes as usize, oracle.entered.len(), "{what}");
     assert_eq!(cost.triangles, oracle.triangles, "{what}");
+    assert_eq!(cost.boxes, oracle.boxes, "{what}");
     let mut counters = Counters::default();
     tree.retrace(world, settings, index, &mut counters);
     assert_eq!(counters.boxes, cost.boxes, "{what}");

@@ -16,10 +16,9 @@ use glam::{DMat3, DVec3, Vec3};
 
 use crate::bvh::{
     Aggregate, Hit, Ray,
+    hard_cases::single::{ReadyRay, SingleTriangle},
     instance::Instance,
-    mesh_tree::ObjectRay,
     safe_ray::SafeRay,
-    triangle::{LeafTriangle, Shear, cross},
 };
 
 const U: f64 = f32::EPSILON as f64 / 2.0;
@@ -29,34 +28,29 @@ pub(crate) fn brute(aggregate: &Aggregate, ray: &Ray) -> Option<Hit> {
     let safe = SafeRay::new(ray)?;
     let mut best: Option<Hit> = None;
     for (number, instance) in aggregate.instances().iter().enumerate() {
-        let Some(ObjectRay {
-            origin,
-            direction,
-            slab,
-        }) = instance.to_object_ray(&safe.world, ray.time)
-        else {
+        let Some(object) = instance.to_object_ray(&safe.world, ray.time) else {
             continue;
         };
-        let shear = Shear::new(origin, direction);
+        let ready = ReadyRay::of(object);
         let triangles = instance.mesh.triangles();
         for triangle in (0..triangles.len() as u32).filter(|&t| triangles.is_traced(t)) {
-            let leaf = LeafTriangle::new(triangles.corners(triangle), triangle);
-            let Some(crossing) = cross(&shear, &slab, &leaf, f32::INFINITY) else {
+            let single = SingleTriangle::new(triangles.corners(triangle));
+            let Some((t, u, v)) = single.cross(&ready, f32::INFINITY) else {
                 continue;
             };
             let hit = Hit {
-                t: crossing.t,
+                t,
                 instance: number as u32,
                 triangle,
-                u: crossing.u,
-                v: crossing.v,
+                u,
+                v,
             };
-            if safe.reaches(hit.t) && best.is_none_or(|best| hit.beats(&best)) {
+            if safe.measure.reaches(hit.t) && best.is_none_or(|best| hit.beats(&best)) {
                 best = Some(hit);
             }
         }
     }
-    best.map(|hit| safe.scaled(hit))
+    best.map(|hit| safe.measure.scaled(hit))
 }
 
 /// What f64 says of one ray and one triangle.

@@ -1,12 +1,14 @@
-//! This room's triangle test by itself, for whoever walks another tree with it.
+//! This room's triangle test by itself, one ray and one triangle, for whoever walks another tree with it or none. It is
+//! written once more, without lanes: what the walk finds with any number of them has to be the same, bit for bit.
 
-use glam::Vec3;
+use glam::{Vec3, Vec3A, Vec3Swizzles};
 
 use crate::bvh::{
     Ray,
+    goal::Nearest,
     mesh_tree::ObjectRay,
     safe_ray::SafeRay,
-    triangle::{Crossing, LeafTriangle, Shear, cross},
+    triangle::{Crossing, Shear, accept},
 };
 
 /// A ray that is ready for [`SingleTriangle::cross`].
@@ -18,24 +20,55 @@ pub(crate) struct ReadyRay {
 impl ReadyRay {
     /// `None` where the ray misses whatever there is. Its direction is of ordinary length: `t` is not rescaled.
     pub(crate) fn new(ray: &Ray) -> Option<Self> {
-        let ray = SafeRay::new(ray)?.world;
+        Some(Self::of(SafeRay::new(ray)?.world))
+    }
+
+    /// A ray in object space.
+    pub(crate) fn of(ray: ObjectRay) -> Self {
         let shear = Shear::new(ray.origin, ray.direction);
-        Some(Self { ray, shear })
+        Self { ray, shear }
     }
 }
 
-/// A triangle as a leaf holds it.
-pub(crate) struct SingleTriangle(LeafTriangle);
+/// A triangle, its coordinates axis by axis.
+pub(crate) struct SingleTriangle([Vec3; 3]);
 
 impl SingleTriangle {
-    pub(crate) fn new(corners: [Vec3; 3]) -> Self {
-        Self(LeafTriangle::new(corners, 0))
+    pub(crate) fn new([a, b, c]: [Vec3; 3]) -> Self {
+        Self([0, 1, 2].map(|axis| Vec3::new(a[axis], b[axis], c[axis])))
     }
 
-    /// `t` and the weights of corners 1 and 2, where the line of the ray crosses the triangle before `limit`.
+    fn corners(&self) -> [Vec3; 3] {
+        let [x, y, z] = self.0;
+        [
+            Vec3::new(x.x, y.x, z.x),
+            Vec3::new(x.y, y.y, z.y),
+            Vec3::new(x.z, y.z, z.z),
+        ]
+    }
+
+    /// Where the ray crosses the triangle, `0 < t <= limit`: `t` and the weights of corners 1 and 2.
     #[inline(always)]
     pub(crate) fn cross(&self, ready: &ReadyRay, limit: f32) -> Option<(f32, f32, f32)> {
-        let crossing = cross(&ready.shear, &ready.ray.slab, &self.0, limit);
+        let ReadyRay { ray, shear } = ready;
+        // A lane is a corner.
+        let [x, y, z] = shear.axes.map(|axis| Vec3A::from(self.0[axis]));
+        let [right, up, depth] = shear.from.map(Vec3A::splat);
+        let depth = z - depth;
+        let right = x - right - depth * shear.slope[0];
+        let up = y - up - depth * shear.slope[1];
+        // An edge function a lane: corner 2 x 1, 0 x 2, 1 x 0.
+        let edges = right.zxy() * up.yzx() - up.zxy() * right.yzx();
+        if edges.cmplt(Vec3A::ZERO).any() && edges.cmpgt(Vec3A::ZERO).any() {
+            return None;
+        }
+        let edges = edges.to_array();
+        let det = edges[0] + edges[1] + edges[2];
+        // Also false for a NaN.
+        if !(det != 0.0 && det.is_finite()) {
+            return None;
+        }
+        let crossing = accept::<Nearest>(shear, &ray.slab, self.corners(), edges, limit);
         crossing.map(|Crossing { t, u, v }| (t, u, v))
     }
 }

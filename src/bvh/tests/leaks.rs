@@ -10,7 +10,7 @@ use super::{
     random::Random,
 };
 use crate::bvh::{
-    BuildOptions, Order, Ray,
+    BuildOptions, Hit, Order, Ray,
     hard_cases::leaks::{AIMS, Aim, FAR, away, bundles, closed, leaks, target},
 };
 
@@ -41,11 +41,14 @@ fn shoot_with_every_set(rays: usize) {
                 let mut random = Random::new(aim as u64 + 11);
                 let rays = bundles(triangles, *inside, offset, aim, each, &mut random);
                 for order in [Order::None, Order::Tile, Order::Light] {
-                    lacking = scene.ask_with_each(order, &rays, |set, hits, occluded| {
-                        let lost = hits.iter().filter(|hit| hit.is_none()).count();
-                        let first = hits.iter().position(Option::is_none);
+                    let opaque = |_: &Hit| Vec3::ZERO;
+                    lacking = scene.ask_with_each(order, &rays, opaque, |set, found| {
+                        let lost = found.hits.iter().filter(|hit| hit.is_none()).count();
+                        let first = found.hits.iter().position(Option::is_none);
                         let first = first.map(|i| rays[i]);
-                        let unseen = occluded.iter().filter(|occluded| !**occluded).count();
+                        let occluded = found.occluded.iter().filter(|occluded| **occluded);
+                        let lit = found.passing.iter().filter(|part| **part != Vec3::ZERO);
+                        let unseen = rays.len() - occluded.count() + lit.count();
                         assert_eq!(
                             (lost, unseen),
                             (0, 0),

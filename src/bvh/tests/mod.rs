@@ -8,7 +8,8 @@ mod leaks;
 mod magnitude;
 mod malformed;
 mod spawned;
+mod transmit;
 mod trees;
 mod wide;
 
-use super::hard_cases::{broken, meshes, oracle, random, rays, transforms};
+use super::hard_cases::{broken, meshes, oracle, random, rays, single, transforms};

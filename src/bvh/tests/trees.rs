@@ -1,6 +1,6 @@
 //! Trees that are hard to build or to walk.
 
-use glam::{Vec3, Vec3A};
+use glam::{Affine3A, Vec3, Vec3A};
 use obvhs::{aabb::Aabb, bvh2::node::Bvh2Node};
 
 use super::{
@@ -8,9 +8,8 @@ use super::{
     random::Random,
 };
 use crate::bvh::{
-    BuildOptions, Builder, Counters, Levels, MAX_DEPTH, NodeEvent, Ray, TreeRef, Visitor,
-    slab::SlabRay,
-    traverse::{EMPTY, walk},
+    Aggregate, BuildOptions, Builder, Counters, Instance, Levels, MAX_DEPTH, NodeEvent, Ray,
+    TreeRef, Visitor, WideBox,
 };
 
 /// Depth of the deepest leaf.
@@ -105,101 +104,152 @@ pub(super) fn chain(levels: usize, leaf_first: bool) -> Vec<Bvh2Node> {
     nodes
 }
 
-#[test]
-fn a_tree_as_deep_as_any_is_walked_to_its_last_leaf() {
-    for leaf_first in [true, false] {
-        let nodes = chain(MAX_DEPTH, leaf_first);
-        assert_eq!(depth(&nodes), MAX_DEPTH);
-        let slab = SlabRay::new(Vec3A::ZERO, Vec3A::new(0.3, 0.4, 0.5), 0.5, 0.0);
-        let mut seen = vec![0; MAX_DEPTH + 1];
-        walk(
-            &nodes,
-            &mut EMPTY.clone(),
-            &slab,
-            (0.0, f32::INFINITY),
-            TreeRef::Top,
-            &mut (),
-            |first, count, limit, _| {
-                assert_eq!(count, 1);
-                seen[first as usize] += 1;
-                limit
-            },
-        );
-        assert!(
-            seen.iter().all(|&n| n == 1),
-            "leaves were walked {seen:?} times"
-        );
-    }
-}
-
-/// Remembers every event.
+/// Remembers every event, and what is on the stack.
 #[derive(Default)]
-struct Log(Vec<(TreeRef, u32, NodeEvent, f32)>, Vec<(u32, u32, bool)>);
+struct Log {
+    nodes: Vec<(TreeRef, u32, NodeEvent, f32)>,
+    triangles: Vec<(u32, u32, bool)>,
+    stack: Vec<(TreeRef, u32)>,
+    /// How often something other than what was put there last came off the stack.
+    out_of_turn: usize,
+}
 
 impl Visitor for Log {
     fn node(&mut self, tree: TreeRef, node: u32, event: NodeEvent, t_entry: f32) {
-        self.0.push((tree, node, event, t_entry));
+        self.nodes.push((tree, node, event, t_entry));
+        if self.stack.contains(&(tree, node)) {
+            self.out_of_turn += usize::from(self.stack.pop() != Some((tree, node)));
+        }
+    }
+
+    fn waits(&mut self, tree: TreeRef, node: u32, _: f32) {
+        self.stack.push((tree, node));
     }
 
     fn triangle(&mut self, instance: u32, triangle: u32, hit: bool) {
-        self.1.push((instance, triangle, hit));
+        self.triangles.push((instance, triangle, hit));
     }
 }
 
+/// The boxes of a tree's wide form.
+fn boxes(scene: &Aggregate, tree: TreeRef) -> Vec<WideBox> {
+    match tree {
+        TreeRef::Top => scene.wide_boxes(),
+        TreeRef::Mesh(i) => scene.instances()[i as usize].mesh.wide_boxes(),
+    }
+}
+
+/// A knot where it is, and again, turned.
+fn two_of(options: &BuildOptions) -> Aggregate {
+    let scene = alone(super::meshes::scatter(2_000, 0.1, 8), options);
+    let mesh = scene.instances()[0].mesh.clone();
+    let turned = Affine3A::from_rotation_y(0.7) * Affine3A::from_translation(Vec3::X * 0.8);
+    let places = [Affine3A::IDENTITY, turned];
+    let instances = places.map(|place| Instance::new(mesh.clone(), &place).unwrap());
+    Aggregate::build(instances.to_vec(), options)
+}
+
 #[test]
-fn a_visitor_hears_once_of_every_node_it_should_and_changes_nothing() {
+fn a_visitor_hears_once_of_every_box_and_triangle_that_is_tested_and_changes_nothing() {
     for options in ways() {
-        let scene = alone(super::meshes::scatter(2_000, 0.1, 8), &options);
-        let tree = |tree| match tree {
-            TreeRef::Top => scene.tree(),
-            TreeRef::Mesh(i) => scene.instances()[i as usize].mesh.tree(),
-        };
-        let mut random = Random::new(31);
-        let mut pruned = 0;
-        for _ in 0..2_000 {
-            let origin = random.cube() * 2.0;
-            let ray = Ray::new(origin, random.cube() - origin);
-            let mut log = Log::default();
-            let hit = scene.closest_hit_with(&ray, &mut log);
-            assert_eq!(hit, scene.closest_hit(&ray));
-            let mut told: Vec<_> = log.0.iter().map(|e| (format!("{:?}", e.0), e.1)).collect();
-            told.sort();
-            let events = told.len();
-            told.dedup();
-            assert_eq!(told.len(), events, "{options:?}: a node was told of twice");
-            let mut triangles = 0;
-            for &(of, node, event, t_entry) in &log.0 {
-                let node = tree(of).nodes[node as usize];
-                match event {
-                    NodeEvent::Entered if node.is_leaf() => {
-                        let in_mesh = of != TreeRef::Top || options.levels == Levels::One;
-                        triangles += if in_mesh { node.prim_count as usize } else { 0 };
-                    }
-                    NodeEvent::Entered => {
-                        for child in [node.first_index, node.first_index + 1] {
-                            let heard = log.0.iter().any(|e| (e.0, e.1) == (of, child));
-                            assert!(
-                                heard,
-                                "{options:?}: nothing of child {child} of an entered node"
-                            );
-                        }
-                    }
-                    NodeEvent::Pruned => {
-                        pruned += 1;
+        for scene in [
+            alone(super::meshes::scatter(2_000, 0.1, 8), &options),
+            two_of(&options),
+        ] {
+            let mut random = Random::new(31);
+            let mut pruned = 0;
+            for _ in 0..300 {
+                let origin = random.cube() * 2.0;
+                let ray = Ray::new(origin, random.cube() - origin);
+                let mut log = Log::default();
+                let hit = scene.closest_hit_with(&ray, &mut log);
+                assert_eq!(hit, scene.closest_hit(&ray));
+                pruned += heard(&scene, &options, &log);
+                for &(_, _, event, t_entry) in &log.nodes {
+                    if event == NodeEvent::Pruned {
                         let t = hit.expect("only a hit prunes here").t;
                         assert!(t_entry > t, "{options:?}: pruned at {t_entry}, hit at {t}");
                     }
-                    NodeEvent::Missed => {}
+                }
+                let last = log.triangles.iter().rfind(|t| t.2).map(|t| (t.0, t.1));
+                assert_eq!(last, hit.map(|h| (h.instance, h.triangle)), "{options:?}");
+                let mut counters = Counters::default();
+                assert_eq!(hit, scene.closest_hit_with(&ray, &mut counters));
+                let counted = [counters.boxes, counters.triangles].map(|n| n as usize);
+                let told = [log.nodes.len(), log.triangles.len()];
+                assert_eq!(counted, told, "{options:?}: boxes and triangles counted");
+            }
+            assert!(pruned > 100, "{options:?}: only {pruned} nodes pruned");
+        }
+    }
+}
+
+/// Checks what a nearest hit's visitor was told; how many nodes were pruned.
+fn heard(scene: &Aggregate, options: &BuildOptions, log: &Log) -> usize {
+    let mut told: Vec<_> = log
+        .nodes
+        .iter()
+        .map(|e| (format!("{:?}", e.0), e.1))
+        .collect();
+    told.sort();
+    let events = told.len();
+    told.dedup();
+    assert_eq!(told.len(), events, "{options:?}: a node was told of twice");
+    assert_eq!(log.out_of_turn, 0, "{options:?}: nodes out of turn");
+    assert!(
+        log.stack.is_empty(),
+        "{options:?}: {:?} are left",
+        log.stack
+    );
+    let (mut triangles, mut expected) = (0, 0);
+    let mut trees: Vec<TreeRef> = Vec::new();
+    for &(of, node, event, _) in &log.nodes {
+        if !trees.contains(&of) {
+            // The root comes first, and untested.
+            assert_eq!(
+                (node, event),
+                (0, NodeEvent::Entered),
+                "{options:?}: {of:?}"
+            );
+            trees.push(of);
+            expected += 1;
+        }
+        if event != NodeEvent::Entered {
+            continue;
+        }
+        let tree = match of {
+            TreeRef::Top => scene.tree(),
+            TreeRef::Mesh(i) => scene.instances()[i as usize].mesh.tree(),
+        };
+        let boxes = boxes(scene, of);
+        let here = boxes.iter().find(|b| b.node == node).expect("a wide box");
+        if here.is_leaf {
+            let in_mesh = of != TreeRef::Top || options.levels == Levels::One;
+            let below = crate::bvh::primitives_below(tree, node as usize).len();
+            triangles += if in_mesh { below } else { 0 };
+        } else {
+            let mut pending = vec![tree.nodes[node as usize].first_index];
+            while let Some(left) = pending.pop() {
+                for child in [left, left + 1] {
+                    if boxes.iter().any(|b| b.node == child) {
+                        expected += 1;
+                        let is_told = log.nodes.iter().any(|e| (e.0, e.1) == (of, child));
+                        assert!(is_told, "{options:?}: nothing of child {child} of {node}");
+                    } else {
+                        pending.push(tree.nodes[child as usize].first_index);
+                    }
                 }
             }
-            assert_eq!(
-                log.1.len(),
-                triangles,
-                "{options:?}: triangles of the entered leaves"
-            );
-            let last = log.1.iter().rfind(|t| t.2).map(|t| (t.0, t.1));
-            assert_eq!(last, hit.map(|h| (h.instance, h.triangle)), "{options:?}");
         }
-        assert!(pruned > 100, "{options:?}: only {pruned} nodes pruned");
     }
+    assert_eq!(events, expected, "{options:?}: boxes of the entered nodes");
+    let tested = log.triangles.len();
+    assert_eq!(
+        tested, triangles,
+        "{options:?}: triangles of the entered leaves"
+    );
+    log.nodes
+        .iter()
+        .filter(|e| e.2 == NodeEvent::Pruned)
+        .count()
 }

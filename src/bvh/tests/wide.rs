@@ -14,9 +14,12 @@ use super::{
 use std::sync::Arc;
 
 use crate::bvh::{
-    Aggregate, BuildOptions, Builder, Instance, Levels, MAX_DEPTH, MeshTree, Order, Ray, Triangles,
-    goal::{All, Nearest},
+    Aggregate, BuildOptions, Builder, Hit, Instance, Levels, MAX_DEPTH, MeshTree, Order, Ray,
+    Triangles,
+    goal::{All, Nearest, Question},
+    safe_ray::Measure,
     slab::SlabRay,
+    visitor::TreeRef,
     wide::{FEW, LEAF, Leaves, MANY, Portable, TriangleBlock, WideRay, WideTree, walk},
 };
 
@@ -97,6 +100,12 @@ fn bundles(count: usize, places: &[Affine3A]) -> Vec<Ray> {
         .collect()
 }
 
+/// What a crossing lets through.
+fn through(hit: &Hit) -> Vec3 {
+    let part = 0.5 + (hit.triangle % 8) as f32 / 17.0;
+    Vec3::new(part, 1.0, (hit.instance % 5) as f32 / 4.0)
+}
+
 #[test]
 fn every_instruction_set_and_every_order_finds_the_same_bits() {
     let mut random = Random::new(5);
@@ -117,19 +126,25 @@ fn every_instruction_set_and_every_order_finds_the_same_bits() {
             let (mut hits, mut occluded) = (Vec::new(), Vec::new());
             scene.closest_hits(&rays, &mut hits);
             scene.occlusions(&rays, &mut occluded);
+            let mut passing = Vec::new();
+            scene.transmittances_in(Order::None, &rays, |_, hit| through(hit), &mut passing);
             let found = hits.iter().flatten().count();
             assert!(found > 50_000, "{levels:?}: only {found} hits");
             for order in [Order::None, Order::Tile, Order::Light] {
-                let lacking = scene.ask_with_each(order, &rays, |set, set_hits, set_occluded| {
+                let lacking = scene.ask_with_each(order, &rays, through, |set, found| {
                     for (i, ray) in rays.iter().enumerate() {
-                        let (a, b) = (hits[i], set_hits[i]);
+                        let (a, b) = (hits[i], found.hits[i]);
                         assert!(
                             same(a, b),
                             "{set}, {order:?}, {levels:?}: {b:?} instead of {a:?}, {ray:?}"
                         );
                         assert_eq!(
-                            occluded[i], set_occluded[i],
+                            occluded[i], found.occluded[i],
                             "{set}, {order:?}, {levels:?}: occluded, {ray:?}"
+                        );
+                        assert_eq!(
+                            passing[i], found.passing[i],
+                            "{set}, {order:?}, {levels:?}: passing, {ray:?}"
                         );
                         assert_eq!(a.is_some(), occluded[i], "{levels:?}: {ray:?}");
                     }
@@ -294,8 +309,12 @@ fn collapsing_fills_nodes_and_blocks_of_an_ordinary_mesh() {
 /// Counts how often each leaf is visited.
 struct Visits(Vec<u32>);
 
-impl Leaves<Portable> for Visits {
-    fn visit(&mut self, leaf: u32, limit: f32, _: &mut [u64]) -> f32 {
+impl<G, V> Leaves<Portable, G, V> for Visits {
+    fn tree(&self) -> TreeRef {
+        TreeRef::Top
+    }
+
+    fn visit(&mut self, leaf: u32, limit: f32, _: &mut [u64], _: &mut Question<G, V>) -> f32 {
         self.0[leaf as usize] += 1;
         limit
     }
@@ -321,8 +340,20 @@ fn a_tree_as_deep_as_any_is_walked_to_its_last_leaf_within_its_stack() {
         let mut visits = Visits(vec![0; leaves.len()]);
         let end = f32::INFINITY;
         let mut stack = vec![0; wide.most_pending() + 8];
-        walk::<Portable, Nearest>(&wide, &mut stack, &ray, end, &mut visits);
-        walk::<Portable, All>(&wide, &mut stack, &ray, end, &mut visits);
+        let measure = Measure::unscaled(end);
+        let mut goal = Nearest::NONE;
+        let mut nearest = Question {
+            measure,
+            goal: &mut goal,
+            visitor: &mut (),
+        };
+        walk(&wide, &mut stack, &ray, end, &mut visits, &mut nearest);
+        let mut all = Question {
+            measure,
+            goal: &mut All(&mut Vec::new()),
+            visitor: &mut (),
+        };
+        walk(&wide, &mut stack, &ray, end, &mut visits, &mut all);
         let expected = vec![2; leaves.len()];
         assert_eq!(visits.0, expected, "leaves were visited so often");
     }

@@ -4,10 +4,11 @@ use glam::Vec3;
 
 use super::Eight;
 use crate::bvh::{
-    goal::Goal,
+    goal::{Goal, Question, STOP},
     slab::SlabRay,
-    traverse::STOP,
-    triangle::{Crossing, LeafTriangle, Shear, accept},
+    triangle::{Shear, accept},
+    triangles::Triangles,
+    visitor::Visitor,
 };
 
 /// Set in the last lane's number where the next block belongs to the same leaf. Triangles are numbered in 31 bits.
@@ -22,16 +23,25 @@ pub(crate) struct TriangleBlock {
     numbers: [u32; 8],
 }
 
+/// A ray as the triangles of an instance's mesh see it.
+pub(crate) struct Sight<'a> {
+    pub(crate) instance: u32,
+    pub(crate) shear: &'a Shear,
+    pub(crate) slab: &'a SlabRay,
+    /// No less than any coordinate of the mesh.
+    pub(crate) reach: f32,
+}
+
 impl TriangleBlock {
     /// The most triangles.
     pub(crate) const CAPACITY: usize = 8;
 
-    /// Adds a leaf's triangles, in as many blocks as they need.
-    pub(crate) fn append(leaf: &[LeafTriangle], blocks: &mut Vec<Self>) {
+    /// Adds a leaf's triangles, those numbers of a mesh, in as many blocks as they need.
+    pub(crate) fn append(leaf: &[u32], mesh: &Triangles, blocks: &mut Vec<Self>) {
         let chunks = leaf.chunks(Self::CAPACITY);
         let last = chunks.len() - 1;
         blocks.extend(chunks.enumerate().map(|(i, chunk)| {
-            let mut block = Self::new(chunk);
+            let mut block = Self::new(chunk, mesh);
             if i < last {
                 block.numbers[Self::CAPACITY - 1] |= CONTINUES;
             }
@@ -40,18 +50,18 @@ impl TriangleBlock {
     }
 
     /// At most eight triangles. A lane without one is a point, which no ray hits.
-    fn new(triangles: &[LeafTriangle]) -> Self {
+    fn new(numbers: &[u32], mesh: &Triangles) -> Self {
         let mut block = Self {
             axes: [[[0.0; 8]; 3]; 3],
             numbers: [0; 8],
         };
-        for (lane, triangle) in triangles.iter().enumerate() {
-            for (corner, position) in triangle.corners().iter().enumerate() {
+        for (lane, &number) in numbers.iter().enumerate() {
+            for (corner, position) in mesh.corners(number).iter().enumerate() {
                 for axis in 0..3 {
                     block.axes[axis][corner][lane] = position[axis];
                 }
             }
-            block.numbers[lane] = triangle.number;
+            block.numbers[lane] = number;
         }
         block
     }
@@ -74,11 +84,19 @@ impl TriangleBlock {
         self.numbers[lane] & !CONTINUES
     }
 
-    /// The triangles in it: lanes that are no point.
+    /// The lanes that hold a triangle: that are no point.
+    fn lanes(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..Self::CAPACITY).filter(|&lane| {
+            let [a, b, c] = self.corners(lane);
+            a != b || b != c
+        })
+    }
+
+    /// The triangles in it.
     #[cfg(test)]
     pub(crate) fn triangles(&self) -> impl Iterator<Item = ([Vec3; 3], u32)> + '_ {
-        let lanes = (0..Self::CAPACITY).map(|lane| (self.corners(lane), self.number(lane)));
-        lanes.filter(|([a, b, c], _)| a != b || b != c)
+        self.lanes()
+            .map(|lane| (self.corners(lane), self.number(lane)))
     }
 
     /// A triangle's corners.
@@ -92,17 +110,42 @@ impl TriangleBlock {
         ]
     }
 
-    /// Hands what [`super::super::triangle::cross`] finds, triangle by triangle, to `at(number, crossing, limit)`, which
-    /// returns the new limit, or [`STOP`].
+    /// Tests the ray against the triangles: [`super::super::triangle`]'s test, eight times over. Crossings go to the
+    /// question; returns the new limit, or [`STOP`].
     #[inline(always)]
-    pub(crate) fn cross<E: Eight, G: Goal>(
+    pub(crate) fn cross<E: Eight, G: Goal, V: Visitor>(
         &self,
-        shear: &Shear,
-        slab: &SlabRay,
-        reach: f32,
-        mut limit: f32,
-        at: &mut impl FnMut(u32, Crossing, f32) -> f32,
+        sight: &Sight,
+        limit: f32,
+        question: &mut Question<G, V>,
     ) -> f32 {
+        let mut wanted = 0;
+        let limit = self.cross_all::<E, G, V>(sight, limit, question, &mut wanted);
+        if V::LOOKS {
+            for lane in self.lanes() {
+                let is_wanted = wanted >> lane & 1 == 1;
+                let number = self.number(lane);
+                (question.visitor).triangle(sight.instance, number, is_wanted);
+            }
+        }
+        limit
+    }
+
+    /// [`Self::cross`], with the lanes whose crossings were wanted where somebody looks.
+    #[inline(always)]
+    fn cross_all<E: Eight, G: Goal, V: Visitor>(
+        &self,
+        sight: &Sight,
+        mut limit: f32,
+        question: &mut Question<G, V>,
+        wanted: &mut u32,
+    ) -> f32 {
+        let Sight {
+            instance,
+            shear,
+            slab,
+            reach,
+        } = *sight;
         let frame = WideFrame::<E>::new(shear);
         let corners = frame.corners(self, shear.axes);
         let (mut passed, [u, v, w]) = edges(&corners);
@@ -119,7 +162,12 @@ impl TriangleBlock {
             passed &= passed - 1;
             let edges = [u[lane], v[lane], w[lane]];
             if let Some(crossing) = accept::<G>(shear, slab, self.corners(lane), edges, limit) {
-                limit = at(self.number(lane), crossing, limit);
+                let (is_wanted, new) =
+                    question.meet((instance, self.number(lane)), crossing, limit);
+                limit = new;
+                if V::LOOKS {
+                    *wanted |= u32::from(is_wanted) << lane;
+                }
                 if limit == STOP {
                     break;
                 }
@@ -129,8 +177,7 @@ impl TriangleBlock {
     }
 }
 
-/// The edge functions, and which triangles they say the line of the ray crosses. The operations are those of
-/// [`super::super::triangle::cross`], one by one.
+/// The edge functions, and which triangles they say the line of the ray crosses.
 #[inline(always)]
 fn edges<E: Eight>([a, b, c]: &[[E; 3]; 3]) -> (u32, [E; 3]) {
     let [u, v, w] = [edge(c, b), edge(a, c), edge(b, a)];

@@ -1,4 +1,4 @@
-//! The form of a tree that rays walk when nobody watches: eight boxes a node, eight triangles a leaf, tested at once.
+//! The form of a tree that rays walk: eight boxes a node, eight triangles a leaf, tested at once.
 //!
 //! A [`Bvh2`](obvhs::bvh2::Bvh2) from any builder is [`collapse`]d into [`WideTree`]: nodes of up to eight children, in
 //! which the SAH says which levels to leave out. Its leaves are [`TriangleBlock`]s (or instances, in the top tree).
@@ -28,7 +28,7 @@ mod portable;
 mod tree;
 mod walk;
 
-pub(crate) use block::TriangleBlock;
+pub(crate) use block::{Sight, TriangleBlock};
 #[cfg(test)]
 pub(crate) use lanes::answer_with_each;
 pub(crate) use lanes::{Eight, InstructionSet, Lanes, Query, answer, by_axis};

@@ -74,16 +74,20 @@ impl WideNode {
         self.rows[CHILDREN][lane as usize % 8].to_bits()
     }
 
+    /// The lanes that have a child.
+    pub(super) fn lanes(&self) -> impl Iterator<Item = u32> {
+        let [lower, upper] = [&self.rows[0], &self.rows[1]];
+        (0..8).filter(|&lane| lower[lane as usize] <= upper[lane as usize])
+    }
+
     /// The children that there are, with their boxes.
     pub(super) fn children(&self) -> impl Iterator<Item = (Aabb, u32)> {
-        (0..8)
-            .map(|lane| {
-                let corner = |first: usize| {
-                    let [x, y, z] = [0, 2, 4].map(|axis| self.rows[first + axis][lane]);
-                    Vec3A::new(x, y, z)
-                };
-                (Aabb::new(corner(0), corner(1)), self.child(lane as u32))
-            })
-            .filter(|(bounds, _)| bounds.min.x <= bounds.max.x)
+        self.lanes().map(|lane| {
+            let corner = |first: usize| {
+                let [x, y, z] = [0, 2, 4].map(|axis| self.rows[first + axis][lane as usize]);
+                Vec3A::new(x, y, z)
+            };
+            (Aabb::new(corner(0), corner(1)), self.child(lane))
+        })
     }
 }

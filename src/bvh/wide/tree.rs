@@ -36,6 +36,8 @@ pub struct WideStats {
 pub struct WideBox {
     /// Wide nodes above it; the root's box has 0.
     pub depth: u32,
+    /// The node of the binary tree whose box it is.
+    pub node: u32,
     /// A leaf of up to eight triangles (in a tree over instances, of one instance).
     pub is_leaf: bool,
     /// Its corners, in the tree's space.
@@ -56,6 +58,8 @@ struct Conversion<'a, F> {
 struct Part<L> {
     nodes: Vec<WideNode>,
     leaves: usize,
+    /// Which node of the binary tree each node stands for, and each leaf, by its number.
+    sources: [Vec<u32>; 2],
     held: Vec<L>,
 }
 
@@ -94,6 +98,11 @@ impl<F> Conversion<'_, F> {
                     .iter()
                     .map(|node| node.moved(first_node, first_held)),
             );
+            let [nodes, leaves] = &mut whole.sources;
+            nodes.append(&mut part.sources[0]);
+            // What a leaf holds beyond the first has numbers too, which no leaf goes by.
+            leaves.resize(whole.held.len(), 0);
+            leaves.append(&mut part.sources[1]);
             whole.held.append(&mut part.held);
             whole.leaves += part.leaves;
         }
@@ -108,6 +117,7 @@ impl<F> Conversion<'_, F> {
         let mut part = Part {
             nodes: vec![WideNode::EMPTY],
             leaves: 0,
+            sources: [vec![root as u32], Vec::new()],
             held: Vec::new(),
         };
         let mut pending = vec![(root, 0)];
@@ -118,9 +128,13 @@ impl<F> Conversion<'_, F> {
                 let number = if self.plans[root].is_leaf {
                     let number = part.held.len() as u32;
                     part.leaves += 1;
+                    let [_, leaves] = &mut part.sources;
+                    leaves.resize(number as usize, 0);
+                    leaves.push(root as u32);
                     (self.leaf)(primitives_below(self.tree, root), &mut part.held);
                     LEAF | number
                 } else if keep(Hanging { root, parent, lane }) {
+                    part.sources[0].push(root as u32);
                     part.nodes.push(WideNode::EMPTY);
                     pending.push((root, part.nodes.len() - 1));
                     part.nodes.len() as u32 - 1
@@ -142,6 +156,8 @@ pub(crate) struct WideTree {
     /// A node or a leaf, as a child is numbered; `None` in a tree over nothing.
     pub(super) root: Option<u32>,
     leaves: usize,
+    /// Which node of the binary tree each node stands for, and each leaf, by its number.
+    sources: [Vec<u32>; 2],
     /// Entries of a stack that the walk needs.
     most_pending: usize,
 }
@@ -170,6 +186,7 @@ impl WideTree {
             let wide = Self {
                 root: Some(LEAF),
                 leaves: 1,
+                sources: [Vec::new(), vec![0]],
                 ..Self::default()
             };
             return (wide, held);
@@ -177,16 +194,29 @@ impl WideTree {
         let Part {
             nodes,
             leaves,
+            sources,
             held,
         } = conversion.convert();
         let mut wide = Self {
             nodes,
             root: Some(0),
             leaves,
+            sources,
             most_pending: 0,
         };
         wide.most_pending = wide.count_pending();
         (wide, held)
+    }
+
+    /// The node of the binary tree that a child stands for.
+    #[inline(always)]
+    pub(super) fn source(&self, child: u32) -> u32 {
+        let [nodes, leaves] = &self.sources;
+        if child & LEAF == 0 {
+            nodes[child as usize]
+        } else {
+            leaves[(child & !LEAF) as usize]
+        }
     }
 
     /// While one child is walked the others wait. Children stand after their parents.
@@ -231,6 +261,7 @@ impl WideTree {
         };
         let wide_box = |bounds: &Aabb, depth, child: u32| WideBox {
             depth,
+            node: self.source(child),
             is_leaf: child & LEAF != 0,
             bounds: [bounds.min.into(), bounds.max.into()],
         };
@@ -251,7 +282,10 @@ impl WideTree {
 
     /// Memory of the nodes, in bytes.
     pub(crate) fn bytes(&self) -> usize {
+        let [nodes, leaves] = &self.sources;
         size_of_val(self.nodes.as_slice())
+            + size_of_val(nodes.as_slice())
+            + size_of_val(leaves.as_slice())
     }
 
     /// The root and all that is below it, as (box of the child, child) lists.

@@ -6,7 +6,12 @@ use super::{
     Eight, WideTree,
     node::{LEAF, WideNode},
 };
-use crate::bvh::{MAX_DEPTH, goal::Goal, slab::SlabRay, traverse::STOP};
+use crate::bvh::{
+    MAX_DEPTH,
+    goal::{Goal, Question, STOP},
+    slab::SlabRay,
+    visitor::{NodeEvent, TreeRef, Visitor},
+};
 
 /// A node's children are written in a window of eight.
 pub(super) const WINDOW: usize = 8;
@@ -59,7 +64,7 @@ impl<E: Eight> WideRay<E> {
     }
 
     /// Which children the ray enters, no later than at `limit`, and where. The numbers are those of
-    /// [`SlabRay::span_from`]: which of a box's two faces is nearer follows from the direction's sign, because the
+    /// [`SlabRay::span`]: which of a box's two faces is nearer follows from the direction's sign, because the
     /// differences and products are monotone.
     #[inline(always)]
     fn enter(&self, node: &WideNode, limit: f32) -> (u32, E) {
@@ -91,10 +96,19 @@ fn waiting(node: &WideNode, entries: &[f32; 8], lane: u32) -> u64 {
 
 /// What the leaves of a tree hold. A trait and not a closure, because its method has to become part of the function
 /// that is compiled for the instruction set of `E`, and only a method can be `#[inline(always)]`.
-pub(crate) trait Leaves<E> {
+pub(crate) trait Leaves<E, G, V> {
+    /// What a visitor knows the tree by.
+    fn tree(&self) -> TreeRef;
+
     /// Tests the ray against a leaf, and returns the new limit: the `t` beyond which nothing matters any more, or
     /// [`STOP`]. The rest of the walk's stack may be used.
-    fn visit(&mut self, leaf: u32, limit: f32, stack: &mut [u64]) -> f32;
+    fn visit(
+        &mut self,
+        leaf: u32,
+        limit: f32,
+        stack: &mut [u64],
+        question: &mut Question<G, V>,
+    ) -> f32;
 
     /// What to visit next, where that leaf was only a part of one.
     #[inline(always)]
@@ -109,49 +123,69 @@ pub(crate) trait Leaves<E> {
 ///
 /// The stack holds the tree's [`WideTree::most_pending`] and [`WINDOW`] more, and what the leaves need.
 #[inline(always)]
-pub(crate) fn walk<E: Eight, G: Goal>(
+pub(crate) fn walk<E: Eight, G: Goal, V: Visitor>(
     tree: &WideTree,
     stack: &mut [u64],
     ray: &WideRay<E>,
     limit: f32,
-    leaves: &mut impl Leaves<E>,
+    leaves: &mut impl Leaves<E, G, V>,
+    question: &mut Question<G, V>,
 ) -> f32 {
     match tree.root {
-        Some(root) => walk_from::<E, G>(tree, root, stack, ray, limit, leaves),
+        Some(root) => walk_from(tree, root, stack, ray, limit, leaves, question),
         None => limit,
     }
 }
 
 /// [`walk`] from a node or, marked by [`LEAF`], a leaf on.
 #[inline(always)]
-pub(crate) fn walk_from<E: Eight, G: Goal>(
+pub(crate) fn walk_from<E: Eight, G: Goal, V: Visitor>(
     tree: &WideTree,
     mut next: u32,
     stack: &mut [u64],
     ray: &WideRay<E>,
     mut limit: f32,
-    leaves: &mut impl Leaves<E>,
+    leaves: &mut impl Leaves<E, G, V>,
+    question: &mut Question<G, V>,
 ) -> f32 {
     let mut pending = 0;
+    // Where the ray enters what is next, and whether that was entered before: only a visitor wants to know.
+    let mut entry = if V::LOOKS { ray.start.smallest() } else { 0.0 };
+    let mut is_rest = false;
     loop {
+        if V::LOOKS && !is_rest {
+            let (name, node) = (leaves.tree(), tree.source(next));
+            question.visitor.node(name, node, NodeEvent::Entered, entry);
+        }
         if next & LEAF != 0 {
             let leaf = next & !LEAF;
-            limit = leaves.visit(leaf, limit, &mut stack[pending..]);
+            limit = leaves.visit(leaf, limit, &mut stack[pending..], question);
             if limit == STOP {
                 return STOP;
             }
             if let Some(rest) = leaves.rest(leaf) {
                 next = LEAF | rest;
+                is_rest = true;
                 continue;
             }
+            is_rest = false;
         } else {
             let node = &tree.nodes[next as usize];
             let (mut hits, entries) = ray.enter(node, limit);
+            let mut watched = Watched {
+                tree,
+                name: leaves.tree(),
+                visitor: &mut *question.visitor,
+            };
+            watched.left_out(node, ray, hits);
             if hits != 0 {
                 let first = hits.trailing_zeros();
                 hits &= hits - 1;
                 if hits == 0 {
                     next = node.child(first);
+                    if V::LOOKS {
+                        entry = entries.to_array()[first as usize % 8];
+                    }
                     continue;
                 }
                 if G::NEAREST_FIRST {
@@ -163,8 +197,10 @@ pub(crate) fn walk_from<E: Eight, G: Goal>(
                     let (near, far) = (a.min(b), a.max(b));
                     if hits == 0 {
                         stack[pending] = far;
+                        watched.put_off(&[far]);
                         pending += 1;
                         next = near as u32;
+                        entry = entry_of(near);
                         continue;
                     }
                     let window = &mut stack[pending..pending + WINDOW];
@@ -181,17 +217,28 @@ pub(crate) fn walk_from<E: Eight, G: Goal>(
                         window[place % 8] = new;
                         count += 1;
                     }
-                    next = window[(count - 1) % 8] as u32;
+                    let near = window[(count - 1) % 8];
+                    watched.put_off(&window[..count - 1]);
+                    next = near as u32;
+                    entry = entry_of(near);
                     pending += count - 1;
                 } else {
                     next = node.child(first);
+                    let entries = entries.to_array();
+                    entry = entries[first as usize % 8];
                     let window = &mut stack[pending..pending + WINDOW];
                     let mut count = 0;
                     while hits != 0 {
-                        window[count % 8] = u64::from(node.child(hits.trailing_zeros()));
+                        let lane = hits.trailing_zeros();
+                        window[count % 8] = if V::LOOKS {
+                            waiting(node, &entries, lane)
+                        } else {
+                            u64::from(node.child(lane))
+                        };
                         hits &= hits - 1;
                         count += 1;
                     }
+                    watched.put_off(&window[..count]);
                     pending += count;
                 }
                 continue;
@@ -203,10 +250,62 @@ pub(crate) fn walk_from<E: Eight, G: Goal>(
             }
             pending -= 1;
             let waiting = stack[pending];
-            if !G::NEAREST_FIRST || f32::from_bits((waiting >> 32) as u32) <= limit {
+            entry = entry_of(waiting);
+            if !G::NEAREST_FIRST || entry <= limit {
                 next = waiting as u32;
                 break;
             }
+            if V::LOOKS {
+                let (name, node) = (leaves.tree(), tree.source(waiting as u32));
+                question.visitor.node(name, node, NodeEvent::Pruned, entry);
+            }
+        }
+    }
+}
+
+/// Where the ray enters what waits.
+#[inline(always)]
+fn entry_of(waiting: u64) -> f32 {
+    f32::from_bits((waiting >> 32) as u32)
+}
+
+/// A visitor of a tree. Every method is empty where nobody looks.
+struct Watched<'a, V> {
+    tree: &'a WideTree,
+    name: TreeRef,
+    visitor: &'a mut V,
+}
+
+impl<V: Visitor> Watched<'_, V> {
+    /// The children that are not among those which the ray enters.
+    #[inline(always)]
+    fn left_out<E: Eight>(&mut self, node: &WideNode, ray: &WideRay<E>, entered: u32) {
+        if !V::LOOKS {
+            return;
+        }
+        let (hit, entries) = ray.enter(node, f32::INFINITY);
+        let entries = entries.to_array();
+        for lane in node.lanes().filter(|lane| entered >> lane & 1 == 0) {
+            let event = if hit >> lane & 1 == 1 {
+                NodeEvent::Pruned
+            } else {
+                NodeEvent::Missed
+            };
+            let source = self.tree.source(node.child(lane));
+            self.visitor
+                .node(self.name, source, event, entries[lane as usize % 8]);
+        }
+    }
+
+    /// The children that were put onto the stack.
+    #[inline(always)]
+    fn put_off(&mut self, waiting: &[u64]) {
+        if !V::LOOKS {
+            return;
+        }
+        for &waiting in waiting {
+            let source = self.tree.source(waiting as u32);
+            self.visitor.waits(self.name, source, entry_of(waiting));
         }
     }
 }

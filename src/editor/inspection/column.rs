@@ -166,7 +166,7 @@ pub(in crate::editor) const COLUMNS: [Heading; 18] = [
         "nodes",
         48.0,
         true,
-        "Nodes that the single-ray traversal entered",
+        "Nodes that the walk which traces pictures entered",
     ),
     heading(Column::Boxes, "boxes", 48.0, true, "Boxes that it tested"),
     heading(

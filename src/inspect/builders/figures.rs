@@ -29,7 +29,7 @@ pub struct BuilderFigures {
     /// Effective parent overlap: how much of the surface lies inside boxes of nodes that do not hold it
     /// (Aila et al. 2013).
     pub epo: f64,
-    /// Nodes of the wide form, which unwatched rays walk.
+    /// Nodes of the wide form, which rays walk.
     pub wide_nodes: usize,
     /// Children of such a node on average, of eight.
     pub children_per_wide_node: f64,

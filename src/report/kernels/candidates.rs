@@ -5,7 +5,7 @@ use super::embree::{self, Embree};
 use super::exact::Exact;
 use super::moller_trumbore::MollerTrumbore;
 use super::obvhs_trees::{Binary, Wide};
-use super::ours::{OursBinary, OursWide};
+use super::ours::OursWide;
 use super::tests_of_triangles::{ObvhsTest, Watertight};
 use glam::Vec3;
 use std::rc::Rc;
@@ -64,7 +64,6 @@ pub(super) fn candidates() -> Vec<Candidate> {
     let (binary, wide) = ("obvhs Bvh2", "obvhs CwBvh");
     let mut all = vec![
         Candidate::new("Glassbox wide", WATERTIGHT, OursWide::build),
-        Candidate::new("Glassbox binary", WATERTIGHT, OursBinary::build),
         Candidate::new(binary, WATERTIGHT, Binary::<Watertight>::build),
         Candidate::new(binary, MOLLER_TRUMBORE, Binary::<MollerTrumbore>::build),
         Candidate::new(binary, OBVHS, Binary::<ObvhsTest>::build),

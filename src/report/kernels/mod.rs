@@ -205,10 +205,7 @@ fn method(candidates: &[Candidate], options: &Options) -> Vec<String> {
          by more than a thousandth. Leaks are rays of a million from inside closed meshes, aimed at edges and at vertices, \
          that find nothing."
             .into(),
-        format!(
-            "`wide` is what Glassbox traces with; `binary` walks the same builder's two-way tree, as gizmos and counters do. \
-             {embree}"
-        ),
+        format!("`wide` is what Glassbox traces with, and what its gizmos and counters show. {embree}"),
     ]
 }
 

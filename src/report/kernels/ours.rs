@@ -64,24 +64,3 @@ impl Kernel for OursWide {
         self.aggregate.occlusions_in(self.orders[1], rays, occluded);
     }
 }
-
-/// The walk of the two-way tree that a visitor can watch, with none.
-pub(super) struct OursBinary(Aggregate);
-
-impl OursBinary {
-    pub fn build(triangles: &[[Vec3; 3]]) -> Self {
-        Self(aggregate(triangles, &BuildOptions::default()))
-    }
-}
-
-impl Kernel for OursBinary {
-    fn closest(&self, rays: &[Ray], all: &mut Vec<Option<Found>>) {
-        all.clear();
-        all.extend((rays.iter()).map(|ray| found(self.0.closest_hit_with(ray, &mut ()))));
-    }
-
-    fn occluded(&self, rays: &[Ray], occluded: &mut Vec<bool>) {
-        occluded.clear();
-        occluded.extend(rays.iter().map(|ray| self.0.occluded_with(ray, &mut ())));
-    }
-}

@@ -3,7 +3,7 @@
 use super::scenes::{central_radiance, flat, once, placed, quad, world};
 use super::{Effort, Outcome};
 use crate::bvh::hard_cases::meshes::soup;
-use crate::bvh::{Counters, Ray};
+use crate::bvh::{Counters, Hit, Ray};
 use crate::film::render;
 use crate::report::table::digits;
 use crate::scene::RenderSettings;
@@ -121,8 +121,19 @@ pub(super) fn mirrors(_: &Effort) -> Outcome {
     )
 }
 
-/// What a ray straight through `count` sheets visits, nodes and triangles, crossing by crossing; and how many it crosses.
-fn visits(count: u32, one_mesh: bool) -> (u64, u32) {
+/// What rays through sheets visit, nodes and triangles, and how many sheets they cross.
+struct Visits {
+    /// Of a ray straight on, crossing by crossing.
+    straight: u64,
+    crossed: u32,
+    /// Of a ray to a light, which asks once how much of it passes.
+    to_light: u64,
+    /// How much that is, where a sheet takes nothing of red, a thousandth of green and half of blue.
+    passing: Vec3,
+}
+
+/// Through `count` sheets: of one mesh, or an object each.
+fn visits(count: u32, one_mesh: bool) -> Visits {
     let sheet = |i: u32| square(i as f32 * 0.01);
     let triangles = |corners: &[Vec3; 6]| {
         let [a, b, c, d, e, f] = *corners;
@@ -137,34 +148,60 @@ fn visits(count: u32, one_mesh: bool) -> (u64, u32) {
             .collect()
     };
     let scene = world(objects, vec![pane(0.5)]);
-    let ray = Ray::new(Vec3::new(0.1, 0.3, -1.0), Vec3::new(0.01, 0.02, 1.0));
+    let ray = Ray::new(Vec3::new(0.1, 0.3, -1.0), Vec3::new(0.001, 0.002, 1.0));
     let (mut cost, mut crossed) = (Counters::default(), 0);
     let mut next = scene.aggregate.closest_hit_with(&ray, &mut cost);
     while let Some(hit) = next {
         crossed += 1;
         next = scene.aggregate.next_crossing_with(&ray, &hit, &mut cost);
     }
-    (cost.nodes + cost.triangles, crossed)
+    let visits = |cost: Counters| cost.nodes + cost.triangles;
+    let mut of_light = Counters::default();
+    let through = |_: &Hit| Vec3::new(1.0, 0.999, 0.5);
+    let passing = (scene.aggregate).transmittance_with(&ray, through, &mut of_light);
+    Visits {
+        straight: visits(cost),
+        crossed,
+        to_light: visits(of_light),
+        passing,
+    }
 }
 
 pub(super) fn sheets(_: &Effort) -> Outcome {
-    let (mut ratios, mut crossed_all) = (Vec::new(), true);
+    let counts = [400, 800, 5_000, 10_000];
+    let (mut straight, mut to_light, mut wrong) = (0.0_f64, 0.0_f64, 0);
     for one_mesh in [true, false] {
-        let [(few, few_crossed), (many, many_crossed)] = [400, 800].map(|n| visits(n, one_mesh));
-        crossed_all &= (few_crossed, many_crossed) == (400, 800);
-        ratios.push(many as f64 / few as f64);
+        let all = counts.map(|count| visits(count, one_mesh));
+        for (visits, count) in all.iter().zip(counts) {
+            let exact = [
+                1.0,
+                f64::from(0.999_f32).powi(count as i32),
+                0.5_f64.powi(count as i32),
+            ];
+            let bound = f64::from(count) * f64::from(f32::EPSILON) / 2.0;
+            let is_exact = (0..3).all(|i| {
+                let off = (f64::from(visits.passing[i]) - exact[i]).abs();
+                off <= bound * exact[i] + f64::from(f32::MIN_POSITIVE)
+            });
+            wrong += usize::from(!is_exact || visits.crossed != count);
+        }
+        let [few, many, half, whole] = &all;
+        let more = |of: fn(&Visits) -> u64, few, many| of(many) as f64 / of(few) as f64;
+        straight = straight.max(more(|v| v.straight, few, many));
+        to_light =
+            (to_light.max(more(|v| v.to_light, few, many))).max(more(|v| v.to_light, half, whole));
     }
-    let worst = ratios[0].max(ratios[1]);
     Outcome::new(
-        2 * (400 + 800),
+        2 * counts.iter().sum::<u32>() as usize,
         format!(
-            "visits through 800 sheets against 400: {} in one mesh, {} as objects",
-            digits(ratios[0], 3),
-            digits(ratios[1], 3)
+            "visits through 800 sheets against 400 at most {}; of a ray to a light, and through 10000 against 5000, {}",
+            digits(straight, 3),
+            digits(to_light, 3)
         ),
     )
-    .require(worst <= 2.2, format!("{worst} times the visits"))
-    .require(crossed_all, "not every sheet is crossed once")
+    .require(straight <= 2.2, format!("{straight} times the visits"))
+    .require(to_light <= 2.2, format!("{to_light} times the visits to a light"))
+    .require(wrong == 0, format!("{wrong} numbers of sheets are not crossed once each"))
 }
 
 /// A floor under a lamp, and a sheet of opacity 0 before the camera, or none.

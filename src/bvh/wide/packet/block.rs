@@ -21,8 +21,8 @@ struct Test<'a, S: InstructionSet> {
 }
 
 impl TriangleBlock {
-    /// Tests the triangles, one after the other, against those rays. The operations are those of
-    /// [`super::super::super::triangle::cross`], one by one.
+    /// Tests the triangles, one after the other, against those rays. The operations are those of [`Self::cross`], one by
+    /// one.
     #[inline(always)]
     pub(crate) fn cross_packet<S: InstructionSet, G: Goal>(
         &self,

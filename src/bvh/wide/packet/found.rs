@@ -1,6 +1,13 @@
 //! What the rays of a packet have found so far.
 
-use crate::bvh::{goal::Goal, queries::Best, ray::Hit, traverse::STOP, wide::Lanes};
+use std::marker::PhantomData;
+
+use crate::bvh::{
+    goal::{Goal, Nearest, Question, STOP},
+    ray::Hit,
+    safe_ray::Measure,
+    wide::Lanes,
+};
 
 /// The lanes whose bits are set.
 #[inline(always)]
@@ -64,17 +71,6 @@ pub(crate) enum Answers<'a> {
     Any(&'a mut [bool]),
 }
 
-impl Answers<'_> {
-    /// The answer for one ray.
-    #[inline(always)]
-    pub(crate) fn set(&mut self, lane: usize, hit: Option<Hit>) {
-        match self {
-            Self::Closest(closest) => closest[lane] = hit,
-            Self::Any(any) => any[lane] = hit.is_some(),
-        }
-    }
-}
-
 impl<L: Lanes> Found<L> {
     /// Nothing, for rays that end there.
     #[inline(always)]
@@ -115,7 +111,7 @@ impl<L: Lanes> Found<L> {
 
     /// One of the rays, to go on alone.
     #[inline(always)]
-    pub(crate) fn alone(&self, lane: usize) -> Alone {
+    pub(crate) fn alone<G>(&self, lane: usize) -> Alone<G> {
         let limit = number(self.limit, lane);
         let hit = Hit {
             t: limit,
@@ -129,14 +125,15 @@ impl<L: Lanes> Found<L> {
             lane,
             end: number(self.end, lane),
             limit,
-            best: if is_hit { Best::of(hit) } else { Best::NONE },
+            best: if is_hit { Nearest(hit) } else { Nearest::NONE },
             is_new: false,
+            goal: PhantomData,
         }
     }
 
     /// What that ray has found.
     #[inline(always)]
-    pub(crate) fn rejoin<G: Goal>(&mut self, alone: Alone) {
+    pub(crate) fn rejoin<G: Goal>(&mut self, alone: Alone<G>) {
         if !alone.is_new {
             return;
         }
@@ -144,7 +141,7 @@ impl<L: Lanes> Found<L> {
         if G::ANY {
             return self.end(bit);
         }
-        let Best(hit) = alone.best;
+        let Nearest(hit) = alone.best;
         let mask = L::mask(bit);
         put(&mut self.limit, mask, hit.t);
         put(&mut self.edges[0], mask, hit.u);
@@ -186,29 +183,41 @@ impl<L: Lanes> Found<L> {
     }
 }
 
-/// A ray of a packet that goes on alone.
-pub(crate) struct Alone {
+/// A ray of a packet that goes on alone, with the packet's goal.
+pub(crate) struct Alone<G> {
     lane: usize,
     end: f32,
     /// Beyond this nothing matters.
     pub(crate) limit: f32,
-    best: Best,
+    best: Nearest,
     is_new: bool,
+    goal: PhantomData<G>,
 }
 
-impl Alone {
-    /// Takes a hit if it lies on the ray and is nearer; the new limit, or [`STOP`] where any hit is enough.
+impl<G: Goal> Alone<G> {
+    /// What it asks for, as single rays do. A packet's rays are safe as they are.
     #[inline(always)]
-    pub(crate) fn offer<G: Goal>(&mut self, hit: Hit, limit: f32) -> f32 {
-        if !(hit.t > 0.0 && hit.t < self.end && hit.t <= limit) {
-            return limit;
+    pub(crate) fn question<'a, V>(&'a mut self, visitor: &'a mut V) -> Question<'a, Self, V> {
+        Question {
+            measure: Measure::unscaled(self.end),
+            goal: self,
+            visitor,
         }
+    }
+}
+
+impl<G: Goal> Goal for Alone<G> {
+    const NEAREST_FIRST: bool = G::NEAREST_FIRST;
+    const ANY: bool = G::ANY;
+
+    #[inline(always)]
+    fn meet(&mut self, hit: Hit, limit: f32) -> (bool, f32) {
         if G::ANY {
             self.is_new = true;
-            return STOP;
+            return (true, STOP);
         }
-        let new = self.best.offer(hit, limit);
-        self.is_new |= self.best.is(&hit);
-        new
+        let (is_wanted, limit) = self.best.meet(hit, limit);
+        self.is_new |= is_wanted;
+        (is_wanted, limit)
     }
 }

@@ -28,8 +28,8 @@ pub(super) fn boxes_ui(ui: &mut Ui, world: &mut World, settings: &mut InspectSet
     if !boxes.on {
         return;
     }
-    let says = "Binary: as the builder made them, and as debug rays walk them. Wide: up to eight children a \
-                node, made of the binary form, through which pictures are traced";
+    let says = "Binary: as the builder made them. Wide: up to eight children a node, made of the binary form, \
+                through which rays are traced";
     choice(ui, "Form", says, &mut boxes.form, &FORMS, false);
     if boxes.form == TreeForm::Binary {
         let says = "A range of levels, one leaf, or the way to a triangle";
@@ -57,6 +57,16 @@ pub(super) fn boxes_ui(ui: &mut Ui, world: &mut World, settings: &mut InspectSet
         switch(ui, "Split planes", says, &mut boxes.split_planes, false);
         let says = "The triangles of drawn leaves";
         switch(ui, "Triangles", says, &mut boxes.triangles, false);
+    } else {
+        let says = "What a box's colour says: dark is little, bright is much";
+        let colors = [COLORS[0], COLORS[3]];
+        let mut color = match boxes.color {
+            BoxColor::Visits => BoxColor::Visits,
+            _ => BoxColor::Level,
+        };
+        if choice(ui, "Colour", says, &mut color, &colors, false) {
+            boxes.color = color;
+        }
     }
     let leaves = grouped(range.leaves as u64);
     let text = match boxes.form {
@@ -67,15 +77,11 @@ pub(super) fn boxes_ui(ui: &mut Ui, world: &mut World, settings: &mut InspectSet
 }
 
 const FORMS: [(TreeForm, &str, &str); 2] = [
-    (
-        TreeForm::Binary,
-        "Binary",
-        "As the builder made them, and as debug rays walk them",
-    ),
+    (TreeForm::Binary, "Binary", "As the builder made them"),
     (
         TreeForm::Wide,
         "Wide",
-        "Up to eight children a node: what pictures are traced through",
+        "Up to eight children a node: what rays are traced through",
     ),
 ];
 const CHOICES: [(BoxChoice, &str, &str); 3] = [

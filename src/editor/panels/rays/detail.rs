@@ -154,7 +154,7 @@ fn figures(ray: &TracedRay, rays: &RayTree, names: &Names) -> Vec<Figure> {
         ),
         (
             "cost",
-            "The single-ray traversal's of the binary trees",
+            "Of the walk that traces pictures, through the wide form of the trees",
             format!(
                 "{} nodes, {} boxes, {} triangles",
                 ray.cost.nodes, ray.cost.boxes, ray.cost.triangles

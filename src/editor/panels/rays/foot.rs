@@ -15,8 +15,7 @@ use bevy_egui::egui::{RichText, Ui};
 use std::sync::Arc;
 
 /// What the numbers of nodes, boxes and triangles are.
-const COUNTERS: &str =
-    "Counters are the single-ray traversal's of the binary trees, without caches or packets.";
+const COUNTERS: &str = "Counters are those of the walk that traces pictures, ray by ray, through the wide form of the trees.";
 
 pub(super) fn foot_ui(ui: &mut Ui, world: &mut World, rays: &RayTree) {
     let film = film_of(world);
@@ -36,7 +35,7 @@ pub(super) fn foot_ui(ui: &mut Ui, world: &mut World, rays: &RayTree) {
             ui.label(RichText::new(text).small().color(color));
         }
         ui.label(RichText::new(COUNTERS).small().weak())
-            .says("The picture itself is traced through wide nodes made of these trees, which count otherwise");
+            .says("Where many rays of a picture go the same way, it walks the same trees with all of them together, which counts otherwise");
     });
 }
 

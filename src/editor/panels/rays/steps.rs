@@ -54,7 +54,7 @@ pub(super) fn steps_ui(
     ui.weak(format!(
         "so far: {entered} entered, {missed} missed, {pruned} pruned, {triangles} triangles"
     ))
-    .says("Nodes entered, boxes missed, nodes pruned and triangles tested, by the single-ray traversal of the binary trees, without caches or packets");
+    .says("Nodes entered, boxes missed, nodes pruned and triangles tested, by the walk that traces pictures, through the wide form of the trees: its boxes have the numbers of the binary nodes that they are made of");
     stack_ui(ui, inspected, &tell);
     ui.add_space(4.0);
     list_ui(ui, inspected, &tell);

@@ -1,0 +1,140 @@
+//! How much of a light passes what lies on a ray: one walk a ray, whatever the number of layers.
+//!
+//! The walk meets crossings in no particular order, and a product of rounded numbers depends on theirs. So they are kept
+//! until the walk is over, and multiplied nearest first, equal `t` by (instance, triangle): the product is the same to the
+//! last bit for every tree, and that of going from crossing to crossing ([`Aggregate::next_crossing`]). What nothing passes
+//! ends the walk, since the product is zero whatever else there is.
+
+use glam::Vec3;
+
+use super::{
+    aggregate::Aggregate,
+    goal::{Goal, STOP},
+    order::Order,
+    ray::{Hit, Ray},
+    safe_ray::{Measure, SafeRay},
+    visitor::Visitor,
+};
+
+/// The part that passes: what `through` says of each crossing, multiplied.
+pub(super) struct Transmit<'a, F> {
+    aggregate: &'a Aggregate,
+    measure: Measure,
+    through: F,
+    crossings: &'a mut Vec<(Hit, Vec3)>,
+    is_blocked: bool,
+}
+
+impl<'a, F: FnMut(&Hit) -> Vec3> Transmit<'a, F> {
+    /// The crossings are cleared: they only lend their memory.
+    #[inline(always)]
+    pub(super) fn new(
+        aggregate: &'a Aggregate,
+        ray: &SafeRay,
+        through: F,
+        crossings: &'a mut Vec<(Hit, Vec3)>,
+    ) -> Self {
+        crossings.clear();
+        Self {
+            aggregate,
+            measure: ray.measure,
+            through,
+            crossings,
+            is_blocked: false,
+        }
+    }
+
+    /// The product. Triangles that are crossed at once, on an edge or in a corner that they share, count once.
+    #[inline(always)]
+    pub(super) fn product(&mut self) -> Vec3 {
+        if self.is_blocked {
+            return Vec3::ZERO;
+        }
+        if self.crossings.is_empty() {
+            return Vec3::ONE;
+        }
+        self.nearest_first()
+    }
+
+    fn nearest_first(&mut self) -> Vec3 {
+        self.crossings.sort_unstable_by(|(a, _), (b, _)| {
+            (a.t.total_cmp(&b.t)).then((a.instance, a.triangle).cmp(&(b.instance, b.triangle)))
+        });
+        let mut product = Vec3::ONE;
+        let mut last: Option<Hit> = None;
+        for (hit, part) in self.crossings.iter() {
+            let again = last.is_some_and(|last| self.aggregate.same_crossing(&last, hit));
+            last = Some(*hit);
+            if !again {
+                product *= *part;
+                if product == Vec3::ZERO {
+                    break;
+                }
+            }
+        }
+        product
+    }
+}
+
+impl<F: FnMut(&Hit) -> Vec3> Goal for Transmit<'_, F> {
+    const NEAREST_FIRST: bool = false;
+    const ANY: bool = false;
+
+    #[inline(always)]
+    fn meet(&mut self, hit: Hit, limit: f32) -> (bool, f32) {
+        let part = (self.through)(&self.measure.scaled(hit));
+        // What lies on an edge may be another triangle's crossing, which counts in its place.
+        if part == Vec3::ZERO && !self.aggregate.is_on_an_edge(&hit) {
+            self.is_blocked = true;
+            return (true, STOP);
+        }
+        self.crossings.push((hit, part));
+        (true, limit)
+    }
+}
+
+impl Aggregate {
+    /// How much of a light passes on each ray, in their order, which is told: the product of what `through(ray, hit)`
+    /// says of every crossing in `0 < t < t_max`, `ray` an index into `rays`. Triangles that are crossed on an edge or in a
+    /// corner that they share count once. `passing` is cleared first. `through` may be asked in any order, and of crossings
+    /// that do not count; its answer, none of it below zero, may only depend on what it is asked.
+    pub fn transmittances_in(
+        &self,
+        order: Order,
+        rays: &[Ray],
+        through: impl FnMut(usize, &Hit) -> Vec3,
+        passing: &mut Vec<Vec3>,
+    ) {
+        passing.clear();
+        passing.resize(rays.len(), Vec3::ONE);
+        self.ask_transmittances(order, rays, through, passing);
+    }
+
+    /// [`Self::transmittances_in`] of one ray, watched.
+    pub fn transmittance_with<V: Visitor>(
+        &self,
+        ray: &Ray,
+        through: impl FnMut(&Hit) -> Vec3,
+        visitor: &mut V,
+    ) -> Vec3 {
+        let Some(ray) = SafeRay::new(ray) else {
+            return Vec3::ONE;
+        };
+        let mut crossings = Vec::new();
+        let mut goal = Transmit::new(self, &ray, through, &mut crossings);
+        self.pursue(&ray, &mut goal, visitor);
+        goal.product()
+    }
+
+    /// Every crossing on a ray, nearest first, as [`Self::next_crossing`] finds them one by one. `crossings` is cleared
+    /// first; it is the only memory used.
+    pub fn all_crossings(&self, ray: &Ray, crossings: &mut Vec<Hit>) {
+        self.all_hits(ray, crossings);
+        let mut last: Option<Hit> = None;
+        crossings.retain(|hit| {
+            let again = last.is_some_and(|last| self.same_crossing(&last, hit));
+            last = Some(*hit);
+            !again
+        });
+    }
+}
