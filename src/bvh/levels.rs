@@ -1,10 +1,10 @@
 //! How the wide trees of an aggregate hang together, and the questions that are compiled for each way apart: what a
 //! scene does not have costs nothing, not even the registers.
 
+use std::marker::PhantomData;
+
 use glam::Vec3;
 
-#[cfg(test)]
-use super::wide::answer_with_each;
 use super::{
     aggregate::{Aggregate, Places},
     goal::{Any, Goal, Nearest, Question},
@@ -87,6 +87,9 @@ macro_rules! arranged {
     };
 }
 
+#[cfg(test)]
+pub(super) use arranged;
+
 impl Aggregate {
     /// Puts the nearest hit of each ray into its place in `hits`, where there is `None` before.
     pub(super) fn ask_closest(&self, order: Order, rays: &[Ray], hits: &mut [Option<Hit>]) {
@@ -103,7 +106,7 @@ impl Aggregate {
         &self,
         order: Order,
         rays: &[Ray],
-        through: impl FnMut(usize, &Hit) -> Vec3,
+        through: &mut dyn FnMut(usize, &Hit) -> Vec3,
         passing: &mut [Vec3],
     ) {
         let aggregate = self;
@@ -113,72 +116,6 @@ impl Aggregate {
     /// Walks along one ray until the goal is reached, watched.
     pub(super) fn pursue<G: Goal, V: Visitor>(&self, ray: &SafeRay, goal: &mut G, visitor: &mut V) {
         arranged!(self, of => answer(One { of, ray, goal, visitor }));
-    }
-}
-
-#[cfg(test)]
-impl Aggregate {
-    /// What [`Aggregate::closest_hits_in`], [`Aggregate::occlusions_in`] and [`Aggregate::transmittances_in`] find with
-    /// each instruction set of this machine; the names of those that it lacks.
-    pub(super) fn ask_with_each(
-        &self,
-        order: Order,
-        rays: &[Ray],
-        through: fn(&Hit) -> Vec3,
-        check: impl FnMut(&str, Answered),
-    ) -> Vec<&'static str> {
-        let every = || Asked {
-            aggregate: self,
-            order,
-            rays,
-            through,
-        };
-        answer_with_each(every, check)
-    }
-}
-
-/// The answers to [`Aggregate::ask_with_each`].
-#[cfg(test)]
-pub(super) struct Answered {
-    pub(super) hits: Vec<Option<Hit>>,
-    pub(super) occluded: Vec<bool>,
-    pub(super) passing: Vec<Vec3>,
-}
-
-#[cfg(test)]
-struct Asked<'a> {
-    aggregate: &'a Aggregate,
-    order: Order,
-    rays: &'a [Ray],
-    through: fn(&Hit) -> Vec3,
-}
-
-#[cfg(test)]
-impl Query for Asked<'_> {
-    type Answer = Answered;
-
-    #[inline(always)]
-    fn ask<S: InstructionSet>(self) -> Self::Answer {
-        let Self {
-            aggregate,
-            order,
-            rays,
-            through,
-        } = self;
-        let mut answered = Answered {
-            hits: vec![None; rays.len()],
-            occluded: vec![false; rays.len()],
-            passing: vec![Vec3::ONE; rays.len()],
-        };
-        let through = |_, hit: &Hit| through(hit);
-        let (hits, occluded) = (&mut answered.hits[..], &mut answered.occluded[..]);
-        let passing = &mut answered.passing[..];
-        arranged!(aggregate, of => {
-            Closest { of, order, rays, hits }.ask::<S>();
-            AnyOf { of, order, rays, occluded }.ask::<S>();
-            Passing { of, aggregate, order, rays, through, passing }.ask::<S>();
-        });
-        answered
     }
 }
 
@@ -198,11 +135,11 @@ macro_rules! stack_for {
 }
 
 /// The nearest hit of each ray.
-struct Closest<'a, Of> {
-    of: Of,
-    order: Order,
-    rays: &'a [Ray],
-    hits: &'a mut [Option<Hit>],
+pub(super) struct Closest<'a, Of> {
+    pub(super) of: Of,
+    pub(super) order: Order,
+    pub(super) rays: &'a [Ray],
+    pub(super) hits: &'a mut [Option<Hit>],
 }
 
 impl<Of: Arrangement> Query for Closest<'_, Of> {
@@ -230,11 +167,11 @@ impl<Of: Arrangement> Query for Closest<'_, Of> {
 }
 
 /// Whether each ray hits anything.
-struct AnyOf<'a, Of> {
-    of: Of,
-    order: Order,
-    rays: &'a [Ray],
-    occluded: &'a mut [bool],
+pub(super) struct AnyOf<'a, Of> {
+    pub(super) of: Of,
+    pub(super) order: Order,
+    pub(super) rays: &'a [Ray],
+    pub(super) occluded: &'a mut [bool],
 }
 
 impl<Of: Arrangement> Query for AnyOf<'_, Of> {
@@ -263,20 +200,20 @@ impl<Of: Arrangement> Query for AnyOf<'_, Of> {
 }
 
 /// How much of a light passes on each ray.
-struct Passing<'a, Of, F> {
-    of: Of,
-    aggregate: &'a Aggregate,
-    order: Order,
-    rays: &'a [Ray],
-    through: F,
-    passing: &'a mut [Vec3],
+pub(super) struct Passing<'a, Of> {
+    pub(super) of: Of,
+    pub(super) aggregate: &'a Aggregate,
+    pub(super) order: Order,
+    pub(super) rays: &'a [Ray],
+    pub(super) through: &'a mut dyn FnMut(usize, &Hit) -> Vec3,
+    pub(super) passing: &'a mut [Vec3],
 }
 
-impl<Of: Arrangement, F: FnMut(usize, &Hit) -> Vec3> Query for Passing<'_, Of, F> {
+impl<Of: Arrangement> Query for Passing<'_, Of> {
     type Answer = ();
 
     #[inline(always)]
-    fn ask<S: InstructionSet>(mut self) {
+    fn ask<S: InstructionSet>(self) {
         let Self {
             of, order, rays, ..
         } = self;
@@ -299,7 +236,7 @@ impl<Of: Arrangement, F: FnMut(usize, &Hit) -> Vec3> Query for Passing<'_, Of, F
             if met[i]
                 && let Some(ray) = SafeRay::new(ray)
             {
-                let through = |hit: &Hit| (self.through)(i, hit);
+                let through = &mut |hit: &Hit| (self.through)(i, hit);
                 let mut goal = Transmit::new(self.aggregate, &ray, through, &mut crossings);
                 of.pursue::<S::Eight, _, _>(&ray, stack, &mut goal, &mut ());
                 *passing = goal.product();
@@ -364,7 +301,7 @@ impl Arrangement for OneMesh<'_> {
 
 /// A tree over instances, and one for each mesh.
 #[derive(Clone, Copy)]
-pub(super) struct TwoLevels<'a>(&'a Aggregate, &'a [u32]);
+pub(super) struct TwoLevels<'a>(pub(super) &'a Aggregate, pub(super) &'a [u32]);
 
 impl Arrangement for TwoLevels<'_> {
     const HAS_PACKETS: bool = true;
@@ -402,7 +339,7 @@ impl Arrangement for TwoLevels<'_> {
             scene,
             places,
             packet,
-            goal: std::marker::PhantomData,
+            goal: PhantomData,
         };
         walk_packet::<S, G>(
             &scene.wide,
@@ -417,7 +354,7 @@ impl Arrangement for TwoLevels<'_> {
 
 /// One tree over all triangles.
 #[derive(Clone, Copy)]
-pub(super) struct OneLevel<'a>(&'a Aggregate);
+pub(super) struct OneLevel<'a>(pub(super) &'a Aggregate);
 
 impl Arrangement for OneLevel<'_> {
     const HAS_PACKETS: bool = false;

@@ -17,21 +17,22 @@ use super::{
 };
 
 /// The part that passes: what `through` says of each crossing, multiplied.
-pub(super) struct Transmit<'a, F> {
+pub(super) struct Transmit<'a> {
     aggregate: &'a Aggregate,
     measure: Measure,
-    through: F,
+    /// Called where it stands, so that the walk is not compiled for each caller: it looks up surfaces.
+    through: &'a mut dyn FnMut(&Hit) -> Vec3,
     crossings: &'a mut Vec<(Hit, Vec3)>,
     is_blocked: bool,
 }
 
-impl<'a, F: FnMut(&Hit) -> Vec3> Transmit<'a, F> {
+impl<'a> Transmit<'a> {
     /// The crossings are cleared: they only lend their memory.
     #[inline(always)]
     pub(super) fn new(
         aggregate: &'a Aggregate,
         ray: &SafeRay,
-        through: F,
+        through: &'a mut dyn FnMut(&Hit) -> Vec3,
         crossings: &'a mut Vec<(Hit, Vec3)>,
     ) -> Self {
         crossings.clear();
@@ -76,7 +77,7 @@ impl<'a, F: FnMut(&Hit) -> Vec3> Transmit<'a, F> {
     }
 }
 
-impl<F: FnMut(&Hit) -> Vec3> Goal for Transmit<'_, F> {
+impl Goal for Transmit<'_> {
     const NEAREST_FIRST: bool = false;
     const ANY: bool = false;
 
@@ -102,26 +103,26 @@ impl Aggregate {
         &self,
         order: Order,
         rays: &[Ray],
-        through: impl FnMut(usize, &Hit) -> Vec3,
+        mut through: impl FnMut(usize, &Hit) -> Vec3,
         passing: &mut Vec<Vec3>,
     ) {
         passing.clear();
         passing.resize(rays.len(), Vec3::ONE);
-        self.ask_transmittances(order, rays, through, passing);
+        self.ask_transmittances(order, rays, &mut through, passing);
     }
 
     /// [`Self::transmittances_in`] of one ray, watched.
     pub fn transmittance_with<V: Visitor>(
         &self,
         ray: &Ray,
-        through: impl FnMut(&Hit) -> Vec3,
+        mut through: impl FnMut(&Hit) -> Vec3,
         visitor: &mut V,
     ) -> Vec3 {
         let Some(ray) = SafeRay::new(ray) else {
             return Vec3::ONE;
         };
         let mut crossings = Vec::new();
-        let mut goal = Transmit::new(self, &ray, through, &mut crossings);
+        let mut goal = Transmit::new(self, &ray, &mut through, &mut crossings);
         self.pursue(&ray, &mut goal, visitor);
         goal.product()
     }

@@ -5,12 +5,13 @@ use std::io::{Write, stderr};
 use glam::Vec3;
 
 use super::{
+    each_set::Asked,
     meshes::{alone, cube, moved, sphere},
     oracle::check,
     random::Random,
 };
 use crate::bvh::{
-    BuildOptions, Hit, Order, Ray,
+    BuildOptions, Order, Ray,
     hard_cases::leaks::{AIMS, Aim, FAR, away, bundles, closed, leaks, target},
 };
 
@@ -41,8 +42,13 @@ fn shoot_with_every_set(rays: usize) {
                 let mut random = Random::new(aim as u64 + 11);
                 let rays = bundles(triangles, *inside, offset, aim, each, &mut random);
                 for order in [Order::None, Order::Tile, Order::Light] {
-                    let opaque = |_: &Hit| Vec3::ZERO;
-                    lacking = scene.ask_with_each(order, &rays, opaque, |set, found| {
+                    let asked = Asked {
+                        aggregate: &scene,
+                        order,
+                        rays: &rays,
+                        through: |_| Vec3::ZERO,
+                    };
+                    lacking = asked.with_each(|set, found| {
                         let lost = found.hits.iter().filter(|hit| hit.is_none()).count();
                         let first = found.hits.iter().position(Option::is_none);
                         let first = first.map(|i| rays[i]);

@@ -2,6 +2,7 @@
 
 mod any_triangles;
 mod directions;
+mod each_set;
 mod identity;
 mod instances;
 mod leaks;

@@ -4,6 +4,7 @@ use glam::{Affine3A, Vec3, Vec3A};
 use obvhs::{aabb::Aabb, bvh2::Bvh2};
 
 use super::{
+    each_set::Asked,
     leaks::name_untested,
     meshes::{cube, joined, knot, mesh, placed, scatter, soup},
     oracle::same,
@@ -131,7 +132,13 @@ fn every_instruction_set_and_every_order_finds_the_same_bits() {
             let found = hits.iter().flatten().count();
             assert!(found > 50_000, "{levels:?}: only {found} hits");
             for order in [Order::None, Order::Tile, Order::Light] {
-                let lacking = scene.ask_with_each(order, &rays, through, |set, found| {
+                let asked = Asked {
+                    aggregate: &scene,
+                    order,
+                    rays: &rays,
+                    through,
+                };
+                let lacking = asked.with_each(|set, found| {
                     for (i, ray) in rays.iter().enumerate() {
                         let (a, b) = (hits[i], found.hits[i]);
                         assert!(
