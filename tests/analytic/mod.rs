@@ -1,6 +1,7 @@
 //! The picture against closed forms: what the tracer computes is compared with what it should be.
 
 mod dome;
+mod dome_directions;
 mod irradiance;
 mod light_points;
 mod materials;
