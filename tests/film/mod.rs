@@ -1,7 +1,8 @@
-//! The film: its error estimate and adaptive sampling against references, parts of pictures, and
+//! The film: its error estimate and adaptive sampling against references, parts of pictures, edits of lamps, and
 //! what is left where a render is killed.
 
 mod calibration;
+mod edits;
 mod killed;
 mod parts;
 
