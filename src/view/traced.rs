@@ -171,7 +171,8 @@ fn follow(
     )>,
 ) {
     for (view, mut render, camera, transform, projection) in &mut views {
-        if render.failed {
+        // One that was given to a view just now has a thread with the next frame.
+        if render.failed || render.darkroom.is_none() {
             continue;
         }
         let optics = view.optics_of.and_then(|id| {

@@ -15,7 +15,9 @@ use bevy::render::render_resource::TextureFormat;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
 use bevy::window::ExitCondition;
 use bevy::winit::WinitPlugin;
+use glassbox::film::State;
 use glassbox::scene::{NotTraced, Phong, RenderSettings};
+use glassbox::sync::Traced;
 use glassbox::view::{GlassboxPlugins, TracedRender, TracedView};
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
@@ -168,20 +170,29 @@ impl Game {
         camera
     }
 
-    /// Until every view shows a picture, and one frame more, in which it is drawn.
+    /// Until every view has a picture of all its samples, and for the frames in which it is drawn.
     fn wait_for_pictures(&mut self) {
         let start = Instant::now();
         loop {
             self.app.update();
             let world = self.app.world_mut();
+            let built = world.resource::<Traced>().pending == 0;
             let mut views = world.query::<&TracedRender>();
-            if views.iter(world).all(|view| view.shown().is_some()) {
+            let is_done = |view: &TracedRender| {
+                let ended = view.status().map(|status| status.state);
+                view.shown().is_some() && matches!(ended, Some(State::Ended(_)))
+            };
+            if built && views.iter(world).all(is_done) {
                 break;
             }
             assert!(start.elapsed() < PATIENCE, "no picture");
             std::thread::sleep(Duration::from_millis(5));
         }
-        self.app.update();
+        // The last print comes up to half a second after the last sample.
+        for _ in 0..60 {
+            self.app.update();
+            std::thread::sleep(Duration::from_millis(10));
+        }
     }
 
     /// The image, after the frames that a change takes to reach it.
