@@ -21,8 +21,9 @@ pub fn headless_app() -> App {
     headless_app_with(())
 }
 
-/// The same with more plugins.
-pub(crate) fn headless_app_with<M>(plugins: impl Plugins<M>) -> App {
+/// The same with more plugins, an app's own or `view::StandardMappingPlugin` for a scene of Bevy's
+/// materials and lights.
+pub fn headless_app_with<M>(plugins: impl Plugins<M>) -> App {
     let mut app = App::new();
     app.add_plugins((
         TaskPoolPlugin::default(),

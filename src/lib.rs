@@ -21,7 +21,8 @@
 //! | `editor` | the window: panels, gestures, undo, files; the only room that knows egui |
 //! | [`cli`] | the command line: parses, calls, prints |
 //!
-//! [`bvh`] and [`trace`] need no ECS: see `examples/plain_rust.rs`.
+//! [`bvh`] and [`trace`] need no ECS: see `examples/plain_rust.rs`. What a Bevy app mostly names is in
+//! [`prelude`].
 
 pub mod app;
 pub mod bvh;
@@ -32,6 +33,7 @@ pub mod film;
 pub mod inspect;
 mod instruction_sets;
 pub mod io;
+pub mod prelude;
 pub mod report;
 pub mod scene;
 pub mod sync;

@@ -3,6 +3,7 @@
 
 use crate::bvh::{BuildOptions, MeshTree, Triangles};
 use crate::trace;
+use bevy::asset::RenderAssetUsages;
 use bevy::math::{Vec2, Vec3, Vec4};
 use bevy::mesh::{Indices, Mesh, MeshAccessError, PrimitiveTopology, VertexAttributeValues};
 use std::sync::Arc;
@@ -13,8 +14,8 @@ pub enum MeshFault {
     /// The asset is not there: not loaded yet, failed to load, or removed.
     #[error("is not loaded")]
     Missing,
-    /// The renderer took the vertices away.
-    #[error("was moved to the GPU; give its asset RenderAssetUsages::MAIN_WORLD too")]
+    /// The renderer takes the vertices away, or has taken them.
+    #[error("is for the GPU alone; give its asset RenderAssetUsages::MAIN_WORLD too")]
     Extracted,
     /// It has no positions, or they are not three floats each.
     #[error("has no positions of three floats each")]
@@ -45,6 +46,10 @@ pub(super) struct MeshCopy {
 impl MeshCopy {
     /// Of this mesh, as it is now.
     pub fn of(mesh: &Mesh) -> Result<Self, MeshFault> {
+        // Said at once, and not when an edit asks for vertices that are gone by then.
+        if !mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD) {
+            return Err(MeshFault::Extracted);
+        }
         let positions: Vec<Vec3> = match mesh.try_attribute(Mesh::ATTRIBUTE_POSITION) {
             Ok(VertexAttributeValues::Float32x3(values)) => {
                 values.iter().copied().map(Vec3::from).collect()
@@ -164,7 +169,6 @@ fn triangle_indices(mesh: &Mesh, vertices: usize) -> Result<Vec<[u32; 3]>, MeshF
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bevy::asset::RenderAssetUsages;
 
     fn mesh(topology: PrimitiveTopology) -> Mesh {
         let positions = vec![
@@ -217,6 +221,9 @@ mod tests {
             RenderAssetUsages::MAIN_WORLD,
         );
         assert_eq!(fault(&empty), MeshFault::NoPositions);
+        let mut of_the_gpu = mesh(PrimitiveTopology::TriangleList);
+        of_the_gpu.asset_usage = RenderAssetUsages::RENDER_WORLD;
+        assert_eq!(fault(&of_the_gpu), MeshFault::Extracted);
         let beyond = mesh(PrimitiveTopology::TriangleList)
             .with_inserted_indices(Indices::U32(vec![0, 1, 4]));
         assert!(matches!(fault(&beyond), MeshFault::Broken(_)));

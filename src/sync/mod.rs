@@ -14,6 +14,7 @@
 //! | `sync_lights` | the four lamps | lights |
 //! | `sync_environment` | `Environment`, `EnvironmentMap` | background and map |
 //! | `sync_cameras` | `SceneCamera`, `Lens` | [`TracedCameras`] |
+//! | `name_left_out` | [`LeftOut`] | what is named of it |
 //! | `publish_snapshot` | what the systems above redid | [`Traced`] |
 //!
 //! A system does its part again, in full, whenever something that it reads changed, appeared or
@@ -41,6 +42,7 @@ mod environment;
 mod ids;
 mod image_sampler;
 mod instances;
+mod left_out;
 mod lights;
 mod materials;
 mod mesh_data;
@@ -57,6 +59,7 @@ mod tree_building;
 mod tests;
 
 pub use cameras::{TracedCamera, TracedCameras};
+pub use left_out::LeftOut;
 pub use mesh_data::MeshFault;
 pub use motions::{WorldMotion, WorldMotions};
 pub use problem::{Fault, SyncProblem};
@@ -85,6 +88,7 @@ impl Plugin for SyncPlugin {
         app.init_resource::<Traced>()
             .init_resource::<TracedCameras>()
             .init_resource::<traced::Draft>()
+            .init_resource::<LeftOut>()
             .init_resource::<ids::IdOwners>()
             .init_resource::<TreeBuilding>()
             .init_resource::<meshes::TracedMeshes>()
@@ -111,6 +115,7 @@ impl Plugin for SyncPlugin {
                     lights::sync_lights,
                     environment::sync_environment,
                     cameras::sync_cameras,
+                    left_out::name_left_out,
                     traced::publish_snapshot,
                 )
                     .chain()

@@ -86,6 +86,9 @@ pub enum Fault {
         /// Which.
         field: &'static str,
     },
+    /// Something of another program's component has nothing here that it could become.
+    #[error("{0}")]
+    LeftOut(String),
     /// A render setting is out of range.
     #[error("{0}")]
     Setting(SettingProblem),

@@ -2,6 +2,7 @@
 
 use crate::scene::SRGB_16_BITS;
 use crate::trace::{Texels, Texture};
+use bevy::asset::RenderAssetUsages;
 use bevy::image::Image;
 use wgpu_types::{TextureDimension, TextureFormat};
 
@@ -63,6 +64,10 @@ pub(super) fn trace_texture(image: &Image) -> Result<Converted, TextureFault> {
         descriptor.dimension == TextureDimension::D2 && descriptor.size.depth_or_array_layers == 1;
     if !flat {
         return Err(TextureFault::NotFlat);
+    }
+    // Said at once, and not when an edit asks for pixels that are gone by then.
+    if !image.asset_usage.contains(RenderAssetUsages::MAIN_WORLD) {
+        return Err(TextureFault::NoData);
     }
     let data = image.data.as_deref().ok_or(TextureFault::NoData)?;
     let (width, height) = (image.width(), image.height());
@@ -215,7 +220,6 @@ fn half(bits: u16) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bevy::asset::RenderAssetUsages;
     use wgpu_types::Extent3d;
 
     fn image(format: TextureFormat, width: u32, data: Vec<u8>) -> Image {

@@ -83,6 +83,7 @@ pub(super) struct Problems {
     pub lights: Vec<SyncProblem>,
     pub environment: Vec<SyncProblem>,
     pub cameras: Vec<SyncProblem>,
+    pub left_out: Vec<SyncProblem>,
 }
 
 impl Problems {
@@ -94,6 +95,7 @@ impl Problems {
             &self.lights,
             &self.environment,
             &self.cameras,
+            &self.left_out,
         ]
         .into_iter()
         .flatten()

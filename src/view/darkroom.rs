@@ -4,9 +4,10 @@
 //! 50 ms at first, up to twice a second for a render that has been going on for long, as the gain
 //! of each pass becomes smaller (Cycles' render scheduler does the same).
 
+use super::darkroom_threads::pool;
 use crate::bvh::Aggregate;
 use crate::film::views::{Scale, Source, Sources, View, show};
-use crate::film::{FirstHits, Progressive, Snapshot, State, depths, develop_rgba8};
+use crate::film::{Ending, FirstHits, Progressive, Snapshot, State, depths, develop_rgba8};
 use crate::scene::{Output, RenderSettings};
 use crate::trace;
 use bevy::math::{URect, UVec2};
@@ -25,8 +26,6 @@ const FIRST: Duration = Duration::from_millis(2);
 const MOST_DEPTHS: f32 = 120_000.0;
 /// Samples a pixel of those views that are made of first hits.
 const VIEW_SAMPLES: u32 = 4;
-/// That develop, at most: the work is small.
-const THREADS: usize = 4;
 
 /// How prints are made.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,6 +46,8 @@ pub(super) struct Print {
     pub scale: Option<Scale>,
     /// Which render it is of: [`Progressive::number`].
     pub of: u64,
+    /// Why that has ended, where this is its last picture.
+    pub ending: Option<Ending>,
 }
 
 /// What a render is of.
@@ -76,16 +77,11 @@ impl Darkroom {
     pub fn open() -> io::Result<Self> {
         let (tasks, inbox) = channel();
         let newest = Arc::new(Mutex::new(None));
-        // Its own: the tracer's threads are busy for a whole pass, and give way to these.
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(rayon::current_num_threads().min(THREADS))
-            .thread_name(|_| "darkroom".into())
-            .build()
-            .map_err(io::Error::other)?;
+        let pool = pool()?;
         let shelf = newest.clone();
         thread::Builder::new()
             .name("develop".into())
-            .spawn(move || Developer::new(shelf).work(&inbox, &pool))?;
+            .spawn(move || Developer::new(shelf).work(&inbox, pool))?;
         Ok(Self { tasks, newest })
     }
 
@@ -337,6 +333,10 @@ impl Job {
             depths,
             scale,
             of,
+            ending: match status.state {
+                State::Ended(ending) => Some(ending),
+                _ => None,
+            },
         })
     }
 
@@ -413,6 +413,7 @@ mod tests {
             depths: depths.map(|depth| (UVec2::ONE, vec![depth])),
             scale: None,
             of,
+            ending: None,
         }
     }
 

@@ -4,14 +4,16 @@
 //! | plugin | does |
 //! |---|---|
 //! | [`TracedViewPlugin`] | a camera with [`TracedView`] shows what the tracer draws of it |
-//! | [`StandardMappingPlugin`] | a scene of Bevy's own materials and lights is traced |
+//! | [`StandardMappingPlugin`] | a scene of Bevy's own materials and lights is traced: the tables in [`standard`] |
 //! | [`TracedPickingPlugin`] | pointers pick what the tracer hits |
 //! | [`LinesPlugin`] | sets of lines, by Bevy's retained gizmos |
 //! | [`RasterPlugin`] | a scene of our components is seen in Bevy's renderer too |
 //! | [`SymbolsPlugin`] | lights, cameras and outlines |
 //! | [`HandleCameraPlugin`] | Bevy's transform gizmo over the traced picture |
 //!
-//! [`GlassboxPlugins`] adds the first four to any Bevy app, with what they need.
+//! [`GlassboxPlugins`] adds the first four to any Bevy app, with what they need. A view says when it is
+//! done ([`Converged`]) or cannot render ([`Failed`]), and gives its picture to code
+//! ([`TracedRender::picture`]); [`render_reference`] renders one beside a running game.
 
 #![expect(
     clippy::too_many_arguments,
@@ -22,16 +24,18 @@
 mod adapter;
 mod cameras;
 mod darkroom;
+mod darkroom_threads;
 mod handle_camera;
 pub mod lines;
 mod pick;
 pub mod raster;
+mod reference;
 mod render;
 mod screen;
 mod screen_pass;
 mod shot;
 mod sketch;
-mod standard;
+pub mod standard;
 mod symbols;
 mod traced;
 
@@ -42,11 +46,12 @@ pub use handle_camera::{HandleCameraPlugin, draws_handles};
 pub use lines::{DrawnLines, Line, LinesPlugin};
 pub use pick::{Picked, TracedPickingPlugin, pick};
 pub use raster::{RASTER_LAYER, RasterPlugin};
+pub use reference::{ReferenceRendered, TracedPicture, render_reference};
 pub use render::{PrintInfo, TracedRender};
 pub use shot::shoot_window;
-pub use standard::{StandardMappingPlugin, phong};
+pub use standard::{AddTracedMaterial, StandardMappingPlugin};
 pub use symbols::{Outlined, SymbolOf, Symbols, SymbolsPlugin, nearest_symbol};
-pub use traced::{TracedView, TracedViewPlugin, traced_camera};
+pub use traced::{Converged, Failed, TracedView, TracedViewPlugin, ViewSettings, traced_camera};
 
 use crate::io::IoPlugin;
 use crate::scene::ScenePlugin;
@@ -66,6 +71,7 @@ impl PluginGroup for GlassboxPlugins {
             .add(SyncPlugin)
             .add(screen_pass::ScreenPlugin)
             .add(TracedViewPlugin)
+            .add(reference::ReferencePlugin)
             .add(TracedPickingPlugin)
             .add(LinesPlugin)
     }

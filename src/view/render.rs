@@ -1,6 +1,7 @@
 //! The render behind a traced view: begun, directed, replaced, and what it says of its picture.
 
 use super::darkroom::{Darkroom, Order, Subject};
+use super::reference::TracedPicture;
 use super::traced::TracedView;
 use crate::film::views::Scale;
 use crate::film::{Progressive, State, Status};
@@ -24,7 +25,10 @@ pub struct TracedRender {
     pub(super) darkroom: Option<Darkroom>,
     /// What the print on the screen says of itself.
     pub(super) shown: Option<PrintInfo>,
-    pub(super) failed: bool,
+    /// Why it never renders again.
+    pub(super) failed: Option<String>,
+    /// Of which render it was said that it has ended.
+    pub(super) told: Option<u64>,
 }
 
 /// What stands on the screen.
@@ -72,6 +76,14 @@ impl TracedRender {
         Some((&running.world, &running.camera, &running.settings))
     }
 
+    /// The picture as it is now, linear and as shown; `None` while there is no render. It takes some
+    /// milliseconds a megapixel.
+    pub fn picture(&self) -> Option<TracedPicture> {
+        let running = self.running.as_ref()?;
+        let output = &running.order.output;
+        Some(TracedPicture::of(&running.render, output))
+    }
+
     /// What stands on the screen.
     pub fn shown(&self) -> Option<&PrintInfo> {
         self.shown.as_ref()
@@ -94,6 +106,12 @@ impl TracedRender {
             && running.started.elapsed() < LONGEST_WAIT
             && self.shown.as_ref().is_none_or(|shown| shown.of != of)
             && !matches!(running.render.status().state, State::Ended(_))
+    }
+
+    /// Nothing is rendered from now on.
+    pub(super) fn fail(&mut self, problem: String) {
+        error!("{problem}");
+        self.failed = Some(problem);
     }
 
     pub(super) fn retire(&mut self) {
@@ -174,8 +192,7 @@ impl TracedRender {
         let render = match Progressive::start_region(scene, seen_from, how, region) {
             Ok(render) => Arc::new(render),
             Err(problem) => {
-                self.failed = true;
-                error!("the traced view cannot render: {problem}");
+                self.fail(format!("the traced view cannot render: {problem}"));
                 return;
             }
         };

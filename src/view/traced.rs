@@ -8,8 +8,9 @@
 use super::darkroom::{Darkroom, Order, Print};
 use super::render::{PrintInfo, TracedRender, Wanted};
 use super::screen::{Screen, depth_image, depth_numbers, no_depth, picture_image};
+use crate::film::Ending;
 use crate::film::views::View;
-use crate::scene::{self, Output, RenderSettings, SceneId};
+use crate::scene::{self, Output, RenderSettings, Sampling, SceneId};
 use crate::sync::{SyncSystems, Traced, TracedCameras};
 use crate::trace;
 use bevy::asset::{AssetEventSystems, Assets};
@@ -21,11 +22,10 @@ use bevy::ecs::lifecycle::Remove;
 use bevy::ecs::observer::On;
 use bevy::ecs::reflect::ReflectComponent;
 use bevy::image::Image;
-use bevy::log::error;
 use bevy::math::{Rect, URect, UVec2, Vec2};
 use bevy::prelude::{
-    App, Commands, Component, IntoScheduleConfigs, Plugin, PostUpdate, Query, Res, ResMut, With,
-    Without,
+    App, Commands, Component, EntityEvent, IntoScheduleConfigs, Plugin, PostUpdate, Query, Res,
+    ResMut, With, Without,
 };
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 use bevy::transform::components::GlobalTransform;
@@ -36,6 +36,7 @@ pub struct TracedViewPlugin;
 impl Plugin for TracedViewPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<TracedView>()
+            .register_type::<ViewSettings>()
             .add_observer(leave)
             .add_systems(
                 PostUpdate,
@@ -92,6 +93,38 @@ impl Default for TracedView {
     }
 }
 
+/// What a [`TracedView`] renders with, where that is other than the app's [`RenderSettings`].
+#[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
+#[reflect(Component, Default, Clone, PartialEq, Debug)]
+pub struct ViewSettings {
+    /// Pixels of the film, whatever the viewport has, which it fills; `None` as many as that.
+    pub size: Option<UVec2>,
+    /// Samples of each pixel.
+    pub spp: Option<u32>,
+    /// The error or the time to stop at.
+    pub sampling: Option<Sampling>,
+}
+
+/// Triggered on a view when its picture is done and on the screen: by samples, error or time. Another
+/// render, after an edit for example, triggers it again.
+#[derive(EntityEvent, Clone, Debug, PartialEq, Eq)]
+pub struct Converged {
+    /// The view.
+    pub entity: Entity,
+    /// Which rule of the settings ended it.
+    pub ending: Ending,
+}
+
+/// Triggered on a view, or on what [`render_reference`](super::render_reference) spawned, when it
+/// cannot render.
+#[derive(EntityEvent, Clone, Debug, PartialEq, Eq)]
+pub struct Failed {
+    /// The view.
+    pub entity: Entity,
+    /// Why.
+    pub problem: String,
+}
+
 /// The tracer's camera for a Bevy camera. `None` for a projection or place that has no picture.
 pub fn traced_camera(
     transform: &GlobalTransform,
@@ -124,7 +157,7 @@ fn leave(view: On<Remove, TracedView>, mut commands: Commands) {
 /// nothing that goes on.
 fn attend(
     mut commands: Commands,
-    mut views: Query<&mut TracedRender, With<TracedView>>,
+    mut views: Query<(Entity, &mut TracedRender), With<TracedView>>,
     resting: Query<Entity, (With<TracedRender>, With<Disabled>)>,
     without: Query<Entity, (With<TracedView>, Without<TracedRender>)>,
 ) {
@@ -134,15 +167,16 @@ fn attend(
     for view in &without {
         commands.entity(view).try_insert(TracedRender::default());
     }
-    for mut render in &mut views {
-        if render.darkroom.is_some() || render.failed {
+    for (entity, mut render) in &mut views {
+        if render.darkroom.is_some() || render.failed.is_some() {
             continue;
         }
         match Darkroom::open() {
             Ok(darkroom) => render.darkroom = Some(darkroom),
             Err(problem) => {
-                render.failed = true;
-                error!("the traced view has no thread to develop on: {problem}");
+                let problem = format!("the traced view has no thread to develop on: {problem}");
+                render.fail(problem.clone());
+                commands.trigger(Failed { entity, problem });
             }
         }
     }
@@ -162,16 +196,20 @@ fn follow(
     traced: Res<Traced>,
     cameras: Res<TracedCameras>,
     settings: Res<RenderSettings>,
+    mut commands: Commands,
     mut views: Query<(
+        Entity,
         &TracedView,
+        Option<&ViewSettings>,
         &mut TracedRender,
         &Camera,
         &GlobalTransform,
         &Projection,
     )>,
 ) {
-    for (view, mut render, camera, transform, projection) in &mut views {
-        if render.failed {
+    for (entity, view, own, mut render, camera, transform, projection) in &mut views {
+        // One that was given to a view just now has a thread with the next frame.
+        if render.failed.is_some() || render.darkroom.is_none() {
             continue;
         }
         let optics = view.optics_of.and_then(|id| {
@@ -179,7 +217,9 @@ fn follow(
             Some(&found.camera)
         });
         let seen_from = traced_camera(transform, projection, optics);
-        let Some((size, camera)) = seen_size(view, camera).zip(seen_from) else {
+        let own = own.cloned().unwrap_or_default();
+        let size = seen_size(view, camera).map(|size| own.size.unwrap_or(size));
+        let Some((size, camera)) = size.zip(seen_from) else {
             if render.running.is_some() {
                 render.retire();
             }
@@ -190,6 +230,8 @@ fn follow(
             camera,
             settings: RenderSettings {
                 size,
+                spp: own.spp.unwrap_or(settings.spp),
+                sampling: own.sampling.unwrap_or(settings.sampling),
                 // Only developing depends on it.
                 output: Output::default(),
                 ..settings.clone()
@@ -208,6 +250,9 @@ fn follow(
             continue;
         } else {
             render.begin(wanted);
+            if let Some(problem) = render.failed.clone() {
+                commands.trigger(Failed { entity, problem });
+            }
         }
         if let Some(running) = render.running.as_mut() {
             running.direct(view);
@@ -252,6 +297,7 @@ fn show_prints(
             depths,
             scale,
             of,
+            ending,
         } = print;
         let picture = images.add(picture_image(size.x, size.y, bytes));
         let depth = depths.map(|(size, depths)| images.add(depth_image(size.x, size.y, &depths)));
@@ -284,6 +330,10 @@ fn show_prints(
                 first_picture,
                 of,
             });
+            if let Some(ending) = ending.filter(|_| render.told != Some(of)) {
+                render.told = Some(of);
+                commands.trigger(Converged { entity, ending });
+            }
         }
     }
 }

@@ -4,6 +4,7 @@
 
 mod lasting;
 mod own_picture;
+mod pictures;
 
 use bevy::app::{PluginGroup, PluginsState};
 use bevy::camera::{RenderTarget, Viewport};
@@ -15,13 +16,14 @@ use bevy::render::render_resource::TextureFormat;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
 use bevy::window::ExitCondition;
 use bevy::winit::WinitPlugin;
-use glassbox::scene::{NotTraced, Phong, RenderSettings};
-use glassbox::view::{GlassboxPlugins, TracedRender, TracedView};
+use glassbox::film::Progressive;
+use glassbox::prelude::*;
+use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 /// How long a picture may take: software drivers compile shaders for seconds.
-const PATIENCE: Duration = Duration::from_secs(300);
+const PATIENCE: Duration = Duration::from_secs(60);
 
 /// Pixels of the image that cameras draw into.
 const SIZE: UVec2 = UVec2::new(96, 64);
@@ -38,6 +40,10 @@ struct Game {
     image: Handle<Image>,
     _one: MutexGuard<'static, ()>,
 }
+
+/// The render of each view that has converged last, by its number.
+#[derive(Resource, Default)]
+struct Done(HashMap<Entity, u64>);
 
 /// What a pixel shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,6 +84,13 @@ impl Game {
             .disable::<PipelinedRenderingPlugin>()
             .disable::<bevy::log::LogPlugin>();
         app.add_plugins((plugins, GlassboxPlugins));
+        app.init_resource::<Done>().add_observer(
+            |done: On<Converged>, renders: Query<&TracedRender>, mut all: ResMut<Done>| {
+                let render = renders.get(done.entity).ok().and_then(TracedRender::render);
+                all.0
+                    .extend(render.map(|render| (done.entity, render.number())));
+            },
+        );
         app.insert_resource(ClearColor(Color::BLACK));
         app.insert_resource(RenderSettings {
             spp: 2,
@@ -168,20 +181,30 @@ impl Game {
         camera
     }
 
-    /// Until every view shows a picture, and one frame more, in which it is drawn.
+    /// Until every view shows the last picture of its render.
     fn wait_for_pictures(&mut self) {
         let start = Instant::now();
         loop {
             self.app.update();
             let world = self.app.world_mut();
-            let mut views = world.query::<&TracedRender>();
-            if views.iter(world).all(|view| view.shown().is_some()) {
+            let built = world.resource::<Traced>().pending == 0;
+            let mut views = world.query::<(Entity, &TracedRender)>();
+            let done = world.resource::<Done>();
+            let is_done = |(view, render): (Entity, &TracedRender)| {
+                let number = render.render().map(Progressive::number);
+                number.is_some() && done.0.get(&view).copied() == number
+            };
+            if built && views.iter(world).all(is_done) {
                 break;
             }
-            assert!(start.elapsed() < PATIENCE, "no picture");
+            let mut known = || {
+                let renders = views.iter(world);
+                let known = renders.map(|(view, render)| (view, render.status(), render.shown()));
+                format!("{:?}, built: {built}", known.collect::<Vec<_>>())
+            };
+            assert!(start.elapsed() < PATIENCE, "no picture: {}", known());
             std::thread::sleep(Duration::from_millis(5));
         }
-        self.app.update();
     }
 
     /// The image, after the frames that a change takes to reach it.

@@ -1,0 +1,139 @@
+//! Any kind of material, mapped by a function of the app's.
+
+use super::derived::{DerivedPictures, Pictures};
+use super::unknown::KnownMaterials;
+use super::{Mapped, MappingSystems};
+use crate::scene::{NotTraced, Phong, PhongMaps};
+use crate::sync::LeftOut;
+use bevy::asset::{AssetEvent, Assets};
+use bevy::image::Image;
+use bevy::pbr::{Material, MeshMaterial3d};
+use bevy::platform::collections::HashSet;
+use bevy::prelude::{
+    App, Changed, Commands, DetectChanges, DetectChangesMut, Entity, IntoScheduleConfigs,
+    MessageReader, PostUpdate, Query, RemovedComponents, Res, ResMut, Resource, Without,
+};
+
+/// A material as ours, and what is left out of it.
+pub(super) struct Surface {
+    pub phong: Phong,
+    pub maps: PhongMaps,
+    pub left_out: Vec<String>,
+}
+
+/// Traces materials of an app's own.
+pub trait AddTracedMaterial {
+    /// Objects with this material are traced as `phong` says, now and whenever it is edited. Needs
+    /// [`StandardMappingPlugin`](super::StandardMappingPlugin), before or after.
+    fn add_traced_material<M: Material>(&mut self, phong: fn(&M) -> Phong) -> &mut Self;
+}
+
+impl AddTracedMaterial for App {
+    fn add_traced_material<M: Material>(&mut self, phong: fn(&M) -> Phong) -> &mut Self {
+        let is_new = !self.world().contains_resource::<Mapping<M>>();
+        register(self, move |material: &M, _| Surface {
+            phong: phong(material),
+            maps: PhongMaps::default(),
+            left_out: Vec::new(),
+        });
+        if is_new {
+            self.init_resource::<DerivedPictures>()
+                .init_resource::<LeftOut>()
+                .add_systems(
+                    PostUpdate,
+                    map_materials::<M>
+                        .in_set(MappingSystems)
+                        .before(super::unknown::name_unknown)
+                        .before(crate::sync::SyncSystems),
+                );
+        }
+        self
+    }
+}
+
+/// How one kind of material is mapped.
+#[derive(Resource)]
+pub(super) struct Mapping<M: Material>(Box<dyn Fn(&M, &mut Pictures) -> Surface + Send + Sync>);
+
+/// From now on this kind of material is known.
+pub(super) fn register<M: Material>(
+    app: &mut App,
+    surface: impl Fn(&M, &mut Pictures) -> Surface + Send + Sync + 'static,
+) {
+    app.insert_resource(Mapping::<M>(Box::new(surface)));
+    let mut known = app.world_mut().get_resource_or_init::<KnownMaterials>();
+    known.insert::<MeshMaterial3d<M>>();
+}
+
+/// Whose material, and what it was mapped to.
+type Objects<'w, 's, M> = Query<
+    'w,
+    's,
+    (
+        Entity,
+        &'static MeshMaterial3d<M>,
+        Option<&'static Mapped<(Phong, PhongMaps)>>,
+    ),
+    Without<NotTraced>,
+>;
+
+/// Keeps ours beside a material of this kind.
+pub(super) fn map_materials<M: Material>(
+    mut commands: Commands,
+    mapping: Res<Mapping<M>>,
+    assets: Res<Assets<M>>,
+    mut images: ResMut<Assets<Image>>,
+    mut derived: ResMut<DerivedPictures>,
+    mut left_out: ResMut<LeftOut>,
+    mut events: MessageReader<AssetEvent<M>>,
+    edited: Query<Entity, Changed<MeshMaterial3d<M>>>,
+    objects: Objects<M>,
+    mut gone: RemovedComponents<MeshMaterial3d<M>>,
+) {
+    for entity in gone.read() {
+        // What was taken away and given back is there.
+        if objects.contains(entity) {
+            continue;
+        }
+        LeftOut::note(&mut left_out, "material", entity, Vec::new());
+        if let Ok(mut entity) = commands.get_entity(entity) {
+            entity.try_remove::<(Phong, PhongMaps, Mapped<(Phong, PhongMaps)>)>();
+        }
+    }
+    let changed: HashSet<_> = events
+        .read()
+        .filter_map(|event| match event {
+            AssetEvent::Added { id } | AssetEvent::Modified { id } => Some(*id),
+            _ => None,
+        })
+        .collect();
+    let all = derived.is_changed() || mapping.is_changed();
+    let edited: Vec<Entity> = if all || !changed.is_empty() {
+        let worn = objects.iter();
+        let worn = worn.filter(|(_, worn, _)| all || changed.contains(&worn.0.id()));
+        worn.map(|(entity, ..)| entity).chain(&edited).collect()
+    } else {
+        edited.iter().collect()
+    };
+    if edited.is_empty() {
+        return;
+    }
+    let mut pictures = Pictures {
+        images: images.bypass_change_detection(),
+        derived: derived.bypass_change_detection(),
+    };
+    for entity in edited {
+        let Ok((entity, worn, mapped)) = objects.get(entity) else {
+            continue;
+        };
+        let Some(material) = assets.get(&worn.0) else {
+            continue;
+        };
+        let surface = (mapping.0)(material, &mut pictures);
+        LeftOut::note(&mut left_out, "material", entity, surface.left_out);
+        let ours = (surface.phong, surface.maps);
+        if mapped.is_none_or(|mapped| mapped.0 != ours) {
+            commands.entity(entity).insert((ours.clone(), Mapped(ours)));
+        }
+    }
+}

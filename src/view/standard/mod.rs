@@ -1,0 +1,107 @@
+//! A scene of Bevy's own materials and lights, traced.
+//!
+//! Each component that Bevy knows gets ours beside it, and they are kept in step. What has nothing
+//! that it could become is named in [`Traced::problems`](crate::sync::Traced::problems).
+//!
+//! With base colour `b`, metalness `m`, roughness `r`, `F0 = 0.16 · reflectance² · specular tint` and
+//! gloss `g = (1 - r)²`, as the glTF reader maps the same material:
+//!
+//! | `StandardMaterial` | [`Phong`](crate::scene::Phong), [`PhongMaps`](crate::scene::PhongMaps) |
+//! |---|---|
+//! | base colour, metalness, roughness | `diffuse` = `b · (1 - m·g)`; `specular` and `mirror` = `lerp(F0, b, m) · g`, so that what is rough is no mirror; `shininess` = `2/r⁴ - 2`, 1 to 10,000 (Beckmann's, Walter et al. 2007, with α = r²) |
+//! | its map of metalness and roughness | counts with its mean; named |
+//! | base colour's map | multiplies `diffuse`, and `specular` and `mirror` of what is metal by more than half |
+//! | alpha and alpha mode | `opacity`, its map the base colour's alpha; `Opaque`, `Mask`, `Blend` as they are, what else there is blends; premultiplied, additive and multiplied are named |
+//! | emissive and its map | `emission`; with `emissive_exposure_weight` as far as that says times E |
+//! | unlit | `emission` of the base colour, and nothing else |
+//! | normal map | the normals; flipped ones are named |
+//! | specular transmission | `opacity`, light goes straight through; named |
+//! | vertex colours | multiply `diffuse`, their alpha `opacity` |
+//! | double-sidedness, culling | both sides are seen and lit |
+//! | `uv_transform`, second texture coordinates, occlusion, depth, clearcoat, anisotropy, diffuse transmission | named |
+//! | **another material** | what [`add_traced_material`](AddTracedMaterial::add_traced_material) says; else named |
+//!
+//! | Bevy's lights | ours |
+//! |---|---|
+//! | `PointLight` | [`PointLamp`](crate::scene::PointLamp) of lumens / 4π · E |
+//! | `SpotLight` | the same, with its cone |
+//! | `DirectionalLight` | [`DirectionalLamp`](crate::scene::DirectionalLamp) of lux · E |
+//! | `RectLight` | [`ParallelogramLamp`](crate::scene::ParallelogramLamp) of lumens / (π · area) · E, unseen by the camera |
+//! | no shadows; a range at which light would still be seen | named: everything casts shadows, and light has no end |
+//!
+//! E = 1 / (1.2 · 2^ev100) is what a camera multiplies light by: that of the first view's `Exposure`. A
+//! picture is as bright as Bevy's, as long as Bevy's is not tone-mapped. Another view's other exposure
+//! is named.
+//!
+//! | else | becomes |
+//! |---|---|
+//! | `ClearColor`, or the first view's own | the background, where the app has set no other |
+//! | `GlobalAmbientLight`, skyboxes, light probes, environment maps, fog, atmospheres | named |
+//! | `NotShadowCaster`, `NotShadowReceiver`, `RenderLayers`, `Lightmap` of objects | named |
+//! | skinned and morphed meshes | as the asset has them, at rest; named |
+//! | meshes and textures of `RenderAssetUsages::RENDER_WORLD` alone | named |
+
+mod add_material;
+mod derived;
+mod lights;
+mod material;
+mod objects;
+mod surroundings;
+mod unknown;
+
+#[cfg(test)]
+mod tests;
+
+pub use add_material::AddTracedMaterial;
+
+use add_material::map_materials;
+use bevy::asset::{AssetApp, Assets};
+use bevy::ecs::schedule::SystemSet;
+use bevy::pbr::StandardMaterial;
+use bevy::prelude::{App, Component, IntoScheduleConfigs, Plugin, PostUpdate};
+
+/// Keeps ours beside Bevy's. The tables are in the module's documentation.
+pub struct StandardMappingPlugin;
+
+/// What maps, before [`SyncSystems`](crate::sync::SyncSystems).
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct MappingSystems;
+
+impl Plugin for StandardMappingPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<derived::DerivedPictures>()
+            .init_resource::<lights::ViewExposure>()
+            .init_resource::<crate::sync::LeftOut>()
+            .configure_sets(PostUpdate, MappingSystems.before(crate::sync::SyncSystems))
+            .add_systems(
+                PostUpdate,
+                (
+                    derived::forget_edited,
+                    lights::read_exposure,
+                    map_materials::<StandardMaterial>,
+                    lights::systems(),
+                    surroundings::map_background,
+                    surroundings::name_surroundings,
+                    objects::name_flags,
+                    unknown::name_unknown,
+                )
+                    .chain()
+                    .in_set(MappingSystems),
+            );
+        add_material::register(app, |material: &StandardMaterial, pictures| {
+            material::surface(material, pictures)
+        });
+    }
+
+    /// An app without a renderer has no such materials of its own.
+    fn finish(&self, app: &mut App) {
+        if !app.world().contains_resource::<Assets<StandardMaterial>>() {
+            app.init_asset::<StandardMaterial>();
+        }
+    }
+}
+
+/// What was mapped last. Ours is set only where that becomes another: an edit of ours stays until
+/// Bevy's is edited too.
+#[derive(Component)]
+struct Mapped<T: Send + Sync + 'static>(T);

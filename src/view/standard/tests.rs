@@ -1,0 +1,158 @@
+//! Scenes of Bevy's own components, in an app without a renderer.
+
+use super::{AddTracedMaterial, StandardMappingPlugin};
+use crate::app::headless_app_with;
+use crate::scene::{Environment, Phong};
+use crate::sync::Traced;
+use crate::view::TracedView;
+use bevy::asset::{Asset, AssetApp, RenderAssetUsages};
+use bevy::color::LinearRgba;
+use bevy::light::{GlobalAmbientLight, NotShadowCaster, Skybox};
+use bevy::mesh::skinning::SkinnedMesh;
+use bevy::pbr::{Material, MeshMaterial3d, StandardMaterial};
+use bevy::prelude::*;
+use bevy::reflect::TypePath;
+use bevy::render::render_resource::AsBindGroup;
+
+#[derive(Asset, AsBindGroup, TypePath, Clone, Debug)]
+struct Water {
+    depth: f32,
+}
+
+impl Material for Water {}
+
+fn app() -> App {
+    let mut app = headless_app_with(StandardMappingPlugin);
+    app.init_asset::<Water>()
+        .register_type::<MeshMaterial3d<Water>>();
+    app
+}
+
+fn add<A: Asset>(app: &mut App, asset: impl Into<A>) -> Handle<A> {
+    app.world_mut().resource_mut::<Assets<A>>().add(asset)
+}
+
+fn object(app: &mut App) -> Entity {
+    let mesh = add::<Mesh>(app, Cuboid::default());
+    let material = add::<StandardMaterial>(app, Color::WHITE);
+    let object = (Mesh3d(mesh), MeshMaterial3d(material), Transform::default());
+    app.world_mut().spawn(object).id()
+}
+
+fn problems(app: &mut App) -> Vec<String> {
+    app.update();
+    app.update();
+    let problems = &app.world().resource::<Traced>().problems;
+    problems.iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn what_objects_have_that_the_tracer_does_not_follow_is_named_while_they_have_it() {
+    let mut app = app();
+    let object = object(&mut app);
+    assert_eq!(problems(&mut app), Vec::<String>::new());
+    let flags = (NotShadowCaster, SkinnedMesh::default());
+    app.world_mut().entity_mut(object).insert(flags);
+    let named = problems(&mut app);
+    assert_eq!(named.len(), 2, "{named:#?}");
+    assert!(
+        named[0].starts_with("object 1: its NotShadowCaster"),
+        "{named:#?}"
+    );
+    let mut flagged = app.world_mut().entity_mut(object);
+    flagged.remove::<(NotShadowCaster, SkinnedMesh)>();
+    assert_eq!(problems(&mut app), Vec::<String>::new());
+    app.world_mut().entity_mut(object).insert(NotShadowCaster);
+    app.update();
+    app.world_mut().entity_mut(object).despawn();
+    assert_eq!(problems(&mut app), Vec::<String>::new());
+}
+
+#[test]
+fn a_material_of_the_apps_own_is_named_until_a_function_says_how_it_is_traced() {
+    let mut app = app();
+    let mesh = add::<Mesh>(&mut app, Cuboid::default());
+    let water = add::<Water>(&mut app, Water { depth: 0.25 });
+    let object = (
+        Mesh3d(mesh),
+        MeshMaterial3d(water.clone()),
+        Name::new("Sea"),
+    );
+    let object = app.world_mut().spawn(object).id();
+    let named = problems(&mut app);
+    assert_eq!(named.len(), 1, "{named:#?}");
+    assert!(
+        named[0].contains("\"Sea\"") && named[0].contains("Water"),
+        "{named:#?}"
+    );
+    app.add_traced_material(|water: &Water| Phong {
+        diffuse: LinearRgba::rgb(0.0, 0.0, water.depth),
+        ..Phong::default()
+    });
+    assert_eq!(problems(&mut app), Vec::<String>::new());
+    let blue = |app: &App| {
+        app.world()
+            .get::<Phong>(object)
+            .map(|phong| phong.diffuse.blue)
+    };
+    assert_eq!(blue(&app), Some(0.25));
+    let mut waters = app.world_mut().resource_mut::<Assets<Water>>();
+    waters.get_mut(&water).unwrap().depth = 0.5;
+    app.update();
+    app.update();
+    assert_eq!(blue(&app), Some(0.5));
+}
+
+#[test]
+fn a_mesh_of_the_gpu_alone_is_named_at_once() {
+    let mut app = app();
+    let mut mesh = Mesh::from(Cuboid::default());
+    mesh.asset_usage = RenderAssetUsages::RENDER_WORLD;
+    let mesh = add::<Mesh>(&mut app, mesh);
+    app.world_mut().spawn(Mesh3d(mesh));
+    app.update();
+    let problems = &app.world().resource::<Traced>().problems;
+    let named = problems.iter().map(ToString::to_string).collect::<String>();
+    assert!(named.contains("MAIN_WORLD"), "{named}");
+}
+
+#[test]
+fn a_views_surroundings_are_named() {
+    let mut app = app();
+    object(&mut app);
+    app.insert_resource(GlobalAmbientLight::default());
+    let view = (TracedView::default(), Skybox::default(), Name::new("Eye"));
+    app.world_mut().spawn(view);
+    let named = problems(&mut app);
+    assert_eq!(named.len(), 2, "{named:#?}");
+    assert!(
+        named[0].contains("Eye") && named[0].contains("skybox"),
+        "{named:#?}"
+    );
+    assert!(named[1].contains("GlobalAmbientLight"), "{named:#?}");
+}
+
+#[test]
+fn the_clear_colour_is_the_background_until_the_app_sets_another() {
+    let mut app = app();
+    let color = |app: &App| app.world().resource::<Environment>().background;
+    app.insert_resource(ClearColor(Color::linear_rgb(0.0, 0.5, 1.0)));
+    app.world_mut().spawn(TracedView::default());
+    app.update();
+    assert_eq!(
+        color(&app),
+        LinearRgba::BLACK,
+        "a scene of ours has its own"
+    );
+    object(&mut app);
+    app.update();
+    app.update();
+    assert_eq!(color(&app), LinearRgba::rgb(0.0, 0.5, 1.0));
+    app.insert_resource(ClearColor(Color::linear_rgb(0.25, 0.0, 0.0)));
+    app.update();
+    assert_eq!(color(&app), LinearRgba::rgb(0.25, 0.0, 0.0));
+    app.world_mut().resource_mut::<Environment>().background = LinearRgba::WHITE;
+    app.insert_resource(ClearColor(Color::linear_rgb(0.5, 0.0, 0.0)));
+    app.update();
+    assert_eq!(color(&app), LinearRgba::WHITE);
+}
