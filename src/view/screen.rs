@@ -69,7 +69,7 @@ pub(super) fn depth_numbers(projection: &Projection) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bevy::camera::{CameraProjection, OrthographicProjection, PerspectiveProjection};
+    use bevy::camera::{OrthographicProjection, PerspectiveProjection};
 
     #[test]
     fn metres_become_the_depth_that_bevys_own_projections_give() {

@@ -15,6 +15,7 @@ pub(crate) enum Aim {
     Edge,
     Vertex,
     /// Not at a triangle, but along an axis.
+    #[cfg_attr(not(test), expect(dead_code, reason = "tests alone aim so"))]
     Axis,
 }
 
