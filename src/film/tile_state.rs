@@ -238,6 +238,8 @@ impl TileState {
     /// there is.
     pub fn rearrange(&mut self, from: &[Option<usize>]) {
         self.pending = None;
+        // Whoever looked since the tints are others has folded planes that were not theirs.
+        self.edit = u32::MAX;
         if let Some(planes) = &mut self.planes {
             planes.rearrange(from);
         }
