@@ -7,6 +7,7 @@
 
 mod drag;
 mod eye;
+mod framing;
 mod lens;
 mod obey;
 mod place;
@@ -46,10 +47,12 @@ impl Plugin for NavigationPlugin {
             .init_resource::<Eye>()
             .init_resource::<LookThrough>()
             .init_resource::<drag::FlySpeed>()
+            .init_resource::<framing::Framings>()
             .add_observer(start)
             .add_systems(
                 EditorUpdate,
                 (
+                    framing::unframe,
                     obey::obey,
                     drag::fly,
                     through::see_through,
@@ -115,13 +118,14 @@ fn settle(world: &mut World) {
         return;
     };
     if world.resource::<LookThrough>().camera.is_none() {
-        obey::frame(world, true);
+        framing::frame(world, true);
         return;
     }
     let mut eye = world.resource_mut::<Eye>();
     let forward = eye.forward();
     let ahead = (extent.centre() - eye.position()).dot(forward);
     if ahead > 1e-3 * extent.radius() && !eye.orthographic {
+        let ahead = ahead.min(eye::DISTANCE[1]);
         eye.pivot = eye.position() + forward * ahead;
         eye.distance = ahead;
     }
