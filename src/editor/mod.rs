@@ -54,6 +54,7 @@ pub mod selection;
 #[cfg(unix)]
 mod signals;
 mod startup;
+mod texts;
 mod trees;
 pub mod viewport;
 mod window;

@@ -1,6 +1,6 @@
 //! File, Edit, Add, View, Help. Entries, keys and explanations are those of the table of actions.
 
-use super::fields::angle;
+use super::fields::number_row;
 use super::says::Says;
 use super::state::{Dialog, Panels};
 use crate::editor::action::{Action, Addition, Axis, shapes};
@@ -8,8 +8,9 @@ use crate::editor::history::History;
 use crate::editor::navigation::{field_of_view, set_field_of_view};
 use crate::editor::preferences::Preferences;
 use crate::editor::selection::Selection;
+use crate::editor::texts::path_text;
 use crate::inspect::{InspectPreset, InspectSettings};
-use crate::scene::{SceneCamera, SceneId};
+use crate::scene::{Quantity, SceneCamera, SceneId};
 use bevy::ecs::name::Name;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{self, Button, Ui};
@@ -64,7 +65,7 @@ fn file_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
                     || file.display().to_string(),
                     |name| name.to_string_lossy().into_owned(),
                 );
-                let says = file.display().to_string();
+                let says = path_text(&file);
                 item_ui(ui, world, &name, &says, Action::Open(file));
             }
         });
@@ -280,7 +281,13 @@ fn field_of_view_ui(ui: &mut Ui, world: &mut World) {
     };
     ui.set_min_width(230.0);
     let says = "The angle from the picture's lower to its upper edge: the looked-through camera's, or the view's own";
-    if angle(ui, "Field of view", says, &mut fov, [1.0, 170.0], false) {
+    if number_row(
+        ui,
+        "Field of view",
+        says,
+        &mut fov,
+        Quantity::degrees(1.0, 170.0),
+    ) {
         set_field_of_view(world, fov);
     }
 }

@@ -1,6 +1,7 @@
 //! What lies over the picture: the divider of the split view, the legend of a heatmap, the frame of
 //! a region; [`notices`](super::notices) has the rest.
 
+use super::fields::number;
 use super::line_legend::line_legend_ui;
 use super::notices::{hint_ui, is_over, notices_ui};
 use super::pattern::pattern_ui;
@@ -11,7 +12,7 @@ use super::theme::accent;
 use super::tree_pair;
 use crate::editor::viewport::{EditorCamera, Show, Viewport};
 use crate::film::views::{Scale, View};
-use crate::scene::RenderSettings;
+use crate::scene::{Quantity, RenderSettings};
 use crate::trace::{FirstHit, central_hits};
 use crate::view::{TracedRender, TracedView};
 use bevy::ecs::query::With;
@@ -249,10 +250,8 @@ fn legend_body(
         .into_iter()
         .enumerate()
         {
-            let field = egui::DragValue::new(&mut ends[i])
-                .speed(speed)
-                .max_decimals(4);
-            if ui.add(field).says(says).changed() && ends[0] < ends[1] {
+            let values = Quantity::ANY.step(speed.into());
+            if number(ui, says, &mut ends[i], values) && ends[0] < ends[1] {
                 entered = Some(ends);
             }
         }
