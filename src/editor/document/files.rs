@@ -9,6 +9,7 @@ use crate::editor::notice::Notices;
 use crate::editor::preferences::Preferences;
 use crate::editor::render_job::RenderJob;
 use crate::editor::selection::Selection;
+use crate::editor::texts::path_text;
 use crate::io::{
     OpenOptions, Problem, SceneFiles, SceneSource, has_changed, open, open_empty, save,
 };
@@ -49,9 +50,10 @@ pub(super) fn perform_now(world: &mut World, action: &Action) {
             finish_opening(world, "Untitled".into(), None);
         }
         Action::Open(path) => open_file(world, path, false),
-        Action::Import(_) => {
-            edits::perform(world, action);
-        }
+        Action::Import(file) => match edits::import(world, file) {
+            Ok(()) => world.resource_mut::<Document>().give_up(),
+            Err(error) => dialog::refuse(world, error.to_string()),
+        },
         Action::Save => match world.resource::<Document>().path.clone() {
             Some(path) => save_to(world, &path),
             None => dialog::ask(world, Purpose::SaveAs),
@@ -122,7 +124,7 @@ pub(in crate::editor) fn open_file(world: &mut World, path: &Path, allow_outside
             {
                 preferences.forget(path);
             }
-            world.resource_mut::<Notices>().fault(error.to_string());
+            dialog::refuse(world, error.to_string());
         }
     }
 }
@@ -164,21 +166,27 @@ pub(super) fn save_to(world: &mut World, path: &Path) {
 pub(super) fn write_to(world: &mut World, path: &Path) {
     world.resource_mut::<Gesture>().end();
     note_state_now(world);
-    let then = world.resource_mut::<Document>().then.take();
     let notes = match save(world, path) {
         Ok(notes) => notes,
         Err(error) => {
-            world.resource_mut::<Notices>().fault(error.to_string());
+            let mut document = world.resource_mut::<Document>();
+            // Another path may do, and then goes on what waited.
+            if document.given.is_none() {
+                document.then = None;
+            }
+            dialog::refuse(world, error.to_string());
             return;
         }
     };
+    let then = world.resource_mut::<Document>().then.take();
+    world.resource_mut::<Document>().given = None;
     let name = path
         .file_name()
         .map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let is_scene = is_scene(path);
     let mut notices = world.resource_mut::<Notices>();
     let verb = if is_scene { "Saved" } else { "Exported" };
-    notices.tell(format!("{verb} {}", path.display()));
+    notices.tell(format!("{verb} {}", path_text(path)));
     notices.notes(&name, notes.lines());
     if !is_scene {
         return;

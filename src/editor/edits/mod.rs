@@ -15,5 +15,5 @@ pub use index::{SceneIndex, scene_entity};
 pub use names::{name_of, rename, unique_name};
 pub use parents::{reparent, roots_of};
 pub use plugin::EditsPlugin;
-pub(in crate::editor) use plugin::perform;
+pub(in crate::editor) use plugin::import;
 pub use remove::{delete, set_visible};

@@ -9,6 +9,7 @@ use crate::editor::history::{Gesture, History, commit, redo, undo};
 use crate::editor::notice::Notices;
 use crate::editor::schedule::EditorUpdate;
 use crate::editor::selection::Selection;
+use crate::io::FileError;
 use crate::scene::SceneId;
 use bevy::app::{App, Plugin};
 use bevy::camera::visibility::Visibility;
@@ -44,7 +45,7 @@ fn edit(world: &mut World, mut cursor: Local<MessageCursor<Action>>) {
 }
 
 /// Does what an action asks for, if it is one that edits or selects, and says whether it is.
-pub(in crate::editor) fn perform(world: &mut World, action: &Action) -> bool {
+fn perform(world: &mut World, action: &Action) -> bool {
     let selected = || world.resource::<Selection>().ids().to_vec();
     match action {
         Action::Select(ids) => {
@@ -122,7 +123,10 @@ fn change(world: &mut World, action: &Action) -> Option<String> {
                 }
             }
         }
-        Action::Import(file) => return add_file(world, file),
+        Action::Import(file) => match add_file(world, file) {
+            Ok(name) => return Some(name),
+            Err(error) => world.resource_mut::<Notices>().fault(error.to_string()),
+        },
         Action::Paste => {
             let clipboard = world.resource::<Clipboard>().clone();
             match paste(world, &clipboard) {
@@ -176,23 +180,26 @@ fn change(world: &mut World, action: &Action) -> Option<String> {
     None
 }
 
-fn add_file(world: &mut World, file: &Path) -> Option<String> {
-    match add_model(world, file) {
-        Ok((root, imported)) => {
-            let name = file
-                .file_name()
-                .unwrap_or(file.as_os_str())
-                .to_string_lossy();
-            let mut notices = world.resource_mut::<Notices>();
-            notices.notes(&name, imported.notes.lines());
-            select(world, root.into_iter().collect());
-            Some(format!("Import {name}"))
-        }
-        Err(error) => {
-            world.resource_mut::<Notices>().fault(error.to_string());
-            None
-        }
-    }
+/// Adds a model as a step of its own, for who asks again where that fails.
+pub(in crate::editor) fn import(world: &mut World, file: &Path) -> Result<(), FileError> {
+    world.resource_mut::<Gesture>().end();
+    commit(world);
+    let name = add_file(world, file)?;
+    world.resource_mut::<History>().name_next(name);
+    commit(world);
+    Ok(())
+}
+
+fn add_file(world: &mut World, file: &Path) -> Result<String, FileError> {
+    let (root, imported) = add_model(world, file)?;
+    let name = file
+        .file_name()
+        .unwrap_or(file.as_os_str())
+        .to_string_lossy();
+    let mut notices = world.resource_mut::<Notices>();
+    notices.notes(&name, imported.notes.lines());
+    select(world, root.into_iter().collect());
+    Ok(format!("Import {name}"))
 }
 
 fn select(world: &mut World, ids: Vec<SceneId>) {

@@ -1,7 +1,7 @@
 //! What the panels remember between two frames, and forget when the editor is closed.
 
 use super::compare::Kept;
-use super::dialogs::{Gallery, RenderForm};
+use super::dialogs::{Gallery, PathForm, RenderForm};
 use super::inspector::{Builders, ErrorCurve, PerformanceForm, Thumbnails, Trees, Turns};
 use super::line_legend::LineTexts;
 use super::outline_rows::{Folded, Rows};
@@ -62,7 +62,7 @@ pub(super) struct Panels {
     /// The one that was open in the frame before.
     pub dialog_before: Option<Dialog>,
     /// A path that is being typed for the document.
-    pub typed_path: Option<String>,
+    pub typed_path: Option<PathForm>,
     pub render_form: RenderForm,
     /// How far actions were read.
     pub heard: MessageCursor<Action>,

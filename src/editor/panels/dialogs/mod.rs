@@ -3,6 +3,7 @@
 mod about;
 mod history;
 mod keys;
+mod path;
 mod preferences;
 mod question;
 mod render;
@@ -15,6 +16,7 @@ use bevy::ecs::message::Messages;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{self, Id, Modal, RichText, ScrollArea, Ui};
 
+pub(super) use path::PathForm;
 pub(super) use render::RenderForm;
 pub(super) use scenes::Gallery;
 
