@@ -42,8 +42,8 @@ pub(super) fn run(args: Bench) -> Result<(), Failure> {
 
 fn measure(args: &Bench) -> Result<Performance, Failure> {
     let mut stage = Stage::open(&args.scene, args.csv)?;
+    args.settings.apply(stage.app.world_mut())?;
     let settings = stage.settings();
-    args.settings.apply(settings)?;
     let settings = settings.clone();
     check_scene(&stage.name, &settings)?;
     stage.check_film(settings.size)?;

@@ -54,8 +54,8 @@ pub(super) fn run(args: Bvh) -> Result<(), Failure> {
 /// One tree over all triangles, whatever the scene's own setting is, so that one row can say it all.
 fn rows(args: &Bvh) -> Result<Vec<BuilderFigures>, Failure> {
     let mut stage = Stage::open(&args.scene, args.json || args.csv)?;
+    args.settings.apply(stage.app.world_mut())?;
     let settings = stage.settings();
-    args.settings.apply(settings)?;
     let settings = settings.clone();
     check_scene(&stage.name, &settings)?;
     let world = stage.sync().world.clone();

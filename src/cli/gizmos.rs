@@ -2,10 +2,11 @@
 
 use super::Failure;
 use super::set::Assignment;
+use super::settings::table;
 use crate::inspect::{InspectPreset, InspectSettings};
-use bevy::reflect::{PartialReflect, ReflectRef};
+use crate::scene::{Property, range_problems};
+use bevy::reflect::Typed;
 use clap::ValueEnum;
-use std::fmt::Write;
 
 /// The presets as the command line names them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -33,38 +34,18 @@ impl Gizmos {
         for assignment in assignments {
             assignment.apply_gizmo(&mut settings)?;
         }
+        if let Some(problem) = range_problems(&settings).into_iter().next() {
+            return Err(Failure::Usage(problem.to_string()));
+        }
         Ok(Self(settings))
-    }
-}
-
-/// Path and value of every setting, in order.
-pub(super) fn gizmo_settings(settings: &InspectSettings) -> Vec<(String, String)> {
-    let mut found = Vec::new();
-    leaves(settings, "", &mut found);
-    found
-}
-
-fn leaves(value: &dyn PartialReflect, path: &str, found: &mut Vec<(String, String)>) {
-    let ReflectRef::Struct(fields) = value.reflect_ref() else {
-        found.push((path.to_owned(), format!("{value:?}")));
-        return;
-    };
-    for i in 0..fields.field_len() {
-        let (Some(name), Some(field)) = (fields.name_at(i), fields.field_at(i)) else {
-            continue;
-        };
-        let dot = if path.is_empty() { "" } else { "." };
-        leaves(field, &format!("{path}{dot}{name}"), found);
     }
 }
 
 /// The list of all settings for `--help`.
 pub(super) fn gizmo_list() -> String {
-    let mut text = String::from("Settings for --gizmo (path, default):\n");
-    for (path, value) in gizmo_settings(&InspectSettings::default()) {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "  {path:22} {value}");
-    }
+    let settings = Property::all(InspectSettings::type_info());
+    let mut text = String::from("Settings for --gizmo (path, default, range):\n");
+    text += &table(&settings, &InspectSettings::default());
     text + "\nSettings for --set: see glassbox render --help\n"
 }
 
@@ -75,7 +56,9 @@ mod tests {
 
     #[test]
     fn every_setting_of_the_list_can_be_set_to_its_own_value() {
-        for (path, value) in gizmo_settings(&InspectSettings::default()) {
+        let defaults = InspectSettings::default();
+        for setting in Property::all(InspectSettings::type_info()) {
+            let (path, value) = (&setting.path, setting.value_text(&defaults));
             let assignment: Assignment = format!("{path}={value}").parse().unwrap();
             let gizmos = Gizmos::new(None, &[assignment]).map_err(|e| e.to_string());
             assert_eq!(
@@ -96,6 +79,7 @@ mod tests {
             ("boxes=true", "choose one of its settings: on, form, choice"),
             ("boxes.on=maybe", "true or false"),
             ("boxes.object=-1", "whole number"),
+            ("rays.max_depth=1001", "must be 0 to 1000"),
         ] {
             let assignment: Assignment = text.parse().unwrap();
             let error = Gizmos::new(None, &[assignment])

@@ -121,8 +121,8 @@ pub(super) fn run(args: Inspect) -> Result<(), Failure> {
 fn inspect(args: &Inspect, gizmos: &InspectSettings) -> Result<(), Failure> {
     let mut stage = Stage::open(&args.scene, args.quiet || args.json)?;
     stage.check_outputs(args.picture.as_deref())?;
+    args.settings.apply(stage.app.world_mut())?;
     let settings = stage.settings();
-    args.settings.apply(settings)?;
     if let Some(builder) = args.builder {
         settings.tree.builder = builder.builder();
     }

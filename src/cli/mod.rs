@@ -19,6 +19,7 @@ mod render;
 mod report;
 mod scenes;
 mod set;
+mod set_entity;
 mod settings;
 mod shown;
 mod stage;

@@ -1,4 +1,4 @@
-use crate::film::Status;
+use crate::film::{Status, duration_text};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 
@@ -60,7 +60,7 @@ fn status_text(status: &Status) -> String {
         text += &format!(", error {error}");
     }
     if let Some(left) = status.seconds_left {
-        text += &format!(", {left:.0} s left");
+        text += &format!(", {} left", duration_text(left));
     }
     text
 }

@@ -93,8 +93,8 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
     check_outputs(outputs().map(PathBuf::as_path), [&*args.scene.scene])?;
     check_writable(&args.output)?;
     let mut stage = Stage::open(&args.scene, args.quiet)?;
+    args.settings.apply(stage.app.world_mut())?;
     let settings = stage.settings();
-    args.settings.apply(settings)?;
     args.stop.apply(settings, args.settings.spp.is_some());
     if let Some(builder) = args.builder {
         settings.tree.builder = builder.builder();

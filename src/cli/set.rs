@@ -1,12 +1,13 @@
 //! `--set key=value`: any setting by its reflected path.
 
 use super::Failure;
-use super::gizmos::gizmo_settings;
 use crate::inspect::InspectSettings;
-use crate::scene::{RenderSettings, SETTINGS};
-use bevy::math::UVec2;
-use bevy::reflect::enums::{DynamicEnum, DynamicVariant};
-use bevy::reflect::{GetPath, PartialReflect, Reflect, TypeInfo};
+use crate::scene::schema::{Unit, typed_number};
+use crate::scene::{Property, RenderSettings};
+use bevy::color::LinearRgba;
+use bevy::math::{UVec2, Vec2, Vec3};
+use bevy::reflect::enums::{DynamicEnum, DynamicVariant, VariantInfo};
+use bevy::reflect::{GetPath, PartialReflect, Reflect, TypeInfo, Typed};
 use std::str::FromStr;
 
 /// `key=value` as it stands on the command line.
@@ -23,89 +24,166 @@ impl FromStr for Assignment {
         let (key, value) = text
             .split_once('=')
             .ok_or("it is written key=value, for example max_depth=8")?;
+        // `spp*=2` changes what there is.
+        let (key, sign) = match key.trim_end().strip_suffix(['+', '-', '*', '/']) {
+            Some(shorter) => (shorter, &key.trim_end()[shorter.len()..]),
+            None => (key, ""),
+        };
+        let value = match sign {
+            "" => value.trim().to_owned(),
+            sign => format!("{sign}={}", value.trim()),
+        };
         Ok(Self {
             key: key.trim().to_owned(),
-            value: value.trim().to_owned(),
+            value,
         })
     }
 }
 
 impl Assignment {
+    /// Its parts: what is set, and to what.
+    pub fn parts(&self) -> (&str, &str) {
+        (&self.key, &self.value)
+    }
+
+    /// Whether it is about a component of an entity: `Lamp/PointLamp.intensity=3`.
+    pub fn is_of_entity(&self) -> bool {
+        self.key.contains('/')
+    }
+
     /// Writes the value into the settings. Ranges are checked afterwards, all together.
     pub fn apply(&self, settings: &mut RenderSettings) -> Result<(), Failure> {
-        let paths = SETTINGS.iter().map(|setting| setting.path);
-        self.write_into(settings, "--set", paths, "glassbox render --help")
+        self.write_into(settings, "--set", "glassbox render --help")
     }
 
     /// Writes the value into what is drawn.
     pub fn apply_gizmo(&self, settings: &mut InspectSettings) -> Result<(), Failure> {
-        let all = gizmo_settings(settings);
-        let paths = all.iter().map(|(path, _)| path.as_str());
-        self.write_into(settings, "--gizmo", paths, "glassbox inspect --help")
+        self.write_into(settings, "--gizmo", "glassbox inspect --help")
     }
 
-    fn write_into<'a, T: Reflect>(
+    fn write_into<T: Reflect + Typed>(
         &self,
         settings: &mut T,
         flag: &str,
-        paths: impl Iterator<Item = &'a str>,
         help: &str,
     ) -> Result<(), Failure> {
         let Self { key, value } = self;
-        let Ok(field) = settings.reflect_path_mut(key.as_str()) else {
-            return Err(Failure::Usage(unknown(flag, key, paths, help)));
+        let all = Property::all(T::type_info());
+        let property = Property::of(T::type_info(), key);
+        let field = settings.reflect_path_mut(key.as_str()).ok();
+        let (Some(property), Some(field)) = (property, field) else {
+            let paths = all.iter().map(|property| property.path.as_str());
+            let text = unknown(&format!("{flag} {key}"), "setting", key, paths);
+            return Err(Failure::Usage(format!("{text} (all: {help})")));
         };
-        if let TypeInfo::Struct(info) = type_info(field)?
-            && field.try_downcast_ref::<UVec2>().is_none()
-        {
-            let fields = info.field_names().join(", ");
-            let text = format!("{flag} {key}: it is a group; choose one of its settings: {fields}");
-            return Err(Failure::Usage(text));
+        set_value(field, &property, value)
+            .map_err(|why| Failure::Usage(format!("{flag} {key}={value}: {why}")))
+    }
+}
+
+/// Writes a value, as text, into what is at a path; on failure, what would have been right.
+pub(super) fn set_value(
+    field: &mut dyn PartialReflect,
+    property: &Property,
+    value: &str,
+) -> Result<(), String> {
+    if let TypeInfo::Struct(info) = property.kind
+        && !is_value(field)
+    {
+        let fields = info.field_names().join(", ");
+        return Err(format!(
+            "it is a group; choose one of its settings: {fields}"
+        ));
+    }
+    let unit = property
+        .quantity
+        .map_or(Unit::NONE, |quantity| quantity.unit);
+    // What is kept is what is written: radians where nothing else is said.
+    let number = |text: &str, before: f32| -> Result<f32, String> {
+        // Exact where f64 is not; NaN and what is too large are refused with the range.
+        if let Ok(number) = text.trim().parse() {
+            return Ok(number);
         }
-        write(field, value)
-            .map_err(|wanted| Failure::Usage(format!("{flag} {key}={value}: wanted {wanted}")))
-    }
-}
-
-fn type_info(field: &dyn PartialReflect) -> Result<&'static TypeInfo, Failure> {
-    field
-        .get_represented_type_info()
-        .ok_or_else(|| Failure::Usage("--set: this field has no type".into()))
-}
-
-/// Parses the value as what the field is; on failure, what would have been right.
-fn write(field: &mut dyn PartialReflect, value: &str) -> Result<(), String> {
-    fn parsed<T: FromStr>(place: &mut T, value: &str, wanted: &str) -> Result<(), String> {
-        *place = value.parse().map_err(|_| wanted.to_owned())?;
-        Ok(())
-    }
-    if let Some(place) = field.try_downcast_mut::<bool>() {
-        return parsed(place, value, "true or false");
-    }
-    if let Some(place) = field.try_downcast_mut::<u32>() {
-        return parsed(place, value, "a whole number from 0 to 4294967295");
-    }
-    if let Some(place) = field.try_downcast_mut::<u64>() {
-        return parsed(place, value, "a whole number");
-    }
-    if let Some(place) = field.try_downcast_mut::<f32>() {
-        return parsed(place, value, "a number");
-    }
-    if let Some(place) = field.try_downcast_mut::<UVec2>() {
-        *place = parse_size(value)?;
-        return Ok(());
-    }
-    let Some(TypeInfo::Enum(info)) = field.get_represented_type_info() else {
-        return Err("another kind of value than the command line can write".into());
+        let number = typed_number(text, unit, 1.0, f64::from(before));
+        number
+            .map(|number| number as f32)
+            .map_err(|why| format!("wanted a number: {why}"))
     };
-    let names = info.variant_names();
+    let numbers = |before: &[f32]| -> Result<Vec<f32>, String> {
+        let parts: Vec<&str> = value.split(',').collect();
+        if parts.len() != before.len() {
+            return Err(format!(
+                "wanted {} numbers, with commas between",
+                before.len()
+            ));
+        }
+        let all = parts.iter().zip(before);
+        all.map(|(part, before)| number(part, *before)).collect()
+    };
+    let whole = |before: u64, most: u64, wanted: &str| {
+        // Exact where f64 is not.
+        if let Ok(number) = value.parse::<u64>()
+            && number <= most
+        {
+            return Ok(number);
+        }
+        let number = typed_number(value, unit, 1.0, before as f64);
+        let number = number
+            .ok()
+            .filter(|number| number.fract() == 0.0 && *number >= 0.0 && *number <= most as f64);
+        number
+            .map(|number| number as u64)
+            .ok_or_else(|| format!("wanted {wanted}"))
+    };
+    if let Some(place) = field.try_downcast_mut::<bool>() {
+        *place = value.parse().map_err(|_| "wanted true or false")?;
+    } else if let Some(place) = field.try_downcast_mut::<u32>() {
+        let wanted = "a whole number from 0 to 4294967295";
+        let number = whole((*place).into(), u32::MAX.into(), wanted)?;
+        *place = u32::try_from(number).map_err(|_| format!("wanted {wanted}"))?;
+    } else if let Some(place) = field.try_downcast_mut::<u64>() {
+        *place = whole(*place, u64::MAX, "a whole number")?;
+    } else if let Some(place) = field.try_downcast_mut::<f32>() {
+        *place = number(value, *place)?;
+    } else if let Some(place) = field.try_downcast_mut::<UVec2>() {
+        *place = parse_size(value).map_err(|wanted| format!("wanted {wanted}"))?;
+    } else if let Some(place) = field.try_downcast_mut::<Vec2>() {
+        *place = Vec2::from_slice(&numbers(&place.to_array())?);
+    } else if let Some(place) = field.try_downcast_mut::<Vec3>() {
+        *place = Vec3::from_slice(&numbers(&place.to_array())?);
+    } else if let Some(place) = field.try_downcast_mut::<LinearRgba>() {
+        let numbers = numbers(&[place.red, place.green, place.blue])?;
+        *place = LinearRgba::rgb(numbers[0], numbers[1], numbers[2]);
+    } else {
+        set_choice(field, value)?;
+    }
+    Ok(())
+}
+
+/// One of the names of an enum.
+fn set_choice(field: &mut dyn PartialReflect, value: &str) -> Result<(), String> {
+    let Some(TypeInfo::Enum(info)) = field.get_represented_type_info() else {
+        return Err("it is another kind of value than the command line can write".into());
+    };
+    let units = info
+        .iter()
+        .filter(|variant| matches!(variant, VariantInfo::Unit(_)));
+    let names: Vec<&str> = units.map(|variant| variant.name()).collect();
     let name = names
         .iter()
         .find(|name| name.eq_ignore_ascii_case(value))
-        .ok_or_else(|| format!("one of {}", names.join(", ")))?;
+        .ok_or_else(|| format!("wanted one of {}", names.join(", ")))?;
     field
         .try_apply(&DynamicEnum::new(*name, DynamicVariant::Unit))
         .map_err(|error| error.to_string())
+}
+
+/// A struct that is written as a whole.
+fn is_value(field: &dyn PartialReflect) -> bool {
+    field.try_downcast_ref::<UVec2>().is_some()
+        || field.try_downcast_ref::<Vec2>().is_some()
+        || field.try_downcast_ref::<Vec3>().is_some()
+        || field.try_downcast_ref::<LinearRgba>().is_some()
 }
 
 /// `WxH`, both whole numbers; whether they are in range is not asked here.
@@ -120,13 +198,18 @@ pub(super) fn parse_size(text: &str) -> Result<UVec2, String> {
     parse().ok_or_else(|| "WxH in pixels, for example 800x600".to_owned())
 }
 
-/// Says that there is no such setting, and which ones have a similar name.
-fn unknown<'a>(flag: &str, key: &str, paths: impl Iterator<Item = &'a str>, help: &str) -> String {
+/// Says that there is no such thing, and which ones have a similar name.
+pub(super) fn unknown<'a>(
+    where_from: &str,
+    what: &str,
+    key: &str,
+    names: impl Iterator<Item = &'a str>,
+) -> String {
     let distance = |path: &str| {
         let last = path.rsplit('.').next().unwrap_or(path);
         edit_distance(key, path).min(edit_distance(key, last))
     };
-    let mut near: Vec<(usize, &str)> = paths.map(|path| (distance(path), path)).collect();
+    let mut near: Vec<(usize, &str)> = names.map(|path| (distance(path), path)).collect();
     near.sort_by_key(|(distance, _)| *distance);
     // The nearest in any case, two more where they are mistakes of a few letters.
     let close = |i: usize, distance: usize| i == 0 || (i < 3 && distance <= key.len() / 3);
@@ -136,10 +219,13 @@ fn unknown<'a>(flag: &str, key: &str, paths: impl Iterator<Item = &'a str>, help
         .filter(|(i, (distance, _))| close(*i, *distance))
         .map(|(_, (_, path))| *path)
         .collect();
-    format!(
-        "{flag} {key}: no such setting; did you mean {}? (all: {help})",
-        names.join(" or ")
-    )
+    match names.is_empty() {
+        true => format!("{where_from}: no such {what}"),
+        false => format!(
+            "{where_from}: no such {what}; did you mean {}?",
+            names.join(" or ")
+        ),
+    }
 }
 
 /// Levenshtein's distance: letters to insert, remove or replace.
@@ -161,7 +247,7 @@ fn edit_distance(a: &str, b: &str) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Builder, SettingRange};
+    use crate::scene::{Builder, SETTINGS};
 
     fn set(text: &str) -> Result<RenderSettings, String> {
         let mut settings = RenderSettings::default();
@@ -174,17 +260,17 @@ mod tests {
 
     #[test]
     fn every_row_of_the_table_can_be_set_to_another_value_and_read_back() {
-        for setting in SETTINGS {
+        for setting in SETTINGS.iter() {
             let default = setting.value_text(&RenderSettings::default());
-            let other = match setting.range {
-                SettingRange::Integer(..) => "7".to_owned(),
-                SettingRange::Number(..) => "2.5".to_owned(),
-                SettingRange::Switch => (default != "true").to_string(),
-                SettingRange::Size { .. } => "3x4".to_owned(),
-                SettingRange::Choice => {
-                    let choices = setting.choices();
-                    let other = choices.iter().find(|choice| **choice != default);
-                    other.unwrap().to_lowercase()
+            let choices = setting.choices();
+            let other = match setting.kind {
+                kind if kind.is::<u32>() => "7".to_owned(),
+                kind if kind.is::<f32>() => "2.5".to_owned(),
+                kind if kind.is::<bool>() => (default != "true").to_string(),
+                kind if kind.is::<UVec2>() => "3x4".to_owned(),
+                _ => {
+                    let other = choices.iter().find(|choice| choice.name != default);
+                    other.unwrap().name.to_lowercase()
                 }
             };
             let settings = set(&format!("{}={other}", setting.path)).unwrap();
@@ -194,6 +280,25 @@ mod tests {
                 "{}: {value}",
                 setting.path
             );
+        }
+    }
+
+    #[test]
+    fn numbers_are_sums_have_units_and_change_what_there_was() {
+        assert_eq!(set("spp=2*8").unwrap().spp, 16);
+        assert_eq!(
+            set("spp*=2").unwrap().spp,
+            2 * RenderSettings::default().spp
+        );
+        assert_eq!(set("sampling.time=2min").unwrap().sampling.time, 120.0);
+        assert_eq!(set("output.exposure-=1/2").unwrap().output.exposure, -0.5);
+        for (text, part) in [
+            ("sampling.time=2m", "“m” is no unit here"),
+            ("output.exposure=1/0", "divided by 0"),
+            ("spp=1/2", "a whole number"),
+        ] {
+            let error = set(text).unwrap_err();
+            assert!(error.contains(part), "`{text}` gives `{error}`");
         }
     }
 

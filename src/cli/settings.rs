@@ -2,8 +2,11 @@
 
 use super::Failure;
 use super::set::{Assignment, parse_size};
-use crate::scene::{Builder, RenderSettings, SETTINGS, setting_problems};
+use super::set_entity::set_on_entity;
+use crate::scene::{Builder, Property, RenderSettings, SETTINGS, range_problems};
+use bevy::ecs::world::World;
 use bevy::math::UVec2;
+use bevy::reflect::GetPath;
 use clap::{Args, ValueEnum};
 use std::fmt::Write;
 
@@ -19,7 +22,8 @@ pub(super) struct SettingArgs {
     /// Chooses the random numbers
     #[arg(long, value_name = "N")]
     pub seed: Option<u32>,
-    /// Any setting by its path (`glassbox render --help` lists them); may be given several times
+    /// Any setting by its path (`glassbox render --help` lists them), or a component of an entity
+    /// (`Lamp/PointLamp.intensity=3`); may be given several times
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<Assignment>,
     /// Threads to work on (default: all of the machine's)
@@ -75,16 +79,24 @@ pub(super) fn builder_name(builder: Builder) -> &'static str {
 }
 
 impl SettingArgs {
-    /// Checks the flags against the defaults, before a scene is opened for nothing.
+    /// Checks the flags against the defaults, before a scene is opened for nothing. What is about entities is checked
+    /// when they are there.
     pub fn check(&self) -> Result<(), Failure> {
-        self.apply(&mut RenderSettings::default())
+        self.apply_settings(&mut RenderSettings::default())
     }
 
-    /// Writes the flags into a scene's settings: first each `--set` in its order, then the flags
-    /// of their own. Values out of range are an error.
-    pub fn apply(&self, settings: &mut RenderSettings) -> Result<(), Failure> {
-        let before = setting_problems(settings);
-        for assignment in &self.set {
+    /// Writes the flags into a scene: first each `--set` in its order, then the flags of their own. Values out of range
+    /// are an error.
+    pub fn apply(&self, world: &mut World) -> Result<(), Failure> {
+        for assignment in self.set.iter().filter(|set| set.is_of_entity()) {
+            set_on_entity(world, assignment)?;
+        }
+        self.apply_settings(&mut world.resource_mut::<RenderSettings>())
+    }
+
+    fn apply_settings(&self, settings: &mut RenderSettings) -> Result<(), Failure> {
+        let before = range_problems(settings);
+        for assignment in self.set.iter().filter(|set| !set.is_of_entity()) {
             assignment.apply(settings)?;
         }
         if let Some(size) = self.size {
@@ -97,7 +109,7 @@ impl SettingArgs {
             settings.seed = seed;
         }
         // What the scene itself has wrong is not the command line's fault.
-        match setting_problems(settings)
+        match range_problems(settings)
             .into_iter()
             .find(|problem| !before.contains(problem))
         {
@@ -109,7 +121,7 @@ impl SettingArgs {
 
 /// Refuses settings of a scene that nothing can be rendered with.
 pub(super) fn check_scene(name: &str, settings: &RenderSettings) -> Result<(), Failure> {
-    match setting_problems(settings).first() {
+    match range_problems(settings).first() {
         Some(problem) => Err(Failure::Scene(format!("{name}: settings: {problem}"))),
         None => Ok(()),
     }
@@ -118,20 +130,29 @@ pub(super) fn check_scene(name: &str, settings: &RenderSettings) -> Result<(), F
 /// The list of all settings for `--help`.
 pub(super) fn list() -> String {
     let defaults = RenderSettings::default();
-    let rows: Vec<[String; 4]> = SETTINGS
+    let mut text = String::from("Settings for --set (path, default, range):\n");
+    text += &table(&SETTINGS, &defaults);
+    text += "\nA component of an entity by its name: --set Lamp/PointLamp.intensity=3. Numbers are sums, with units: \
+             2*10cm, 30deg, +=1/2.\n";
+    text
+}
+
+/// A line for each property: its path, its value, what it does, and what it may be.
+pub(super) fn table(properties: &[Property], values: &impl GetPath) -> String {
+    let rows: Vec<[String; 4]> = properties
         .iter()
-        .map(|setting| {
+        .map(|property| {
             [
-                setting.path.to_owned(),
-                setting.value_text(&defaults),
-                setting.range_text(),
-                setting.says.to_owned(),
+                property.path.clone(),
+                property.value_text(values),
+                property.range_text(),
+                property.says.clone(),
             ]
         })
         .collect();
     let width = |column: usize| rows.iter().map(|row| row[column].len()).max().unwrap_or(0);
     let (path, default) = (width(0), width(1));
-    let mut text = String::from("Settings for --set (path, default, range):\n");
+    let mut text = String::new();
     for row in &rows {
         // Writing to a string cannot fail.
         let _ = writeln!(
@@ -150,7 +171,7 @@ mod tests {
     #[test]
     fn the_list_names_every_setting_with_its_default_and_range() {
         let list = list();
-        for setting in SETTINGS {
+        for setting in SETTINGS.iter() {
             let line = list
                 .lines()
                 .find(|line| line.trim_start().starts_with(&format!("{} ", setting.path)))

@@ -2,7 +2,7 @@
 
 use super::set::Assignment;
 use crate::io::{FileError, Part, Problem};
-use crate::scene::{Output, RenderSettings, SETTINGS, setting_problems};
+use crate::scene::{Output, RenderSettings, SETTINGS, range_problems};
 use std::path::Path;
 
 /// How a picture is shown, as a part keeps it: every setting of `output`, `key=value`.
@@ -31,7 +31,7 @@ pub(super) fn read_output(file: &Path, part: &Part) -> Result<Output, FileError>
         let applied = assignment.apply(&mut settings);
         applied.map_err(|failure| damaged(failure.to_string()))?;
     }
-    match setting_problems(&settings).into_iter().next() {
+    match range_problems(&settings).into_iter().next() {
         Some(problem) => Err(damaged(problem.to_string())),
         None => Ok(settings.output),
     }

@@ -1,5 +1,6 @@
 //! How much room things take: for framing them, for pivots and for box selection.
 
+use crate::bvh::REACH;
 use crate::scene::{
     DirectionalLamp, ParallelogramLamp, PointLamp, SceneCamera, SceneId, SegmentLamp,
 };
@@ -23,6 +24,8 @@ impl Extent {
     fn of_points(points: impl IntoIterator<Item = Vec3>) -> Option<Self> {
         let mut extent: Option<Self> = None;
         for point in points.into_iter().filter(|point| point.is_finite()) {
+            // What lies farther is not traced, and its squares would overflow.
+            let point = point.clamp(Vec3::splat(-REACH), Vec3::splat(REACH));
             let so_far = extent.unwrap_or(Self {
                 least: point,
                 most: point,

@@ -57,6 +57,7 @@ pub mod selection;
 #[cfg(unix)]
 mod signals;
 mod startup;
+mod texts;
 mod trees;
 pub mod viewport;
 mod window;

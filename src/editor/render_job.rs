@@ -9,7 +9,7 @@ use crate::film::{Ending, Progressive, State, Status};
 use crate::io::{
     FileError, check_film, check_not_read, check_picture, picture_notes, write_rendered,
 };
-use crate::scene::{RenderSettings, SceneId, SettingProblem, setting_problems};
+use crate::scene::{RangeProblem, RenderSettings, SceneId, range_problems};
 use crate::sync::{Traced, TracedCameras};
 use crate::trace;
 use bevy::app::{App, Last, Plugin};
@@ -52,7 +52,7 @@ pub enum RenderRefused {
     #[error("the scene has no such camera; add one, or render what the view shows")]
     NoCamera,
     #[error("{0}")]
-    Setting(SettingProblem),
+    Setting(RangeProblem),
     #[error(transparent)]
     File(#[from] FileError),
     #[error("the system has no more threads: {0}")]
@@ -150,7 +150,7 @@ pub fn start_render(world: &mut World, request: RenderRequest) -> Result<(), Ren
     if let Some(job) = &world.resource::<RenderJob>().job {
         return Err(RenderRefused::Busy(job.request.file.clone()));
     }
-    if let Some(problem) = setting_problems(&request.settings).into_iter().next() {
+    if let Some(problem) = range_problems(&request.settings).into_iter().next() {
         return Err(RenderRefused::Setting(problem));
     }
     let size = request.settings.size;

@@ -65,7 +65,7 @@ pub use picture::Picture;
 pub use progressive::Progressive;
 pub use render::{Rendered, render, render_samples, render_while};
 pub use snapshot::Snapshot;
-pub use status::{Ending, State, Status, TrendPoint};
+pub use status::{Ending, State, Status, TrendPoint, duration_text};
 pub use sum::Sum;
 pub use tiles::{Film, TILE};
 pub use view_transform::{develop, view_transform};

@@ -94,6 +94,22 @@ impl Status {
     }
 }
 
+/// How long something takes, with two units at most: `42 s`, `3 min 20 s`, `3 h 31 min`, `2 d 4 h`.
+pub fn duration_text(seconds: f64) -> String {
+    // What takes longer is as good as endless.
+    let whole = seconds.clamp(0.0, 1e10).round() as u64;
+    let two = |large: u64, name: &str, small: u64, small_name: &str| match small {
+        0 => format!("{large} {name}"),
+        small => format!("{large} {name} {small} {small_name}"),
+    };
+    match whole {
+        0..60 => format!("{whole} s"),
+        60..3600 => two(whole / 60, "min", whole % 60, "s"),
+        3600..86_400 => two(whole / 3600, "h", whole % 3600 / 60, "min"),
+        _ => two(whole / 86_400, "d", whole % 86_400 / 3600, "h"),
+    }
+}
+
 /// Seconds until the first of the rules will have ended the render, if it goes on as it did.
 pub(super) fn seconds_left(status: &Status, rules: &Sampling) -> Option<f64> {
     if matches!(status.state, State::Ended(_)) {
@@ -146,6 +162,20 @@ mod tests {
             divider: Some(1),
             trend: [1.0, 2.0, 4.0, 8.0].map(point).to_vec(),
             seconds_left: None,
+        }
+    }
+
+    #[test]
+    fn durations_are_said_in_the_units_that_fit() {
+        for (seconds, text) in [
+            (2.4, "2 s"),
+            (59.6, "1 min"),
+            (200.0, "3 min 20 s"),
+            (12_661.0, "3 h 31 min"),
+            (187_200.0, "2 d 4 h"),
+            (f64::NAN, "0 s"),
+        ] {
+            assert_eq!(duration_text(seconds), text);
         }
     }
 

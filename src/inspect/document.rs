@@ -65,7 +65,7 @@ impl<'a> Document<'a> {
             size: settings.size,
             settings: SETTINGS
                 .iter()
-                .map(|setting| (setting.path, setting.value_text(settings)))
+                .map(|setting| (setting.path.as_str(), setting.value_text(settings)))
                 .collect(),
             counters: COUNTERS,
             value: rays.mean(),

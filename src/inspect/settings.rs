@@ -1,36 +1,41 @@
 //! What is drawn: a switch for every system, and one for all.
 
 use crate::scene::Builder;
+use crate::scene::schema::{Label, Quantity, documented};
 use bevy::ecs::{reflect::ReflectResource, resource::Resource};
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 
-/// What is drawn over the picture.
-#[derive(Resource, Reflect, Clone, Debug, PartialEq)]
-#[reflect(Resource, Default, Clone, PartialEq, Debug)]
-#[type_path = "glassbox::inspect"]
-pub struct InspectSettings {
-    /// The master switch: off hides everything and keeps every other setting.
-    pub on: bool,
-    /// Boxes of the trees.
-    pub boxes: BoxSettings,
-    /// Boxes and visits of two builders' trees, side by side.
-    pub pair: PairSettings,
-    /// The debug rays.
-    pub rays: RaySettings,
-    /// Normals of the meshes.
-    pub normals: NormalSettings,
-    /// The lights themselves, with their colours.
-    pub lights: bool,
-    /// Aperture, focus plane and the camera's field of view.
-    pub lens: bool,
-    /// Where moving things stand when the shutter opens and closes.
-    pub motion: bool,
-    /// The discs of blurred reflections and transmissions, at the hits of the debug rays.
-    pub lobes: bool,
-    /// Where the samples of a pixel lie, as a 2-D inset.
-    pub pattern: PatternSettings,
-    /// No system draws more lines than this, 1 to 10^7: what is left out is said.
-    pub max_lines: u32,
+documented! {
+    /// What is drawn over the picture.
+    #[derive(Resource, Reflect, Clone, Debug, PartialEq)]
+    #[reflect(Resource, Default, Clone, PartialEq, Debug)]
+    #[type_path = "glassbox::inspect"]
+    pub struct InspectSettings {
+        /// The master switch: off hides everything and keeps every other setting.
+        pub on: bool,
+        /// Boxes of the trees.
+        pub boxes: BoxSettings,
+        /// Boxes and visits of two builders' trees, side by side.
+        pub pair: PairSettings,
+        /// The debug rays.
+        pub rays: RaySettings,
+        /// Normals of the meshes.
+        pub normals: NormalSettings,
+        /// The lights themselves, with their colours.
+        pub lights: bool,
+        /// Aperture, focus plane and field of view of the camera.
+        pub lens: bool,
+        /// Where moving things stand when the shutter opens and closes.
+        pub motion: bool,
+        /// The discs of blurred reflections and transmissions at the debug rays' hits.
+        #[reflect(@Label("Blur discs"))]
+        pub lobes: bool,
+        /// Where the samples of a pixel lie, as a 2-D inset.
+        pub pattern: PatternSettings,
+        /// No system draws more lines than this; what is left out is said.
+        #[reflect(@Quantity::within(1.0, 1e7, "").step(100.0), @Label("Most lines"))]
+        pub max_lines: u32,
+    }
 }
 
 impl Default for InspectSettings {
@@ -51,34 +56,48 @@ impl Default for InspectSettings {
     }
 }
 
-/// Which boxes, and how they look.
-#[derive(Reflect, Clone, Debug, PartialEq)]
-#[reflect(Default, Clone, PartialEq, Debug)]
-pub struct BoxSettings {
-    /// Draws them.
-    pub on: bool,
-    /// Of which form of the trees.
-    pub form: TreeForm,
-    /// Which ones.
-    pub choice: BoxChoice,
-    /// With `Levels`: the first level, the root's being 0.
-    pub from_level: u32,
-    /// With `Levels`: the last level.
-    pub to_level: u32,
-    /// With `Leaf`: which one, from 0, in the order of the leaves.
-    pub leaf: u32,
-    /// With `Path`: the triangle of `object` to which the path goes.
-    pub triangle: u32,
-    /// Only of the object with this `SceneId`; 0: of all.
-    pub object: u64,
-    /// Which trees.
-    pub trees: TreeChoice,
-    /// What the colours say.
-    pub color: BoxColor,
-    /// The plane that parts each drawn node's children.
-    pub split_planes: bool,
-    /// The triangles of drawn leaves.
-    pub triangles: bool,
+documented! {
+    /// Which boxes, and how they look.
+    #[derive(Reflect, Clone, Debug, PartialEq)]
+    #[reflect(Default, Clone, PartialEq, Debug)]
+    pub struct BoxSettings {
+        /// Boxes of the trees' nodes.
+        #[reflect(@Label("Draw"))]
+        pub on: bool,
+        /// Binary: as the builder made them, and as debug rays walk them; wide: up to eight children a node, through which
+        /// pictures are traced.
+        pub form: TreeForm,
+        /// A range of levels, one leaf, or the way to a triangle.
+        #[reflect(@Label("Which"))]
+        pub choice: BoxChoice,
+        /// The first level that is drawn; the root's is 0.
+        ///
+        /// With `Levels`.
+        pub from_level: u32,
+        /// The last level that is drawn.
+        ///
+        /// With `Levels`.
+        pub to_level: u32,
+        /// Which leaf, from 0, in the order in which the trees have them; A and S step.
+        ///
+        /// With `Leaf`.
+        pub leaf: u32,
+        /// Which triangle of the object, from 0, in the mesh's own order.
+        ///
+        /// With `Path`: to which the path goes.
+        pub triangle: u32,
+        /// Only of the object with this `SceneId`; 0: of all.
+        pub object: u64,
+        /// The one over the objects, those of the meshes, or both.
+        pub trees: TreeChoice,
+        /// What a box's colour says: dark is little, bright is much.
+        #[reflect(@Label("Colour"))]
+        pub color: BoxColor,
+        /// The plane between each drawn node's children, with its axis: x red, y green, z blue.
+        pub split_planes: bool,
+        /// The triangles of drawn leaves.
+        pub triangles: bool,
+    }
 }
 
 impl Default for BoxSettings {
@@ -100,18 +119,22 @@ impl Default for BoxSettings {
     }
 }
 
-/// Two trees over the same view: on its left the boxes, and what the debug rays visit, in the trees
-/// of one builder, on its right in those of another. What is traced stays what it is. The window
-/// shows them; where there is none nothing is drawn of them.
-#[derive(Reflect, Clone, Debug, PartialEq)]
-#[reflect(Default, Clone, PartialEq, Debug)]
-pub struct PairSettings {
-    /// Shows them, in place of the boxes and visits of the trees that are traced.
-    pub on: bool,
-    /// Whose trees are on the left.
-    pub left: Builder,
-    /// Whose trees are on the right.
-    pub right: Builder,
+documented! {
+    /// Two trees over the same view: on its left the boxes, and what the debug rays visit, in the trees
+    /// of one builder, on its right in those of another. What is traced stays what it is. The window
+    /// shows them; where there is none nothing is drawn of them.
+    #[derive(Reflect, Clone, Debug, PartialEq)]
+    #[reflect(Default, Clone, PartialEq, Debug)]
+    pub struct PairSettings {
+        /// The view's left half shows the boxes of one builder's trees, the right half another's; the picture is traced as
+        /// before.
+        #[reflect(@Label("Show"))]
+        pub on: bool,
+        /// Whose trees are on the left.
+        pub left: Builder,
+        /// Whose trees are on the right.
+        pub right: Builder,
+    }
 }
 
 impl Default for PairSettings {
@@ -124,89 +147,110 @@ impl Default for PairSettings {
     }
 }
 
-/// The forms that a tree has.
-#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[reflect(Default, Clone, PartialEq, Debug, Hash)]
-pub enum TreeForm {
-    /// Two children a node, as the builder made it.
-    #[default]
-    Binary,
-    /// Up to eight children a node: some of the binary form's nodes, the levels between them left out. Rays
-    /// are traced through it, those of pictures and debug rays. Its levels are drawn, by level or by visits.
-    Wide,
+documented! {
+    /// The forms that a tree has.
+    #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    #[reflect(Default, Clone, PartialEq, Debug, Hash)]
+    pub enum TreeForm {
+        /// Two children a node, as the builder made it.
+        #[default]
+        Binary,
+        /// Up to eight children a node, made of the binary form: what rays are traced through.
+        ///
+        /// Some of the binary form's nodes, the levels between them left out; rays of pictures and debug rays go through it.
+        /// Its levels are drawn, by level or by visits.
+        Wide,
+    }
 }
 
-/// Which boxes.
-#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[reflect(Default, Clone, PartialEq, Debug, Hash)]
-pub enum BoxChoice {
-    /// A range of levels.
-    #[default]
-    Levels,
-    /// One leaf, with its triangles.
-    Leaf,
-    /// From the root to the leaf that holds a triangle.
-    Path,
+documented! {
+    /// Which boxes.
+    #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    #[reflect(Default, Clone, PartialEq, Debug, Hash)]
+    pub enum BoxChoice {
+        /// All nodes from one level to another.
+        #[default]
+        Levels,
+        /// A single leaf, by its number, with its triangles.
+        #[reflect(@Label("One leaf"))]
+        Leaf,
+        /// From the root to the leaf that holds a triangle.
+        #[reflect(@Label("Way to a triangle"))]
+        Path,
+    }
 }
 
-/// Which trees, where there are two levels of them.
-#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[reflect(Default, Clone, PartialEq, Debug, Hash)]
-pub enum TreeChoice {
-    /// The one over the objects, and those of the meshes.
-    #[default]
-    Both,
-    /// The one over the objects alone (with one level: over all triangles).
-    Top,
-    /// Those of the meshes alone.
-    Meshes,
+documented! {
+    /// Which trees, where there are two levels of them.
+    #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    #[reflect(Default, Clone, PartialEq, Debug, Hash)]
+    pub enum TreeChoice {
+        /// The one over the objects, and those of the meshes.
+        #[default]
+        Both,
+        /// The one over the objects alone (with one level: over all triangles).
+        #[reflect(@Label("Over the objects"))]
+        Top,
+        /// Those of the meshes alone, whose leaves are triangles.
+        #[reflect(@Label("Of the meshes"))]
+        Meshes,
+    }
 }
 
-/// What a box's colour says.
-#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[reflect(Default, Clone, PartialEq, Debug, Hash)]
-pub enum BoxColor {
-    /// Its level, from the root's dark to the deepest drawn one's bright.
-    #[default]
-    Level,
-    /// Triangles of a leaf; inner nodes are grey.
-    LeafSize,
-    /// Its part of the tree's SAH cost.
-    Cost,
-    /// How often the debug rays entered it: nodes that are left out of the wide form never.
-    Visits,
+documented! {
+    /// What a box's colour says.
+    #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    #[reflect(Default, Clone, PartialEq, Debug, Hash)]
+    pub enum BoxColor {
+        /// How deep the node is: from the root's dark to the deepest drawn one's bright.
+        #[default]
+        Level,
+        /// How many triangles or objects a leaf holds; inner nodes are grey.
+        LeafSize,
+        /// What the node adds to the cost of a random ray.
+        #[reflect(@Label("SAH cost"))]
+        Cost,
+        /// How many of the debug ray's rays entered the node; never one that the wide form leaves out.
+        Visits,
+    }
 }
 
-/// Which rays, and what of them.
-#[derive(Reflect, Clone, Debug, PartialEq)]
-#[reflect(Default, Clone, PartialEq, Debug)]
-pub struct RaySettings {
-    /// Draws them.
-    pub on: bool,
-    /// From the camera.
-    pub camera: bool,
-    /// Mirrored, sharp or blurred.
-    pub mirror: bool,
-    /// Through transparent and translucent surfaces.
-    pub transmission: bool,
-    /// To point lights.
-    pub shadow: bool,
-    /// To points of area lights.
-    pub light_samples: bool,
-    /// Those that met nothing: in the colour of what they carry, or in red.
-    pub misses: MissColor,
-    /// No ray behind more surfaces than this, 0 to 1000.
-    pub max_depth: u32,
-    /// Boxes of the nodes that the drawn rays entered, white.
-    pub visited: bool,
-    /// Boxes that were hit but lay behind a nearer hit, red.
-    pub pruned: bool,
-    /// Outlines of the triangles that were hit.
-    pub hit_triangles: bool,
-    /// Normals at the hits.
-    pub hit_normals: bool,
-    /// Visited and pruned nodes of this ray only, by its index; 2^32 - 1: of all drawn rays.
-    pub nodes_of: u32,
+documented! {
+    /// Which rays, and what of them.
+    #[derive(Reflect, Clone, Debug, PartialEq)]
+    #[reflect(Default, Clone, PartialEq, Debug)]
+    pub struct RaySettings {
+        /// The debug rays: point at the picture and press R.
+        #[reflect(@Label("Draw"))]
+        pub on: bool,
+        /// From the camera.
+        pub camera: bool,
+        /// Mirrored, sharp or blurred.
+        pub mirror: bool,
+        /// Through transparent and translucent surfaces.
+        pub transmission: bool,
+        /// To point lights, in the colour that arrives.
+        pub shadow: bool,
+        /// To points of area lights.
+        pub light_samples: bool,
+        /// Those that met nothing: in the colour of what they carry, or in red.
+        pub misses: MissColor,
+        /// No ray behind more surfaces than this.
+        #[reflect(@Quantity::within(0.0, 1000.0, "").shown(0.0, 50.0), @Label("Bounces"))]
+        pub max_depth: u32,
+        /// Boxes of the nodes that the drawn rays entered, white.
+        #[reflect(@Label("Visited nodes"))]
+        pub visited: bool,
+        /// Boxes that were hit but lay behind a nearer hit, red.
+        #[reflect(@Label("Pruned nodes"))]
+        pub pruned: bool,
+        /// Outlines of the triangles that were hit.
+        pub hit_triangles: bool,
+        /// Normals at the hits.
+        pub hit_normals: bool,
+        /// Visited and pruned nodes of this ray only, by its index; 2^32 - 1: of all drawn rays.
+        pub nodes_of: u32,
+    }
 }
 
 impl Default for RaySettings {
@@ -229,31 +273,39 @@ impl Default for RaySettings {
     }
 }
 
-/// The colour of a ray that met nothing.
-#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[reflect(Default, Clone, PartialEq, Debug, Hash)]
-pub enum MissColor {
-    /// What it carries: the background's or the map's.
-    #[default]
-    Carried,
-    /// Red.
-    Red,
+documented! {
+    /// The colour of a ray that met nothing.
+    #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    #[reflect(Default, Clone, PartialEq, Debug, Hash)]
+    pub enum MissColor {
+        /// The light that the ray carries: the background's, or that of its picture.
+        #[default]
+        Carried,
+        /// Red, whatever the ray carries.
+        Red,
+    }
 }
 
-/// Normals of the meshes.
-#[derive(Reflect, Clone, Debug, PartialEq)]
-#[reflect(Default, Clone, PartialEq, Debug)]
-pub struct NormalSettings {
-    /// Draws them.
-    pub on: bool,
-    /// Between the vertices: 0 none, 1 one on each edge, 2 three on each edge and three inside.
-    pub between: u32,
-    /// Of the object with this `SceneId` only; 0: of all.
-    pub object: u64,
-    /// How long they are on the screen, in pixels.
-    pub length: f32,
-    /// Of those within a square of this many pixels only the nearest is drawn.
-    pub spacing: f32,
+documented! {
+    /// Normals of the meshes.
+    #[derive(Reflect, Clone, Debug, PartialEq)]
+    #[reflect(Default, Clone, PartialEq, Debug)]
+    pub struct NormalSettings {
+        /// Normals of the meshes.
+        #[reflect(@Label("Draw"))]
+        pub on: bool,
+        /// Between the vertices: 0 none, 1 one on each edge, 2 three on each edge and three inside.
+        #[reflect(@Quantity::slider(0.0, 2.0, ""))]
+        pub between: u32,
+        /// Of the object with this `SceneId` only; 0: of all.
+        pub object: u64,
+        /// How long they are on the screen, in pixels.
+        #[reflect(@Quantity::within(0.0, 1e4, "px").shown(1.0, 200.0))]
+        pub length: f32,
+        /// Of those within a square of this many pixels only the nearest is drawn.
+        #[reflect(@Quantity::within(0.0, 1e4, "px").shown(0.0, 100.0))]
+        pub spacing: f32,
+    }
 }
 
 impl Default for NormalSettings {
@@ -268,18 +320,23 @@ impl Default for NormalSettings {
     }
 }
 
-/// Which two numbers of each sample a point of the inset shows.
-#[derive(Reflect, Clone, Debug, PartialEq)]
-#[reflect(Default, Clone, PartialEq, Debug)]
-pub struct PatternSettings {
-    /// Draws it.
-    pub on: bool,
-    /// The number to the right.
-    pub x: Dimension,
-    /// The number downwards.
-    pub y: Dimension,
-    /// For `LightU` and `LightV`: the light's `SceneId`; 0 for the dome.
-    pub light: u64,
+documented! {
+    /// Which two numbers of each sample a point of the inset shows.
+    #[derive(Reflect, Clone, Debug, PartialEq)]
+    #[reflect(Default, Clone, PartialEq, Debug)]
+    pub struct PatternSettings {
+        /// Where the samples of the picked pixel lie.
+        #[reflect(@Label("Sample pattern"))]
+        pub on: bool,
+        /// The number of a sample that goes to the right.
+        #[reflect(@Label("Pattern across"))]
+        pub x: Dimension,
+        /// The number of a sample that goes down.
+        #[reflect(@Label("Pattern down"))]
+        pub y: Dimension,
+        /// For `LightU` and `LightV`: the light's `SceneId`; 0 for the dome.
+        pub light: u64,
+    }
 }
 
 impl Default for PatternSettings {
@@ -293,29 +350,31 @@ impl Default for PatternSettings {
     }
 }
 
-/// One of the numbers of a sample, as its camera ray and its first hit use them.
-#[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq, Hash, Default, serde::Serialize)]
-#[reflect(Default, Clone, PartialEq, Debug, Hash)]
-pub enum Dimension {
-    /// The place in the pixel, from the left.
-    #[default]
-    PixelX,
-    /// The place in the pixel, from the top.
-    PixelY,
-    /// The first number of the place on the lens.
-    LensU,
-    /// The second one.
-    LensV,
-    /// When the shutter is open.
-    Time,
-    /// The first of the numbers that choose a point of a light.
-    LightU,
-    /// The second one.
-    LightV,
-    /// The first number of the place in a blurred reflection's disc.
-    GlossU,
-    /// The second one.
-    GlossV,
+documented! {
+    /// One of the numbers of a sample, as its camera ray and its first hit use them.
+    #[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq, Hash, Default, serde::Serialize)]
+    #[reflect(Default, Clone, PartialEq, Debug, Hash)]
+    pub enum Dimension {
+        /// The place in the pixel, from the left.
+        #[default]
+        PixelX,
+        /// The place in the pixel, from the top.
+        PixelY,
+        /// The first number of the place on the lens.
+        LensU,
+        /// The second number of the place on the lens.
+        LensV,
+        /// When the shutter is open.
+        Time,
+        /// The first of the numbers that choose a point of a light.
+        LightU,
+        /// The second of the numbers that choose a point of a light.
+        LightV,
+        /// The first number of the place in a blurred reflection's disc.
+        GlossU,
+        /// The second number of the place in a blurred reflection's disc.
+        GlossV,
+    }
 }
 
 impl Dimension {

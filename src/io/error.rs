@@ -172,10 +172,10 @@ pub enum Problem {
     OutOfRange {
         what: String,
         value: String,
-        range: &'static str,
+        range: String,
     },
     #[error("RenderSettings: {0}")]
-    Setting(crate::scene::SettingProblem),
+    Setting(crate::scene::RangeProblem),
     #[error("material `{name}` is in none of the MTL files named above this line")]
     UnknownMaterial { name: String },
     #[error("holds no triangles")]

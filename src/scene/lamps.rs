@@ -1,6 +1,7 @@
 //! The four kinds of light. Colour times `intensity` is the strength; its unit is that of the kind.
 
 use super::SceneId;
+use super::schema::{Label, NotAbove, Quantity, documented};
 use bevy::camera::visibility::Visibility;
 use bevy::color::LinearRgba;
 use bevy::ecs::{component::Component, reflect::ReflectComponent};
@@ -8,18 +9,23 @@ use bevy::math::Vec3;
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 use bevy::transform::components::Transform;
 
-/// A light at the entity's position. Strength: radiant intensity, W/sr.
-#[derive(Component, Reflect, Clone, Debug, PartialEq)]
-#[reflect(Component, Default, Clone, PartialEq, Debug)]
-#[type_path = "glassbox::scene"]
-#[require(Transform, Visibility, SceneId)]
-pub struct PointLamp {
-    /// Linear RGB.
-    pub color: LinearRgba,
-    /// Multiplies the colour.
-    pub intensity: f32,
-    /// Limits the light to a cone around the entity's local -Z: a spot.
-    pub cone: Option<Cone>,
+documented! {
+    /// A light at the entity's position. Strength: radiant intensity, W/sr.
+    #[derive(Component, Reflect, Clone, Debug, PartialEq)]
+    #[reflect(Component, Default, Clone, PartialEq, Debug)]
+    #[type_path = "glassbox::scene"]
+    #[require(Transform, Visibility, SceneId)]
+    pub struct PointLamp {
+        /// The light's colour, in linear RGB; the intensity multiplies it.
+        #[reflect(@Quantity::FACTOR, @Label("Colour"))]
+        pub color: LinearRgba,
+        /// Radiant intensity: what reaches a surface falls with the distance squared.
+        #[reflect(@Quantity::at_least_0("W/sr"))]
+        pub intensity: f32,
+        /// Only within a cone around the light's -Z axis.
+        #[reflect(@Label("Spot"))]
+        pub cone: Option<Cone>,
+    }
 }
 
 impl Default for PointLamp {
@@ -32,14 +38,18 @@ impl Default for PointLamp {
     }
 }
 
-/// Where a spot fades: full strength inside the inner half-angle, none outside the outer one.
-#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
-#[reflect(Default, Clone, PartialEq, Debug)]
-pub struct Cone {
-    /// Half-angle in radians, 0 ≤ inner ≤ outer.
-    pub inner: f32,
-    /// Half-angle in radians, at most π/2.
-    pub outer: f32,
+documented! {
+    /// Where a spot fades: full strength inside the inner half-angle, none outside the outer one.
+    #[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+    #[reflect(Default, Clone, PartialEq, Debug)]
+    pub struct Cone {
+        /// Half-angle of the cone that has full strength, in radians.
+        #[reflect(@Quantity::degrees(0.0, 90.0), @NotAbove("outer"), @Label("Full within"))]
+        pub inner: f32,
+        /// Half-angle outside of which there is no light, in radians; between the two it fades.
+        #[reflect(@Quantity::degrees(0.0, 90.0), @Label("None outside"))]
+        pub outer: f32,
+    }
 }
 
 impl Default for Cone {
@@ -51,21 +61,29 @@ impl Default for Cone {
     }
 }
 
-/// Light from infinitely far, along the entity's local -Z. Strength: irradiance on a facing surface, W/m².
-#[derive(Component, Reflect, Clone, Debug, PartialEq)]
-#[reflect(Component, Default, Clone, PartialEq, Debug)]
-#[type_path = "glassbox::scene"]
-#[require(Transform, Visibility, SceneId)]
-pub struct DirectionalLamp {
-    /// Linear RGB.
-    pub color: LinearRgba,
-    /// Multiplies the colour.
-    pub intensity: f32,
-    /// Angle under which the source is seen, in radians, 0 to π: a disc of directions, all equally bright. 0 gives hard
-    /// shadows, the sun has 0.0093; π is half of the sky.
-    pub angular_diameter: f32,
-    /// Shadow rays at the first hit, 1–1000; used where `angular_diameter` > 0.
-    pub samples: u32,
+documented! {
+    /// Light from infinitely far, along the entity's local -Z. Strength: irradiance on a facing surface, W/m².
+    #[derive(Component, Reflect, Clone, Debug, PartialEq)]
+    #[reflect(Component, Default, Clone, PartialEq, Debug)]
+    #[type_path = "glassbox::scene"]
+    #[require(Transform, Visibility, SceneId)]
+    pub struct DirectionalLamp {
+        /// The light's colour, in linear RGB; the intensity multiplies it.
+        #[reflect(@Quantity::FACTOR, @Label("Colour"))]
+        pub color: LinearRgba,
+        /// Irradiance on a surface that faces it, the same at every distance.
+        #[reflect(@Quantity::at_least_0("W/m²"))]
+        pub intensity: f32,
+        /// Angle under which the source is seen: 0 gives hard shadows, the sun has 0.53°, 180° is half of the sky.
+        ///
+        /// In radians: a disc of directions, all equally bright.
+        #[reflect(@Quantity::degrees(0.0, 180.0))]
+        pub angular_diameter: f32,
+        /// Shadow rays to it at the first hit of each pixel, shared by the pixel's samples: more makes its soft shadows less
+        /// noisy.
+        #[reflect(@Quantity::SAMPLES)]
+        pub samples: u32,
+    }
 }
 
 impl Default for DirectionalLamp {
@@ -79,20 +97,27 @@ impl Default for DirectionalLamp {
     }
 }
 
-/// A glowing line. Strength: radiant intensity per length, W/(sr·m), the same in all directions.
-#[derive(Component, Reflect, Clone, Debug, PartialEq)]
-#[reflect(Component, Default, Clone, PartialEq, Debug)]
-#[type_path = "glassbox::scene"]
-#[require(Transform, Visibility, SceneId)]
-pub struct SegmentLamp {
-    /// Both ends in the entity's space.
-    pub ends: [Vec3; 2],
-    /// Linear RGB at each end, linear between.
-    pub colors: [LinearRgba; 2],
-    /// Multiplies the colours.
-    pub intensity: f32,
-    /// Shadow rays at the first hit, 1–1000.
-    pub samples: u32,
+documented! {
+    /// A glowing line. Strength: radiant intensity per length, W/(sr·m), the same in all directions.
+    #[derive(Component, Reflect, Clone, Debug, PartialEq)]
+    #[reflect(Component, Default, Clone, PartialEq, Debug)]
+    #[type_path = "glassbox::scene"]
+    #[require(Transform, Visibility, SceneId)]
+    pub struct SegmentLamp {
+        /// Metres, in the light's own space; its ends have handles in the view too.
+        #[reflect(@Quantity::COORDINATE, @Label("End"))]
+        pub ends: [Vec3; 2],
+        /// The colour at this end, linear between.
+        #[reflect(@Quantity::FACTOR, @Label("Colour"))]
+        pub colors: [LinearRgba; 2],
+        /// Radiant intensity of each metre, the same in all directions.
+        #[reflect(@Quantity::at_least_0("W/(sr·m)"))]
+        pub intensity: f32,
+        /// Shadow rays to it at the first hit of each pixel, shared by the pixel's samples: more makes its soft shadows less
+        /// noisy.
+        #[reflect(@Quantity::SAMPLES)]
+        pub samples: u32,
+    }
 }
 
 impl Default for SegmentLamp {
@@ -106,26 +131,36 @@ impl Default for SegmentLamp {
     }
 }
 
-/// A glowing parallelogram. Strength: radiance, W/(sr·m²), with the emitter's cosine.
-#[derive(Component, Reflect, Clone, Debug, PartialEq)]
-#[reflect(Component, Default, Clone, PartialEq, Debug)]
-#[type_path = "glassbox::scene"]
-#[require(Transform, Visibility, SceneId)]
-pub struct ParallelogramLamp {
-    /// One corner in the entity's space.
-    pub corner: Vec3,
-    /// The two edges that leave it. The front, which shines, is where `edges[0] × edges[1]` points.
-    pub edges: [Vec3; 2],
-    /// Linear RGB at `corner`, `corner + edges[0]`, `corner + edges[1]` and the corner opposite, bilinear between.
-    pub colors: [LinearRgba; 4],
-    /// Multiplies the colours.
-    pub intensity: f32,
-    /// Whether the back shines too.
-    pub two_sided: bool,
-    /// Whether camera and mirror rays see it.
-    pub visible: bool,
-    /// Shadow rays at the first hit, 1–1000.
-    pub samples: u32,
+documented! {
+    /// A glowing parallelogram. Strength: radiance, W/(sr·m²), with the emitter's cosine.
+    #[derive(Component, Reflect, Clone, Debug, PartialEq)]
+    #[reflect(Component, Default, Clone, PartialEq, Debug)]
+    #[type_path = "glassbox::scene"]
+    #[require(Transform, Visibility, SceneId)]
+    pub struct ParallelogramLamp {
+        /// Metres, in the light's own space; its corners have handles in the view too.
+        #[reflect(@Quantity::COORDINATE)]
+        pub corner: Vec3,
+        /// From the corner to its neighbour; it shines to where A × B points.
+        #[reflect(@Quantity::COORDINATE, @Label("Edge"))]
+        pub edges: [Vec3; 2],
+        /// The colours at the corner, at the ends of edges A and B, and at the corner opposite, bilinear between.
+        #[reflect(@Quantity::FACTOR, @Label("Colour"))]
+        pub colors: [LinearRgba; 4],
+        /// Radiance: a larger light of the same radiance gives more light.
+        #[reflect(@Quantity::at_least_0("W/(sr·m²)"))]
+        pub intensity: f32,
+        /// Whether the back shines too.
+        #[reflect(@Label("Two-sided"))]
+        pub two_sided: bool,
+        /// Whether the camera and mirrors see the light itself.
+        #[reflect(@Label("Visible to camera"))]
+        pub visible: bool,
+        /// Shadow rays to it at the first hit of each pixel, shared by the pixel's samples: more makes its soft shadows less
+        /// noisy.
+        #[reflect(@Quantity::SAMPLES)]
+        pub samples: u32,
+    }
 }
 
 impl Default for ParallelogramLamp {

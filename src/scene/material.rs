@@ -1,3 +1,4 @@
+use super::schema::{Label, Quantity, documented};
 use bevy::asset::Handle;
 use bevy::color::LinearRgba;
 use bevy::ecs::entity::{Entity, MapEntities};
@@ -5,43 +6,55 @@ use bevy::ecs::{component::Component, reflect::ReflectComponent, reflect::Reflec
 use bevy::image::Image;
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 
-/// A Phong material, named as in OBJ/MTL.
-///
-/// On an entity with a mesh it is that object's own material. On an entity without one it is a
-/// shared material, which objects name with [`UsesMaterial`].
-#[derive(Component, Reflect, Clone, Debug, PartialEq)]
-#[reflect(Component, Default, Clone, PartialEq, Debug)]
-#[type_path = "glassbox::scene"]
-pub struct Phong {
-    /// kd, in [0, 1].
-    pub diffuse: LinearRgba,
-    /// ks, in [0, 1]: the highlight.
-    pub specular: LinearRgba,
-    /// km, in [0, 1]: how much of what the mirror direction shows is reflected.
-    pub mirror: LinearRgba,
-    /// s ≥ 1: how narrow the highlight is; a glossy reflection's disc has radius 1/s.
-    pub shininess: f32,
-    /// d in [0, 1]: 1 is opaque.
-    pub opacity: f32,
-    /// ke ≥ 0, radiance that the surface sends out by itself. It is seen; it does not light others.
-    pub emission: LinearRgba,
-    /// What becomes of `opacity`, its map's and the vertices' included.
-    pub alpha: Alpha,
-    /// How far the normal map bends: multiplies what leaves the normal, 1 as it is painted.
-    pub normal_scale: f32,
-    /// A picture that multiplies `diffuse`.
-    pub diffuse_map: Option<TextureSource>,
-    /// A picture that multiplies `specular`.
-    pub specular_map: Option<TextureSource>,
-    /// A picture that multiplies `mirror`.
-    pub mirror_map: Option<TextureSource>,
-    /// A picture that multiplies `emission`.
-    pub emission_map: Option<TextureSource>,
-    /// A picture whose brightness multiplies `opacity`. Pictures of colours are cut out by it: where their
-    /// colours are mixed, each counts by its opacity.
-    pub opacity_map: Option<TextureSource>,
-    /// A picture of normals in tangent space, green upwards: they take the place of the mesh's.
-    pub normal_map: Option<TextureSource>,
+documented! {
+    /// A Phong material, named as in OBJ/MTL.
+    ///
+    /// On an entity with a mesh it is that object's own material. On an entity without one it is a
+    /// shared material, which objects name with [`UsesMaterial`].
+    #[derive(Component, Reflect, Clone, Debug, PartialEq)]
+    #[reflect(Component, Default, Clone, PartialEq, Debug)]
+    #[type_path = "glassbox::scene"]
+    pub struct Phong {
+        /// kd: the colour of the body, lit from all sides alike.
+        #[reflect(@Quantity::PART)]
+        pub diffuse: LinearRgba,
+        /// ks: the highlight's colour, of lights alone; black is matt.
+        #[reflect(@Quantity::PART)]
+        pub specular: LinearRgba,
+        /// km: how much of its surroundings it reflects, and in which colour; black is no mirror.
+        #[reflect(@Quantity::PART)]
+        pub mirror: LinearRgba,
+        /// s: how narrow the highlight is; a glossy reflection's disc has radius 1/s.
+        #[reflect(@Quantity::within(1.0, f32::MAX as f64, "").shown(1.0, 10_000.0).logarithmic())]
+        pub shininess: f32,
+        /// d: 1 is opaque; below it light goes on through the surface, tinted.
+        #[reflect(@Quantity::PART)]
+        pub opacity: f32,
+        /// ke: radiance that the surface sends out by itself; it is seen, but lights nothing.
+        #[reflect(@Quantity::FACTOR)]
+        pub emission: LinearRgba,
+        /// What becomes of the opacity, its map's and the vertices' included.
+        pub alpha: Alpha,
+        /// How far the normal map bends normals: 1 as it is painted, below 0 inwards.
+        #[reflect(@Quantity::within(f32::MIN as f64, f32::MAX as f64, ""))]
+        pub normal_scale: f32,
+        /// A picture that multiplies the diffuse colour.
+        pub diffuse_map: Option<TextureSource>,
+        /// A picture that multiplies the highlight's colour.
+        pub specular_map: Option<TextureSource>,
+        /// A picture that multiplies what is mirrored.
+        pub mirror_map: Option<TextureSource>,
+        /// A picture that multiplies the emission.
+        pub emission_map: Option<TextureSource>,
+        /// A picture whose brightness multiplies the opacity.
+        ///
+        /// Pictures of colours are cut out by it: where their colours are mixed, each counts by its opacity.
+        pub opacity_map: Option<TextureSource>,
+        /// A picture of normals: red to its right, green to its upper edge, blue outwards.
+        ///
+        /// In tangent space; they take the place of the mesh's.
+        pub normal_map: Option<TextureSource>,
+    }
 }
 
 impl Default for Phong {
@@ -65,20 +78,23 @@ impl Default for Phong {
     }
 }
 
-/// What a surface's opacity means.
-#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq)]
-#[reflect(Default, Clone, PartialEq, Debug)]
-pub enum Alpha {
-    /// The part that is not let through.
-    #[default]
-    Blend,
-    /// The surface is there where the opacity, filtered, is at least the cutoff, and is not where it is less.
-    Mask {
-        /// At least 0. Above 1 nothing is there.
-        cutoff: f32,
-    },
-    /// Nothing: the surface is there.
-    Opaque,
+documented! {
+    /// What a surface's opacity means.
+    #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq)]
+    #[reflect(Default, Clone, PartialEq, Debug)]
+    pub enum Alpha {
+        /// What is not opaque lets light through in part.
+        #[default]
+        Blend,
+        /// There where the opacity, filtered, reaches the cutoff, and nothing elsewhere.
+        Mask {
+            /// The opacity from which on the surface is there; above 1 nothing is.
+            #[reflect(@Quantity::within(0.0, f32::MAX as f64, "").shown(0.0, 1.0))]
+            cutoff: f32,
+        },
+        /// Opacity and its map mean nothing.
+        Opaque,
+    }
 }
 
 /// Which picture of a [`Phong`].
@@ -172,20 +188,24 @@ impl PhongMap {
     }
 }
 
-/// A picture file, or one that a generated scene brings along, and how a material reads it.
-#[derive(Reflect, Clone, Debug, Default, PartialEq, Eq, Hash)]
-#[reflect(Default, Clone, PartialEq, Debug, Hash)]
-pub struct TextureSource {
-    /// Relative to the scene file's folder, with `/` between its parts. `model.glb#texture0` is a
-    /// picture inside a glTF file; `builtin:checker` is one that Glassbox generates. Where no such file is there, `%` and
-    /// two hexadecimal digits are a byte of a name; `\`, `:` and bytes that are no UTF-8 are written so.
-    pub path: String,
-    /// What there is beyond its left and right edge. The environment's own map goes around.
-    pub wrap_u: Wrap,
-    /// The same beyond its upper and lower edge.
-    pub wrap_v: Wrap,
-    /// What there is between its pixels.
-    pub filter: MapFilter,
+documented! {
+    /// A picture file, or one that a generated scene brings along, and how a material reads it.
+    #[derive(Reflect, Clone, Debug, Default, PartialEq, Eq, Hash)]
+    #[reflect(Default, Clone, PartialEq, Debug, Hash)]
+    pub struct TextureSource {
+        /// Relative to the scene file's folder, with `/` between its parts. `model.glb#texture0` is a
+        /// picture inside a glTF file; `builtin:checker` is one that Glassbox generates. Where no such file is there, `%` and
+        /// two hexadecimal digits are a byte of a name; `\`, `:` and bytes that are no UTF-8 are written so.
+        pub path: String,
+        /// What there is beyond the picture's left and right edge.
+        ///
+        /// The environment's own map goes around.
+        pub wrap_u: Wrap,
+        /// What there is beyond the picture's upper and lower edge.
+        pub wrap_v: Wrap,
+        /// What there is between the picture's pixels.
+        pub filter: MapFilter,
+    }
 }
 
 impl TextureSource {
@@ -198,30 +218,35 @@ impl TextureSource {
     }
 }
 
-/// What there is of a picture beyond its edge.
-#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[reflect(Default, Clone, PartialEq, Debug, Hash)]
-pub enum Wrap {
-    /// The picture again.
-    #[default]
-    Repeat,
-    /// Its outermost pixels.
-    Clamp,
-    /// The picture again, every second time reversed.
-    Mirror,
+documented! {
+    /// What there is of a picture beyond its edge.
+    #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    #[reflect(Default, Clone, PartialEq, Debug, Hash)]
+    pub enum Wrap {
+        /// The picture again.
+        #[default]
+        Repeat,
+        /// The picture's outermost pixels.
+        Clamp,
+        /// The picture again, every second time reversed.
+        Mirror,
+    }
 }
 
-/// What there is between the pixels of a map.
-#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[reflect(Default, Clone, PartialEq, Debug, Hash)]
-pub enum MapFilter {
-    /// What the render's `texture_filter` says.
-    #[default]
-    Setting,
-    /// Hard pixels, whatever the setting is.
-    Nearest,
-    /// What the setting says, but never hard pixels: those become bilinear.
-    Linear,
+documented! {
+    /// What there is between the pixels of a map.
+    #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+    #[reflect(Default, Clone, PartialEq, Debug, Hash)]
+    pub enum MapFilter {
+        /// What the render's texture filter says.
+        #[default]
+        #[reflect(@Label("As the render"))]
+        Setting,
+        /// Hard pixels, whatever the render's texture filter is.
+        Nearest,
+        /// What the render's texture filter says, but never hard pixels: those become bilinear.
+        Linear,
+    }
 }
 
 /// Label of an [`Image`] of linear floats that were sRGB-encoded in 16 bits: Bevy has no format for such

@@ -22,8 +22,10 @@ mod identity;
 mod lamps;
 mod material;
 mod mesh_source;
+pub mod schema;
 mod setting_table;
 mod settings;
+mod tree_settings;
 
 pub use camera::{Lens, Motion, Projection, SceneCamera};
 pub use identity::{NotTraced, SceneId};
@@ -32,11 +34,13 @@ pub use material::{
     Alpha, MapFilter, Phong, PhongMap, PhongMaps, SRGB_16_BITS, TextureSource, UsesMaterial, Wrap,
 };
 pub use mesh_source::{MeshSource, Shape};
-pub use setting_table::{SETTINGS, Setting, SettingProblem, SettingRange, setting_problems};
+pub use schema::{Property, Quantity, RangeProblem, range_problems};
+pub use setting_table::SETTINGS;
 pub use settings::{
-    Bloom, Builder, Environment, EnvironmentMap, Features, Levels, Lighting, Output, PixelSampling,
-    Preset, RenderSettings, Sampling, Sequence, TextureFilter, TreeSettings, ViewTransform,
+    Bloom, Environment, EnvironmentMap, Features, Lighting, Output, PixelSampling, RenderSettings,
+    Sampling, Sequence, TextureFilter, ViewTransform,
 };
+pub use tree_settings::{Builder, Levels, Preset, TreeSettings};
 
 use bevy::app::{App, Plugin};
 

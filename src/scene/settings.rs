@@ -3,31 +3,45 @@
 //! `--set key=value` reaches every field by its reflected path, for example
 //! `features.shadows=false` or `tree.builder=Sah`.
 
-use super::TextureSource;
+use super::schema::{Label, MostPixels, Needs, Quantity, documented};
+use super::{TextureSource, TreeSettings};
 use bevy::asset::Handle;
 use bevy::color::LinearRgba;
 use bevy::ecs::{reflect::ReflectResource, resource::Resource};
 use bevy::image::Image;
 use bevy::math::UVec2;
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
+use std::f64::consts::PI;
 
-/// What a ray carries that meets nothing.
-#[derive(Resource, Reflect, Clone, Debug, PartialEq)]
-#[reflect(Resource, Default, Clone, PartialEq, Debug)]
-#[type_path = "glassbox::scene"]
-pub struct Environment {
-    /// Used where there is no map, or where `RenderSettings::features.environment` is off.
-    pub background: LinearRgba,
-    /// An equirectangular picture, +Y up, its middle column at -Z.
-    pub map: Option<TextureSource>,
-    /// Turns the map about the y axis, in radians.
-    pub rotation: f32,
-    /// Multiplies the map, ≥ 0.
-    pub intensity: f32,
-    /// Whether it lights the scene, from everywhere: a dome. Not with Classic lighting.
-    pub lights: bool,
-    /// Shadow rays at the first hit, 1–1000; used where it lights.
-    pub samples: u32,
+documented! {
+    /// What a ray carries that meets nothing.
+    #[derive(Resource, Reflect, Clone, Debug, PartialEq)]
+    #[reflect(Resource, Default, Clone, PartialEq, Debug)]
+    #[type_path = "glassbox::scene"]
+    pub struct Environment {
+        /// What is seen where there is nothing, and no picture.
+        ///
+        /// Used where there is no map, or where `RenderSettings::features.environment` is off.
+        #[reflect(@Quantity::FACTOR)]
+        pub background: LinearRgba,
+        /// A panorama around the scene: background, reflections and, if it is to, light.
+        ///
+        /// An equirectangular picture, +Y up, its middle column at -Z.
+        #[reflect(@Label("Picture"))]
+        pub map: Option<TextureSource>,
+        /// Turns the picture about the vertical axis, in radians.
+        #[reflect(@Quantity::ANY.unit("°").shown(-PI, PI))]
+        pub rotation: f32,
+        /// Multiplies the picture.
+        #[reflect(@Quantity::FACTOR)]
+        pub intensity: f32,
+        /// Light comes from all of it, with shadows: a sky, suns in a picture. Not with Classic lighting.
+        #[reflect(@Label("Lights the scene"))]
+        pub lights: bool,
+        /// Shadow rays to it at the first hit of each pixel, shared by the pixel's samples: more makes its light less noisy.
+        #[reflect(@Quantity::SAMPLES, @Needs::on("lights"))]
+        pub samples: u32,
+    }
 }
 
 impl Default for Environment {
@@ -49,42 +63,56 @@ impl Default for Environment {
 #[type_path = "glassbox::scene"]
 pub struct EnvironmentMap(pub Option<Handle<Image>>);
 
-/// How the scene is rendered.
-#[derive(Resource, Reflect, Clone, Debug, PartialEq)]
-#[reflect(Resource, Default, Clone, PartialEq, Debug)]
-#[type_path = "glassbox::scene"]
-pub struct RenderSettings {
-    /// Pixels, 1 to 65,536 each and at most 2^28 together.
-    pub size: UVec2,
-    /// Samples of each pixel, 1 to 2^20; effects may ask for more. The most a pixel gets where
-    /// `sampling` has an error or a time to stop at.
-    pub spp: u32,
-    /// n of n × n jittered samples of each pixel, 1–16: they ask for n² samples.
-    pub jitter: u32,
-    /// Chooses the random numbers; the same seed gives the same picture.
-    pub seed: u32,
-    /// Where the random numbers come from.
-    pub sequence: Sequence,
-    /// When to stop, and which pixels get more samples.
-    pub sampling: Sampling,
-    /// Where in the pixel samples lie.
-    pub pixel: PixelSampling,
-    /// What a light's colour means.
-    pub lighting: Lighting,
-    /// Mirror bounces, 0–50.
-    pub max_depth: u32,
-    /// The switches.
-    pub features: Features,
-    /// Rays of a glossy reflection at the first hit, 1–1000.
-    pub gloss_samples: u32,
-    /// Rays through a translucent surface at the first hit, 1–1000.
-    pub translucency_samples: u32,
-    /// How texels are read.
-    pub texture_filter: TextureFilter,
-    /// How the trees are built.
-    pub tree: TreeSettings,
-    /// What is done after tracing.
-    pub output: Output,
+/// A whole number on a slider.
+pub(super) const fn whole(least: u32, most: u32) -> Quantity {
+    Quantity::slider(least as f64, most as f64, "")
+}
+
+documented! {
+    /// How the scene is rendered.
+    #[derive(Resource, Reflect, Clone, Debug, PartialEq)]
+    #[reflect(Resource, Default, Clone, PartialEq, Debug)]
+    #[type_path = "glassbox::scene"]
+    pub struct RenderSettings {
+        /// Pixels of the picture.
+        #[reflect(@Quantity::within(1.0, 65_536.0, "").step(1.0), @MostPixels(1 << 28))]
+        pub size: UVec2,
+        /// Samples of each pixel (effects may ask for more); the most with an error or a time to stop at.
+        #[reflect(@whole(1, 1 << 20).logarithmic(), @Label("Samples (spp)"))]
+        pub spp: u32,
+        /// n of n × n jittered samples of each pixel: they ask for n² samples.
+        #[reflect(@whole(1, 16), @Label("Jitter n×n"))]
+        pub jitter: u32,
+        /// Chooses the random numbers; the same seed gives the same picture.
+        #[reflect(@Quantity::within(0.0, u32::MAX as f64, "").step(0.25))]
+        pub seed: u32,
+        /// Where the random numbers come from.
+        pub sequence: Sequence,
+        /// When to stop, and which pixels get more samples.
+        pub sampling: Sampling,
+        /// Where in the pixel samples lie.
+        #[reflect(@Label("In the pixel"))]
+        pub pixel: PixelSampling,
+        /// What a light's colour means.
+        pub lighting: Lighting,
+        /// Mirror bounces.
+        #[reflect(@whole(0, 50), @Label("Mirror depth"), @Needs::on("features.mirrors"))]
+        pub max_depth: u32,
+        /// The switches.
+        pub features: Features,
+        /// Rays of a glossy reflection at the first hit.
+        #[reflect(@Quantity::SAMPLES, @Needs::on("features.glossy"))]
+        pub gloss_samples: u32,
+        /// Rays through a translucent surface at the first hit.
+        #[reflect(@Quantity::SAMPLES, @Label("Rays through"), @Needs::on("features.translucency"))]
+        pub translucency_samples: u32,
+        /// How texels are read.
+        pub texture_filter: TextureFilter,
+        /// How the trees are built.
+        pub tree: TreeSettings,
+        /// What is done after tracing.
+        pub output: Output,
+    }
 }
 
 impl Default for RenderSettings {
@@ -109,33 +137,37 @@ impl Default for RenderSettings {
     }
 }
 
-/// Where the random numbers come from.
-#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[reflect(Default, Clone, PartialEq, Debug)]
-pub enum Sequence {
-    /// Owen-scrambled Sobol points: the error falls faster than one over the root of the samples.
-    #[default]
-    Sobol,
-    /// Independent random numbers, to compare with.
-    Independent,
-    /// Random numbers in the cells of the `jitter` × `jitter` grid, pair by pair and each cell once: what
-    /// distributed ray tracing began with (Cook, Porter, Carpenter 1984), to compare with.
-    Jittered,
+documented! {
+    /// Where the random numbers come from.
+    #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+    #[reflect(Default, Clone, PartialEq, Debug)]
+    pub enum Sequence {
+        /// Owen-scrambled Sobol points: the error falls faster than one over the root of the samples.
+        #[default]
+        Sobol,
+        /// Independent random numbers, to compare with.
+        Independent,
+        /// Random numbers in the cells of the `jitter` × `jitter` grid, pair by pair and each cell once: what
+        /// distributed ray tracing began with (Cook, Porter, Carpenter 1984), to compare with.
+        Jittered,
+    }
 }
 
-/// When a render stops before it has `spp` samples of each pixel, and in which order they come.
-#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
-#[reflect(Default, Clone, PartialEq, Debug)]
-pub struct Sampling {
-    /// With an error or a time to stop at: samples go first where they lower the error most. Without,
-    /// every pixel gets the same.
-    pub adaptive: bool,
-    /// Stops when the estimated relative error of the picture has fallen to this, 0 to 1000: 0.01 is
-    /// one percent; 0 does not stop.
-    pub error: f32,
-    /// Stops after this many seconds of tracing, 0 to 10^7, but not before each pixel has a sample;
-    /// 0 does not stop.
-    pub time: f32,
+documented! {
+    /// When a render stops before it has `spp` samples of each pixel, and in which order they come.
+    #[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+    #[reflect(Default, Clone, PartialEq, Debug)]
+    pub struct Sampling {
+        /// With an error or a time to stop at: samples go first where they lower the error most; off: every pixel gets the
+        /// same.
+        pub adaptive: bool,
+        /// Relative error of the picture to stop at, as it is estimated: 0.01 is one percent; 0 does not stop.
+        #[reflect(@Quantity::within(0.0, 1000.0, "").step(0.001), @Label("Stop at error"))]
+        pub error: f32,
+        /// Seconds of tracing to stop after, but not before each pixel has a sample; 0 does not stop.
+        #[reflect(@Quantity::within(0.0, 1e7, "s").step(0.1), @Label("Stop after"))]
+        pub time: f32,
+    }
 }
 
 impl Default for Sampling {
@@ -148,61 +180,76 @@ impl Default for Sampling {
     }
 }
 
-/// Where in the pixel samples lie.
-#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[reflect(Default, Clone, PartialEq, Debug)]
-pub enum PixelSampling {
-    /// Spread over the pixel's area: smooth edges.
-    #[default]
-    Area,
-    /// All of them at its centre.
-    Center,
-    /// All of them at its lower left corner, as programs do that count `ndc = 2x/W - 1`.
-    Corner,
+documented! {
+    /// Where in the pixel samples lie.
+    #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+    #[reflect(Default, Clone, PartialEq, Debug)]
+    pub enum PixelSampling {
+        /// Spread over the pixel: smooth edges.
+        #[default]
+        Area,
+        /// All at the pixel's centre: jagged edges.
+        Center,
+        /// All at the pixel's lower left corner, as programs do that count `ndc = 2x/W - 1`.
+        Corner,
+    }
 }
 
-/// What a light's colour means.
-#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[reflect(Default, Clone, PartialEq, Debug)]
-pub enum Lighting {
-    /// Radiometric: inverse square, cosine at emitters, lights add up.
-    #[default]
-    Physical,
-    /// As simple Phong ray tracers do it, not physical: a light's colour arrives unattenuated, lights are
-    /// averaged, normals are taken as the mesh gives them, textures are not decoded, emission is ignored.
-    Classic,
+documented! {
+    /// What a light's colour means.
+    #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+    #[reflect(Default, Clone, PartialEq, Debug)]
+    pub enum Lighting {
+        /// Radiometric: inverse square, cosine at emitters, lights add up.
+        #[default]
+        Physical,
+        /// Light colours are not attenuated, and lights are averaged: simple, not physical.
+        ///
+        /// As simple Phong ray tracers do it: normals are taken as the mesh gives them, textures are not decoded, emission is
+        /// ignored.
+        Classic,
+    }
 }
 
-/// The switches of the picture. What is off costs nothing.
-#[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq)]
-#[reflect(Default, Clone, PartialEq, Debug)]
-pub struct Features {
-    /// Phong shading; off: the value is kd.
-    pub shading: bool,
-    /// ks > 0 reflects.
-    pub mirrors: bool,
-    /// Shadow rays; off: every light arrives.
-    pub shadows: bool,
-    /// Area lights as areas; off: each is one point at its middle.
-    pub soft_shadows: bool,
-    /// Smooth normals; off: each triangle's own.
-    pub normal_interpolation: bool,
-    /// Diffuse and opacity maps.
-    pub textures: bool,
-    /// The environment map; off: the background colour.
-    pub environment: bool,
-    /// Samples of an area light grow with its size: `samples` is per square metre (or metre).
-    pub scale_light_samples: bool,
-    /// Mirrors blur by their shininess; off: they are sharp.
-    pub glossy: bool,
-    /// Opacity below 1 lets light through; off: everything is opaque.
-    pub transparency: bool,
-    /// Transmitted rays blur by the shininess; off: they go straight on.
-    pub translucency: bool,
-    /// The camera's lens; off: a pinhole.
-    pub lens: bool,
-    /// Entities and the camera move while the shutter is open; off: they stand as at t = 0.
-    pub motion: bool,
+documented! {
+    /// The switches of the picture. What is off costs nothing.
+    #[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq)]
+    #[reflect(Default, Clone, PartialEq, Debug)]
+    pub struct Features {
+        /// Phong shading; off: the value is kd.
+        pub shading: bool,
+        /// km > 0 reflects.
+        pub mirrors: bool,
+        /// Shadow rays; off: every light arrives.
+        pub shadows: bool,
+        /// Area lights as areas; off: each is one point at its middle.
+        #[reflect(@Needs::on("features.shadows"))]
+        pub soft_shadows: bool,
+        /// Smooth normals; off: each triangle's own.
+        #[reflect(@Label("Smooth normals"))]
+        pub normal_interpolation: bool,
+        /// The maps of materials.
+        pub textures: bool,
+        /// The environment map; off: the background colour.
+        #[reflect(@Label("Environment map"))]
+        pub environment: bool,
+        /// Samples of an area light grow with its size: `samples` is per square metre (or metre).
+        #[reflect(@Label("Scale by size"), @Needs::on("features.soft_shadows"))]
+        pub scale_light_samples: bool,
+        /// Mirrors blur by their shininess; off: they are sharp.
+        #[reflect(@Needs::on("features.mirrors"))]
+        pub glossy: bool,
+        /// Opacity below 1 lets light through; off: everything is opaque.
+        pub transparency: bool,
+        /// Transmitted rays blur by the shininess; off: they go straight on.
+        #[reflect(@Needs::on("features.transparency"))]
+        pub translucency: bool,
+        /// The camera's lens; off: a pinhole.
+        pub lens: bool,
+        /// Entities and the camera move while the shutter is open; off: they stand as at t = 0.
+        #[reflect(@Label("Motion blur"))]
+        pub motion: bool,
+    }
 }
 
 impl Default for Features {
@@ -225,129 +272,61 @@ impl Default for Features {
     }
 }
 
-/// How texels are read.
-#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[reflect(Default, Clone, PartialEq, Debug)]
-pub enum TextureFilter {
-    /// The texel that the point falls into.
-    Nearest,
-    /// Between the four nearest.
-    #[default]
-    Bilinear,
-    /// Bilinear, between the two sizes of the picture whose texels are as large as the ray is wide.
-    Mipmap,
-}
-
-/// How the trees are built. The picture does not depend on it.
-#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
-#[reflect(Default, Clone, PartialEq, Debug)]
-pub struct TreeSettings {
-    /// Who puts the triangles together.
-    pub builder: Builder,
-    /// Two levels (a tree per mesh and one over the objects), or one tree over all triangles.
-    pub levels: Levels,
-    /// Levels of `Median` and `Sah` trees, 1–64; a node at the last level is a leaf whatever its size.
-    pub max_depth: u32,
-    /// Triangles of a leaf, 1–255; `Median` and `Sah` may exceed it only at `max_depth`.
-    pub max_leaf_size: u32,
-    /// Bins per axis of `Sah`, 2–64.
-    pub bins: u32,
-    /// How much time `Ploc` takes for a better tree.
-    pub preset: Preset,
-}
-
-impl Default for TreeSettings {
-    fn default() -> Self {
-        Self {
-            builder: Builder::default(),
-            levels: Levels::default(),
-            max_depth: 64,
-            max_leaf_size: 8,
-            bins: 16,
-            preset: Preset::default(),
-        }
+documented! {
+    /// How texels are read.
+    #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+    #[reflect(Default, Clone, PartialEq, Debug)]
+    pub enum TextureFilter {
+        /// The texel that the point falls into: squares when near.
+        Nearest,
+        /// Between the four nearest texels.
+        #[default]
+        Bilinear,
+        /// Trilinear: from smaller copies of the texture, by the width of the ray; no flicker far away.
+        Mipmap,
     }
 }
 
-impl TreeSettings {
-    /// A simple textbook tree, to compare with: median split, at most ten levels, one tree for all.
-    pub const SIMPLE: Self = Self {
-        builder: Builder::Median,
-        levels: Levels::One,
-        max_depth: 10,
-        max_leaf_size: 8,
-        bins: 16,
-        preset: Preset::Medium,
-    };
+documented! {
+    /// What is done with the linear picture after tracing. None of it traces a ray.
+    #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq)]
+    #[reflect(Default, Clone, PartialEq, Debug)]
+    pub struct Output {
+        /// Light that bright places spill over their surroundings; it comes before the exposure.
+        pub bloom: Bloom,
+        /// In stops: the picture is multiplied by 2^exposure.
+        #[reflect(@Quantity::within(-64.0, 64.0, "EV").step(0.02))]
+        pub exposure: f32,
+        /// From scene-referred values to a screen's.
+        pub view_transform: ViewTransform,
+    }
 }
 
-/// How a tree is built.
-#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[reflect(Default, Clone, PartialEq, Debug, Hash)]
-pub enum Builder {
-    /// No tree: every ray tests every triangle.
-    None,
-    /// Half of the triangles on either side, along the longest axis.
-    Median,
-    /// Binned surface area heuristic.
-    #[default]
-    Sah,
-    /// obvhs: parallel locally-ordered clustering merges neighbours bottom-up, then reinsertion
-    /// improves the tree.
-    Ploc,
-}
-
-/// How many levels of trees there are.
-#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[reflect(Default, Clone, PartialEq, Debug, Hash)]
-pub enum Levels {
-    /// One tree over every triangle of every object.
-    One,
-    /// A tree per mesh, shared by the objects that use it, and one over the objects.
-    #[default]
-    Two,
-}
-
-/// obvhs' own presets, from quick to build to quick to trace.
-#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[reflect(Default, Clone, PartialEq, Debug, Hash)]
-#[expect(missing_docs, reason = "the names say it all")]
-pub enum Preset {
-    Fastest,
-    Fast,
-    #[default]
-    Medium,
-    Slow,
-    VerySlow,
-}
-
-/// What is done with the linear picture after tracing. None of it traces a ray.
-#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq)]
-#[reflect(Default, Clone, PartialEq, Debug)]
-pub struct Output {
-    /// Light that bright places spill over their surroundings; it comes before the exposure.
-    pub bloom: Bloom,
-    /// In stops: the picture is multiplied by 2^exposure.
-    pub exposure: f32,
-    /// From scene-referred values to a screen's.
-    pub view_transform: ViewTransform,
-}
-
-/// Light that bright places spill over their surroundings, as in an eye or a lens.
-///
-/// Pixels whose largest component exceeds `threshold`, through a Gaussian of `sigma` pixels, times
-/// `intensity`, are added to the linear picture.
-#[derive(Reflect, Clone, Copy, Debug, PartialEq)]
-#[reflect(Default, Clone, PartialEq, Debug)]
-pub struct Bloom {
-    /// Off: the picture stays as it was traced.
-    pub enabled: bool,
-    /// 0–1, in the linear picture's unit.
-    pub threshold: f32,
-    /// 0–1: the part of the bright pixels' light that is added again around them.
-    pub intensity: f32,
-    /// Standard deviation of the Gaussian in pixels, 0–1000; 0 does not blur.
-    pub sigma: f32,
+documented! {
+    /// Light that bright places spill over their surroundings, as in an eye or a lens.
+    ///
+    /// Pixels whose largest component exceeds `threshold`, through a Gaussian of `sigma` pixels, times
+    /// `intensity`, are added to the linear picture.
+    #[derive(Reflect, Clone, Copy, Debug, PartialEq)]
+    #[reflect(Default, Clone, PartialEq, Debug)]
+    pub struct Bloom {
+        /// Bright places spill light over their surroundings; off: the picture stays as it was traced.
+        #[reflect(@Label("Bloom"))]
+        pub enabled: bool,
+        /// Linear value above which a pixel is bright.
+        #[reflect(@Quantity::PART, @Label("Bloom threshold"), @Needs::on("output.bloom.enabled"))]
+        pub threshold: f32,
+        /// The part of the bright pixels' light that is added again around them.
+        #[reflect(@Quantity::PART, @Label("Bloom intensity"), @Needs::on("output.bloom.enabled"))]
+        pub intensity: f32,
+        /// Width of the blur, the Gaussian's standard deviation, in pixels; 0 does not blur.
+        #[reflect(
+            @Quantity::within(0.0, 1000.0, "px").step(0.1),
+            @Label("Bloom sigma"),
+            @Needs::on("output.bloom.enabled")
+        )]
+        pub sigma: f32,
+    }
 }
 
 impl Default for Bloom {
@@ -361,16 +340,22 @@ impl Default for Bloom {
     }
 }
 
-/// From scene-referred values to a screen's.
-#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[reflect(Default, Clone, PartialEq, Debug)]
-pub enum ViewTransform {
-    /// Clamped to [0, 1], nothing else.
-    Raw,
-    /// Clamped, then the sRGB curve.
-    #[default]
-    Srgb,
-    /// Troy Sobotka's AgX: 16.5 stops are fitted into the screen's range, and what is very bright
-    /// loses its colour instead of being clipped in one channel after the other.
-    AgX,
+documented! {
+    /// From scene-referred values to a screen's.
+    #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+    #[reflect(Default, Clone, PartialEq, Debug)]
+    pub enum ViewTransform {
+        /// Clamped to [0, 1], nothing else.
+        Raw,
+        /// Clamped, then the sRGB curve.
+        #[reflect(@Label("sRGB"))]
+        #[default]
+        Srgb,
+        /// Fits very bright light into the screen's range without hard clipping.
+        ///
+        /// Troy Sobotka's AgX: 16.5 stops are fitted, and what is very bright loses its colour instead of being clipped in one
+        /// channel after the other.
+        #[reflect(@Label("AgX"))]
+        AgX,
+    }
 }

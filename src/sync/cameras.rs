@@ -2,7 +2,8 @@ use super::motions::{WorldMotion, WorldMotions};
 use super::problem::Fault;
 use super::reading::{Reader, Switched};
 use super::traced::Draft;
-use crate::scene::{Lens, Projection, RenderSettings, SceneCamera, SceneId};
+use crate::scene::schema::quantity_of;
+use crate::scene::{Lens, Projection, Quantity, RenderSettings, SceneCamera, SceneId};
 use crate::trace::{Camera, Optics};
 use bevy::ecs::change_detection::DetectChanges;
 use bevy::ecs::entity::Entity;
@@ -13,7 +14,6 @@ use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Query, Res, ResMut};
 use bevy::math::Vec3;
 use bevy::transform::components::GlobalTransform;
-use std::f32::consts::PI;
 
 /// The cameras of the scene, sorted by `SceneId`.
 #[derive(Resource, Default)]
@@ -121,15 +121,16 @@ fn read_camera(
         Some(motion) => reader.motion(motion)?,
         None => WorldMotion::default(),
     };
+    let allows = |path, number: f32| quantity_of::<SceneCamera>(path).allows(number.into());
     let projection = match camera.projection {
-        Projection::Perspective { fov_y } if fov_y > 0.0 && fov_y < PI => camera.projection,
+        Projection::Perspective { fov_y } if allows("projection.fov_y", fov_y) => camera.projection,
         Projection::Perspective { .. } => {
             reader.note(Fault::Degenerate {
                 field: "field of view (which must lie between 0 and pi)",
             });
             return None;
         }
-        Projection::Orthographic { height } if height > 0.0 && height.is_finite() => {
+        Projection::Orthographic { height } if allows("projection.height", height) => {
             camera.projection
         }
         Projection::Orthographic { .. } => {
@@ -152,8 +153,13 @@ fn read_camera(
         reader.note(Fault::Degenerate { field: "direction" });
         return None;
     };
-    let open = reader.number("shutter's opening", camera.shutter_open, 0.0..=1.0)?;
-    let close = reader.number("shutter's closing", camera.shutter_close, open..=1.0)?;
+    let opening = quantity_of::<SceneCamera>("shutter_open");
+    let open = reader.number("shutter's opening", camera.shutter_open, opening)?;
+    let closing = Quantity {
+        least: open.into(),
+        ..quantity_of::<SceneCamera>("shutter_close")
+    };
+    let close = reader.number("shutter's closing", camera.shutter_close, closing)?;
     let mut optics = Optics {
         shutter: [open, close],
         velocity: motion.velocity,
@@ -161,13 +167,11 @@ fn read_camera(
         ..Optics::default()
     };
     if let Some(lens) = lens {
+        let aperture = quantity_of::<Lens>("aperture_radius");
         optics.aperture_radius =
-            reader.number("aperture radius", lens.aperture_radius, 0.0..=f32::MAX)?;
-        optics.focus_distance = reader.number(
-            "focus distance",
-            lens.focus_distance,
-            f32::MIN_POSITIVE..=f32::INFINITY,
-        )?;
+            reader.number("aperture radius", lens.aperture_radius, aperture)?;
+        let focus = quantity_of::<Lens>("focus_distance");
+        optics.focus_distance = reader.number("focus distance", lens.focus_distance, focus)?;
     }
     Some(Camera {
         position: transform.translation(),
@@ -184,6 +188,7 @@ mod tests {
     use super::*;
     use bevy::math::{Affine3A, Mat3, Quat};
     use bevy::transform::components::Transform;
+    use std::f32::consts::PI;
 
     fn read(transform: GlobalTransform, camera: &SceneCamera) -> (Option<Camera>, usize) {
         let mut problems = Vec::new();

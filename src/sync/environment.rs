@@ -3,6 +3,7 @@ use super::reading::Reader;
 use super::texture_data::TextureFault;
 use super::textures::TracedTextures;
 use super::traced::Draft;
+use crate::scene::schema::quantity_of;
 use crate::scene::{Environment, EnvironmentMap, RenderSettings, SceneId};
 use crate::trace;
 use bevy::ecs::change_detection::DetectChanges;
@@ -57,14 +58,15 @@ pub(super) fn sync_environment(
         }
         map.texture.clone()
     });
+    let of = quantity_of::<Environment>;
     let new = trace::Environment {
-        background: reader.color("background", environment.background, f32::MAX),
+        background: reader.color("background", environment.background, of("background")),
         map,
         rotation: reader
-            .number("rotation", environment.rotation, f32::MIN..=f32::MAX)
+            .number("rotation", environment.rotation, of("rotation"))
             .unwrap_or(0.0),
         intensity: reader
-            .number("intensity", environment.intensity, 0.0..=f32::MAX)
+            .number("intensity", environment.intensity, of("intensity"))
             .unwrap_or(1.0),
         lights: environment.lights,
         samples: reader.samples(environment.samples),

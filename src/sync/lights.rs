@@ -2,7 +2,10 @@ use super::motions::WorldMotions;
 use super::problem::Fault;
 use super::reading::{Reader, Switched};
 use super::traced::Draft;
-use crate::scene::{DirectionalLamp, ParallelogramLamp, PointLamp, SceneId, SegmentLamp};
+use crate::scene::schema::quantity_of;
+use crate::scene::{
+    Cone, DirectionalLamp, ParallelogramLamp, PointLamp, Quantity, SceneId, SegmentLamp,
+};
 use crate::trace::{
     DirectionalLight, Lights, MovingLight, ParallelogramLight, PointLight, SegmentLight, SpotCone,
     SunDisc,
@@ -17,7 +20,6 @@ use bevy::ecs::query::{Changed, Or, With};
 use bevy::ecs::system::{Query, Res, ResMut, SystemParam};
 use bevy::math::Vec3;
 use bevy::transform::components::GlobalTransform;
-use std::f32::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
 type LampQuery<'w, 's, L> = Query<
@@ -152,8 +154,13 @@ fn point(lamp: &PointLamp, transform: &GlobalTransform, reader: &mut Reader) -> 
     let cone = match lamp.cone {
         None => None,
         Some(cone) => {
-            let outer = reader.number("cone's outer angle", cone.outer, 0.0..=FRAC_PI_2)?;
-            let inner = reader.number("cone's inner angle", cone.inner, 0.0..=outer)?;
+            let outer = quantity_of::<Cone>("outer");
+            let outer = reader.number("cone's outer angle", cone.outer, outer)?;
+            let inner = Quantity {
+                most: outer.into(),
+                ..quantity_of::<Cone>("inner")
+            };
+            let inner = reader.number("cone's inner angle", cone.inner, inner)?;
             if outer == 0.0 {
                 reader.note(Fault::Degenerate {
                     field: "cone's outer angle",
@@ -176,7 +183,8 @@ fn directional(
     transform: &GlobalTransform,
     reader: &mut Reader,
 ) -> Option<DirectionalLight> {
-    let diameter = reader.number("angular diameter", lamp.angular_diameter, 0.0..=PI)?;
+    let diameter = quantity_of::<DirectionalLamp>("angular_diameter");
+    let diameter = reader.number("angular diameter", lamp.angular_diameter, diameter)?;
     Some(DirectionalLight {
         id: reader.id.0,
         to_light: backward(transform, reader)?,

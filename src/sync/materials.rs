@@ -4,6 +4,7 @@ use super::reading::{Reader, Switched};
 use super::texture_data::TextureFault;
 use super::textures::TracedTextures;
 use super::traced::Draft;
+use crate::scene::schema::quantity_of;
 use crate::scene::{Alpha, Phong, PhongMap, PhongMaps, SceneId, UsesMaterial};
 use crate::trace::{Map, Material, Object, Texture};
 use bevy::asset::AssetId;
@@ -174,7 +175,7 @@ fn material(
     let alpha = match phong.alpha {
         Alpha::Mask { cutoff } => Alpha::Mask {
             cutoff: reader
-                .number("alpha cutoff", cutoff, 0.0..=f32::MAX)
+                .number("alpha cutoff", cutoff, quantity_of::<Phong>("alpha.cutoff"))
                 .unwrap_or(0.5),
         },
         other => other,
@@ -221,20 +222,21 @@ fn material(
             is_cut_out: cut_out.is_some(),
         });
     }
+    let of = quantity_of::<Phong>;
     Material {
-        diffuse: reader.color("diffuse", phong.diffuse, 1.0),
-        specular: reader.color("specular", phong.specular, 1.0),
-        mirror: reader.color("mirror", phong.mirror, 1.0),
+        diffuse: reader.color("diffuse", phong.diffuse, of("diffuse")),
+        specular: reader.color("specular", phong.specular, of("specular")),
+        mirror: reader.color("mirror", phong.mirror, of("mirror")),
         shininess: reader
-            .number("shininess", phong.shininess, 1.0..=f32::MAX)
+            .number("shininess", phong.shininess, of("shininess"))
             .unwrap_or(1.0),
         opacity: reader
-            .number("opacity", phong.opacity, 0.0..=1.0)
+            .number("opacity", phong.opacity, of("opacity"))
             .unwrap_or(1.0),
-        emission: reader.color("emission", phong.emission, f32::MAX),
+        emission: reader.color("emission", phong.emission, of("emission")),
         alpha,
         normal_scale: reader
-            .number("normal scale", phong.normal_scale, f32::MIN..=f32::MAX)
+            .number("normal scale", phong.normal_scale, of("normal_scale"))
             .unwrap_or(1.0),
         maps: list,
     }

@@ -177,6 +177,9 @@ pub(super) fn sync_meshes(
 
 /// The tree settings as the builders take them, moved into their ranges.
 pub(super) fn build_options(tree: &scene::TreeSettings) -> BuildOptions {
+    let within = |path, number: u32| {
+        scene::schema::quantity_of::<scene::TreeSettings>(path).nearest(number.into()) as u32
+    };
     BuildOptions {
         builder: match tree.builder {
             scene::Builder::None => bvh::Builder::None,
@@ -188,9 +191,9 @@ pub(super) fn build_options(tree: &scene::TreeSettings) -> BuildOptions {
             scene::Levels::One => bvh::Levels::One,
             scene::Levels::Two => bvh::Levels::Two,
         },
-        max_depth: tree.max_depth.clamp(1, 64),
-        max_leaf_size: tree.max_leaf_size.clamp(1, 255),
-        bins: tree.bins.clamp(2, 64),
+        max_depth: within("max_depth", tree.max_depth),
+        max_leaf_size: within("max_leaf_size", tree.max_leaf_size),
+        bins: within("bins", tree.bins),
         preset: match tree.preset {
             scene::Preset::Fastest => bvh::Preset::Fastest,
             scene::Preset::Fast => bvh::Preset::Fast,

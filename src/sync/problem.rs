@@ -1,6 +1,6 @@
 use super::{MeshFault, TextureFault};
 use crate::bvh::SingularTransform;
-use crate::scene::{RenderSettings, SceneId, SettingProblem, setting_problems};
+use crate::scene::{RangeProblem, RenderSettings, SceneId, range_problems};
 use bevy::ecs::name::Name;
 use bevy::math::Vec3;
 
@@ -91,7 +91,7 @@ pub enum Fault {
     LeftOut(String),
     /// A render setting is out of range.
     #[error("{0}")]
-    Setting(SettingProblem),
+    Setting(RangeProblem),
 }
 
 impl SyncProblem {
@@ -104,7 +104,7 @@ impl SyncProblem {
     }
 
     pub(super) fn of_settings(settings: &RenderSettings) -> Vec<Self> {
-        setting_problems(settings)
+        range_problems(settings)
             .into_iter()
             .map(|problem| Self {
                 subject: "settings".into(),

@@ -5,7 +5,7 @@ use super::motions::WorldMotion;
 use super::problem::{Fault, SyncProblem};
 use super::texture_data::Replaced;
 use crate::bvh::REACH;
-use crate::scene::SceneId;
+use crate::scene::{Quantity, SceneId};
 use bevy::color::LinearRgba;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::lifecycle::RemovedComponents;
@@ -57,18 +57,13 @@ impl Reader<'_> {
         }
     }
 
-    /// The number, moved into [least, most]; `None` where it is NaN.
-    pub fn number(
-        &mut self,
-        field: &'static str,
-        value: f32,
-        range: std::ops::RangeInclusive<f32>,
-    ) -> Option<f32> {
+    /// The number, moved into its range; `None` where it is NaN.
+    pub fn number(&mut self, field: &'static str, value: f32, range: Quantity) -> Option<f32> {
         if value.is_nan() {
             self.note(Fault::NotFinite { field });
             return None;
         }
-        let used = value.clamp(*range.start(), *range.end());
+        let used = range.nearest(f64::from(value)) as f32;
         if used != value {
             self.note(Fault::OutOfRange { field, value, used });
         }
@@ -97,14 +92,14 @@ impl Reader<'_> {
         Some(strength.max(Vec3::ZERO))
     }
 
-    /// A colour whose channels are moved into [0, most]; black where it is not finite.
-    pub fn color(&mut self, field: &'static str, color: LinearRgba, most: f32) -> Vec3 {
+    /// A colour whose channels are moved into their range; black where it is not finite.
+    pub fn color(&mut self, field: &'static str, color: LinearRgba, range: Quantity) -> Vec3 {
         let color = Vec3::new(color.red, color.green, color.blue);
         if !color.is_finite() {
             self.note(Fault::NotFinite { field });
             return Vec3::ZERO;
         }
-        let used = color.clamp(Vec3::ZERO, Vec3::splat(most));
+        let used = color.map(|channel| range.nearest(channel.into()) as f32);
         if let Some(axis) = (0..3).find(|&axis| used[axis] != color[axis]) {
             self.note(Fault::OutOfRange {
                 field,
@@ -128,9 +123,9 @@ impl Reader<'_> {
         Some(WorldMotion { velocity, samples })
     }
 
-    /// A number of samples, 1 to 1000.
+    /// A number of samples, moved into the range that all of them have.
     pub fn samples(&mut self, samples: u32) -> u32 {
-        let used = samples.clamp(1, 1000);
+        let used = Quantity::SAMPLES.nearest(samples.into()) as u32;
         if used != samples {
             self.note(Fault::OutOfRange {
                 field: "samples",

@@ -196,8 +196,8 @@ fn scenes_are_listed_one_a_line() {
 fn help_lists_every_setting_and_the_version_is_the_packages() {
     let folder = tempfile::tempdir().unwrap();
     let help = succeeds(folder.path(), &["render", "--help"]);
-    for setting in SETTINGS {
-        assert!(help.contains(setting.path), "{} is missing", setting.path);
+    for setting in SETTINGS.iter() {
+        assert!(help.contains(&setting.path), "{} is missing", setting.path);
     }
     let version = succeeds(folder.path(), &["--version"]);
     assert_eq!(

@@ -2,6 +2,7 @@
 
 use super::question::{Purpose, Question, take};
 use super::{Document, dialog_native};
+use crate::editor::notice::Notices;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use std::path::PathBuf;
@@ -75,7 +76,24 @@ fn ask_for_path(world: &mut World, purpose: Purpose, suggestion: PathBuf) {
     world.resource_mut::<Document>().question = Some(Question::Path {
         purpose,
         suggestion,
+        refused: None,
     });
+}
+
+/// Opening, importing or saving has failed: asks for another path, beginning with the one that was given; where none was
+/// it is said in a notice.
+pub(super) fn refuse(world: &mut World, why: String) {
+    let mut document = world.resource_mut::<Document>();
+    match document.given.take() {
+        Some((purpose, suggestion)) => {
+            document.question = Some(Question::Path {
+                purpose,
+                suggestion,
+                refused: Some(why),
+            });
+        }
+        None => world.resource_mut::<Notices>().fault(why),
+    }
 }
 
 /// What a path is likely to begin with.
@@ -117,6 +135,6 @@ pub(super) fn take_choices(world: &mut World) {
     match choice {
         Ok(Some(path)) => take(world, purpose, &path, Some(&path)),
         _ if was_short => type_instead(world, purpose),
-        _ => world.resource_mut::<Document>().then = None,
+        _ => world.resource_mut::<Document>().give_up(),
     }
 }

@@ -8,6 +8,7 @@ use crate::editor::notice::Notices;
 use crate::editor::preferences::Preferences;
 use crate::editor::render_job::RenderJob;
 use crate::editor::selection::Selection;
+use crate::editor::texts::path_text;
 use crate::io::{
     OpenOptions, Problem, SceneFiles, SceneSource, has_changed, open, open_empty, save,
 };
@@ -38,7 +39,10 @@ pub(super) fn perform_now(world: &mut World, task: FileTask) {
             finish_opening(world, "Untitled".into(), None);
         }
         FileTask::Open(path) => open_file(world, &path, false),
-        FileTask::Import(path) => edits::step_import(world, &path),
+        FileTask::Import(path) => match edits::import(world, &path) {
+            Ok(()) => world.resource_mut::<Document>().give_up(),
+            Err(error) => dialog::refuse(world, error.to_string()),
+        },
         FileTask::SaveAs(path) => save_to(world, &path),
         FileTask::Quit => {
             let job = world.get_resource::<RenderJob>();
@@ -112,7 +116,7 @@ pub(in crate::editor) fn open_file(world: &mut World, path: &Path, allow_outside
             {
                 preferences.forget(path);
             }
-            world.resource_mut::<Notices>().fault(error.to_string());
+            dialog::refuse(world, error.to_string());
         }
     }
 }
@@ -154,21 +158,27 @@ pub(super) fn save_to(world: &mut World, path: &Path) {
 pub(super) fn write_to(world: &mut World, path: &Path) {
     world.resource_mut::<Gesture>().end();
     note_state_now(world);
-    let then = world.resource_mut::<Document>().then.take();
     let notes = match save(world, path) {
         Ok(notes) => notes,
         Err(error) => {
-            world.resource_mut::<Notices>().fault(error.to_string());
+            let mut document = world.resource_mut::<Document>();
+            // Another path may do, and then goes on what waited.
+            if document.given.is_none() {
+                document.then = None;
+            }
+            dialog::refuse(world, error.to_string());
             return;
         }
     };
+    let then = world.resource_mut::<Document>().then.take();
+    world.resource_mut::<Document>().given = None;
     let name = path
         .file_name()
         .map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let is_scene = is_scene(path);
     let mut notices = world.resource_mut::<Notices>();
     let verb = if is_scene { "Saved" } else { "Exported" };
-    notices.tell(format!("{verb} {}", path.display()));
+    notices.tell(format!("{verb} {}", path_text(path)));
     notices.notes(&name, notes.lines());
     if !is_scene {
         return;

@@ -59,6 +59,8 @@ pub struct Document {
     unsaved: bool,
     /// What was waiting for the scene to be saved.
     then: Option<FileTask>,
+    /// The path that was given last, while nothing has come of it.
+    given: Option<(Purpose, PathBuf)>,
     /// Counts the scenes that were opened.
     scene: u64,
 }
@@ -72,6 +74,7 @@ impl Default for Document {
             saved: None,
             unsaved: false,
             then: None,
+            given: None,
             scene: 0,
         }
     }
@@ -101,7 +104,12 @@ impl Document {
         self.path = path.map(|path| std::path::absolute(&path).unwrap_or(path));
         self.saved = Some(state);
         self.unsaved = false;
-        self.then = None;
+        self.give_up();
+    }
+
+    /// Nothing is waited for any more.
+    fn give_up(&mut self) {
+        (self.then, self.given) = (None, None);
     }
 }
 

@@ -34,6 +34,8 @@ pub enum Question {
         purpose: Purpose,
         /// What to begin with.
         suggestion: PathBuf,
+        /// Why the path that was given before did not do.
+        refused: Option<String>,
     },
     /// A native dialog is open, or should be. Answers: `No` asks for a path to type instead, `Cancel`.
     Waiting {
@@ -118,7 +120,7 @@ pub fn answer(world: &mut World, answer: Answer) {
         (Question::Waiting { purpose }, Answer::No) => dialog::type_instead(world, purpose),
         (Question::Waiting { .. }, Answer::Cancel) => {
             dialog::give_up(world);
-            world.resource_mut::<Document>().then = None;
+            world.resource_mut::<Document>().give_up();
         }
         (Question::Replace { then, .. }, Answer::Yes) => perform_now(world, then),
         (Question::Changed { file }, Answer::Yes) => files::write_to(world, &file),
@@ -131,15 +133,17 @@ pub fn answer(world: &mut World, answer: Answer) {
         (Question::Rendering { .. }, Answer::Yes) => files::quit(world),
         (Question::Recover(found), Answer::Yes) => recovery::recover(world, &found),
         (Question::Recover(found), Answer::No) => found.delete(),
-        (_, Answer::Cancel) => world.resource_mut::<Document>().then = None,
+        (_, Answer::Cancel) => world.resource_mut::<Document>().give_up(),
         // An answer to another question.
         (question, _) => world.resource_mut::<Document>().question = Some(question),
     }
 }
 
-/// Goes on with a path that was chosen or typed. The desktop's own dialog has asked whether `asked` may be replaced.
+/// Goes on with a path that was chosen or typed; where that fails it is asked for again. The desktop's own dialog has
+/// asked whether `asked` may be replaced.
 pub(super) fn take(world: &mut World, purpose: Purpose, path: &Path, asked: Option<&Path>) {
     let task = chosen(purpose, path);
+    world.resource_mut::<Document>().given = Some((purpose, path.to_path_buf()));
     let FileTask::SaveAs(file) = &task else {
         return files::request(world, task);
     };
@@ -261,6 +265,38 @@ mod tests {
             };
             assert_eq!(file, about.map(at), "{chosen}");
         }
+    }
+
+    #[test]
+    fn where_a_path_does_not_do_it_is_asked_for_again_with_what_was_typed() {
+        let mut app = headless_editor();
+        app.update();
+        let world = app.world_mut();
+        crate::editor::document::adopt(world, "nothing", None);
+        for (purpose, path) in [
+            (Purpose::Open, "/no/such.scn.ron"),
+            (Purpose::Import, "/no/such.obj"),
+            (Purpose::SaveAs, "/no/such/folder/a.scn.ron"),
+        ] {
+            world.resource_mut::<Document>().question = Some(Question::Path {
+                purpose,
+                suggestion: PathBuf::new(),
+                refused: None,
+            });
+            let path = PathBuf::from(path);
+            answer(world, Answer::Path(path.clone()));
+            let asked = world.resource::<Document>().question.clone();
+            let again = matches!(&asked, Some(Question::Path { purpose: of, suggestion, refused: Some(why) })
+                if (*of, suggestion) == (purpose, &path) && !why.is_empty());
+            assert!(again, "{purpose:?}: {asked:?}");
+            assert!(world.resource::<Notices>().is_empty(), "it is said there");
+            answer(world, Answer::Cancel);
+            assert_eq!(world.resource::<Document>().question, None);
+        }
+        // Without a dialog it is said in a notice, of another file too.
+        perform_now(world, FileTask::Open("/no/such.scn.ron".into()));
+        assert_eq!(world.resource::<Document>().question, None);
+        assert!(!world.resource::<Notices>().is_empty());
     }
 
     #[test]

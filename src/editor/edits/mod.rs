@@ -15,7 +15,5 @@ pub use index::{SceneIndex, scene_entity};
 pub use names::{name_of, rename, unique_name};
 pub use parents::{reparent, roots_of};
 pub use plugin::EditsPlugin;
-pub(in crate::editor) use plugin::{
-    select, step, step_add, step_import, step_rename, step_reparent,
-};
+pub(in crate::editor) use plugin::{import, select, step, step_add, step_rename, step_reparent};
 pub use remove::{delete, set_visible};

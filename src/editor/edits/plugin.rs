@@ -9,6 +9,7 @@ use crate::editor::command::{AddCommands, Command, Over, State, commands};
 use crate::editor::history::{Gesture, History, commit, redo, undo};
 use crate::editor::notice::Notices;
 use crate::editor::selection::{Escaped, Selection};
+use crate::io::FileError;
 use crate::scene::SceneId;
 use bevy::app::{App, Plugin};
 use bevy::camera::visibility::Visibility;
@@ -203,11 +204,6 @@ pub(in crate::editor) fn step_reparent(
     });
 }
 
-/// Adds a model's content to the scene, and selects it.
-pub(in crate::editor) fn step_import(world: &mut World, file: &Path) {
-    step(world, |world| add_file(world, file));
-}
-
 fn step_paste(world: &mut World) -> Option<String> {
     let clipboard = world.resource::<Clipboard>().clone();
     match paste(world, &clipboard) {
@@ -253,23 +249,29 @@ fn step_hide(world: &mut World) -> Option<String> {
     Some(name)
 }
 
-fn add_file(world: &mut World, file: &Path) -> Option<String> {
-    match add_model(world, file) {
-        Ok((root, imported)) => {
-            let name = file
-                .file_name()
-                .unwrap_or(file.as_os_str())
-                .to_string_lossy();
-            let mut notices = world.resource_mut::<Notices>();
-            notices.notes(&name, imported.notes.lines());
-            select(world, root.into_iter().collect());
-            Some(format!("Import {name}"))
-        }
+/// Adds a model's content to the scene, as a step, and selects it.
+pub(in crate::editor) fn import(world: &mut World, file: &Path) -> Result<(), FileError> {
+    let mut result = Ok(());
+    step(world, |world| match add_file(world, file) {
+        Ok(name) => Some(name),
         Err(error) => {
-            world.resource_mut::<Notices>().fault(error.to_string());
+            result = Err(error);
             None
         }
-    }
+    });
+    result
+}
+
+fn add_file(world: &mut World, file: &Path) -> Result<String, FileError> {
+    let (root, imported) = add_model(world, file)?;
+    let name = file
+        .file_name()
+        .unwrap_or(file.as_os_str())
+        .to_string_lossy();
+    let mut notices = world.resource_mut::<Notices>();
+    notices.notes(&name, imported.notes.lines());
+    select(world, root.into_iter().collect());
+    Ok(format!("Import {name}"))
 }
 
 /// Selects these, as far as they are entities of the scene, and no others.

@@ -160,10 +160,10 @@ impl Step {
                 (Ok(a), Ok(b)) => a.reflect_partial_eq(b) != Some(true),
                 _ => false,
             };
-            let mut changed = SETTINGS.iter().filter(|setting| differs(setting.path));
+            let mut changed = SETTINGS.iter().filter(|setting| differs(&setting.path));
             return match (changed.next(), changed.next()) {
                 (Some(setting), None) => {
-                    let name = setting.path.rsplit('.').next().unwrap_or(setting.path);
+                    let name = setting.path.rsplit('.').next().unwrap_or(&setting.path);
                     format!("Change {}", name.replace('_', " "))
                 }
                 _ => "Change settings".into(),

@@ -1,11 +1,12 @@
 //! The commands of the view.
 
 use super::drag::{begin_gesture, end_gesture};
-use super::{Eye, LookThrough, aspect, move_camera, move_view};
+use super::framing::frame;
+use super::{Eye, LookThrough, move_camera, move_view};
 use crate::editor::action::{Addition, Axis};
 use crate::editor::command::{Command, Over, State, commands};
 use crate::editor::edits::{self, AddAt};
-use crate::editor::extent::{extent_of, scene_extent};
+use crate::editor::extent::scene_extent;
 use crate::editor::history::History;
 use crate::editor::notice::Notices;
 use crate::editor::selection::Selection;
@@ -112,34 +113,8 @@ fn toggle_lock(world: &mut World) {
     world.resource_mut::<Notices>().tell(text);
 }
 
-pub(super) fn frame(world: &mut World, all: bool) {
-    let selected = world.resource::<Selection>().ids().to_vec();
-    let extent = if all || selected.is_empty() {
-        scene_extent(world)
-    } else {
-        extent_of(world, &selected)
-    };
-    let Some(extent) = extent else {
-        return;
-    };
-    let scene = scene_extent(world).map_or(1.0, |scene| scene.radius());
-    // What has no size, a light for example, is shown with what is around it.
-    let radius = match extent.radius() {
-        radius if radius > 1e-3 * scene => radius,
-        _ => (0.1 * scene).max(1e-3),
-    };
-    let aspect = aspect(world);
-    let back = back(world);
-    begin_gesture(world);
-    move_view(world, |eye| {
-        eye.back = back;
-        eye.frame(extent.centre(), radius, aspect);
-    });
-    end_gesture(world);
-}
-
 /// How far an orthographic view has to stand back to have all of the scene before it.
-fn back(world: &mut World) -> f32 {
+pub(super) fn back(world: &mut World) -> f32 {
     let pivot = world.resource::<Eye>().pivot;
     scene_extent(world).map_or(0.0, |extent| {
         extent.radius() + extent.centre().distance(pivot)

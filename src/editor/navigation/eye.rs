@@ -1,6 +1,7 @@
 //! Where the view stands, and the ways in which a hand moves it. Plain arithmetic: no window.
 
 use super::super::action::Axis;
+use crate::bvh::REACH;
 use bevy::ecs::reflect::ReflectResource;
 use bevy::ecs::resource::Resource;
 use bevy::math::{EulerRot, Quat, Vec2, Vec3};
@@ -12,8 +13,13 @@ use std::f32::consts::{FRAC_PI_2, PI};
 const TURN: f32 = PI;
 /// Room around what is framed, as a factor.
 const MARGIN: f32 = 1.1;
-/// Limits of the distance to the pivot, in metres.
-const DISTANCE: [f32; 2] = [1e-4, 1e7];
+/// Limits of the distance to the pivot, in metres. With [`FARTHEST_PIVOT`] and [`FARTHEST_BACK`] the eye stays where rays
+/// are traced from.
+pub(super) const DISTANCE: [f32; 2] = [1e-4, 0.36 * REACH];
+/// How far from the origin what is framed may lie along each axis, in metres.
+const FARTHEST_PIVOT: f32 = 0.25 * REACH;
+/// How far an orthographic view may stand back, in metres.
+const FARTHEST_BACK: f32 = 0.2 * REACH;
 
 /// The view: it turns around a pivot that lies on its axis.
 ///
@@ -154,8 +160,9 @@ impl Eye {
         } else {
             radius / (tan * narrow).atan().sin()
         };
-        self.pivot = centre;
+        self.pivot = centre.clamp(Vec3::splat(-FARTHEST_PIVOT), Vec3::splat(FARTHEST_PIVOT));
         self.distance = distance.clamp(DISTANCE[0], DISTANCE[1]);
+        self.back = self.back.min(FARTHEST_BACK);
     }
 
     /// Looks along an axis of the world, at the pivot, without perspective.
@@ -310,6 +317,23 @@ mod tests {
             eye.look_along(axis);
             assert!(close(eye.forward(), ahead), "{axis:?} {}", eye.forward());
             assert!(close(eye.rotation() * Vec3::Y, up), "{axis:?}");
+        }
+    }
+
+    #[test]
+    fn framing_keeps_the_eye_where_rays_are_traced_from() {
+        for size in [0.0, 1e-30, 1.0, 1e12, 1e30, f32::MAX] {
+            for (orthographic, axis) in [(false, Vec3::X), (true, Vec3::NEG_ONE)] {
+                let mut eye = Eye {
+                    orthographic,
+                    back: size,
+                    ..Eye::default()
+                };
+                eye.frame(axis * size, size, 1.5);
+                let position = eye.position();
+                assert!(position.abs().max_element() < REACH, "{size}: {position}");
+                assert!(eye.height().is_finite() && eye.distance > 0.0, "{size}");
+            }
         }
     }
 

@@ -8,6 +8,7 @@
 mod commands;
 mod drag;
 mod eye;
+mod framing;
 mod lens;
 mod place;
 mod through;
@@ -49,11 +50,18 @@ impl Plugin for NavigationPlugin {
             .init_resource::<Eye>()
             .init_resource::<LookThrough>()
             .init_resource::<drag::FlySpeed>()
+            .init_resource::<framing::Framings>()
             .add_observer(start)
             .add_commands(commands::commands())
             .add_systems(
                 EditorUpdate,
-                (drag::fly, through::see_through, settle, aim_additions)
+                (
+                    framing::unframe,
+                    drag::fly,
+                    through::see_through,
+                    settle,
+                    aim_additions,
+                )
                     .chain()
                     .after(Dispatch),
             )
@@ -115,13 +123,14 @@ fn settle(world: &mut World) {
         return;
     };
     if world.resource::<LookThrough>().camera.is_none() {
-        commands::frame(world, true);
+        framing::frame(world, true);
         return;
     }
     let mut eye = world.resource_mut::<Eye>();
     let forward = eye.forward();
     let ahead = (extent.centre() - eye.position()).dot(forward);
     if ahead > 1e-3 * extent.radius() && !eye.orthographic {
+        let ahead = ahead.min(eye::DISTANCE[1]);
         eye.pivot = eye.position() + forward * ahead;
         eye.distance = ahead;
     }

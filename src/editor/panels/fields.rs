@@ -1,17 +1,15 @@
-//! The fields that properties are entered in: a label with its explanation on the left, the value on
-//! the right. Each works on a copy and returns whether a person changed it; merely being drawn
-//! changes nothing, not even a value out of range.
+//! The fields that properties are entered in: a label with its explanation on the left, the value on the right. What is
+//! asked and what may be answered is the schema's; merely being drawn changes nothing, not even a value out of range.
 
+use super::number_field::{MIXED, NumberField};
 use super::says::Says;
+use crate::scene::schema::{Choice, MostPixels, Property, Quantity, Unit, keep_order};
 use bevy::color::LinearRgba;
-use bevy::math::{Vec2, Vec3};
-use bevy_egui::egui::{
-    self, Align, ComboBox, DragValue, Label, Layout, Response, Slider, SliderClamping, Ui, vec2,
-};
-use std::ops::RangeInclusive;
+use bevy::math::{UVec2, Vec2, Vec3};
+use bevy::reflect::enums::{DynamicEnum, DynamicVariant};
+use bevy::reflect::{PartialReflect, Reflect, ReflectPath, ReflectRef, TypeInfo, Typed};
+use bevy_egui::egui::{self, Align, ComboBox, Label, Layout, Ui, vec2};
 
-/// What is shown in place of a value in which several entities differ.
-const MIXED: &str = "mixed";
 /// The part of the width that labels take.
 const LABELS: f32 = 0.38;
 
@@ -29,176 +27,230 @@ pub(super) fn row<R>(ui: &mut Ui, label: &str, says: &str, value: impl FnOnce(&m
     .inner
 }
 
-/// How a number is entered.
-#[derive(Clone, Copy)]
-pub(super) struct Number {
-    /// What it may be, both ends included.
-    pub range: [f32; 2],
-    /// Its change for each point that it is dragged; a slider where it is 0.
-    pub speed: f32,
-    /// Behind the number.
-    pub unit: &'static str,
-    /// The slider's places go by the number's logarithm.
-    pub logarithmic: bool,
-}
+/// Which part of a value a person changed: its path, or nothing.
+pub(super) type Changed = Option<String>;
 
-impl Number {
-    /// Dragged, without an end.
-    pub const fn free(speed: f32, unit: &'static str) -> Self {
-        Self {
-            range: [f32::MIN, f32::MAX],
-            speed,
-            unit,
-            logarithmic: false,
-        }
-    }
-
-    /// Dragged, zero or more.
-    pub const fn positive(speed: f32, unit: &'static str) -> Self {
-        Self {
-            range: [0.0, f32::MAX],
-            ..Self::free(speed, unit)
-        }
-    }
-
-    /// A slider between two ends.
-    pub const fn slider(least: f32, most: f32, unit: &'static str) -> Self {
-        Self {
-            range: [least, most],
-            speed: 0.0,
-            unit,
-            logarithmic: false,
-        }
-    }
-
-    /// The same, by the logarithm.
-    pub const fn logarithmic(least: f32, most: f32, unit: &'static str) -> Self {
-        Self {
-            logarithmic: true,
-            ..Self::slider(least, most, unit)
-        }
-    }
-
-    /// The same with other ends.
-    pub const fn within(self, least: f32, most: f32) -> Self {
-        Self {
-            range: [least, most],
-            ..self
-        }
-    }
-
-    /// The field alone.
-    pub fn ui(self, ui: &mut Ui, value: &mut f32, mixed: bool, says: &str) -> bool {
-        let mut entered = *value;
-        let [least, most] = self.range;
-        let response = if self.speed > 0.0 {
-            // Large numbers are dragged in larger steps.
-            let speed = self.speed.max(entered.abs() * 0.01);
-            let speed = if speed.is_finite() { speed } else { self.speed };
-            ui.add(drag(&mut entered, least..=most, speed, self.unit, mixed))
-        } else {
-            slider_ui(ui, &mut entered, least..=most, self, mixed)
-        };
-        let changed = response.says(says).changed();
-        accept(value, entered, self.range, changed)
-    }
-
-    /// The field with its label.
-    pub fn row(self, ui: &mut Ui, label: &str, says: &str, value: &mut f32, mixed: bool) -> bool {
-        row(ui, label, says, |ui| self.ui(ui, value, mixed, says))
-    }
-}
-
-/// Takes over what was entered where it is a number, brought into its range.
-fn accept(value: &mut f32, entered: f32, [least, most]: [f32; 2], changed: bool) -> bool {
-    if !changed || entered.is_nan() {
-        return false;
-    }
-    *value = entered.clamp(least, most);
-    true
-}
-
-fn drag<'a, N: egui::emath::Numeric>(
-    value: &'a mut N,
-    range: RangeInclusive<N>,
-    speed: f32,
-    unit: &str,
-    mixed: bool,
-) -> DragValue<'a> {
-    let field = DragValue::new(value)
-        .range(range)
-        .clamp_existing_to_range(false)
-        .speed(speed);
-    let field = if unit.is_empty() {
-        field
-    } else {
-        let gap = if unit == "°" { "" } else { " " };
-        field.suffix(format!("{gap}{unit}"))
-    };
-    if mixed {
-        field.custom_formatter(|_, _| MIXED.into())
-    } else {
-        field
-    }
-}
-
-fn slider_ui(
+/// The row of a property. `is_mixed` says whether several entities differ in what is at a path. It works on `root` and
+/// returns the path of what was changed there.
+pub(super) fn property_ui(
     ui: &mut Ui,
-    value: &mut f32,
-    range: RangeInclusive<f32>,
-    number: Number,
-    mixed: bool,
-) -> Response {
-    // What is left beside the slider's own number.
-    ui.spacing_mut().slider_width = (ui.available_width() - 66.0).clamp(40.0, 220.0);
-    let unit = number.unit;
-    let suffix = match unit {
-        "" | "°" => unit.to_owned(),
-        unit => format!(" {unit}"),
+    root: &mut dyn PartialReflect,
+    property: &Property,
+    is_mixed: &dyn Fn(&str) -> bool,
+) -> Changed {
+    let (label, says) = (property.label.as_str(), property.says.as_str());
+    if let TypeInfo::Array(info) = property.kind {
+        return (0..info.capacity()).fold(None, |changed, index| {
+            let part = property.item(index);
+            let part = part.and_then(|part| property_ui(ui, root, &part, is_mixed));
+            changed.or(part)
+        });
+    }
+    let path = property.path.as_str();
+    let mixed = is_mixed(path);
+    let value = path.reflect_element_mut(root).ok()?;
+    let number = |is_whole| NumberField {
+        quantity: property.quantity.unwrap_or(Quantity::ANY),
+        is_whole,
+        is_mixed: mixed,
+        says,
     };
-    let slider = Slider::new(value, range)
-        .logarithmic(number.logarithmic)
-        .clamping(SliderClamping::Edits)
-        .max_decimals(3)
-        .suffix(suffix);
-    ui.add(if mixed {
-        slider.custom_formatter(|_, _| MIXED.into())
+    if let Some(value) = value.try_downcast_mut::<bool>() {
+        return switch(ui, label, says, value, mixed).then(|| path.to_owned());
+    }
+    if let Some(value) = value.try_downcast_mut::<f32>() {
+        let changed = row(ui, label, says, |ui| float_ui(ui, number(false), value));
+        return changed.then(|| path.to_owned());
+    }
+    if let Some(value) = value.try_downcast_mut::<u32>() {
+        let changed = row(ui, label, says, |ui| whole_ui(ui, number(true), value));
+        return changed.then(|| path.to_owned());
+    }
+    if let Some(value) = value.try_downcast_mut::<LinearRgba>() {
+        // What is a factor may be brighter than 1.
+        let is_bright = property
+            .quantity
+            .is_some_and(|quantity| quantity.unit == Unit::TIMES);
+        let changed = row(ui, label, says, |ui| match is_bright {
+            true => radiant_ui(ui, says, value, mixed),
+            false => color_ui(ui, says, value, mixed),
+        });
+        return changed.then(|| path.to_owned());
+    }
+    let size = value.try_downcast_ref::<UVec2>().copied();
+    let axis = |i: usize, axis: &str| {
+        let mut quantity = number(false).quantity;
+        quantity.slider = None;
+        // What is left of the pixels that both sides may have together.
+        if let (Some(size), Some(MostPixels(most))) = (size, property.most_pixels) {
+            let other = u64::from(size[1 - i.min(1)].max(1));
+            quantity.most = quantity.most.min((most / other) as f64);
+        }
+        NumberField {
+            is_mixed: is_mixed(&format!("{path}.{axis}")),
+            quantity,
+            ..number(size.is_some())
+        }
+    };
+    let axes = [axis(0, "x"), axis(1, "y"), axis(2, "z")];
+    let changed = if let Some(value) = value.try_downcast_mut::<Vec3>() {
+        let values = value.as_mut().each_mut();
+        vector_ui(ui, label, says, values, axes, float_ui)
+    } else if let Some(value) = value.try_downcast_mut::<Vec2>() {
+        let values = value.as_mut().each_mut();
+        vector_ui(ui, label, says, values, axes, float_ui)
+    } else if let Some(value) = value.try_downcast_mut::<UVec2>() {
+        let values = value.as_mut().each_mut();
+        vector_ui(ui, label, says, values, axes, whole_ui)
     } else {
-        slider
+        let choices = property.choices();
+        return choice_ui(ui, label, says, value, &choices, mixed).then(|| path.to_owned());
+    };
+    changed.map(|axis| format!("{path}.{}", ["x", "y", "z"][axis]))
+}
+
+/// The rows of these properties of a value by itself: the settings of the scene, for example. What is read only with
+/// another setting is faint without it, and says so.
+pub(super) fn properties_ui<T: Reflect + Typed>(ui: &mut Ui, root: &mut T, paths: &[&str]) {
+    for path in paths {
+        if let Some(mut property) = Property::of(T::type_info(), path) {
+            one_ui(ui, root, &mut property);
+        }
+    }
+}
+
+fn one_ui<T: Reflect + Typed>(ui: &mut Ui, root: &mut T, property: &mut Property) {
+    property.says = format!("{} ({})", property.says, property.path);
+    let is_read = property.is_read(root.as_partial_reflect());
+    if !is_read
+        && let Some(needs) = property.needs
+        && let Some(other) = Property::of(T::type_info(), needs.path)
+    {
+        property.says += &format!("; needs {}", other.label);
+    }
+    ui.scope(|ui| {
+        if !is_read {
+            // It can be entered all the same: what it needs may come later.
+            ui.multiply_opacity(0.55);
+        }
+        let root = root.as_partial_reflect_mut();
+        if let Some(changed) = property_ui(ui, root, property, &|_| false) {
+            keep_order(root, &changed);
+        }
+    });
+}
+
+fn float_ui(ui: &mut Ui, field: NumberField, value: &mut f32) -> bool {
+    let mut number = f64::from(*value);
+    let changed = field.ui(ui, &mut number);
+    if changed {
+        *value = number as f32;
+    }
+    changed
+}
+
+/// A whole number, the field alone.
+pub(super) fn whole_ui(ui: &mut Ui, field: NumberField, value: &mut u32) -> bool {
+    let mut number = f64::from(*value);
+    let changed = field.ui(ui, &mut number);
+    if changed {
+        // What a field of u32 accepts is one.
+        *value = number as u32;
+    }
+    changed
+}
+
+/// Numbers in a line; returns which was changed.
+fn vector_ui<T, const N: usize>(
+    ui: &mut Ui,
+    label: &str,
+    says: &str,
+    values: [&mut T; N],
+    fields: [NumberField; 3],
+    one: impl Fn(&mut Ui, NumberField, &mut T) -> bool,
+) -> Option<usize> {
+    row(ui, label, says, |ui| {
+        ui.spacing_mut().item_spacing.x = 3.0;
+        let width = (ui.available_width() - 3.0 * (N as f32 - 1.0)) / N as f32;
+        let mut changed = None;
+        for (axis, (value, field)) in values.into_iter().zip(fields).enumerate() {
+            let size = vec2(width.clamp(30.0, 110.0), ui.spacing().interact_size.y);
+            ui.allocate_ui(size, |ui| {
+                if one(ui, field, value) {
+                    changed = Some(axis);
+                }
+            });
+        }
+        changed
     })
 }
 
-/// A whole number with its label; a slider by the logarithm where the range is large.
-pub(super) fn integer(
+/// A number with its label that is no property of the scene.
+pub(super) fn number_row(
+    ui: &mut Ui,
+    label: &str,
+    says: &str,
+    value: &mut f32,
+    quantity: Quantity,
+) -> bool {
+    let field = NumberField {
+        quantity,
+        is_whole: false,
+        is_mixed: false,
+        says,
+    };
+    row(ui, label, says, |ui| float_ui(ui, field, value))
+}
+
+/// The same without a label, as wide as its digits.
+pub(super) fn number(ui: &mut Ui, says: &str, value: &mut f32, quantity: Quantity) -> bool {
+    let field = NumberField {
+        quantity,
+        is_whole: false,
+        is_mixed: false,
+        says,
+    };
+    let layout = Layout::left_to_right(Align::Center);
+    ui.allocate_ui_with_layout(vec2(60.0, 20.0), layout, |ui| float_ui(ui, field, value))
+        .inner
+}
+
+/// A whole number with its label that is no property of the scene.
+pub(super) fn whole_row(
     ui: &mut Ui,
     label: &str,
     says: &str,
     value: &mut u32,
-    range: RangeInclusive<u32>,
-    mixed: bool,
+    quantity: Quantity,
 ) -> bool {
-    row(ui, label, says, |ui| {
-        let mut entered = *value;
-        let (least, most) = (*range.start(), *range.end());
-        let response = if most > 1_000_000 {
-            ui.add(drag(&mut entered, range, 0.25, "", mixed))
+    let field = NumberField {
+        quantity,
+        is_whole: true,
+        is_mixed: false,
+        says,
+    };
+    row(ui, label, says, |ui| whole_ui(ui, field, value))
+}
+
+/// The same without a label, as wide as its digits and a short slider.
+pub(super) fn whole(ui: &mut Ui, says: &str, value: &mut u32, quantity: Quantity) -> bool {
+    let field = NumberField {
+        quantity,
+        is_whole: true,
+        is_mixed: false,
+        says,
+    };
+    let room = vec2(
+        if quantity.slider.is_some() {
+            130.0
         } else {
-            ui.spacing_mut().slider_width = (ui.available_width() - 66.0).clamp(40.0, 220.0);
-            let slider = Slider::new(&mut entered, range)
-                .logarithmic(most >= 100 * least.max(1))
-                .clamping(SliderClamping::Edits);
-            ui.add(if mixed {
-                slider.custom_formatter(|_, _| MIXED.into())
-            } else {
-                slider
-            })
-        };
-        let changed = response.says(says).changed();
-        if changed {
-            *value = entered.clamp(least, most);
-        }
-        changed
-    })
+            44.0
+        },
+        20.0,
+    );
+    let layout = Layout::left_to_right(Align::Center);
+    ui.allocate_ui_with_layout(room, layout, |ui| whole_ui(ui, field, value))
+        .inner
 }
 
 /// A switch with its label.
@@ -209,71 +261,7 @@ pub(super) fn switch(ui: &mut Ui, label: &str, says: &str, value: &mut bool, mix
     })
 }
 
-/// Three numbers in a line, with their label; returns which were changed.
-pub(super) fn vector(
-    ui: &mut Ui,
-    label: &str,
-    says: &str,
-    value: &mut Vec3,
-    number: Number,
-    mixed: [bool; 3],
-) -> [bool; 3] {
-    let mut changed = [false; 3];
-    row(ui, label, says, |ui| {
-        ui.spacing_mut().item_spacing.x = 3.0;
-        let width = (ui.available_width() - 6.0) / 3.0;
-        ui.spacing_mut().interact_size.x = width.max(30.0);
-        for axis in 0..3 {
-            let mut entered = value[axis];
-            changed[axis] = number.ui(ui, &mut entered, mixed[axis], says);
-            value[axis] = entered;
-        }
-    });
-    changed
-}
-
-/// Three numbers that belong to one thing.
-pub(super) fn point(
-    ui: &mut Ui,
-    label: &str,
-    says: &str,
-    value: &mut Vec3,
-    number: Number,
-    mixed: bool,
-) -> bool {
-    let changed = vector(ui, label, says, value, number, [mixed; 3]);
-    changed.contains(&true)
-}
-
-/// Two numbers in a line, with their label.
-pub(super) fn pair(
-    ui: &mut Ui,
-    label: &str,
-    says: &str,
-    value: &mut Vec2,
-    number: Number,
-    mixed: bool,
-) -> bool {
-    row(ui, label, says, |ui| {
-        let width = (ui.available_width() - 6.0) / 2.0;
-        ui.spacing_mut().interact_size.x = width.max(30.0);
-        let x = number.ui(ui, &mut value.x, mixed, says);
-        number.ui(ui, &mut value.y, mixed, says) || x
-    })
-}
-
-/// A colour in [0, 1], linear inside, shown and entered as a screen's.
-pub(super) fn color(
-    ui: &mut Ui,
-    label: &str,
-    says: &str,
-    value: &mut LinearRgba,
-    mixed: bool,
-) -> bool {
-    row(ui, label, says, |ui| color_ui(ui, says, value, mixed))
-}
-
-/// The same without a label.
+/// A colour without a label, in [0, 1], linear inside, shown and entered as a screen's.
 pub(super) fn color_ui(ui: &mut Ui, says: &str, value: &mut LinearRgba, mixed: bool) -> bool {
     let mut rgb = [value.red, value.green, value.blue];
     let response = ui.color_edit_button_rgb(&mut rgb).says(says);
@@ -288,26 +276,23 @@ pub(super) fn color_ui(ui: &mut Ui, says: &str, value: &mut LinearRgba, mixed: b
 }
 
 /// A colour that may be brighter than 1: its hue, and its largest component as a number.
-pub(super) fn radiant(
-    ui: &mut Ui,
-    label: &str,
-    says: &str,
-    value: &mut LinearRgba,
-    mixed: bool,
-) -> bool {
-    row(ui, label, says, |ui| {
-        let [strength, hue] = split(*value);
-        let mut entered = hue;
-        let mut changed = color_ui(ui, says, &mut entered, mixed);
-        let mut level = strength.red;
-        let number = Number::positive(0.02, "×");
-        changed |= number.ui(ui, &mut level, mixed, says);
-        if changed {
-            let part = |channel: f32| channel * level;
-            *value = LinearRgba::rgb(part(entered.red), part(entered.green), part(entered.blue));
-        }
-        changed
-    })
+fn radiant_ui(ui: &mut Ui, says: &str, value: &mut LinearRgba, mixed: bool) -> bool {
+    let [strength, hue] = split(*value);
+    let mut entered = hue;
+    let mut changed = color_ui(ui, says, &mut entered, mixed);
+    let mut level = strength.red;
+    let field = NumberField {
+        quantity: Quantity::FACTOR,
+        is_whole: false,
+        is_mixed: mixed,
+        says,
+    };
+    changed |= float_ui(ui, field, &mut level);
+    if changed {
+        let part = |channel: f32| (channel * level).min(f32::MAX);
+        *value = LinearRgba::rgb(part(entered.red), part(entered.green), part(entered.blue));
+    }
+    changed
 }
 
 /// The largest component (in every channel), and the colour divided by it.
@@ -325,56 +310,59 @@ fn split(color: LinearRgba) -> [LinearRgba; 2] {
     [LinearRgba::rgb(strength, strength, strength), hue]
 }
 
-/// An angle in degrees, radians inside.
-pub(super) fn angle(
+/// One of an enum's variants that hold nothing else.
+fn choice_ui(
     ui: &mut Ui,
     label: &str,
     says: &str,
-    radians: &mut f32,
-    degrees: [f32; 2],
+    value: &mut dyn PartialReflect,
+    choices: &[Choice],
     mixed: bool,
 ) -> bool {
-    let mut entered = radians.to_degrees();
-    let changed =
-        Number::slider(degrees[0], degrees[1], "°").row(ui, label, says, &mut entered, mixed);
-    if changed {
-        *radians = entered.to_radians();
-    }
-    changed
+    let ReflectRef::Enum(now) = value.reflect_ref() else {
+        return false;
+    };
+    let current = now.variant_name().to_owned();
+    let chosen = chosen_ui(ui, label, says, &current, choices, mixed);
+    chosen.is_some_and(|name| {
+        let variant = DynamicEnum::new(name, DynamicVariant::Unit);
+        // It fails only for a variant that holds something, and those are chosen elsewhere.
+        value.try_apply(&variant).is_ok()
+    })
 }
 
-/// One of several, by name.
-pub(super) fn choice<T: PartialEq + Copy>(
+/// The variants of an enum to choose from; returns the name of another one that was chosen.
+pub(super) fn chosen_ui(
     ui: &mut Ui,
     label: &str,
     says: &str,
-    value: &mut T,
-    choices: &[(T, &str, &str)],
+    current: &str,
+    choices: &[Choice],
     mixed: bool,
-) -> bool {
+) -> Option<&'static str> {
+    let shown = choices.iter().find(|choice| choice.name == current);
+    let shown = match mixed {
+        true => MIXED,
+        false => shown.map_or(current, |choice| choice.label.as_str()),
+    };
+    let mut chosen = None;
     row(ui, label, says, |ui| {
-        let current = choices.iter().find(|choice| choice.0 == *value);
-        let name = match mixed {
-            true => MIXED,
-            false => current.map_or("?", |choice| choice.1),
-        };
-        let mut changed = false;
         ComboBox::from_id_salt(label)
-            .selected_text(name)
+            .selected_text(shown)
             .width((ui.available_width() - 8.0).clamp(60.0, 240.0))
             .show_ui(ui, |ui| {
-                for &(choice, name, tip) in choices {
-                    let is_current = !mixed && choice == *value;
-                    if ui.selectable_label(is_current, name).says(tip).clicked() && !is_current {
-                        *value = choice;
-                        changed = true;
+                for choice in choices {
+                    let is_current = !mixed && choice.name == current;
+                    let response = ui.selectable_label(is_current, &choice.label);
+                    if response.says(&choice.says).clicked() && !is_current {
+                        chosen = Some(choice.name);
                     }
                 }
             })
             .response
             .says(says);
-        changed
-    })
+    });
+    chosen
 }
 
 /// A heading that folds what is below it.
@@ -389,18 +377,6 @@ pub(super) fn section(ui: &mut Ui, title: &str, open: bool, body: impl FnOnce(&m
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_number_out_of_range_is_brought_into_it_and_no_number_is_refused() {
-        let mut value = 3.0;
-        assert!(accept(&mut value, 90.0, [0.0, 10.0], true));
-        assert_eq!(value, 10.0);
-        assert!(accept(&mut value, f32::NEG_INFINITY, [0.0, 10.0], true));
-        assert_eq!(value, 0.0);
-        assert!(!accept(&mut value, f32::NAN, [0.0, 10.0], true));
-        assert!(!accept(&mut value, 5.0, [0.0, 10.0], false));
-        assert_eq!(value, 0.0);
-    }
 
     #[test]
     fn a_bright_colour_is_its_hue_times_its_strength() {

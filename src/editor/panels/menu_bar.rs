@@ -1,13 +1,14 @@
 //! The menus above, made of the table of commands: a row says in which menus it stands. Beside the
 //! rows there is only what depends on the scene: recent files, cameras, the field of view.
 
-use super::fields::angle;
+use super::fields::number_row;
 use super::says::Says;
 use crate::editor::action::Action;
 use crate::editor::command::{Command, CommandTable, shortcut};
 use crate::editor::navigation::{field_of_view, set_field_of_view};
 use crate::editor::preferences::Preferences;
-use crate::scene::{SceneCamera, SceneId};
+use crate::editor::texts::path_text;
+use crate::scene::{Quantity, SceneCamera, SceneId};
 use bevy::ecs::name::Name;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{self, Button, Ui};
@@ -120,7 +121,7 @@ fn recent_ui(ui: &mut Ui, world: &mut World) {
                     || file.display().to_string(),
                     |name| name.to_string_lossy().into_owned(),
                 );
-                let says = file.display().to_string();
+                let says = path_text(&file);
                 other_ui(ui, world, &name, &says, Action::Open(file));
             }
         });
@@ -134,7 +135,13 @@ fn field_of_view_ui(ui: &mut Ui, world: &mut World) {
     };
     ui.set_min_width(230.0);
     let says = "The angle from the picture's lower to its upper edge: the looked-through camera's, or the view's own";
-    if angle(ui, "Field of view", says, &mut fov, [1.0, 170.0], false) {
+    if number_row(
+        ui,
+        "Field of view",
+        says,
+        &mut fov,
+        Quantity::degrees(1.0, 170.0),
+    ) {
         set_field_of_view(world, fov);
     }
 }

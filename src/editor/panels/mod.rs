@@ -9,6 +9,7 @@
 //! |---|---|
 //! | [`menu_bar`], [`toolbar`] | what is above; made of the table of commands |
 //! | [`hierarchy`] | the list of entities, from the [`outline`] |
+//! | [`fields`], [`number_field`] | rows of properties, as the schema says |
 //! | [`inspector`] | the tabs Object, Render, Debug and BVH |
 //! | [`status`] | the line below |
 //! | [`overlays`], [`compare`], [`notices`] | divider, legend, region, a kept picture, messages over the picture |
@@ -35,6 +36,8 @@ mod kind_icons;
 mod line_legend;
 mod menu_bar;
 mod notices;
+mod number_field;
+mod number_text;
 mod outline;
 mod outline_rows;
 mod overlays;

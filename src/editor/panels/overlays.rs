@@ -2,6 +2,7 @@
 //! a region; [`notices`](super::notices) has the rest.
 
 use super::answer::{answer_ui, armed_ui};
+use super::fields::number;
 use super::first_steps::first_steps_ui;
 use super::line_legend::line_legend_ui;
 use super::notices::{is_over, notices_ui};
@@ -13,7 +14,7 @@ use super::theme::accent;
 use super::tree_pair;
 use crate::editor::viewport::{EditorCamera, Show, Viewport};
 use crate::film::views::{Scale, View};
-use crate::scene::RenderSettings;
+use crate::scene::{Quantity, RenderSettings};
 use crate::trace::{FirstHit, central_hits};
 use crate::view::{TracedRender, TracedView};
 use bevy::ecs::query::With;
@@ -253,10 +254,8 @@ fn legend_body(
         .into_iter()
         .enumerate()
         {
-            let field = egui::DragValue::new(&mut ends[i])
-                .speed(speed)
-                .max_decimals(4);
-            if ui.add(field).says(says).changed() && ends[0] < ends[1] {
+            let values = Quantity::ANY.step(speed.into());
+            if number(ui, says, &mut ends[i], values) && ends[0] < ends[1] {
                 entered = Some(ends);
             }
         }

@@ -1,14 +1,13 @@
 //! One property of several entities at once: a field shows the active one's value, says where the
 //! others differ, and what is entered reaches all of them.
 
-use super::fields::{self, Number};
-use bevy::color::LinearRgba;
+use super::fields::property_ui;
+use crate::scene::schema::{Property, keep_order};
 use bevy::ecs::component::{Component, Mutable};
 use bevy::ecs::entity::Entity;
 use bevy::ecs::world::World;
-use bevy::math::Vec3;
+use bevy::reflect::{Reflect, ReflectPath, Typed};
 use bevy_egui::egui::Ui;
-use std::ops::RangeInclusive;
 
 /// Copies of the same component of several entities, the active one's first.
 pub(super) struct Several<C> {
@@ -34,6 +33,16 @@ impl<C: Component<Mutability = Mutable> + Clone + PartialEq> Several<C> {
     /// The active one's.
     pub fn first(&self) -> &C {
         &self.values[0]
+    }
+
+    /// All of them, to be [put back](Self::put_back) where what is entered makes no sense together.
+    pub fn copies(&self) -> Vec<C> {
+        self.values.clone()
+    }
+
+    /// Takes back what was entered since.
+    pub fn put_back(&mut self, copies: Vec<C>) {
+        self.values = copies;
     }
 
     /// How many there are.
@@ -87,87 +96,48 @@ impl<C: Component<Mutability = Mutable> + Clone + PartialEq> Several<C> {
 }
 
 /// Rows of fields: each shows the active one's property, and sets it for all.
-impl<C: Component<Mutability = Mutable> + Clone + PartialEq> Several<C> {
-    /// A number.
-    pub fn number(
-        &mut self,
-        ui: &mut Ui,
-        label: &str,
-        says: &str,
-        number: Number,
-        property: impl Fn(&mut C) -> &mut f32,
-    ) {
-        self.field(property, |value, mixed| {
-            number.row(ui, label, says, value, mixed)
-        });
+impl<C: Component<Mutability = Mutable> + Clone + PartialEq + Reflect + Typed> Several<C> {
+    /// The properties at these paths, in this order. What some of the entities do not have (the angle of a camera
+    /// without one) reaches those that have it.
+    pub fn properties(&mut self, ui: &mut Ui, paths: &[&str]) {
+        for path in paths {
+            if let Some(property) = Property::of(C::type_info(), path) {
+                self.property(ui, &property);
+            }
+        }
     }
 
-    /// A whole number.
-    pub fn integer(
-        &mut self,
-        ui: &mut Ui,
-        label: &str,
-        says: &str,
-        range: RangeInclusive<u32>,
-        property: impl Fn(&mut C) -> &mut u32,
-    ) {
-        self.field(property, |value, mixed| {
-            fields::integer(ui, label, says, value, range, mixed)
-        });
-    }
-
-    /// An angle; the range is in degrees.
-    pub fn angle(
-        &mut self,
-        ui: &mut Ui,
-        label: &str,
-        says: &str,
-        degrees: [f32; 2],
-        property: impl Fn(&mut C) -> &mut f32,
-    ) {
-        self.field(property, |value, mixed| {
-            fields::angle(ui, label, says, value, degrees, mixed)
-        });
-    }
-
-    /// A colour in [0, 1].
-    pub fn color(
-        &mut self,
-        ui: &mut Ui,
-        label: &str,
-        says: &str,
-        property: impl Fn(&mut C) -> &mut LinearRgba,
-    ) {
-        self.field(property, |value, mixed| {
-            fields::color(ui, label, says, value, mixed)
-        });
-    }
-
-    /// Three numbers.
-    pub fn point(
-        &mut self,
-        ui: &mut Ui,
-        label: &str,
-        says: &str,
-        number: Number,
-        property: impl Fn(&mut C) -> &mut Vec3,
-    ) {
-        self.field(property, |value, mixed| {
-            fields::point(ui, label, says, value, number, mixed)
-        });
-    }
-
-    /// A switch.
-    pub fn switch(
-        &mut self,
-        ui: &mut Ui,
-        label: &str,
-        says: &str,
-        property: impl Fn(&mut C) -> &mut bool,
-    ) {
-        self.field(property, |value, mixed| {
-            fields::switch(ui, label, says, value, mixed)
-        });
+    /// One property.
+    pub fn property(&mut self, ui: &mut Ui, property: &Property) {
+        let Some((active, others)) = self.values.split_first_mut() else {
+            return;
+        };
+        let before = active.clone();
+        let is_mixed = |path: &str| {
+            let of_active = path.reflect_element(before.as_partial_reflect());
+            let differs = |other: &C| match (&of_active, path.reflect_element(other)) {
+                (Ok(of_active), Ok(other)) => of_active.reflect_partial_eq(other) == Some(false),
+                _ => false,
+            };
+            others.iter().any(differs)
+        };
+        let root = active.as_partial_reflect_mut();
+        let Some(path) = property_ui(ui, root, property, &is_mixed) else {
+            return;
+        };
+        keep_order(root, &path);
+        let Ok(entered) = path.as_str().reflect_element(active.as_partial_reflect()) else {
+            return;
+        };
+        for other in others {
+            let other = other.as_partial_reflect_mut();
+            if let Ok(place) = path.as_str().reflect_element_mut(other) {
+                // It fails only for another type, and these are fields of the same one.
+                let _ = place.try_apply(entered);
+                keep_order(other, &path);
+            }
+        }
+        self.changed = true;
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::answer::Asked;
 use super::compare::Kept;
-use super::dialogs::{Gallery, RenderForm};
+use super::dialogs::{Gallery, PathForm, RenderForm};
 use super::hierarchy::ListKeys;
 use super::inspector::{Builders, ErrorCurve, PerformanceForm, Thumbnails, Trees, Turns};
 use super::line_legend::LineTexts;
@@ -65,7 +65,7 @@ pub(super) struct Panels {
     /// The one that was open in the frame before.
     pub dialog_before: Option<Dialog>,
     /// A path that is being typed for the document.
-    pub typed_path: Option<String>,
+    pub typed_path: Option<PathForm>,
     pub render_form: RenderForm,
     pub palette: Option<Palette>,
     /// A pixel that was asked about.

@@ -3,6 +3,7 @@
 use super::says::{Says, take_hint};
 use super::state::{Dialog, Panels};
 use crate::editor::render_job::RenderJob;
+use crate::editor::texts::counted;
 use crate::editor::viewport::EditorCamera;
 use crate::film::{Ending, ErrorEstimate, State};
 use crate::io::LoadProblems;
@@ -126,10 +127,7 @@ fn problems_ui(ui: &mut Ui, world: &World) {
         return;
     }
     let color = ui.visuals().warn_fg_color;
-    let text = match lines.len() {
-        1 => "⚠ 1 problem".to_owned(),
-        n => format!("⚠ {n} problems"),
-    };
+    let text = format!("⚠ {}", counted(lines.len() as u64, "problem"));
     let label = egui::Label::new(RichText::new(text).color(color)).sense(egui::Sense::click());
     let response = ui
         .add(label)
@@ -223,25 +221,6 @@ pub(super) fn percent(part: f64) -> String {
     }
 }
 
-/// `1 light`, `12 345 triangles`.
-fn counted(number: u64, what: &str) -> String {
-    let s = if number == 1 { "" } else { "s" };
-    format!("{} {what}{s}", grouped(number))
-}
-
-/// With a narrow space between thousands.
-pub(super) fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            text.push('\u{2009}');
-        }
-        text.push(digit);
-    }
-    text
-}
-
 /// `12.3 MB`, `1.2 GB`.
 pub(super) fn memory_text(bytes: u64) -> String {
     let mb = bytes as f64 * 1e-6;
@@ -264,9 +243,6 @@ mod tests {
             [0.25, 0.034, 0.0012, f64::NAN].map(percent),
             ["25 %", "3.4 %", "0.12 %", "–"]
         );
-        assert_eq!(grouped(87_040), "87\u{2009}040");
-        assert_eq!(grouped(7), "7");
-        assert_eq!(grouped(1_234_567), "1\u{2009}234\u{2009}567");
         assert_eq!(
             [900, 4_560_000, 2_340_000_000].map(memory_text),
             ["0.9 kB", "4.6 MB", "2.3 GB"]

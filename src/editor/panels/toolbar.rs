@@ -1,8 +1,9 @@
 //! Below the menu: handles, what the view shows, and how the traced picture is developed.
 
 use super::compare::keep_ui;
-use super::fields::{Number, angle};
+use super::fields::number_row;
 use super::menu_bar::menu_ui;
+use super::number_field::NumberField;
 use super::says::Says;
 use super::state::Panels;
 use crate::editor::action::Action;
@@ -11,11 +12,12 @@ use crate::editor::handles::Tools;
 use crate::editor::preferences::Preferences;
 use crate::editor::viewport::EditorCamera;
 use crate::film::views::View;
-use crate::scene::RenderSettings;
+use crate::scene::schema::quantity_of;
+use crate::scene::{Quantity, RenderSettings};
 use crate::view::TracedView;
 use bevy::ecs::query::With;
 use bevy::ecs::world::World;
-use bevy_egui::egui::{Button, ComboBox, DragValue, Popup, PopupCloseBehavior, Ui};
+use bevy_egui::egui::{Button, ComboBox, Popup, PopupCloseBehavior, Ui};
 
 pub(super) fn toolbar_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     ui.horizontal(|ui| {
@@ -69,17 +71,14 @@ fn steps_ui(ui: &mut Ui, world: &mut World) {
     ui.set_width(250.0);
     ui.label("Steps of snapping");
     let says = "How far one step moves";
-    Number::positive(0.01, "m").within(1e-4, 1e4).row(
-        ui,
-        "Move",
-        says,
-        &mut tools.move_step,
-        false,
-    );
+    let steps = Quantity::within(1e-4, 1e4, "m");
+    number_row(ui, "Move", says, &mut tools.move_step, steps);
     let says = "How far one step turns";
-    angle(ui, "Turn", says, &mut tools.turn_step, [1.0, 90.0], false);
+    let steps = Quantity::degrees(1.0, 90.0);
+    number_row(ui, "Turn", says, &mut tools.turn_step, steps);
     let says = "By how much of its size one step scales";
-    Number::slider(0.01, 1.0, "×").row(ui, "Scale", says, &mut tools.scale_step, false);
+    let steps = Quantity::slider(0.01, 1.0, "×");
+    number_row(ui, "Scale", says, &mut tools.scale_step, steps);
     if tools != before {
         *world.resource_mut::<Tools>() = tools;
     }
@@ -129,17 +128,16 @@ fn traced_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
 
 /// Of the picture on the screen and in files alike; no ray is traced for it.
 fn exposure_ui(ui: &mut Ui, world: &mut World) {
-    let mut exposure = world.resource::<RenderSettings>().output.exposure;
-    let field = DragValue::new(&mut exposure)
-        .range(-64.0..=64.0)
-        .clamp_existing_to_range(false)
-        .speed(0.02)
-        .fixed_decimals(2)
-        .prefix("EV ");
-    let response = ui
-        .add(field)
-        .says("Exposure in stops: +1 doubles the picture's brightness; nothing is traced again");
-    let mut entered = response.changed().then_some(exposure);
+    let exposure = world.resource::<RenderSettings>().output.exposure;
+    let field = NumberField {
+        quantity: quantity_of::<RenderSettings>("output.exposure"),
+        is_whole: false,
+        is_mixed: false,
+        says: "Exposure in stops: +1 doubles the picture's brightness; nothing is traced again",
+    };
+    let mut number = f64::from(exposure);
+    let (response, is_changed) = field.number_ui(ui, &mut number);
+    let mut entered = is_changed.then_some(number as f32);
     response.context_menu(|ui| {
         if ui.button("Reset to 0").clicked() {
             entered = Some(0.0);

@@ -111,7 +111,7 @@ impl SceneFile {
                         return Err(Problem::OutOfRange {
                             what: "SceneId".into(),
                             value: id.0.to_string(),
-                            range: "no multiple of 2^32",
+                            range: "no multiple of 2^32".into(),
                         });
                     }
                     if !ids.insert(*id) {

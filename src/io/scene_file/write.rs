@@ -91,7 +91,7 @@ impl SceneContent {
                 let problem = Problem::OutOfRange {
                     what: "a SceneId".into(),
                     value: id.to_string(),
-                    range: "no multiple of 2^32",
+                    range: "no multiple of 2^32".into(),
                 };
                 FileError::new(file, problem)
             })?;

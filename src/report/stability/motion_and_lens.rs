@@ -4,7 +4,7 @@ use super::scenes::{central_radiance, flat, quad, world};
 use super::{Effort, Outcome};
 use crate::film::render;
 use crate::report::table::digits;
-use crate::scene::{RenderSettings, setting_problems};
+use crate::scene::{RenderSettings, range_problems};
 use crate::trace::{Camera, Environment, Material, Optics, World};
 use glam::{UVec2, Vec2, Vec3};
 
@@ -156,7 +156,7 @@ pub(super) fn limits(_: &Effort) -> Outcome {
     for (name, change, works) in changes {
         for (value, works) in [0, 1, 1 << 31].into_iter().zip(works) {
             let settings = with(change, value);
-            let problems = setting_problems(&settings);
+            let problems = range_problems(&settings);
             outcome.counted += 1;
             if problems.is_empty() != works {
                 outcome

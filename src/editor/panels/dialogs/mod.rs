@@ -3,6 +3,7 @@
 mod about;
 mod history;
 mod keys;
+mod path;
 mod preferences;
 mod question;
 mod render;
@@ -13,6 +14,7 @@ use super::state::{Dialog, Panels};
 use bevy::ecs::world::World;
 use bevy_egui::egui::{self, Id, Modal, RichText, ScrollArea, Ui};
 
+pub(super) use path::PathForm;
 pub(super) use render::RenderForm;
 pub(super) use scenes::Gallery;
 

@@ -3,9 +3,12 @@
 use super::super::says::Says;
 use super::super::state::Panels;
 use super::modal_ui;
+use super::path::{PathForm, path_ui};
 use crate::editor::document::{Answer, Document, Purpose, Question, answer};
+use crate::editor::preferences::Preferences;
+use crate::editor::texts::path_text;
 use bevy::ecs::world::World;
-use bevy_egui::egui::{self, Key, TextEdit, Ui};
+use bevy_egui::egui::{self, Key, Ui};
 use std::path::{Path, PathBuf};
 
 /// Shows the document's question, if one is open; true where it is.
@@ -45,8 +48,13 @@ pub(super) fn question_ui(context: &egui::Context, world: &mut World, panels: &m
         Question::Path {
             purpose,
             suggestion,
+            refused,
         } => {
-            answered = path_ui(ui, panels, *purpose, suggestion.clone());
+            let recent = recent_folders(world);
+            let form = panels
+                .typed_path
+                .get_or_insert_with(|| PathForm::new(suggestion));
+            answered = path_ui(ui, form, *purpose, &recent, refused.as_deref());
         }
         Question::Waiting { .. } => {
             ui.label("The desktop's own dialog waits for an answer.");
@@ -63,7 +71,7 @@ pub(super) fn question_ui(context: &egui::Context, world: &mut World, panels: &m
             );
         }
         Question::Replace { file, .. } => {
-            ui.label(format!("{} is there already.", file.display()));
+            ui.label(format!("{} is there already.", path_text(file)));
             answered = buttons_ui(
                 ui,
                 &[
@@ -75,7 +83,7 @@ pub(super) fn question_ui(context: &egui::Context, world: &mut World, panels: &m
         Question::Changed { file } => {
             ui.label(format!(
                 "Another program has changed {} since it was opened or saved here.",
-                file.display()
+                path_text(file)
             ));
             answered = buttons_ui(
                 ui,
@@ -100,7 +108,7 @@ pub(super) fn question_ui(context: &egui::Context, world: &mut World, panels: &m
             );
         }
         Question::Outside { file, says } => {
-            ui.label(format!("{}: {says}", file.display()));
+            ui.label(format!("{}: {says}", path_text(file)));
             ui.label("Open it with files from outside its folder? Do so only if you trust it.");
             answered = buttons_ui(
                 ui,
@@ -115,7 +123,7 @@ pub(super) fn question_ui(context: &egui::Context, world: &mut World, panels: &m
             );
         }
         Question::Rendering { file } => {
-            ui.label(format!("{} is not finished.", file.display()));
+            ui.label(format!("{} is not finished.", path_text(file)));
             answered = buttons_ui(
                 ui,
                 &[
@@ -176,60 +184,24 @@ fn buttons_ui(ui: &mut Ui, answers: &[(&str, &str, Answer)]) -> Option<Answer> {
     answered.or(first.map(|(_, _, answer)| answer.clone()))
 }
 
-/// Where a relative path leads to.
+/// Where a path leads to, unless it says so itself.
 pub(super) fn whole_path_ui(ui: &mut Ui, path: &Path) {
-    let whole = std::path::absolute(path)
-        .ok()
-        .filter(|_| path.is_relative());
-    if let Some(whole) = whole {
-        ui.weak(whole.display().to_string());
+    let whole = path_text(path);
+    if !path.as_os_str().is_empty() && Path::new(&whole) != path {
+        ui.weak(whole);
     }
 }
 
-/// A path is typed, where the system has no dialog for it.
-fn path_ui(
-    ui: &mut Ui,
-    panels: &mut Panels,
-    purpose: Purpose,
-    suggestion: PathBuf,
-) -> Option<Answer> {
-    let hint = match purpose {
-        Purpose::Open => {
-            "A scene or a model: .scn.ron, .obj, .gltf, .glb, .stl, .ply, or a built-in scene's name"
-        }
-        Purpose::SaveAs => "Where to: .scn.ron keeps everything; .obj and .glb are models",
-        Purpose::Import => "A model: .obj, .gltf, .glb, .stl or .ply",
+/// The folders of what was opened or saved last.
+fn recent_folders(world: &World) -> Vec<PathBuf> {
+    let Some(preferences) = world.get_resource::<Preferences>() else {
+        return Vec::new();
     };
-    ui.label(hint);
-    let is_new = panels.typed_path.is_none();
-    let text = panels
-        .typed_path
-        .get_or_insert_with(|| suggestion.display().to_string());
-    let field = TextEdit::singleline(text).desired_width(ui.available_width() - 12.0);
-    let response = ui
-        .add(field)
-        .says("The path; relative ones begin in the working folder");
-    if is_new {
-        response.request_focus();
+    let mut folders: Vec<PathBuf> = Vec::new();
+    for folder in preferences.recent.iter().filter_map(|file| file.parent()) {
+        if folder.is_absolute() && !folders.iter().any(|known| known == folder) {
+            folders.push(folder.to_path_buf());
+        }
     }
-    let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-    let path = PathBuf::from(text.trim());
-    let is_empty = path.as_os_str().is_empty();
-    whole_path_ui(ui, &path);
-    ui.add_space(8.0);
-    let mut answered = (entered && !is_empty).then(|| Answer::Path(path.clone()));
-    ui.horizontal(|ui| {
-        let go = ui.add_enabled(!is_empty, egui::Button::new("OK"));
-        if go.says("Goes on with this path").clicked() {
-            answered = Some(Answer::Path(path));
-        }
-        if ui
-            .button("Cancel")
-            .says("Leaves everything as it is")
-            .clicked()
-        {
-            answered = Some(Answer::Cancel);
-        }
-    });
-    answered
+    folders
 }

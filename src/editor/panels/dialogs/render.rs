@@ -1,6 +1,6 @@
 //! Rendering to a file: what, from where, how good; and how far it is.
 
-use super::super::fields::{Number, integer, row};
+use super::super::fields::{properties_ui, row};
 use super::super::menu_bar::cameras;
 use super::super::says::Says;
 use super::super::state::Panels;
@@ -9,12 +9,14 @@ use super::question::whole_path_ui;
 use crate::editor::render_job::{
     RenderFrom, RenderJob, RenderProgress, RenderRequest, start_render,
 };
+use crate::editor::texts::path_text;
 use crate::editor::viewport::EditorCamera;
+use crate::film::duration_text;
 use crate::scene::{RenderSettings, SceneId};
 use crate::view::TracedRender;
 use bevy::ecs::query::With;
 use bevy::ecs::world::World;
-use bevy_egui::egui::{self, Color32, ComboBox, DragValue, ProgressBar, RichText, TextEdit, Ui};
+use bevy_egui::egui::{self, Color32, ComboBox, ProgressBar, RichText, TextEdit, Ui};
 use std::path::Path;
 
 /// What is entered, kept while the dialog is closed.
@@ -71,27 +73,8 @@ pub(super) fn render_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     });
     whole_path_ui(ui, Path::new(form.file.trim()));
     from_ui(ui, world, form);
-    row(ui, "Size", "Pixels of the picture", |ui| {
-        for axis in 0..2 {
-            if axis == 1 {
-                ui.label("×");
-            }
-            let field = DragValue::new(&mut settings.size[axis]).range(1..=65_536_u32);
-            ui.add(field).says("Pixels");
-        }
-    });
-    let says = "Samples of each pixel (effects may ask for more); the most with an error or a time to stop at";
-    integer(ui, "Samples", says, &mut settings.spp, 1..=1 << 20, false);
-    let says = "Stops when the estimated relative error has fallen to this; 0: never";
-    let error = &mut settings.sampling.error;
-    Number::positive(0.001, "")
-        .within(0.0, 1000.0)
-        .row(ui, "Stop at error", says, error, false);
-    let says = "Stops after so many seconds; 0: never";
-    let time = &mut settings.sampling.time;
-    Number::positive(0.1, "s")
-        .within(0.0, 1e7)
-        .row(ui, "Stop after", says, time, false);
+    let paths = ["size", "spp", "sampling.error", "sampling.time"];
+    properties_ui(ui, &mut settings, &paths);
     if let Some(refused) = &form.refused {
         let color: Color32 = ui.visuals().error_fg_color;
         ui.label(RichText::new(refused).color(color));
@@ -154,7 +137,7 @@ fn view_camera(world: &mut World) -> Option<RenderFrom> {
 
 /// A bar with what is known of the end, and a way to stop it.
 fn progress_ui(ui: &mut Ui, world: &mut World, progress: &RenderProgress) {
-    ui.label(progress.file.display().to_string());
+    ui.label(path_text(&progress.file));
     let mut text = match (&progress.status, progress.writing) {
         (_, true) => "writing".to_owned(),
         (None, _) => "waiting for the trees".to_owned(),
@@ -165,7 +148,7 @@ fn progress_ui(ui: &mut Ui, world: &mut World, progress: &RenderProgress) {
             text += &format!(", error {}", error_text(&error));
         }
         if let Some(left) = status.seconds_left.filter(|_| !progress.writing) {
-            text += &format!(", {left:.0} s left");
+            text += &format!(", {} left", duration_text(left));
         }
     }
     ui.add(ProgressBar::new(progress.fraction).text(text));

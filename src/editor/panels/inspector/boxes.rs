@@ -1,44 +1,41 @@
 //! Which boxes of the trees are drawn, and how.
 
-use super::super::fields::{choice, integer, row, switch};
+use super::super::fields::{chosen_ui, properties_ui, row, whole_row};
 use super::super::says::Says;
-use super::super::status::grouped;
 use crate::editor::action::Action;
 use crate::editor::inspection::{DebugRay, Names};
 use crate::editor::selection::Selection;
+use crate::editor::texts::grouped;
 use crate::editor::trees::BoxRanges;
-use crate::inspect::{
-    BoxChoice, BoxColor, BoxRange, BoxSettings, InspectSettings, TreeChoice, TreeForm,
-};
-use crate::scene::SceneId;
+use crate::inspect::{BoxChoice, BoxColor, BoxRange, BoxSettings, InspectSettings, TreeForm};
+use crate::scene::{Property, Quantity, SceneId};
 use crate::sync::Traced;
 use crate::trace::RayHit;
 use bevy::ecs::world::{Mut, World};
-use bevy_egui::egui::{Button, Label, RichText, Slider, SliderClamping, Ui};
+use bevy::reflect::Typed;
+use bevy_egui::egui::{Button, Label, RichText, Ui};
 
 pub(super) fn boxes_ui(ui: &mut Ui, world: &mut World, settings: &mut InspectSettings) {
-    let boxes = &mut settings.boxes;
     let traced = world.resource::<Traced>().world.clone();
-    let range = match world.contains_resource::<BoxRanges>() && boxes.on {
-        true => world.resource_scope(|_, mut ranges: Mut<BoxRanges>| ranges.of(&traced, boxes)),
+    let range = match world.contains_resource::<BoxRanges>() && settings.boxes.on {
+        true => world
+            .resource_scope(|_, mut ranges: Mut<BoxRanges>| ranges.of(&traced, &settings.boxes)),
         false => BoxRange::default(),
     };
-    let says = "Boxes of the trees' nodes";
-    switch(ui, "Draw", says, &mut boxes.on, false);
-    if !boxes.on {
+    properties_ui(ui, settings, &["boxes.on"]);
+    if !settings.boxes.on {
         return;
     }
-    let says = "Binary: as the builder made them. Wide: up to eight children a node, made of the binary form, \
-                through which rays are traced";
-    choice(ui, "Form", says, &mut boxes.form, &FORMS, false);
-    if boxes.form == TreeForm::Binary {
-        let says = "A range of levels, one leaf, or the way to a triangle";
-        choice(ui, "Which", says, &mut boxes.choice, &CHOICES, false);
+    properties_ui(ui, settings, &["boxes.form"]);
+    let form = settings.boxes.form;
+    if form == TreeForm::Binary {
+        properties_ui(ui, settings, &["boxes.choice"]);
     }
-    let which = match boxes.form {
-        TreeForm::Binary => boxes.choice,
+    let which = match form {
+        TreeForm::Binary => settings.boxes.choice,
         TreeForm::Wide => BoxChoice::Levels,
     };
+    let boxes = &mut settings.boxes;
     match which {
         BoxChoice::Levels => levels_ui(ui, boxes, range),
         BoxChoice::Leaf => leaf_ui(ui, world, boxes, range),
@@ -47,110 +44,60 @@ pub(super) fn boxes_ui(ui: &mut Ui, world: &mut World, settings: &mut InspectSet
     if which != BoxChoice::Path {
         object_ui(ui, world, boxes);
     }
-    let says = "The one over the objects, those of the meshes, or both";
-    choice(ui, "Trees", says, &mut boxes.trees, &TREES, false);
-    if boxes.form == TreeForm::Binary {
-        let says = "What a box's colour says: dark is little, bright is much";
-        choice(ui, "Colour", says, &mut boxes.color, &COLORS, false);
-        let says =
-            "The plane between each drawn node's children, with its axis: x red, y green, z blue";
-        switch(ui, "Split planes", says, &mut boxes.split_planes, false);
-        let says = "The triangles of drawn leaves";
-        switch(ui, "Triangles", says, &mut boxes.triangles, false);
+    properties_ui(ui, settings, &["boxes.trees"]);
+    if form == TreeForm::Binary {
+        let paths = ["boxes.color", "boxes.split_planes", "boxes.triangles"];
+        properties_ui(ui, settings, &paths);
     } else {
-        let says = "What a box's colour says: dark is little, bright is much";
-        let colors = [COLORS[0], COLORS[3]];
-        let mut color = match boxes.color {
-            BoxColor::Visits => BoxColor::Visits,
-            _ => BoxColor::Level,
-        };
-        if choice(ui, "Colour", says, &mut color, &colors, false) {
-            boxes.color = color;
-        }
+        wide_color_ui(ui, &mut settings.boxes);
     }
     let leaves = grouped(range.leaves as u64);
-    let text = match boxes.form {
-        TreeForm::Binary => format!("{leaves} leaves, the deepest level is {}", range.deepest),
+    let leaves = if range.leaves == 1 {
+        "1 leaf".into()
+    } else {
+        format!("{leaves} leaves")
+    };
+    let text = match form {
+        TreeForm::Binary => format!("{leaves}, the deepest level is {}", range.deepest),
         TreeForm::Wide => format!("The deepest level is {}", range.deepest),
     };
     ui.add(Label::new(RichText::new(text).weak()).wrap());
 }
 
-const FORMS: [(TreeForm, &str, &str); 2] = [
-    (TreeForm::Binary, "Binary", "As the builder made them"),
-    (
-        TreeForm::Wide,
-        "Wide",
-        "Up to eight children a node: what rays are traced through",
-    ),
-];
-const CHOICES: [(BoxChoice, &str, &str); 3] = [
-    (
-        BoxChoice::Levels,
-        "Levels",
-        "All nodes from one level to another",
-    ),
-    (BoxChoice::Leaf, "One leaf", "A single leaf, by its number"),
-    (
-        BoxChoice::Path,
-        "Way to a triangle",
-        "From the root to the leaf that holds a triangle",
-    ),
-];
-const TREES: [(TreeChoice, &str, &str); 3] = [
-    (TreeChoice::Both, "Both", "All trees"),
-    (
-        TreeChoice::Top,
-        "Over the objects",
-        "The tree whose leaves are objects",
-    ),
-    (
-        TreeChoice::Meshes,
-        "Of the meshes",
-        "The trees whose leaves are triangles",
-    ),
-];
-const COLORS: [(BoxColor, &str, &str); 4] = [
-    (BoxColor::Level, "Level", "How deep the node is"),
-    (
-        BoxColor::LeafSize,
-        "Leaf size",
-        "How many triangles or objects a leaf holds",
-    ),
-    (
-        BoxColor::Cost,
-        "SAH cost",
-        "What the node adds to the cost of a random ray",
-    ),
-    (
-        BoxColor::Visits,
-        "Visits",
-        "How many of the debug ray's rays entered the node",
-    ),
-];
+/// What colours of the wide form's boxes may tell: costs and leaf sizes are known of the binary form alone.
+fn wide_color_ui(ui: &mut Ui, boxes: &mut BoxSettings) {
+    let Some(property) = Property::of(BoxSettings::type_info(), "color") else {
+        return;
+    };
+    let mut choices = property.choices();
+    choices.retain(|choice| ["Level", "Visits"].contains(&choice.name));
+    let now = match boxes.color {
+        BoxColor::Visits => "Visits",
+        _ => "Level",
+    };
+    let chosen = chosen_ui(ui, &property.label, &property.says, now, &choices, false);
+    match chosen {
+        Some("Visits") => boxes.color = BoxColor::Visits,
+        Some(_) => boxes.color = BoxColor::Level,
+        None => {}
+    }
+}
+
+/// A number of a tree that is drawn, up to the last that it has.
+fn number_ui(ui: &mut Ui, path: &str, value: &mut u32, last: u32) -> bool {
+    let Some(property) = Property::of(BoxSettings::type_info(), path) else {
+        return false;
+    };
+    let numbers = Quantity::slider(0.0, f64::from(last), "");
+    whole_row(ui, &property.label, &property.says, value, numbers)
+}
 
 fn levels_ui(ui: &mut Ui, boxes: &mut BoxSettings, range: BoxRange) {
     let deepest = range.deepest.max(1);
-    let says = "The first level that is drawn; the root's is 0";
-    if integer(
-        ui,
-        "From level",
-        says,
-        &mut boxes.from_level,
-        0..=deepest,
-        false,
-    ) {
+    if number_ui(ui, "from_level", &mut boxes.from_level, deepest) {
         boxes.to_level = boxes.to_level.max(boxes.from_level);
     }
-    let says = "The last level that is drawn";
-    if integer(
-        ui,
-        "To level",
-        says,
-        &mut boxes.to_level,
-        0..=deepest,
-        false,
-    ) {
+    if number_ui(ui, "to_level", &mut boxes.to_level, deepest) {
         boxes.from_level = boxes.from_level.min(boxes.to_level);
     }
     ui.horizontal(|ui| {
@@ -184,12 +131,8 @@ fn levels_ui(ui: &mut Ui, boxes: &mut BoxSettings, range: BoxRange) {
 
 fn leaf_ui(ui: &mut Ui, world: &mut World, boxes: &mut BoxSettings, range: BoxRange) {
     let last = (range.leaves as u32).saturating_sub(1);
-    let says = "Which leaf, from 0, in the order in which the trees have them; A and S step";
-    row(ui, "Leaf", says, |ui| {
-        let room = ui.available_width();
-        ui.spacing_mut().slider_width = (room - 104.0).max(30.0);
-        let slider = Slider::new(&mut boxes.leaf, 0..=last).clamping(SliderClamping::Edits);
-        ui.add(slider).says(says);
+    number_ui(ui, "leaf", &mut boxes.leaf, last);
+    ui.horizontal(|ui| {
         for (name, says, action) in [
             (
                 "◀",
@@ -229,8 +172,7 @@ fn path_ui(ui: &mut Ui, world: &mut World, boxes: &mut BoxSettings) {
     let last = object.map_or(0, |object| {
         (object.mesh.tree.triangles().len() as u32).saturating_sub(1)
     });
-    let says = "Which triangle of the object, from 0, in the mesh's own order";
-    integer(ui, "Triangle", says, &mut boxes.triangle, 0..=last, false);
+    number_ui(ui, "triangle", &mut boxes.triangle, last);
 }
 
 /// Why the trees of what is selected cannot be drawn; `None` where they can.
@@ -292,14 +234,5 @@ mod tests {
         assert_eq!(no_tree(traced, Some(object)), None);
         assert!(no_tree(traced, Some(SceneId(u64::MAX))).is_some());
         assert!(no_tree(traced, None).is_some());
-    }
-
-    #[test]
-    fn every_choice_says_what_it_means() {
-        let says = FORMS.iter().map(|choice| choice.2);
-        let says = says.chain(CHOICES.iter().map(|choice| choice.2));
-        let says = says.chain(TREES.iter().map(|choice| choice.2));
-        let mut says = says.chain(COLORS.iter().map(|choice| choice.2));
-        assert!(says.all(|text| !text.is_empty()));
     }
 }

@@ -1,22 +1,23 @@
 //! The tab BVH: how the trees are built, the builders against each other, and what the trees that are
 //! traced are like.
 
-use super::super::fields::section;
+use super::super::fields::{properties_ui, section};
 use super::super::says::Says;
 use super::super::state::Panels;
-use super::super::status::{grouped, memory_text};
+use super::super::status::memory_text;
 use super::super::theme::accent;
 use super::builders::builders_ui;
 use super::pair::pair_ui;
 use super::performance::performance_ui;
-use super::render::settings_ui;
 use super::still_plot::still_plot;
 use crate::bvh::{LARGEST_LEAF_BIN, MeshTree, TreeStats};
-use crate::scene::{Builder, RenderSettings, TreeSettings};
+use crate::editor::texts::{counted, grouped};
+use crate::scene::{Property, RenderSettings, TreeSettings};
 use crate::sync::Traced;
 use crate::trace;
 use bevy::ecs::world::World;
 use bevy::platform::collections::HashSet;
+use bevy::reflect::Typed;
 use bevy_egui::egui::{ComboBox, Grid, Ui};
 use egui_plot::{Bar, BarChart};
 use std::sync::Arc;
@@ -63,7 +64,10 @@ impl Trees {
         self.trees = vec![Tree {
             name: match one {
                 true => "All triangles".into(),
-                false => format!("Over {} objects", aggregate.instances().len()),
+                false => {
+                    let objects = aggregate.instances().len() as u64;
+                    format!("Over {}", counted(objects, "object"))
+                }
             },
             mesh: None,
             stats: aggregate.stats(),
@@ -87,9 +91,9 @@ impl Trees {
                 let known = before.iter().position(is_known);
                 Tree {
                     name: format!(
-                        "Mesh of object {}, {} triangles",
+                        "Mesh of object {}, {}",
                         object.id,
-                        grouped(tree.traced() as u64)
+                        counted(tree.traced() as u64, "triangle")
                     ),
                     mesh: Some(tree.clone()),
                     stats: match known {
@@ -115,7 +119,8 @@ pub(super) fn bvh_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     let before = world.resource::<RenderSettings>().clone();
     let mut settings = before.clone();
     section(ui, "Building", true, |ui| {
-        settings_ui(ui, &shown_settings(settings.tree.builder), &mut settings);
+        let paths = shown_settings(&settings);
+        properties_ui(ui, &mut settings, &paths);
         ui.horizontal(|ui| {
             let says = "Two levels, PLOC: quick to trace";
             if ui.button("Default").says(says).clicked() {
@@ -151,18 +156,12 @@ pub(super) fn bvh_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
 }
 
 /// Those settings that the builder reads.
-fn shown_settings(builder: Builder) -> Vec<&'static str> {
-    SETTINGS_OF_TREES
-        .iter()
-        .copied()
-        .filter(|&path| match path {
-            "tree.max_depth" => matches!(builder, Builder::Median | Builder::Sah),
-            "tree.bins" => builder == Builder::Sah,
-            "tree.preset" => builder == Builder::Ploc,
-            "tree.max_leaf_size" => builder != Builder::None,
-            _ => true,
-        })
-        .collect()
+fn shown_settings(settings: &RenderSettings) -> Vec<&'static str> {
+    let is_read = |path: &&str| {
+        Property::of(RenderSettings::type_info(), path)
+            .is_some_and(|property| property.is_read(settings))
+    };
+    SETTINGS_OF_TREES.iter().copied().filter(is_read).collect()
 }
 
 fn trees_ui(ui: &mut Ui, trees: &mut Trees) {
@@ -266,6 +265,7 @@ mod tests {
     use super::*;
     use crate::editor::headless_editor;
     use crate::io::{OpenOptions, SceneSource, builtin, open};
+    use crate::scene::Builder;
     use bevy::ecs::query::With;
     use bevy::mesh::Mesh3d;
     use bevy::transform::components::Transform;
@@ -298,11 +298,13 @@ mod tests {
 
     #[test]
     fn a_builder_shows_the_settings_that_it_reads() {
-        assert_eq!(
-            shown_settings(Builder::None),
-            ["tree.builder", "tree.levels"]
-        );
-        assert!(shown_settings(Builder::Sah).contains(&"tree.bins"));
-        assert!(!shown_settings(Builder::Ploc).contains(&"tree.max_depth"));
+        let shown = |builder| {
+            let mut settings = RenderSettings::default();
+            settings.tree.builder = builder;
+            shown_settings(&settings)
+        };
+        assert_eq!(shown(Builder::None), ["tree.builder", "tree.levels"]);
+        assert!(shown(Builder::Sah).contains(&"tree.bins"));
+        assert!(!shown(Builder::Ploc).contains(&"tree.max_depth"));
     }
 }

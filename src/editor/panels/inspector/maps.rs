@@ -29,8 +29,8 @@ const MOST: usize = 64;
 
 /// What a field for a picture shows.
 pub(super) struct Map<'a> {
-    pub label: &'static str,
-    pub says: &'static str,
+    pub label: &'a str,
+    pub says: &'a str,
     /// The picture as it was loaded.
     pub loaded: Option<&'a Handle<Image>>,
     /// Whose picture it is.

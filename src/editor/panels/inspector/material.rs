@@ -1,12 +1,13 @@
 //! Materials: an object's own, or one that several objects share.
 
-use super::super::fields::{Number, radiant, row, section};
+use super::super::fields::{row, section};
 use super::super::outline::{Kind, Outline};
 use super::super::says::Says;
 use super::super::several::Several;
 use super::super::state::Panels;
 use super::material_maps::{alpha_ui, maps_ui};
 use super::presets::PRESETS;
+use crate::editor::texts::counted;
 use crate::scene::{MeshSource, Phong, PhongMaps, SceneId, UsesMaterial};
 use bevy::ecs::entity::Entity;
 use bevy::ecs::world::World;
@@ -60,25 +61,10 @@ pub(super) fn material_ui(
 }
 
 fn fields_ui(ui: &mut Ui, several: &mut Several<Phong>) {
-    let says = "kd: the colour of the body, lit from all sides alike";
-    several.color(ui, "Diffuse", says, |phong| &mut phong.diffuse);
-    let says = "ks: the highlight's colour, of lights alone; black is matt";
-    several.color(ui, "Specular", says, |phong| &mut phong.specular);
-    let says =
-        "km: how much of its surroundings it reflects, and in which colour; black is no mirror";
-    several.color(ui, "Mirror", says, |phong| &mut phong.mirror);
-    let says = "How narrow the highlight is; a glossy reflection blurs by one over it";
-    let number = Number::logarithmic(1.0, 10_000.0, "");
-    several.number(ui, "Shininess", says, number, |phong| &mut phong.shininess);
-    let says = "1 is opaque; below it light goes on through the surface, tinted";
-    let number = Number::slider(0.0, 1.0, "");
-    several.number(ui, "Opacity", says, number, |phong| &mut phong.opacity);
+    let numbers = ["diffuse", "specular", "mirror", "shininess", "opacity"];
+    several.properties(ui, &numbers);
     alpha_ui(ui, several);
-    let says = "ke: light that the surface sends out by itself; it is seen, but lights nothing";
-    several.field(
-        |phong| &mut phong.emission,
-        |value, mixed| radiant(ui, "Emission", says, value, mixed),
-    );
+    several.properties(ui, &["emission"]);
 }
 
 /// Whose material an object shows.
@@ -100,7 +86,8 @@ fn assign_ui(ui: &mut Ui, world: &mut World, entities: &[Entity], owner: Entity)
     let count = users.iter(world).filter(|uses| uses.0 == owner).count();
     if objects.is_empty() {
         ui.weak(format!(
-            "Used by {count} objects: a change here reaches all of them."
+            "Used by {}: a change here reaches all of them.",
+            counted(count as u64, "object")
         ));
         return;
     }
@@ -142,7 +129,10 @@ fn assign_ui(ui: &mut Ui, world: &mut World, entities: &[Entity], owner: Entity)
     });
     if is_shared {
         ui.horizontal(|ui| {
-            ui.weak(format!("Shared by {count} objects."));
+            ui.weak(match count {
+                1 => "Shared, and used by this object alone.".to_owned(),
+                _ => format!("Shared by {}.", counted(count as u64, "object")),
+            });
             let says = "Gives the selected objects a copy of their own";
             if ui.small_button("Make single").says(says).clicked() {
                 make_single(world, &objects);

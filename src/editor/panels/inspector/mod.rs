@@ -25,8 +25,10 @@ mod shape;
 mod still_plot;
 mod transform;
 
+use super::number_field::set_owner;
 use super::says::Says;
 use super::state::{Panels, Tab};
+use crate::editor::selection::Selection;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{self, ScrollArea, Ui};
 
@@ -64,6 +66,8 @@ pub(super) fn inspector_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) 
         }
     });
     ui.separator();
+    let selected = world.resource::<Selection>().ids();
+    set_owner(ui.ctx(), (panels.tab as u8, selected));
     ScrollArea::vertical()
         .id_salt(panels.tab as u8)
         .auto_shrink([false, false])

@@ -1,6 +1,6 @@
 //! What moves while the shutter is open, by itself and with what it hangs below.
 
-use super::super::fields::{Number, integer, point, row};
+use super::super::fields::row;
 use super::super::says::Says;
 use super::camera::optional_ui;
 use crate::editor::inspection::column::vector_text;
@@ -27,29 +27,9 @@ pub(super) fn motion_ui(ui: &mut Ui, world: &mut World, entities: &[Entity]) {
             ui.weak(vector_text(velocity)).says(says)
         });
     }
-    optional_ui::<Motion>(
-        ui,
-        world,
-        &movable,
-        "Motion",
-        "It moves while the shutter is open with all that hangs below it, and is smeared along its way",
-        |ui, several| {
-            several.field(
-                |motion| &mut motion.velocity,
-                |value, mixed| {
-                    let says = "Metres that it covers from time 0 to 1, in its parent's space";
-                    point(ui, "Velocity", says, value, Number::free(0.01, ""), mixed)
-                },
-            );
-            several.field(
-                |motion| &mut motion.samples,
-                |value, mixed| {
-                    let says = "Samples of each pixel that the motion asks for";
-                    integer(ui, "Samples", says, value, 1..=1000, mixed)
-                },
-            );
-        },
-    );
+    optional_ui::<Motion>(ui, world, &movable, "Motion", |ui, several| {
+        several.properties(ui, &["velocity", "samples"]);
+    });
 }
 
 /// Whether a motion of it can be seen: of itself, or of what hangs below it. A material stands nowhere, and a

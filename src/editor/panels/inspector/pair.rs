@@ -1,38 +1,25 @@
 //! Two builders' trees over the same view.
 
-use super::super::fields::{row, switch};
+use super::super::fields::{properties_ui, row};
 use super::super::says::Says;
-use super::render::about;
 use crate::editor::trees::of_setting;
 use crate::editor::trees::pair::{Side, SideState, TreePair};
 use crate::inspect::InspectSettings;
 use crate::report::performance::title;
 use crate::scene::Builder;
+use crate::scene::schema::about_choice;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{ComboBox, Label, RichText, Ui};
 
-pub(super) const BUILDERS: [Builder; 4] =
-    [Builder::None, Builder::Median, Builder::Sah, Builder::Ploc];
-
-/// As the list of the setting says it.
-pub(super) fn about_builder(builder: Builder) -> &'static str {
-    about(match builder {
-        Builder::None => "None",
-        Builder::Median => "Median",
-        Builder::Sah => "Sah",
-        Builder::Ploc => "Ploc",
-    })
-}
+const BUILDERS: [Builder; 4] = [Builder::None, Builder::Median, Builder::Sah, Builder::Ploc];
 
 pub(super) fn pair_ui(ui: &mut Ui, world: &mut World) {
     let Some(before) = world.get_resource::<InspectSettings>().cloned() else {
         return;
     };
     let mut settings = before.clone();
+    properties_ui(ui, &mut settings, &["pair.on"]);
     let pair = &mut settings.pair;
-    let says = "The view's left half shows the boxes of one builder's trees, the right half another's; \
-                the picture is traced as before";
-    switch(ui, "Show", says, &mut pair.on, false);
     let states = world.get_resource::<TreePair>().map(|pair| {
         let state = |side: &Side| side.state();
         [state(&pair.sides[0]), state(&pair.sides[1])]
@@ -46,7 +33,7 @@ pub(super) fn pair_ui(ui: &mut Ui, world: &mut World) {
                 .show_ui(ui, |ui| {
                     for choice in BUILDERS {
                         ui.selectable_value(builder, choice, title(of_setting(choice)))
-                            .says(about_builder(choice));
+                            .says(&about_choice(&choice));
                     }
                 })
                 .response

@@ -1,6 +1,6 @@
 //! The performance test: the view rendered several times with each builder's trees.
 
-use super::super::fields::integer;
+use super::super::fields::whole_row;
 use super::super::says::Says;
 use super::super::state::Panels;
 use super::figure_table::{Cell, Row, figure_table_ui, short};
@@ -10,7 +10,7 @@ use crate::bvh::Builder;
 use crate::editor::trees::measure::{Measurements, test_performance};
 use crate::editor::trees::of_setting;
 use crate::report::performance::{Performance, PerformanceColumn};
-use crate::scene::RenderSettings;
+use crate::scene::{Quantity, RenderSettings};
 use bevy::ecs::world::World;
 use bevy_egui::egui::{Label, RichText, Ui};
 
@@ -36,9 +36,11 @@ pub(super) fn performance_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels
     let about = "The view rendered several times with each builder, taking turns.";
     ui.add(Label::new(RichText::new(about).weak()).wrap());
     let says = "Renderings with each builder";
-    integer(ui, "Renderings", says, &mut form.runs, 1..=1000, false);
+    let many = Quantity::SAMPLES;
+    whole_row(ui, "Renderings", says, &mut form.runs, many);
     let says = "Of each pixel in a rendering, at least: what the scene's effects need counts too";
-    integer(ui, "Samples", says, &mut form.spp, 1..=4096, false);
+    let samples = Quantity::slider(1.0, 4096.0, "").logarithmic();
+    whole_row(ui, "Samples", says, &mut form.spp, samples);
     let (runs, spp) = (form.runs, form.spp);
     let start = measure_ui(
         ui,

@@ -2,6 +2,7 @@
 
 use super::super::says::Says;
 use crate::editor::notice::Notices;
+use crate::editor::texts::path_text;
 use crate::io::{check_not_read, replace_file};
 use bevy::ecs::world::World;
 use bevy_egui::egui::{Button, Key, TextEdit, Ui};
@@ -72,7 +73,7 @@ pub(super) fn save_text_ui(
     });
     form.refused = written.as_ref().err().cloned();
     if written.is_ok() {
-        let text = format!("Wrote {}", file.display());
+        let text = format!("Wrote {}", path_text(&file));
         world.resource_mut::<Notices>().tell(text);
         form.known = Some(file);
     }

@@ -1,16 +1,22 @@
 //! Where an entity stands. Turns are shown as angles, which stay as they were entered: a rotation
 //! has many triples of angles, and a field that jumps to another one cannot be typed into.
 
-use super::super::fields::{Number, row, section, vector};
+use super::super::fields::{property_ui, row, section};
 use super::super::says::Says;
 use super::super::several::Several;
 use super::super::state::Panels;
+use crate::scene::{Property, Quantity};
 use bevy::camera::visibility::Visibility;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::world::World;
 use bevy::math::{EulerRot, Quat, Vec3};
+use bevy::reflect::{Reflect, Typed};
 use bevy::transform::components::Transform;
 use bevy_egui::egui::Ui;
+use std::f64::consts::PI;
+
+/// Angles that can be entered, in radians: a thousand turns either way.
+const TURNS: f64 = 2000.0 * PI;
 
 /// The angles that were entered last, and for which rotation they stand.
 #[derive(Default)]
@@ -53,56 +59,54 @@ pub(super) fn transform_ui(
     };
     section(ui, "Place", true, |ui| {
         visible_ui(ui, world, entities);
-        axes_ui(
+        place_ui(
             ui,
             &mut several,
+            "translation",
             "Position",
             "Metres, in its parent's space",
-            Number::free(0.01, ""),
-            |transform| &mut transform.translation,
+            Quantity::COORDINATE,
         );
         turn_ui(ui, &mut several, entities[0], &mut panels.turns);
-        axes_ui(
+        place_ui(
             ui,
             &mut several,
+            "scale",
             "Scale",
             "Size along its own axes; 1 is as it was made, negative mirrors",
-            Number::free(0.01, ""),
-            |transform| &mut transform.scale,
+            Quantity::COORDINATE.unit(""),
         );
     });
     several.write(world);
 }
 
-/// Three numbers, each a property of its own: setting one leaves the others of several entities.
-fn axes_ui(
+/// A part of Bevy's own component, of which our schema says nothing: setting one number leaves the others of several
+/// entities.
+fn place_ui(
     ui: &mut Ui,
     several: &mut Several<Transform>,
+    path: &str,
     label: &str,
     says: &str,
-    number: Number,
-    vector_of: impl Fn(&mut Transform) -> &mut Vec3,
+    quantity: Quantity,
 ) {
-    let mut mixed = [false; 3];
-    for (axis, mixed) in mixed.iter_mut().enumerate() {
-        several.field(
-            |transform| &mut vector_of(transform)[axis],
-            |_, differs| {
-                *mixed = differs;
-                false
-            },
-        );
+    if let Some(mut property) = Property::of(Transform::type_info(), path) {
+        property.label = label.to_owned();
+        property.says = says.to_owned();
+        property.quantity = Some(quantity);
+        several.property(ui, &property);
     }
-    let mut value = *vector_of(&mut several.first().clone());
-    let changed = vector(ui, label, says, &mut value, number, mixed);
-    for axis in (0..3).filter(|&axis| changed[axis]) {
-        several.change(|transform| vector_of(transform)[axis] = value[axis]);
-    }
+}
+
+/// Angles that are entered, degrees shown.
+#[derive(Reflect)]
+struct Angles {
+    radians: Vec3,
 }
 
 fn turn_ui(ui: &mut Ui, several: &mut Several<Transform>, active: Entity, turns: &mut Turns) {
     let before = several.first().rotation;
-    let mut value = turns.of(active, before);
+    let entered = turns.of(active, before);
     let mut differs = false;
     several.field(
         |transform| &mut transform.rotation,
@@ -111,22 +115,33 @@ fn turn_ui(ui: &mut Ui, several: &mut Several<Transform>, active: Entity, turns:
             false
         },
     );
-    let says = "Degrees about x, y and z: first about the vertical y, then x, then z";
-    let number = Number::free(0.5, "°");
-    let changed = vector(ui, "Turn", says, &mut value, number, [differs; 3]);
-    if !changed.contains(&true) {
+    let Some(mut property) = Property::of(Angles::type_info(), "radians") else {
         return;
-    }
+    };
+    property.label = "Turn".into();
+    property.says = "About x, y and z: first about the vertical y, then x, then z".into();
+    property.quantity = Some(Quantity::within(-TURNS, TURNS, "°").step(0.01));
+    let mut angles = Angles {
+        radians: entered.map(f32::to_radians),
+    };
+    let Some(changed) = property_ui(ui, &mut angles, &property, &|_| differs) else {
+        return;
+    };
+    let Some(axis) = ["radians.x", "radians.y", "radians.z"]
+        .iter()
+        .position(|axis| *axis == changed)
+    else {
+        return;
+    };
+    let mut value = entered;
+    value[axis] = angles.radians[axis].to_degrees();
     several.change(|transform| {
-        let mut angles = if transform.rotation == before {
-            value
-        } else {
-            degrees(transform.rotation)
+        let mut all = match transform.rotation == before {
+            true => value,
+            false => degrees(transform.rotation),
         };
-        for axis in (0..3).filter(|&axis| changed[axis]) {
-            angles[axis] = value[axis];
-        }
-        transform.rotation = rotation(angles);
+        all[axis] = value[axis];
+        transform.rotation = rotation(all);
     });
     turns.known = Some((active, several.first().rotation, value));
 }

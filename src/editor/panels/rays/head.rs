@@ -1,5 +1,6 @@
 //! Above the list: which pixel, which of its samples, which kinds of rays, and the search.
 
+use super::super::fields::whole;
 use super::super::says::Says;
 use crate::editor::command::{find, shortcut};
 use crate::editor::inspection::choice::shoot_pixel;
@@ -8,9 +9,11 @@ use crate::editor::inspection::{DebugRay, Inspected, Which};
 use crate::editor::notice::Notices;
 use crate::editor::preferences::Preferences;
 use crate::inspect::InspectSettings;
+use crate::scene::Quantity;
+use crate::scene::schema::quantity_of;
 use bevy::ecs::world::World;
 use bevy::math::UVec2;
-use bevy_egui::egui::{self, Align, Button, DragValue, Layout, Slider, TextEdit, Ui};
+use bevy_egui::egui::{Align, Button, Layout, TextEdit, Ui};
 
 /// What the fields hold.
 #[derive(Default)]
@@ -24,8 +27,6 @@ pub(super) struct Head {
 
 /// More columns or rows than any picture has.
 const MOST: u32 = 99_999;
-/// No ray behind more surfaces can be asked for.
-const MOST_BOUNCES: u32 = 50;
 
 pub(super) fn head_ui(ui: &mut Ui, world: &mut World, head: &mut Head) {
     ui.horizontal_wrapped(|ui| {
@@ -74,14 +75,12 @@ fn pixel_ui(ui: &mut Ui, world: &mut World, head: &mut Head) {
     .into_iter()
     .enumerate()
     {
-        let field = DragValue::new(&mut head.pixel[i])
-            .range(0..=MOST)
-            .speed(0.25);
+        let pixels = Quantity::within(0.0, MOST.into(), "").step(0.25);
         let says = match size {
             Some(size) => format!("{says}; the picture has {}", size.to_array()[i]),
             None => says.to_owned(),
         };
-        entered |= ui.add(field).says(&says).changed();
+        entered |= whole(ui, &says, &mut head.pixel[i], pixels);
     }
     if entered {
         shoot_pixel(world, UVec2::from_array(head.pixel));
@@ -111,13 +110,16 @@ fn samples_ui(ui: &mut Ui, world: &mut World, head: &mut Head) {
     }
     if let Which::Number(number) = &mut which {
         let last = count.map_or(*number, |count| count.saturating_sub(1));
-        ui.spacing_mut().slider_width = 70.0;
-        let slider = Slider::new(number, 0..=last.max(1)).clamping(egui::SliderClamping::Edits);
+        let samples = Quantity::slider(0.0, last.max(1) as f64, "");
         let says = match count {
             Some(count) => format!("Which sample, from 0; the pixel has {count}"),
             None => "Which sample, from 0".to_owned(),
         };
-        ui.add(slider).says(&says);
+        // No pixel has more samples than that.
+        let mut entered = u32::try_from(*number).unwrap_or(u32::MAX);
+        if whole(ui, &says, &mut entered, samples) {
+            *number = entered.into();
+        }
         if known.is_some() {
             *number = (*number).min(last);
         }
@@ -182,11 +184,9 @@ fn kinds_ui(ui: &mut Ui, world: &mut World) {
     }
     ui.label("bounces ≤")
         .says("No ray behind more surfaces than this is listed or drawn");
-    ui.spacing_mut().slider_width = 60.0;
-    let slider =
-        Slider::new(&mut rays.max_depth, 0..=MOST_BOUNCES).clamping(egui::SliderClamping::Edits);
-    ui.add(slider)
-        .says("No ray behind more surfaces than this is listed or drawn");
+    let says = "No ray behind more surfaces than this is listed or drawn";
+    let bounces = quantity_of::<InspectSettings>("rays.max_depth");
+    whole(ui, says, &mut rays.max_depth, bounces);
     if rays != before.rays || draw != is_drawn {
         let mut settings = world.resource_mut::<InspectSettings>();
         settings.rays = rays;

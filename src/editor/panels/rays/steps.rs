@@ -1,17 +1,19 @@
 //! The chosen ray's way through the trees: played, with the stack.
 
+use super::super::fields::number;
 use super::super::says::Says;
 use super::none_chosen_ui;
 use crate::editor::command::tooltip;
 use crate::editor::inspection::tell::tree_name;
 use crate::editor::inspection::{DebugRay, Inspected, Names};
 use crate::inspect::{Step, StepKind};
+use crate::scene::Quantity;
 use crate::sync::Traced;
 use crate::trace::{RayTree, World};
 use bevy::ecs::world;
 use bevy_egui::egui::{
-    Align2, Button, Color32, DragValue, FontFamily, FontId, Grid, Rect, RichText, Sense, Slider,
-    Ui, pos2, vec2,
+    Align2, Button, Color32, FontFamily, FontId, Grid, Rect, RichText, Sense, Slider, Ui, pos2,
+    vec2,
 };
 
 /// Points.
@@ -90,12 +92,9 @@ fn controls_ui(ui: &mut Ui, world: &world::World, inspected: &mut Inspected) {
         if ui.small_button(">|").says("To the last step").clicked() {
             stepper.go(last);
         }
-        let field = DragValue::new(&mut stepper.speed)
-            .range(SPEEDS[0]..=SPEEDS[1])
-            .speed(0.1)
-            .max_decimals(1)
-            .suffix(" /s");
-        ui.add(field).says("Steps a second while playing");
+        let says = "Steps a second while playing";
+        let speeds = Quantity::within(SPEEDS[0].into(), SPEEDS[1].into(), "/s").step(0.1);
+        number(ui, says, &mut stepper.speed, speeds);
         ui.checkbox(&mut inspected.only_its_nodes, "its nodes only").says(
             "Visited and pruned nodes (tab Debug) are drawn of this ray alone, and not of all rays",
         );
@@ -105,8 +104,10 @@ fn controls_ui(ui: &mut Ui, world: &world::World, inspected: &mut Inspected) {
         let mut at = stepper.at() + 1;
         let count = stepper.len();
         ui.spacing_mut().slider_width = (ui.available_width() - 96.0).max(60.0);
-        let slider = Slider::new(&mut at, 1..=count).suffix(format!(" of {count}"));
-        if ui.add(slider).says("Which step is shown").changed() {
+        let slider = Slider::new(&mut at, 1..=count).show_value(false);
+        let is_moved = ui.add(slider).says("Which step is shown").changed();
+        ui.label(format!("{at} of {count}"));
+        if is_moved {
             stepper.playing = false;
             stepper.go(at - 1);
         }

@@ -6,5 +6,6 @@ mod desk;
 mod drawn;
 mod operated;
 mod trees;
+mod typed;
 
 pub(super) use desk::{Desk, SMALL, USUAL};

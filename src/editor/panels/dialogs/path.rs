@@ -1,0 +1,290 @@
+//! A path is typed, where the system has no dialog for it: with what lies in the folder, recent folders, and Tab to
+//! complete.
+
+use super::super::says::Says;
+use super::question::whole_path_ui;
+use crate::editor::document::{Answer, Purpose};
+use crate::editor::texts::{path_of, path_text};
+use crate::io::MODEL_EXTENSIONS;
+use bevy_egui::egui::{
+    self, Button, EventFilter, Id, Key, Modifiers, RichText, ScrollArea, TextEdit, Ui,
+};
+use std::fs;
+use std::path::{MAIN_SEPARATOR, Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Files and folders of one folder that are looked at.
+const MOST: usize = 2000;
+/// How often a folder is looked at again.
+const AGAIN: Duration = Duration::from_secs(1);
+
+/// What is typed, and what lies in the folder that it names.
+pub(in super::super) struct PathForm {
+    text: String,
+    is_new: bool,
+    listing: Option<Listing>,
+}
+
+struct Listing {
+    folder: PathBuf,
+    purpose: Purpose,
+    when: Instant,
+    /// Names, folders first and with a separator at their end.
+    names: Vec<String>,
+}
+
+impl PathForm {
+    /// Begins with a path.
+    pub fn new(suggestion: &Path) -> Self {
+        let text = suggestion.display().to_string();
+        Self {
+            text,
+            is_new: true,
+            listing: None,
+        }
+    }
+
+    /// The names that fit what was typed behind the last separator.
+    fn fitting(&mut self, purpose: Purpose) -> Vec<String> {
+        let (folder, begun) = split(&self.text);
+        let folder = path_of(folder);
+        let is_known = |listing: &Listing| {
+            listing.folder == folder && listing.purpose == purpose && listing.when.elapsed() < AGAIN
+        };
+        if !self.listing.as_ref().is_some_and(is_known) {
+            self.listing = Some(Listing {
+                names: names_in(&folder, purpose),
+                folder,
+                purpose,
+                when: Instant::now(),
+            });
+        }
+        let names = self.listing.iter().flat_map(|listing| &listing.names);
+        let fits = |name: &&String| {
+            let is_hidden = name.starts_with('.') && !begun.starts_with('.');
+            !is_hidden && begins_with(name, begun)
+        };
+        names.filter(fits).cloned().collect()
+    }
+
+    /// Puts a name in the place of what was begun.
+    fn complete(&mut self, name: &str) {
+        let (folder, _) = split(&self.text);
+        self.text = format!("{folder}{name}");
+    }
+}
+
+/// The folder with its separator, and what follows.
+fn split(text: &str) -> (&str, &str) {
+    let is_separator = |c: char| c == '/' || c == MAIN_SEPARATOR;
+    text.split_at(text.rfind(is_separator).map_or(0, |at| at + 1))
+}
+
+/// Case is not minded: nobody remembers it.
+fn begins_with(name: &str, begun: &str) -> bool {
+    let mut letters = name.chars().flat_map(char::to_lowercase);
+    begun
+        .chars()
+        .flat_map(char::to_lowercase)
+        .all(|letter| letters.next() == Some(letter))
+}
+
+/// What all of them begin with.
+fn shared(names: &[String]) -> String {
+    let Some((first, others)) = names.split_first() else {
+        return String::new();
+    };
+    let fits = |end: usize| {
+        let begin = &first[..end];
+        others.iter().all(|name| begins_with(name, begin))
+    };
+    let ends = first.char_indices().map(|(at, c)| at + c.len_utf8());
+    let end = ends.take_while(|&end| fits(end)).last().unwrap_or(0);
+    first[..end].to_owned()
+}
+
+/// Folders, and those files that the purpose is about. Empty where it cannot be read: then typing goes on alone.
+fn names_in(folder: &Path, purpose: Purpose) -> Vec<String> {
+    let folder = match folder.as_os_str().is_empty() {
+        true => Path::new("."),
+        false => folder,
+    };
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let (mut folders, mut files) = (Vec::new(), Vec::new());
+    for entry in entries.take(MOST) {
+        // A name that is no text cannot be typed.
+        let Ok(name) = entry.file_name().into_string() else {
+            continue;
+        };
+        // Through links, as what is opened is.
+        let is_folder = fs::metadata(entry.path()).is_ok_and(|data| data.is_dir());
+        if is_folder {
+            folders.push(name + "/");
+        } else if is_meant(&name, purpose) {
+            files.push(name);
+        }
+    }
+    folders.sort();
+    files.sort();
+    folders.into_iter().chain(files).collect()
+}
+
+fn is_meant(name: &str, purpose: Purpose) -> bool {
+    let name = name.to_lowercase();
+    let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension);
+    let is_model = MODEL_EXTENSIONS.contains(&extension);
+    match purpose {
+        Purpose::Import => is_model,
+        Purpose::Open | Purpose::SaveAs => is_model || name.ends_with(".scn.ron"),
+    }
+}
+
+/// The question for a path; `refused` says why the one before did not do.
+pub(super) fn path_ui(
+    ui: &mut Ui,
+    form: &mut PathForm,
+    purpose: Purpose,
+    recent: &[PathBuf],
+    refused: Option<&str>,
+) -> Option<Answer> {
+    ui.label(match purpose {
+        Purpose::Open => {
+            "A scene or a model: .scn.ron, .obj, .gltf, .glb, .stl, .ply, or a built-in scene's name"
+        }
+        Purpose::SaveAs => "Where to: .scn.ron keeps everything; .obj and .glb are models",
+        Purpose::Import => "A model: .obj, .gltf, .glb, .stl or .ply",
+    });
+    let id = Id::new("path that is asked for");
+    let fitting = form.fitting(purpose);
+    let has_keys = ui.memory(|memory| memory.has_focus(id));
+    let tab = has_keys && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Tab));
+    let mut chosen = None;
+    if tab && !fitting.is_empty() {
+        chosen = Some(shared(&fitting));
+    }
+    let field = TextEdit::singleline(&mut form.text)
+        .id(id)
+        .desired_width(ui.available_width() - 12.0);
+    let response = ui
+        .add(field)
+        .says("The path; relative ones begin in the working folder, ~ is home, Tab completes");
+    // Tab is the field's own: it completes.
+    ui.memory_mut(|memory| {
+        let filter = EventFilter {
+            tab: true,
+            horizontal_arrows: true,
+            vertical_arrows: false,
+            escape: false,
+        };
+        memory.set_focus_lock_filter(id, filter);
+    });
+    if std::mem::take(&mut form.is_new) {
+        response.request_focus();
+        end_caret(ui, id, &form.text);
+    }
+    let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+    let path = path_of(&form.text);
+    whole_path_ui(ui, &path);
+    if let Some(why) = refused {
+        let ink = ui.visuals().error_fg_color;
+        ui.label(RichText::new(why).color(ink));
+    }
+    ui.add_space(4.0);
+    ui.horizontal_wrapped(|ui| {
+        for folder in recent.iter().take(6) {
+            let name = path_text(folder);
+            let says = "What lies in a folder that was used before";
+            if ui.small_button(&name).says(says).clicked() {
+                form.text = format!("{name}/");
+                chosen = Some(String::new());
+            }
+        }
+    });
+    ScrollArea::vertical()
+        .max_height(180.0)
+        .auto_shrink([false, true])
+        .show_rows(
+            ui,
+            ui.spacing().interact_size.y,
+            fitting.len(),
+            |ui, rows| {
+                for name in &fitting[rows] {
+                    let button = Button::selectable(false, name.as_str());
+                    let says = match name.ends_with('/') {
+                        true => "Looks into this folder",
+                        false => "Takes this file",
+                    };
+                    if ui.add(button).says(says).clicked() {
+                        chosen = Some(name.clone());
+                    }
+                }
+            },
+        );
+    if let Some(name) = chosen {
+        if !name.is_empty() {
+            form.complete(&name);
+        }
+        ui.memory_mut(|memory| memory.request_focus(id));
+        end_caret(ui, id, &form.text);
+    }
+    ui.add_space(8.0);
+    buttons_ui(ui, path, entered)
+}
+
+fn buttons_ui(ui: &mut Ui, path: PathBuf, entered: bool) -> Option<Answer> {
+    let is_empty = path.as_os_str().is_empty();
+    let mut answered = (entered && !is_empty).then(|| Answer::Path(path.clone()));
+    ui.horizontal(|ui| {
+        let go = ui.add_enabled(!is_empty, Button::new("OK"));
+        if go.says("Goes on with this path").clicked() {
+            answered = Some(Answer::Path(path));
+        }
+        let cancel = ui.button("Cancel").says("Leaves everything as it is");
+        if cancel.clicked() {
+            answered = Some(Answer::Cancel);
+        }
+    });
+    answered
+}
+
+fn end_caret(ui: &Ui, id: Id, text: &str) {
+    use egui::text::{CCursor, CCursorRange};
+    let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
+    let end = CCursorRange::one(CCursor::new(text.chars().count()));
+    state.cursor.set_char_range(Some(end));
+    state.store(ui.ctx(), id);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_is_completed_from_what_lies_in_its_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["Scenes", "scans"] {
+            fs::create_dir(folder.path().join(name)).unwrap();
+        }
+        for name in ["scene.scn.ron", "b.obj", "notes.txt", ".hidden.obj"] {
+            fs::write(folder.path().join(name), "").unwrap();
+        }
+        let mut form = PathForm::new(&folder.path().join(""));
+        let all = form.fitting(Purpose::Open);
+        assert_eq!(all, ["Scenes/", "scans/", "b.obj", "scene.scn.ron"]);
+        assert_eq!(
+            form.fitting(Purpose::Import),
+            ["Scenes/", "scans/", "b.obj"]
+        );
+        form.text += "sc";
+        let fitting = form.fitting(Purpose::Open);
+        assert_eq!(fitting, ["Scenes/", "scans/", "scene.scn.ron"]);
+        assert_eq!(shared(&fitting), "Sc");
+        form.text += "ene";
+        let fitting = form.fitting(Purpose::Open);
+        assert_eq!(shared(&fitting), "Scene");
+        form.complete(&fitting[0]);
+        assert!(form.text.ends_with("/Scenes/"), "{}", form.text);
+        form.text = "/no/such/folder/x".into();
+        assert!(form.fitting(Purpose::Open).is_empty());
+    }
+}
