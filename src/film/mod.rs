@@ -9,9 +9,9 @@
 //! [`ErrorEstimate`] follows. A pass goes tile by tile. [`render()`] does it at once, [`Progressive`]
 //! on a thread of its own.
 //!
-//! Light is summed light by light, each without its tint ([`Planes`](crate::trace::Planes)). A file adds the lights up as
-//! soon as a piece of a pass is there; a view keeps them apart, so that [`Progressive::edit`] has another tint for nothing
-//! and traces a light that moved alone. Both fold the same sums: within 2^-50 of each light, so their pictures are the same.
+//! A file adds up whole samples. A view sums light by light, each without its tint ([`Planes`](crate::trace::Planes)), so
+//! that [`Progressive::edit`] has another tint for nothing and traces a light that moved alone. Its picture is the file's but
+//! for the rounding of f32.
 //!
 //! Nothing here traces a ray but those two, which hand batches of samples to
 //! [`trace::radiance`](crate::trace::radiance()), [`FirstHits::trace`] and [`depths()`]. Bloom,

@@ -17,7 +17,8 @@ use std::thread;
 /// A render that goes on by itself, coarse to fine, while others look on.
 ///
 /// Passes double the samples of each pixel, tiles nearest the focus first. However it is paused,
-/// resumed and re-focused, its last picture is that of [`render`](super::render()) bit for bit.
+/// resumed and re-focused, its last picture is the same bit for bit: that of [`render`](super::render()), but for the
+/// rounding of f32 where lights are kept apart.
 ///
 /// Neither starting nor dropping it makes the caller wait: dropping it cancels it, and what is under
 /// way ends, and gives back its memory, by itself.
@@ -189,7 +190,7 @@ impl Drop for Worker {
 #[cfg(test)]
 mod tests {
     use super::super::test_scene::{camera, settings, world};
-    use super::super::{Picture, State, TILE, render, render_samples};
+    use super::super::{Picture, State, TILE, render, render_lights, render_samples};
     use super::*;
     use glam::Vec3;
     use std::collections::BTreeMap;
@@ -201,7 +202,15 @@ mod tests {
         Progressive::start(world(), camera(), settings(SIZE, spp)).unwrap()
     }
 
+    /// In the same arithmetic: light by light.
     fn rendered(spp: u32) -> Picture {
+        let settings = settings(SIZE, spp);
+        render_lights(&world(), &camera(), &settings, &|_| {})
+            .0
+            .picture
+    }
+
+    fn as_a_file(spp: u32) -> Picture {
         render(&world(), &camera(), &settings(SIZE, spp), &|_, _| {}).picture
     }
 
@@ -244,7 +253,7 @@ mod tests {
         let mut settings = settings(SIZE, 1 << 10);
         settings.sampling.adaptive = true;
         settings.sampling.error = 0.03;
-        let expected = render(&world(), &camera(), &settings, &|_, _| {});
+        let (expected, _) = render_lights(&world(), &camera(), &settings, &|_| {});
         assert!(
             expected.status.samples < 1024.0,
             "the test wants samples that go where the error is"
@@ -264,7 +273,7 @@ mod tests {
         assert!(Arc::ptr_eq(&view, &pool(Purpose::View)));
         let render = Progressive::start_for_file(world(), camera(), settings(SIZE, 4)).unwrap();
         assert_eq!(render.wait(), Ending::Samples);
-        assert_eq!(render.snapshot().picture, rendered(4));
+        assert_eq!(render.snapshot().picture, as_a_file(4));
         assert!(Arc::ptr_eq(render.engine.pool.as_ref().unwrap(), &file));
     }
 
@@ -402,7 +411,7 @@ mod tests {
         };
         let mut film = part(37..41);
         assert!(film.merge(&part(0..37)));
-        assert_eq!(film.picture(), rendered(41));
+        assert_eq!(film.picture(), as_a_file(41));
         assert!(!film.merge(&Film::new(UVec2::ONE)));
     }
 

@@ -11,7 +11,7 @@ use crate::trace::planes::OWN;
 use crate::trace::{
     Camera, Dome, PlaneSet, RayCounts, SampleId, Untinted, Workspace, World, radiance_in_planes,
 };
-use glam::{DVec3, UVec2, Vec3};
+use glam::{UVec2, Vec3};
 use std::cell::RefCell;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -25,7 +25,7 @@ pub(super) struct Subject {
     pub settings: RenderSettings,
     /// The same world as it is traced: its lights without the tints that can be changed afterwards.
     pub light: Untinted,
-    /// Whether the film keeps its planes.
+    /// Whether its lights may be edited, and so have planes of their own.
     pub stays_apart: bool,
     /// Counts its edits.
     pub edit: u32,
@@ -39,12 +39,15 @@ fn lights_apart(size: UVec2) -> usize {
 }
 
 impl Subject {
-    /// Of a world, seen in some way. Where its lights may be edited, their planes stay apart; else they are added up as
-    /// soon as they have been summed.
+    /// Of a world, seen in some way. Where its lights may be edited, they have planes of their own.
     pub fn new(world: World, camera: Camera, settings: RenderSettings, stays_apart: bool) -> Self {
         Self {
             stays_apart,
-            light: Untinted::of(&world, lights_apart(settings.size)),
+            light: if stays_apart {
+                Untinted::of(&world, lights_apart(settings.size))
+            } else {
+                Untinted::together(&world)
+            },
             edit: 0,
             world,
             camera,
@@ -63,11 +66,6 @@ impl Subject {
                 self.stays_apart,
             )
         }
-    }
-
-    /// How many the film keeps.
-    pub fn kept_planes(&self) -> usize {
-        if self.stays_apart { self.planes() } else { 1 }
     }
 
     /// How many planes the light has.
@@ -168,7 +166,7 @@ pub(super) struct Scratch {
     workspace: Workspace,
     /// When others last had the core for the asking.
     gave_way: Option<Instant>,
-    /// `TILE_PIXELS` for each segment of the chunk, or for each plane of each where they stay apart.
+    /// `TILE_PIXELS` for each plane of each segment of the chunk.
     pub sums: Vec<Sum>,
     /// How bright the chunk's samples are.
     pub octaves: Octaves,
@@ -219,7 +217,7 @@ impl Scratch {
         let mut places = std::mem::take(&mut self.places);
         let complete = chunk.segments().all(|segment| {
             let first = self.sums.len();
-            let sums = first + subject.kept_planes() * TILE_PIXELS;
+            let sums = first + subject.planes() * TILE_PIXELS;
             self.sums.resize(sums, Sum::default());
             places.clear();
             places.extend(
@@ -284,15 +282,10 @@ impl Scratch {
             }
         }
         for plane in 0..planes {
-            let (kept, factor) = if subject.stays_apart {
-                (plane, DVec3::ONE)
-            } else {
-                (OWN, subject.light.tints[plane].as_dvec3())
-            };
-            let sums = &mut self.sums[first + kept * TILE_PIXELS..][..TILE_PIXELS];
+            let sums = &mut self.sums[first + plane * TILE_PIXELS..][..TILE_PIXELS];
             for (i, &(_, at)) in places.iter().enumerate() {
                 let sum = self.columns.get(plane * places.len() + i);
-                sums[at].merge_scaled(&sum, factor);
+                sums[at].merge(&sum);
             }
         }
         Some(rays)

@@ -113,10 +113,10 @@ impl TileState {
         }
     }
 
-    /// Takes the sums of a chunk, `TILE_PIXELS` for each of its segments, or for each plane of each where they stay apart. True where they complete the pass
+    /// Takes the sums of a chunk, `TILE_PIXELS` for each plane of each of its segments. True where they complete the pass
     /// and so have entered the pixels.
     pub fn absorb(&mut self, subject: &Subject, chunk: &Chunk, sums: &[Sum], rays: u64) -> bool {
-        let each = subject.kept_planes() * TILE_PIXELS;
+        let each = subject.planes() * TILE_PIXELS;
         let length = chunk.range.end - chunk.range.start;
         self.rays += rays;
         self.samples += length
