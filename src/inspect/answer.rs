@@ -43,14 +43,24 @@ impl Tree<'_> {
         rays.filter(move |(_, ray)| ray.parent == Some(parent))
     }
 
-    /// What the surface is called, and a clause on where its light is.
+    /// What the surface is called, and a clause on where its light is; through what is more mirror or glass than it is
+    /// lit itself.
     fn surface(&self, index: u32, ray: &TracedRay, mirrors: usize) -> (String, String) {
         let hit = ray.hit.map(|hit| named(self.names, hit.object));
         let name = hit.unwrap_or_else(|| "a surface".into());
         let light = self.light(index);
-        let mut children = self.children(index);
-        let bounce = children.find(|(_, child)| child.light.is_none());
-        let Some((child_index, child)) = bounce.filter(|_| mirrors > 0 && !light.arrives) else {
+        let bounce = self
+            .children(index)
+            .find(|(_, child)| child.light.is_none());
+        let follows = |child: &TracedRay| match child.kind {
+            _ if !light.arrives => true,
+            RayKind::Mirror | RayKind::Gloss => ray
+                .hit
+                .is_some_and(|hit| hit.mirror.max_element() > hit.diffuse.max_element()),
+            _ => ray.hit.is_some_and(|hit| hit.opacity < 0.5),
+        };
+        let bounce = bounce.filter(|(_, child)| mirrors > 0 && follows(child));
+        let Some((child_index, child)) = bounce else {
             return (name, light.clause);
         };
         let verb = match child.kind {

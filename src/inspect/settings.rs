@@ -142,7 +142,7 @@ impl Default for PairSettings {
         Self {
             on: false,
             left: Builder::Median,
-            right: Builder::Ploc,
+            right: Builder::default(),
         }
     }
 }

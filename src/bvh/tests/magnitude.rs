@@ -109,8 +109,10 @@ fn a_sphere_in_a_stadium_a_million_times_larger_is_never_missed_and_costs_no_mor
             println!(
                 "{what}, from {from}: {with:.1} boxes and triangles a ray, {without:.1} without the stadium"
             );
+            // Far away boxes are taken for larger by how far off both the ray's start and the mesh reach: up to twice
+            // as much where the mesh reaches as far as the start.
             assert!(
-                with < without * 1.3 + 40.0,
+                with < without * 1.6 + 40.0,
                 "{what}, from {from}: {with:.1} a ray, {without:.1} without"
             );
         }

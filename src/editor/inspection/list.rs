@@ -322,7 +322,7 @@ mod tests {
 
     #[test]
     fn a_click_on_a_heading_sorts_up_then_down_then_as_a_tree() {
-        let (rays, names) = rays_of("cornell-box", [300, 240], crate::trace::Samples::All);
+        let (rays, names) = rays_of("knot", [300, 240], crate::trace::Samples::All);
         let kinds = RaySettings::default();
         let mut list = List::default();
         let mut arrangement = Arrangement::default();
