@@ -14,7 +14,7 @@ use glam::{UVec2, Vec3};
 use glassbox::app::headless_app;
 use glassbox::inspect::{InspectSettings, LineSet, Segment, Subject, System};
 use glassbox::io::{OpenOptions, SceneSource, open};
-use glassbox::scene::{PixelSampling, RenderSettings};
+use glassbox::scene::{Builder, PixelSampling, RenderSettings};
 use glassbox::sync::{Traced, TracedCameras};
 use glassbox::trace::{Camera, RayTree, Samples, World, probe};
 use std::path::Path;
@@ -29,9 +29,18 @@ struct Scene {
 impl Scene {
     /// A built-in one.
     fn open(name: &str, size: UVec2) -> Self {
+        Self::built(name, size, Builder::default())
+    }
+
+    /// The same with trees by that builder.
+    fn built(name: &str, size: UVec2, builder: Builder) -> Self {
         let mut app = headless_app();
         let source = SceneSource::named(Path::new(name));
         open(app.world_mut(), &source, OpenOptions::default()).unwrap();
+        app.world_mut()
+            .resource_mut::<RenderSettings>()
+            .tree
+            .builder = builder;
         app.update();
         let world = app.world();
         Self {

@@ -1,12 +1,12 @@
 //! S5, S6, S10: boxes, leaves, split planes and visited nodes, worked out by hand.
 
-use super::{RED, Scene, WHITE, expect, is_color, segment};
+use super::{RED, Scene, WHITE, expect, is_color, is_near, segment};
 use crate::analytic::{quad, world};
 use glam::{UVec2, Vec3};
 use glassbox::bvh::{Aggregate, BuildOptions, Builder, Instance, Levels, MeshTree, Triangles};
 use glassbox::inspect::{
-    BoxChoice, BoxColor, BoxSettings, InspectSettings, LineSet, RaySettings, Stands, System,
-    TreeChoice, TreeForm,
+    BoxChoice, BoxColor, BoxSettings, InspectSettings, LineSet, RaySettings, Segment, Stands,
+    System, TreeChoice, TreeForm,
 };
 use glassbox::trace::{Camera, Material, Mesh, Object, World};
 use std::sync::Arc;
@@ -184,7 +184,8 @@ fn s10_split_planes_lie_halfway_between_the_centroids_or_the_boxes() {
 
 #[test]
 fn a_builder_without_planes_says_so_where_boxes_overlap() {
-    let mut scene = Scene::open("head", UVec2::ONE);
+    // PLOC joins boxes and parts nothing by a plane.
+    let mut scene = Scene::built("head", UVec2::ONE, glassbox::scene::Builder::Ploc);
     scene.settings.spp = 1;
     let inspect = InspectSettings {
         boxes: BoxSettings {
@@ -238,10 +239,18 @@ fn s6_visited_nodes_are_white_pruned_ones_red_and_the_hit_triangle_is_outlined()
     });
     let scene = Scene::of(often(stack), along);
     let set = scene.lines(System::Visits, &inspect);
-    for x in [2.0, 4.0, 6.0] {
+    for x in [2.0, 4.0] {
         let corner = Vec3::new(x, -1.0, -1.0);
         expect(&set, corner, corner + Vec3::Y * 2.0, RED);
     }
+    // An edge of the last one's box is one of the root's, too.
+    let last = [-1.0, 1.0].map(|y| Vec3::new(6.0, y, -1.0));
+    let is_last = |s: &&Segment| {
+        last.iter()
+            .all(|end| s.ends.iter().any(|at| is_near(*at, *end)))
+    };
+    let edges = set.segments.iter().filter(is_last);
+    assert_eq!(edges.filter(|s| is_color(s.colors[0], RED)).count(), 1);
     // The root, the first square.
     let count = |color| {
         set.segments
