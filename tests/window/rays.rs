@@ -145,7 +145,7 @@ fn a_debug_ray_is_drawn_where_it_is_and_chosen_in_the_list_and_in_the_view() {
         Click(Window({x}, {y})),
         Shows("shadow ray 1"),
         Click(Text("Steps")),
-        Key("Period"),
+        Key("."),
         Shows("enter node 0 of Triangle at 0.0000 m"),
         Quit,
     ]"#
