@@ -8,6 +8,7 @@ use bevy::reflect::enums::{Enum, VariantInfo};
 use bevy::reflect::{
     Access, GetPath, ParsedPath, PartialReflect, Reflect, ReflectMut, ReflectPath, TypeInfo, Typed,
 };
+use bevy::transform::components::Transform;
 use std::sync::LazyLock;
 
 /// Attribute: what panels call a field or a variant, where that is not its name with spaces.
@@ -185,6 +186,11 @@ impl Property {
     fn go(&mut self, to: &Access<'static>) -> Option<()> {
         let (attributes, kind) = part_of(self.kind, to)?;
         let is_pair = matches!(self.kind, TypeInfo::Array(info) if info.capacity() == 2);
+        // Bevy's own component says nothing of itself.
+        let is_place = self.kind.is::<Transform>() && *to == Access::Field("translation".into());
+        if is_place {
+            self.quantity = Some(Quantity::COORDINATE);
+        }
         self.kind = kind;
         match to {
             // An axis of a vector is called after the vector.

@@ -211,7 +211,7 @@ mod tests {
         assert_eq!(
             found(&lamp),
             [
-                "color.green is NaN, and must be a finite number",
+                "color.green is NaN, and must be at least 0",
                 "intensity is -1, and must be at least 0",
                 "cone.inner is 0.6, and must be at most outer, which is 0.5",
             ]

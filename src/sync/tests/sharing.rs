@@ -183,12 +183,12 @@ fn tree_settings_rebuild_every_tree_and_other_settings_none() {
     assert!(Arc::ptr_eq(&before, &world(&small.app)));
 
     let mut settings = small.app.world_mut().resource_mut::<RenderSettings>();
-    settings.tree.builder = Builder::Sah;
+    settings.tree.builder = Builder::Ploc;
     let changes = frame(&mut small.app);
     let after = world(&small.app);
     assert!(changes.meshes && changes.top_level && !changes.materials && !changes.lights);
     assert!((0..3).all(|i| !same_tree(&before, &after, i)));
-    assert_eq!(after.aggregate.options().builder, crate::bvh::Builder::Sah);
+    assert_eq!(after.aggregate.options().builder, crate::bvh::Builder::Ploc);
 }
 
 #[test]

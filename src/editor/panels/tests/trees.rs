@@ -250,10 +250,10 @@ fn of_two_trees_the_one_that_is_traced_is_not_built_again() {
         &traced
     ));
     assert!(desk.find("median: to look at, not traced").is_some());
-    assert!(desk.find("PLOC: these trees are traced").is_some());
+    assert!(desk.find("SAH: these trees are traced").is_some());
     desk.world().resource_mut::<InspectSettings>().on = false;
     desk.settle();
-    assert!(desk.find("PLOC: these trees are traced").is_none());
+    assert!(desk.find("SAH: these trees are traced").is_none());
     assert!(
         desk.world().resource::<TreePair>().sides[0]
             .world()
