@@ -61,7 +61,7 @@ impl Engine {
             with_scratch(|scratch| {
                 let ids = some.iter().map(|&pixel| SampleId { pixel, index: 0 });
                 scratch.evaluate(&subject, PlaneSet::ALL, ids, &self.batch);
-                preview.take(some, scratch.values());
+                preview.take(some, scratch.folded());
             });
         }
         true

@@ -191,7 +191,7 @@ pub(super) fn time_samples(
         for some in pixels.chunks(BATCH) {
             let ids = some.iter().map(|&pixel| SampleId { pixel, index: 0 });
             scratch.evaluate(subject, PlaneSet::ALL, ids, batch);
-            preview.take(some, scratch.values());
+            preview.take(some, scratch.folded());
             timed += some.len();
             if start.elapsed() > LONG_ENOUGH {
                 break;

@@ -224,15 +224,7 @@ impl Scratch {
                 tile.pixels_in_blocks()
                     .filter(|(_, at)| chunk.pixels.has(*at)),
             );
-            let sampled = self.sum_segment(
-                subject,
-                &places,
-                segment,
-                chunk.planes,
-                first,
-                batch,
-                stopped,
-            );
+            let sampled = self.sum_segment(subject, &places, segment, chunk.planes, batch, stopped);
             rays += sampled.unwrap_or_default();
             sampled.is_some()
         });
@@ -243,19 +235,19 @@ impl Scratch {
         Some(rays)
     }
 
-    /// Adds these samples of these pixels to the segment's sums, which begin with the `first`.
+    /// Adds these samples of these pixels to the segment's sums, which are the last ones.
     fn sum_segment(
         &mut self,
         subject: &Subject,
         places: &[(UVec2, usize)],
         segment: Range<u64>,
         wanted: PlaneSet,
-        first: usize,
         batch: &BatchSize,
         stopped: &dyn Fn() -> bool,
     ) -> Option<RayCounts> {
         let mut rays = RayCounts::default();
         let planes = subject.planes();
+        let first = self.sums.len() - planes * TILE_PIXELS;
         self.columns.reset(planes * places.len());
         // The next sample: of the pixel at that place, with that index.
         let (mut place, mut index) = (0, segment.start);
@@ -370,7 +362,7 @@ impl Scratch {
     }
 
     /// What the last [`Self::evaluate`] found, all planes together.
-    pub fn values(&self) -> &[Vec3] {
+    pub fn folded(&self) -> &[Vec3] {
         &self.folded
     }
 }

@@ -170,12 +170,12 @@ pub enum Problem {
     NotFinite { what: String },
     #[error("{what} is {value}, and must be {range}")]
     OutOfRange {
-        what: String,
-        value: String,
-        range: String,
+        what: Box<str>,
+        value: Box<str>,
+        range: Box<str>,
     },
     #[error("RenderSettings: {0}")]
-    Setting(crate::scene::RangeProblem),
+    Setting(Box<crate::scene::RangeProblem>),
     #[error("material `{name}` is in none of the MTL files named above this line")]
     UnknownMaterial { name: String },
     #[error("holds no triangles")]

@@ -11,7 +11,7 @@ pub(super) fn check_value(value: &dyn PartialReflect) -> Result<(), Problem> {
         return Ok(());
     };
     if value.try_downcast_ref::<RenderSettings>().is_some() {
-        return Err(Problem::Setting(problem));
+        return Err(Problem::Setting(Box::new(problem)));
     }
     let RangeProblem {
         path,
@@ -20,8 +20,8 @@ pub(super) fn check_value(value: &dyn PartialReflect) -> Result<(), Problem> {
     } = problem;
     let dot = if path.is_empty() { "" } else { "." };
     Err(Problem::OutOfRange {
-        what: format!("{}{dot}{path}", value.reflect_short_type_path()),
-        value: is,
-        range,
+        what: format!("{}{dot}{path}", value.reflect_short_type_path()).into(),
+        value: is.into(),
+        range: range.into(),
     })
 }

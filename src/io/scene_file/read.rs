@@ -110,7 +110,7 @@ impl SceneFile {
                     if Entity::try_from_bits(id.0).is_none() {
                         return Err(Problem::OutOfRange {
                             what: "SceneId".into(),
-                            value: id.0.to_string(),
+                            value: id.0.to_string().into(),
                             range: "no multiple of 2^32".into(),
                         });
                     }

@@ -90,7 +90,7 @@ impl SceneContent {
             let label = Entity::try_from_bits(id).ok_or_else(|| {
                 let problem = Problem::OutOfRange {
                     what: "a SceneId".into(),
-                    value: id.to_string(),
+                    value: id.to_string().into(),
                     range: "no multiple of 2^32".into(),
                 };
                 FileError::new(file, problem)

@@ -229,8 +229,10 @@ mod tests {
                 "segments is 2, and must be 3 to 65536",
             ]
         );
-        let mut settings = RenderSettings::default();
-        settings.size = UVec2::new(0, 9);
+        let settings = RenderSettings {
+            size: UVec2::new(0, 9),
+            ..RenderSettings::default()
+        };
         let size = "size is 0x9, and must be WxH, each 1 to 65536, at most 268435456 together";
         assert_eq!(found(&settings), [size]);
         assert_eq!(found(&Phong::default()), Vec::<String>::new());
