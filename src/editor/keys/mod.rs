@@ -2,8 +2,8 @@
 //!
 //! | module | does |
 //! |---|---|
-//! | [`name`] | what keys are called |
-//! | [`bindings`] | which command each sends |
+//! | `name` | what keys are called |
+//! | `bindings` | which command each sends |
 
 mod bindings;
 mod name;

@@ -2,7 +2,7 @@
 
 use bevy::reflect::Reflect;
 
-/// Attribute: what it does, as [`documented`] takes it from the documentation's first paragraph.
+/// Attribute: what it does, as `documented!` takes it from the documentation's first paragraph.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Says(pub &'static str);
 
