@@ -2,7 +2,7 @@
 //!
 //! Every frame [`follow`] asks what has changed since the render that is going on was started. A
 //! change of the tracer's world, of the camera or of a setting that rays depend on starts another
-//! one; exposure, view transform, bloom and the view are only developed again. The render it
+//! one, but for one of the lights alone, which the render takes as an edit; exposure, view transform, bloom and the view are only developed again. The render it
 //! replaces is cancelled and left to the developing thread to end: nothing here waits.
 
 use super::darkroom::{Darkroom, Order, Print};
