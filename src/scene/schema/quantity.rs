@@ -246,7 +246,8 @@ fn end_text(end: f64, unit: Unit) -> String {
         }
     }
     match end.abs() {
-        large if large >= 1e9 && large != f64::from(u32::MAX) => format!("{end:e}"),
+        // What is kept is an f32, and has no more digits.
+        large if large >= 1e9 && large != f64::from(u32::MAX) => format!("{:e}", end as f32),
         _ => end.to_string(),
     }
 }
