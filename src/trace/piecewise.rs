@@ -84,12 +84,15 @@ pub(super) fn within_one(x: f32) -> f32 {
 
 /// How bright colours are, as parts of the brightest: linear RGB with Rec. 709's weights.
 pub(super) fn relative_luminances<const N: usize>(colors: &[Vec3; N]) -> [f32; N] {
-    let brightest = colors
-        .iter()
-        .fold(0.0, |most, color| color.max_element().max(most));
-    colors.map(|color| {
-        let relative = (color / brightest).dot(Vec3::new(0.2126, 0.7152, 0.0722));
-        if brightest > 0.0 { relative } else { 1.0 }
+    let luminances = colors.map(|color| color.dot(Vec3::new(0.2126, 0.7152, 0.0722)));
+    let brightest = luminances.into_iter().fold(0.0, f32::max);
+    // Exactly 1 where all are alike, whatever the colour: the same places are chosen then.
+    luminances.map(|luminance| {
+        if brightest > 0.0 && brightest < f32::INFINITY {
+            luminance / brightest
+        } else {
+            1.0
+        }
     })
 }
 

@@ -116,8 +116,9 @@ impl Untinted {
         }
     }
 
-    /// Takes the tints off the lights of a world that get a plane each: the first `own`. A light's tint is the brightest that
-    /// it is anywhere, channel by channel.
+    /// Takes the tints off the lights of a world that get a plane each: the first `own`. The tint of a light that is of one
+    /// colour is that colour. Of one with a gradient it is a power of two, so that what is left of it is the same gradient,
+    /// digit for digit, and chooses the same places.
     pub fn of(world: &World, own: usize) -> Self {
         let planes = Planes::of(&world.lights, own);
         let mut tints = vec![Vec3::ONE; planes.count()];
@@ -127,7 +128,13 @@ impl Untinted {
             if !planes.is_of_one(plane) {
                 continue;
             }
-            let tint = colors.iter().copied().fold(Vec3::ZERO, Vec3::max);
+            let first = colors[0];
+            let tint = if colors.iter().all(|color| *color == first) {
+                first
+            } else {
+                let brightest = colors.iter().map(|color| color.max_element());
+                Vec3::splat(brightest.fold(0.0, f32::max).log2().floor().exp2())
+            };
             tints[plane] = tint;
             for color in colors {
                 *color = Vec3::select(tint.cmpgt(Vec3::ZERO), *color / tint, Vec3::ONE);

@@ -249,8 +249,8 @@ fn s6_visited_nodes_are_white_pruned_ones_red_and_the_hit_triangle_is_outlined()
         last.iter()
             .all(|end| s.ends.iter().any(|at| is_near(*at, *end)))
     };
-    let edges = set.segments.iter().filter(is_last);
-    assert_eq!(edges.filter(|s| is_color(s.colors[0], RED)).count(), 1);
+    let mut edges = set.segments.iter().filter(is_last);
+    assert!(edges.any(|s| is_color(s.colors[0], RED)));
     // The root, the first square.
     let count = |color| {
         set.segments
