@@ -146,7 +146,7 @@ fn a_debug_ray_is_drawn_where_it_is_and_chosen_in_the_list_and_in_the_view() {
         Shows("shadow ray 1"),
         Click(Text("Steps")),
         Key("."),
-        Shows("enter node 0 of Triangle at 0.0000 m"),
+        Shows("triangle 0 of Triangle: no hit"),
         Quit,
     ]"#
     );
