@@ -51,6 +51,7 @@ pub mod planes;
 mod polynomials;
 mod probe;
 mod radiance;
+mod ray_counts;
 mod ray_tree;
 mod receiver;
 mod recorder;
@@ -87,7 +88,8 @@ pub use parallelogram_frame::ParallelogramFrame;
 pub use parallelogram_warp::Places;
 pub use planes::{PlaneSet, Planes, Untinted};
 pub use probe::{MOST_RAYS, ProbeError, Samples, probe};
-pub use radiance::{RayCounts, SampleId, Workspace, radiance, radiance_in_planes};
+pub use radiance::{SampleId, Workspace, radiance, radiance_in_planes};
+pub use ray_counts::RayCounts;
 pub use ray_tree::{
     Crossing, LightSample, ProbedSample, RayCost, RayEnd, RayHit, RayKind, RayTree, TracedRay,
 };

@@ -76,11 +76,6 @@ impl Planes {
             .count()
             == 1
     }
-
-    /// All of them.
-    pub fn all(&self) -> PlaneSet {
-        PlaneSet((1 << self.count()) - 1)
-    }
 }
 
 impl PlaneSet {
@@ -98,11 +93,6 @@ impl PlaneSet {
     #[inline(always)]
     pub fn has(self, plane: usize) -> bool {
         self.0 >> plane & 1 == 1
-    }
-
-    /// Whether it holds no plane.
-    pub fn is_empty(self) -> bool {
-        self.0 == 0
     }
 }
 

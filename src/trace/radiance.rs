@@ -14,7 +14,7 @@ use super::direct::ShadowRays;
 use super::planes::{OWN, PlaneSet, Planes};
 use super::recorder::{Adding, Recorder};
 use super::sampler::Sampler;
-use super::{Camera, Cone, ParallelogramLight, Surface, World};
+use super::{Camera, Cone, ParallelogramLight, RayCounts, Surface, World};
 use crate::bvh::{Hit, Order, Ray};
 use crate::scene::{Lighting, RenderSettings};
 use glam::{UVec2, Vec3};
@@ -26,32 +26,6 @@ pub struct SampleId {
     pub pixel: UVec2,
     /// Counts the pixel's samples from 0.
     pub index: u64,
-}
-
-/// Rays traced, by what they were for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
-#[expect(missing_docs, reason = "the names say it all")]
-pub struct RayCounts {
-    pub camera: u64,
-    pub mirror: u64,
-    pub transmission: u64,
-    pub shadow: u64,
-}
-
-impl RayCounts {
-    /// All of them.
-    pub fn total(&self) -> u64 {
-        self.camera + self.mirror + self.transmission + self.shadow
-    }
-}
-
-impl std::ops::AddAssign for RayCounts {
-    fn add_assign(&mut self, other: Self) {
-        self.camera += other.camera;
-        self.mirror += other.mirror;
-        self.transmission += other.transmission;
-        self.shadow += other.shadow;
-    }
 }
 
 /// The arrays that a batch fills. Kept from batch to batch, so that nothing is allocated once they
