@@ -14,7 +14,7 @@ use super::{
     packets::{Packet, PacketOfInstances, PacketOfMesh, trace_packet},
     ray::{Hit, Ray},
     safe_ray::SafeRay,
-    transmit::Transmit,
+    transmit::{Transmit, Transmittances},
     visitor::Visitor,
     wide::{
         Answers, Eight, FEW, Found, Group, InstructionSet, Lanes, MANY, Query, View, WideRay,
@@ -101,16 +101,16 @@ impl Aggregate {
         arranged!(self, of => answer(AnyOf { of, order, rays, occluded }));
     }
 
-    /// Multiplies `passing`, all one before, by what each ray's crossings let through.
+    /// Multiplies what passes on each ray, all one before, by what its crossings let through.
     pub(super) fn ask_transmittances(
         &self,
         order: Order,
         rays: &[Ray],
         through: &mut dyn FnMut(usize, &Hit) -> Vec3,
-        passing: &mut [Vec3],
+        found: &mut Transmittances,
     ) {
         let aggregate = self;
-        arranged!(self, of => answer(Passing { of, aggregate, order, rays, through, passing }));
+        arranged!(self, of => answer(Passing { of, aggregate, order, rays, through, found }));
     }
 
     /// Walks along one ray until the goal is reached, watched.
@@ -206,7 +206,7 @@ pub(super) struct Passing<'a, Of> {
     pub(super) order: Order,
     pub(super) rays: &'a [Ray],
     pub(super) through: &'a mut dyn FnMut(usize, &Hit) -> Vec3,
-    pub(super) passing: &'a mut [Vec3],
+    pub(super) found: &'a mut Transmittances,
 }
 
 impl<Of: Arrangement> Query for Passing<'_, Of> {
@@ -217,11 +217,16 @@ impl<Of: Arrangement> Query for Passing<'_, Of> {
         let Self {
             of, order, rays, ..
         } = self;
+        let Transmittances {
+            passing,
+            occluded,
+            crossings,
+        } = self.found;
         // Most rays meet nothing: packets find that out.
         let has_packets = Of::HAS_PACKETS && order != Order::None;
-        let mut met = vec![!has_packets; rays.len()];
+        occluded.clear();
+        occluded.resize(rays.len(), !has_packets);
         if has_packets {
-            let occluded = met.as_mut_slice();
             AnyOf {
                 of,
                 order,
@@ -231,13 +236,12 @@ impl<Of: Arrangement> Query for Passing<'_, Of> {
             .ask::<S>();
         }
         stack_for!(of, stack);
-        let mut crossings = Vec::new();
-        for (i, (ray, passing)) in rays.iter().zip(self.passing).enumerate() {
-            if met[i]
+        for (i, (ray, passing)) in rays.iter().zip(passing).enumerate() {
+            if occluded[i]
                 && let Some(ray) = SafeRay::new(ray)
             {
                 let through = &mut |hit: &Hit| (self.through)(i, hit);
-                let mut goal = Transmit::new(self.aggregate, &ray, through, &mut crossings);
+                let mut goal = Transmit::new(self.aggregate, &ray, through, crossings);
                 of.pursue::<S::Eight, _, _>(&ray, stack, &mut goal, &mut ());
                 *passing = goal.product();
             }

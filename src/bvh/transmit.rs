@@ -16,6 +16,30 @@ use super::{
     visitor::Visitor,
 };
 
+/// How much of a light passes on each ray of a batch, and the memory that finding it takes. Kept from batch to batch, so that
+/// nothing is allocated once it has grown to its size.
+#[derive(Debug, Default)]
+pub struct Transmittances {
+    pub(super) passing: Vec<Vec3>,
+    /// Whether anything lies on a ray.
+    pub(super) occluded: Vec<bool>,
+    /// Those of one ray.
+    pub(super) crossings: Vec<(Hit, Vec3)>,
+}
+
+impl Transmittances {
+    /// Of each ray, in their order: in [0, 1] where nothing lets through more than arrives.
+    pub fn get(&self) -> &[Vec3] {
+        &self.passing
+    }
+
+    /// All of it, on so many rays.
+    pub(super) fn reset(&mut self, rays: usize) {
+        self.passing.clear();
+        self.passing.resize(rays, Vec3::ONE);
+    }
+}
+
 /// The part that passes: what `through` says of each crossing, multiplied.
 pub(super) struct Transmit<'a> {
     aggregate: &'a Aggregate,
@@ -97,18 +121,17 @@ impl Goal for Transmit<'_> {
 impl Aggregate {
     /// How much of a light passes on each ray, in their order, which is told: the product of what `through(ray, hit)`
     /// says of every crossing in `0 < t < t_max`, `ray` an index into `rays`. Triangles that are crossed on an edge or in a
-    /// corner that they share count once. `passing` is cleared first. `through` may be asked in any order, and of crossings
+    /// corner that they share count once. What `found` held is gone. `through` may be asked in any order, and of crossings
     /// that do not count; its answer, none of it below zero, may only depend on what it is asked.
     pub fn transmittances_in(
         &self,
         order: Order,
         rays: &[Ray],
         mut through: impl FnMut(usize, &Hit) -> Vec3,
-        passing: &mut Vec<Vec3>,
+        found: &mut Transmittances,
     ) {
-        passing.clear();
-        passing.resize(rays.len(), Vec3::ONE);
-        self.ask_transmittances(order, rays, &mut through, passing);
+        found.reset(rays.len());
+        self.ask_transmittances(order, rays, &mut through, found);
     }
 
     /// [`Self::transmittances_in`] of one ray, watched.

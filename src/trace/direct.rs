@@ -11,7 +11,7 @@ use super::sampler::Purpose;
 use super::shading::reflected;
 use super::transmittance::through;
 use super::{DOME, Dome, Lights, SampleId, Surface, World};
-use crate::bvh::{Aggregate, Hit, Order, Ray};
+use crate::bvh::{Aggregate, Hit, Order, Ray, Transmittances};
 use crate::scene::{Lighting, RenderSettings};
 use glam::Vec3;
 
@@ -35,7 +35,7 @@ pub(super) struct ShadowRays {
     shadows: Vec<Shadow>,
     occluded: Vec<bool>,
     /// How much of the light passes what lies on each ray, where anything lets light through.
-    passing: Vec<Vec3>,
+    passing: Transmittances,
 }
 
 /// What a shadow ray adds to which sample, if the light arrives.
@@ -178,7 +178,7 @@ impl<R: Recorder> Batch<'_, R> {
             let (world, settings) = (self.world, self.settings);
             let through = |ray: usize, hit: &Hit| through(world, settings, &rays[ray], hit);
             (world.aggregate).transmittances_in(Order::Light, rays, through, passing);
-            for (shadow, &transmittance) in shadows.iter().zip(&*passing) {
+            for (shadow, &transmittance) in shadows.iter().zip(passing.get()) {
                 self.recorder.arrived(shadow.point, transmittance);
                 let value = shadow.value * transmittance;
                 self.add(shadow.sample, plane, Adding::Light(shadow.point), value);

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use crate::bvh::{
-    Aggregate, Hit, Order, Ray,
+    Aggregate, Hit, Order, Ray, Transmittances,
     aggregate::Places,
     levels::{AnyOf, Closest, OneLevel, OneMesh, Passing, TwoLevels, arranged},
     wide::{InstructionSet, Query, answer_with_each},
@@ -23,7 +23,7 @@ pub(super) struct Asked<'a> {
 pub(super) struct Answered {
     pub(super) hits: Vec<Option<Hit>>,
     pub(super) occluded: Vec<bool>,
-    pub(super) passing: Vec<Vec3>,
+    pub(super) passing: Transmittances,
 }
 
 impl Asked<'_> {
@@ -47,15 +47,16 @@ impl Query for Asked<'_> {
         let mut answered = Answered {
             hits: vec![None; rays.len()],
             occluded: vec![false; rays.len()],
-            passing: vec![Vec3::ONE; rays.len()],
+            passing: Transmittances::default(),
         };
+        answered.passing.reset(rays.len());
         let through = &mut |_, hit: &Hit| through(hit);
         let (hits, occluded) = (&mut answered.hits[..], &mut answered.occluded[..]);
-        let passing = &mut answered.passing[..];
+        let found = &mut answered.passing;
         arranged!(aggregate, of => {
             Closest { of, order, rays, hits }.ask::<S>();
             AnyOf { of, order, rays, occluded }.ask::<S>();
-            Passing { of, aggregate, order, rays, through, passing }.ask::<S>();
+            Passing { of, aggregate, order, rays, through, found }.ask::<S>();
         });
         answered
     }

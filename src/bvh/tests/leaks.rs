@@ -53,7 +53,7 @@ fn shoot_with_every_set(rays: usize) {
                         let first = found.hits.iter().position(Option::is_none);
                         let first = first.map(|i| rays[i]);
                         let occluded = found.occluded.iter().filter(|occluded| **occluded);
-                        let lit = found.passing.iter().filter(|part| **part != Vec3::ZERO);
+                        let lit = found.passing.get().iter().filter(|part| **part != Vec3::ZERO);
                         let unseen = rays.len() - occluded.count() + lit.count();
                         assert_eq!(
                             (lost, unseen),

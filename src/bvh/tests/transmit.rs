@@ -11,7 +11,7 @@ use super::{
 };
 use crate::bvh::{
     Aggregate, BuildOptions, Builder, Counters, Hit, Instance, Levels, MeshTree, NodeEvent, Order,
-    Ray, TreeRef, Visitor, safe_ray::SafeRay,
+    Ray, Transmittances, TreeRef, Visitor, safe_ray::SafeRay,
 };
 
 /// What a triangle lets through: a number for each colour that depends on which it is, and of some nothing.
@@ -69,9 +69,9 @@ fn is_close(found: Vec3, exact: glam::DVec3, factors: usize) -> bool {
 }
 
 fn passing(scene: &Aggregate, order: Order, rays: &[Ray]) -> Vec<Vec3> {
-    let mut passing = Vec::new();
-    scene.transmittances_in(order, rays, |_, hit| through(hit), &mut passing);
-    passing
+    let mut found = Transmittances::default();
+    scene.transmittances_in(order, rays, |_, hit| through(hit), &mut found);
+    found.get().to_vec()
 }
 
 #[test]

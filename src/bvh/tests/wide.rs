@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 use crate::bvh::{
     Aggregate, BuildOptions, Builder, Hit, Instance, Levels, MAX_DEPTH, MeshTree, Order, Ray,
-    Triangles,
+    Transmittances, Triangles,
     goal::{All, Nearest, Question},
     safe_ray::Measure,
     slab::SlabRay,
@@ -127,7 +127,7 @@ fn every_instruction_set_and_every_order_finds_the_same_bits() {
             let (mut hits, mut occluded) = (Vec::new(), Vec::new());
             scene.closest_hits(&rays, &mut hits);
             scene.occlusions(&rays, &mut occluded);
-            let mut passing = Vec::new();
+            let mut passing = Transmittances::default();
             scene.transmittances_in(Order::None, &rays, |_, hit| through(hit), &mut passing);
             let found = hits.iter().flatten().count();
             assert!(found > 50_000, "{levels:?}: only {found} hits");
@@ -150,7 +150,8 @@ fn every_instruction_set_and_every_order_finds_the_same_bits() {
                             "{set}, {order:?}, {levels:?}: occluded, {ray:?}"
                         );
                         assert_eq!(
-                            passing[i], found.passing[i],
+                            passing.get()[i],
+                            found.passing.get()[i],
                             "{set}, {order:?}, {levels:?}: passing, {ray:?}"
                         );
                         assert_eq!(a.is_some(), occluded[i], "{levels:?}: {ray:?}");
