@@ -10,21 +10,15 @@
 //!
 //! One thread, its own time on a processor (Linux: `/proc/self/task`; elsewhere the clock's).
 
-use glam::{DVec3, UVec2};
-use glassbox::app::headless_app;
-use glassbox::film::{Picture, RELATIVE_FLOOR, Rendered, render};
-use glassbox::io::builtin;
-use glassbox::scene::{RenderSettings, Sampling};
-use glassbox::sync::{Traced, TracedCameras};
-use glassbox::trace::{Camera, World};
-use std::sync::Arc;
-use std::time::Instant;
+#[path = "shared/scenes.rs"]
+mod scenes;
+
+use glam::UVec2;
+use glassbox::scene::Sampling;
+use scenes::{Reference, Scene, scenes};
 
 const SIZE: UVec2 = UVec2::new(128, 128);
 const SAMPLES: u32 = 64;
-/// Pictures of a reference, and samples of each.
-const REFERENCES: u32 = 3;
-const REFERENCE_SAMPLES: u32 = 256;
 /// Seeds of what is measured.
 const SEEDS: std::ops::Range<u32> = 10..12;
 /// Pictures with and without adaptive rounds of which the medians are compared.
@@ -36,17 +30,9 @@ const NEARER: f64 = 0.88;
 const NEAREST: f64 = 0.15;
 
 fn main() {
-    let named: Vec<String> = std::env::args()
-        .skip(1)
-        .filter(|argument| !argument.starts_with("--"))
-        .collect();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     pool.expect("a thread").install(|| {
-        let scenes = builtin::SCENES
-            .iter()
-            .filter(|scene| named.is_empty() || named.iter().any(|name| name == scene.name))
-            .map(|scene| Scene::open(scene.name));
-        let (noisy, quiet): (Vec<_>, Vec<_>) = scenes.partition(Scene::is_noisy);
+        let (noisy, quiet): (Vec<_>, Vec<_>) = scenes(SIZE).partition(is_noisy);
         println!("| scene | error | uniform | adaptive | times sooner |");
         println!("|---|---:|---:|---:|---:|");
         for scene in noisy {
@@ -61,115 +47,13 @@ fn main() {
     });
 }
 
-struct Scene {
-    name: &'static str,
-    world: Arc<World>,
-    camera: Camera,
-    settings: RenderSettings,
-}
-
-impl Scene {
-    fn open(name: &'static str) -> Self {
-        let mut app = headless_app();
-        (builtin::find(name).expect("a built-in scene").spawn)(app.world_mut());
-        app.update();
-        let world = app.world();
-        Self {
-            name,
-            world: world.resource::<Traced>().world.clone(),
-            camera: world.resource::<TracedCameras>().0[0].camera.clone(),
-            settings: RenderSettings {
-                size: SIZE,
-                ..world.resource::<RenderSettings>().clone()
-            },
-        }
-    }
-
-    /// Whether it has an area light, a lens, gloss or motion.
-    fn is_noisy(&self) -> bool {
-        let lights = &self.world.lights;
-        let areas = lights.segments.len() + lights.parallelograms.len();
-        let sun = lights.directionals.iter().any(|light| light.disc.is_some());
-        let moves = self.world.needs.motion_samples > 0;
-        areas > 0 || sun || moves || self.camera.has_lens() || self.settings.features.glossy
-    }
-
-    fn render(&self, seed: u32, spp: u32, sampling: Sampling) -> Timed {
-        let settings = RenderSettings {
-            seed,
-            spp,
-            sampling,
-            ..self.settings.clone()
-        };
-        let (clock, before) = (Instant::now(), processor_seconds());
-        let rendered = render(&self.world, &self.camera, &settings, &|_, _| {});
-        let seconds = match (before, processor_seconds()) {
-            (Some(before), Some(after)) => after - before,
-            _ => clock.elapsed().as_secs_f64(),
-        };
-        Timed { rendered, seconds }
-    }
-}
-
-struct Timed {
-    rendered: Rendered,
-    seconds: f64,
-}
-
-/// Nanoseconds that each of the process' threads has spent on a processor, together.
-fn processor_seconds() -> Option<f64> {
-    let mut sum = 0.0;
-    for task in std::fs::read_dir("/proc/self/task").ok()? {
-        let text = std::fs::read_to_string(task.ok()?.path().join("schedstat")).ok()?;
-        sum += text.split_whitespace().next()?.parse::<f64>().ok()?;
-    }
-    Some(sum * 1e-9)
-}
-
-/// The mean of several pictures, and each pixel's expected squared error.
-struct Reference {
-    means: Vec<DVec3>,
-    squared_errors: Vec<f64>,
-}
-
-impl Reference {
-    fn of(scene: &Scene) -> Self {
-        let picture = |seed| {
-            let rendered = scene
-                .render(seed, REFERENCE_SAMPLES, Sampling::default())
-                .rendered;
-            rendered.picture
-        };
-        let pictures: Vec<Picture> = (0..REFERENCES).map(picture).collect();
-        let n = f64::from(REFERENCES);
-        let (mut means, mut squared_errors) = (Vec::new(), Vec::new());
-        for i in 0..pictures[0].pixels.len() {
-            let values = pictures.iter().map(|picture| picture.pixels[i].as_dvec3());
-            let mean = values.clone().sum::<DVec3>() / n;
-            let squares: f64 = values.map(|value| (value - mean).length_squared()).sum();
-            means.push(mean);
-            squared_errors.push(squares / 3.0 / (n - 1.0) / n);
-        }
-        Self {
-            means,
-            squared_errors,
-        }
-    }
-
-    /// The true relative squared error of a picture.
-    fn error_of(&self, picture: &Picture) -> f64 {
-        let pixels = picture
-            .pixels
-            .iter()
-            .zip(&self.means)
-            .zip(&self.squared_errors);
-        let squares = pixels.map(|((pixel, mean), own)| {
-            let value = mean.element_sum() / 3.0;
-            let square = (pixel.as_dvec3() - mean).length_squared() / 3.0 - own;
-            square / (value * value + RELATIVE_FLOOR)
-        });
-        (squares.sum::<f64>() / self.means.len() as f64).max(0.0)
-    }
+/// Whether a scene has an area light, a lens, gloss or motion.
+fn is_noisy(scene: &Scene) -> bool {
+    let lights = &scene.world.lights;
+    let areas = lights.segments.len() + lights.parallelograms.len();
+    let sun = lights.directionals.iter().any(|light| light.disc.is_some());
+    let moves = scene.world.needs.motion_samples > 0;
+    areas > 0 || sun || moves || scene.camera.has_lens() || scene.settings.features.glossy
 }
 
 fn adaptive(error: f64) -> Sampling {

@@ -227,6 +227,11 @@ impl Instance {
         }
     }
 
+    /// What turns normals into the world, by columns: the inverse transpose of the linear part.
+    pub(super) fn normal_columns(&self) -> [Vec3; 3] {
+        [0, 1, 2].map(|i| self.normal_from_object.col(i).into())
+    }
+
     /// The box around the instance in the world, or `None` when its mesh has no triangle that is traced. It is wide
     /// enough for the rounding of every ray that enters (see the module).
     pub fn world_bounds(&self) -> Option<Aabb> {

@@ -91,6 +91,7 @@ pub use sah::{COST_INTERSECT, COST_TRAVERSE};
 pub use split_plane::{SplitPlane, gap_plane, primitives_below, split_plane};
 pub use stats::{LARGEST_LEAF_BIN, TreeStats, bytes, node_cost, sah_cost};
 pub use surface_point::{NearEdge, SurfacePoint};
+pub(crate) use surface_point::{Placement, beyond_error};
 pub use transmit::Transmittances;
 pub use triangles::{REACH, Triangles, TrianglesError};
 pub use visitor::{Counters, NodeEvent, TreeRef, Visitor};

@@ -49,30 +49,51 @@ pub struct NearEdge {
 }
 
 impl SurfacePoint {
-    /// Where a ray starts that leaves by the side to which `towards` points, so that it does not meet this surface again:
-    /// moved along the normal, out of the box in which the exact point lies (Pharr, Jakob, Humphreys, "Physically Based
-    /// Rendering", 4th ed., 6.8.6). Not for a point near an edge.
+    /// Where a ray starts that leaves by the side to which `towards` points, so that it does not meet this surface again.
+    /// Not for a point near an edge.
     pub(super) fn leave(&self, towards: Vec3) -> Vec3 {
-        let n = self.normal;
-        let side = if towards.dot(n) < 0.0 { -1.0 } else { 1.0 };
-        let offset = side * n.abs().dot(self.error) * n;
-        let away = |p: f32, d: f32| {
-            let moved = p + d;
-            if d > 0.0 {
-                moved.next_up()
-            } else if d < 0.0 {
-                moved.next_down()
-            } else {
-                moved
-            }
-        };
-        Vec3::new(
-            away(self.position.x, offset.x),
-            away(self.position.y, offset.y),
-            away(self.position.z, offset.z),
-        )
+        beyond_error(self.position, self.error, self.normal, towards)
     }
 }
+
+/// A point moved along its surface's normal, to the side to which `towards` points, out of the box in which the exact point
+/// lies (Pharr, Jakob, Humphreys, "Physically Based Rendering", 4th ed., 6.8.6). Without a branch.
+#[inline(always)]
+pub(crate) fn beyond_error(position: Vec3, error: Vec3, normal: Vec3, towards: Vec3) -> Vec3 {
+    let side = if towards.dot(normal) < 0.0 { -1.0 } else { 1.0 };
+    let offset = side * normal.abs().dot(error) * normal;
+    Vec3::new(
+        moved_on(position.x, offset.x),
+        moved_on(position.y, offset.y),
+        moved_on(position.z, offset.z),
+    )
+}
+
+/// `p + d`, and one float farther.
+#[inline(always)]
+fn moved_on(p: f32, d: f32) -> f32 {
+    let moved = p + d;
+    let bits = moved.to_bits();
+    let magnitude = bits & 0x7fff_ffff;
+    // Away from zero the magnitude grows by one, towards it it shrinks by one; from zero it is one on the side of `d`.
+    let grows = (bits ^ d.to_bits()) >> 31 == 0;
+    let next = if grows {
+        bits.wrapping_add(1)
+    } else {
+        bits.wrapping_sub(1)
+    };
+    let next = if magnitude == 0 {
+        (d.to_bits() & 0x8000_0000) | 1
+    } else {
+        next
+    };
+    // Infinity has no next float towards itself; a sum that is no number stays none.
+    let stays = d == 0.0 || d.is_nan() || magnitude > INFINITE || (magnitude == INFINITE && grows);
+    f32::from_bits(if stays { bits } else { next })
+}
+
+/// The bits of infinity.
+const INFINITE: u32 = f32::INFINITY.to_bits();
 
 /// Half an ulp of 1.
 const U: f32 = f32::EPSILON / 2.0;
@@ -80,51 +101,166 @@ const U: f32 = f32::EPSILON / 2.0;
 /// So many times the error over the sine of the wedge a point has to be away from an edge (see the module).
 const CLEAR_OF_AN_EDGE: f32 = 4.0;
 
+/// How an instance lies in the world: what is the same for all hits on it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placement {
+    is_identity: bool,
+    /// By columns: the linear part of the transform, its sizes, and what turns normals.
+    linear: [Vec3; 3],
+    sizes: [Vec3; 3],
+    turns: [Vec3; 3],
+    translation: Vec3,
+    velocity: Vec3,
+    condition: f32,
+    edge_reach: f32,
+    /// Of the mesh's wedges.
+    narrowest: f32,
+}
+
+/// A hit in the world, as it is found without a branch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placed {
+    pub(crate) position: Vec3,
+    pub(crate) error: Vec3,
+    /// Unit normal of the triangle.
+    pub(crate) normal: Vec3,
+    /// How far the point has to be from every edge, in the mesh, times what its wedge asks for.
+    clear: f32,
+    /// Whether that is all there is to know of it. Else only [`Instance::surface_point`] says where it lies.
+    pub(crate) is_ordinary: bool,
+}
+
+#[inline(always)]
+fn times(columns: &[Vec3; 3], v: Vec3) -> Vec3 {
+    columns[0] * v.x + columns[1] * v.y + columns[2] * v.z
+}
+
+#[inline(always)]
+fn largest(v: Vec3) -> f32 {
+    let larger = if v.y > v.z { v.y } else { v.z };
+    if v.x > larger { v.x } else { larger }
+}
+
+#[inline(always)]
+fn weighted([a, b, c]: [Vec3; 3], [u, v, w]: [f32; 3]) -> Vec3 {
+    Vec3::ZERO + u * a + v * b + w * c
+}
+
+impl Placement {
+    /// Where the point of a triangle lies that a ray of `time` hit at (u, v).
+    #[inline(always)]
+    pub(crate) fn of_hit(&self, corners: [Vec3; 3], [u, v]: [f32; 2], time: f32) -> Placed {
+        let plane = Plane::of(corners);
+        let mut placed = self.place(corners, [1.0 - u - v, u, v], time, plane.normal);
+        let weight = 1.0 - u - v;
+        let least = if weight < u { weight } else { u };
+        let least = if least < v { least } else { v };
+        // NaN is nothing ordinary.
+        let is_clear = least * plane.height > placed.clear * self.narrowest;
+        placed.is_ordinary = plane.is_ordinary & is_clear;
+        placed
+    }
+
+    /// The same where the normal of the triangle is known.
+    #[inline(always)]
+    fn place(&self, corners: [Vec3; 3], weights: [f32; 3], time: f32, normal: Vec3) -> Placed {
+        let [a, b, c] = corners;
+        let point = weighted(corners, weights);
+        let size = weighted([a.abs(), b.abs(), c.abs()], weights);
+        let around = [(a - point).abs(), (b - point).abs(), (c - point).abs()];
+        let reach = largest(weighted(around, weights));
+        let error = U * (7.0 * size + Vec3::splat(8.0 * reach));
+        let mut placed = Placed {
+            position: point,
+            error,
+            normal,
+            clear: 0.0,
+            is_ordinary: false,
+        };
+        if !self.is_identity {
+            let way = self.velocity * time;
+            let translation = self.translation + way;
+            placed.position = times(&self.linear, point) + self.translation + way;
+            placed.error = times(&self.sizes, error)
+                + 4.0 * U * (times(&self.sizes, point.abs()) + translation.abs() + 2.0 * way.abs())
+                + Vec3::splat(
+                    6.0 * U * self.condition * largest((placed.position - translation).abs()),
+                );
+            let turned = times(&self.turns, normal);
+            let scale = 1.0 / turned.length();
+            let has_length = scale > 0.0 && scale < f32::INFINITY;
+            placed.normal = if has_length { turned * scale } else { normal };
+        }
+        placed.clear = CLEAR_OF_AN_EDGE * placed.error.element_sum() * self.edge_reach;
+        placed
+    }
+
+    /// Whether meshes lie in the world as they are.
+    pub(crate) fn is_identity(&self) -> bool {
+        self.is_identity
+    }
+
+    /// The same, where it is known beforehand whether that is so: nothing has to be decided then for each hit.
+    #[inline(always)]
+    pub(crate) fn as_identity(&self, is_identity: bool) -> Self {
+        Self {
+            is_identity,
+            ..*self
+        }
+    }
+
+    /// A normal of the mesh, in the world. Not normalised.
+    #[inline(always)]
+    pub(crate) fn to_world_normal(&self, normal: Vec3) -> Vec3 {
+        if self.is_identity {
+            normal
+        } else {
+            times(&self.turns, normal)
+        }
+    }
+}
+
 impl Instance {
+    /// What is the same for all hits on it.
+    pub(crate) fn placement(&self) -> Placement {
+        let transform = self.world_from_object();
+        let linear = [0, 1, 2].map(|i| Vec3::from(transform.matrix3.col(i)));
+        Placement {
+            is_identity: self.is_identity(),
+            linear,
+            sizes: linear.map(Vec3::abs),
+            turns: self.normal_columns(),
+            translation: transform.translation.into(),
+            velocity: self.velocity(),
+            condition: self.condition(),
+            edge_reach: self.edge_reach(),
+            narrowest: self.mesh.wedges().narrowest(),
+        }
+    }
+
     /// The point of a hit on this instance by a ray of `time`.
     ///
     /// # Panics
     /// When `hit` is not a hit on this instance's mesh.
     pub fn surface_point(&self, hit: &Hit, time: f32) -> SurfacePoint {
         let corners = self.mesh.triangles().corners(hit.triangle);
-        let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
-        let weighted =
-            |f: &dyn Fn(Vec3) -> Vec3| -> Vec3 { (0..3).map(|i| weights[i] * f(corners[i])).sum() };
-        let point = weighted(&|v| v);
-        let size = weighted(&|v| v.abs());
-        let reach = weighted(&|v| (v - point).abs()).max_element();
-        let error = U * (7.0 * size + Vec3::splat(8.0 * reach));
-        let Plane { normal, height } = Plane::of(corners);
-        let mut placed = SurfacePoint {
-            position: point,
-            error,
-            normal,
-            near_edge: None,
-        };
-        if !self.is_identity() {
-            let transform = self.world_from_object();
-            let linear = transform.matrix3.abs();
-            let way = self.velocity() * time;
-            let translation = Vec3::from(transform.translation) + way;
-            placed.position = self.to_world_point(point) + way;
-            placed.error = linear * error
-                + 4.0 * U * (linear * point.abs() + translation.abs() + 2.0 * way.abs())
-                + Vec3::splat(
-                    6.0 * U
-                        * self.condition()
-                        * (placed.position - translation).abs().max_element(),
-                );
-            placed.normal = self.to_world_normal(normal).normalize_or(normal);
+        let placement = self.placement();
+        let mut placed = placement.of_hit(corners, [hit.u, hit.v], time);
+        let mut near = None;
+        if !placed.is_ordinary {
+            let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
+            let normal = Plane::exact_normal(corners);
+            placed = placement.place(corners, weights, time, normal);
+            let wedges = self.mesh.wedges();
+            near = near_edge(corners, weights, placed.clear, hit.triangle, wedges)
+                .then_some(NearEdge { hit: *hit, time });
         }
-        let wedges = self.mesh.wedges();
-        let clear = CLEAR_OF_AN_EDGE * placed.error.element_sum() * self.edge_reach();
-        let least = weights[0].min(hit.u).min(hit.v);
-        if least * height <= clear * wedges.narrowest()
-            && near_edge(corners, weights, clear, hit.triangle, wedges)
-        {
-            placed.near_edge = Some(NearEdge { hit: *hit, time });
+        SurfacePoint {
+            position: placed.position,
+            error: placed.error,
+            normal: placed.normal,
+            near_edge: near,
         }
-        placed
     }
 }
 
@@ -151,40 +287,40 @@ struct Plane {
     normal: Vec3,
     /// No more than the least of its three heights.
     height: f32,
+    /// Whether f32 has digits enough for both.
+    is_ordinary: bool,
 }
 
 impl Plane {
-    /// Of a triangle that is no line; corners may be as small or large as f32 holds.
+    /// Of a triangle that is no sliver, and whose edges are neither tiny nor huge: squares of squares of them stay in range.
+    #[inline(always)]
     fn of([a, b, c]: [Vec3; 3]) -> Self {
         let (ab, ac) = (b - a, c - a);
-        let longest = ab.abs().max(ac.abs()).max_element();
-        // The square of the product of tiny or huge edges would leave f32's range.
-        let scale = if (1e-8..1e8).contains(&longest) {
-            1.0
-        } else {
-            longest
-        };
-        let normal = if scale == 1.0 {
-            ab.cross(ac)
-        } else {
-            (ab / scale).cross(ac / scale)
-        };
+        let [longest, other] = [largest(ab.abs()), largest(ac.abs())];
+        let longest = if longest > other { longest } else { other };
+        let normal = ab.cross(ac);
         let squared = normal.length_squared();
-        let edge = longest / scale;
-        if squared > 1e-12 * (edge * edge) * (edge * edge) && squared.is_finite() {
-            // Twice the area over the longest edge, of which no coordinate is longer than twice the scale.
-            let area = squared.sqrt();
-            return Self {
-                normal: normal * (1.0 / area),
-                height: area / edge * scale * (1.0 / 3.5),
-            };
-        }
-        // A sliver: f32's product has lost its digits.
-        let normal = (b.as_dvec3() - a.as_dvec3()).cross(c.as_dvec3() - a.as_dvec3());
+        // Twice the area over the longest edge, of which no coordinate is longer than twice that.
+        let area = squared.sqrt();
+        let edge_squared = longest * longest;
         Self {
-            normal: normal.normalize_or(glam::DVec3::Y).as_vec3(),
-            height: 0.0,
+            normal: normal * (1.0 / area),
+            height: area / longest * (1.0 / 3.5),
+            is_ordinary: (longest > 1e-8)
+                & (longest < 1e8)
+                & (squared > 1e-12 * edge_squared * edge_squared),
         }
+    }
+
+    /// The unit normal of any triangle; corners may be as small or large as f32 holds.
+    #[cold]
+    fn exact_normal(corners: [Vec3; 3]) -> Vec3 {
+        let plane = Self::of(corners);
+        if plane.is_ordinary {
+            return plane.normal;
+        }
+        let [a, b, c] = corners.map(|corner| corner.as_dvec3());
+        (b - a).cross(c - a).normalize_or(glam::DVec3::Y).as_vec3()
     }
 }
 
@@ -196,12 +332,46 @@ mod tests {
     use std::sync::Arc;
 
     #[test]
+    fn a_moved_coordinate_lies_one_float_beyond_the_sum() {
+        let some = [
+            0.0,
+            -0.0,
+            1e-45,
+            -1e-45,
+            1.0,
+            -1.0,
+            1e30,
+            -3e38,
+            f32::INFINITY,
+            f32::NEG_INFINITY,
+        ];
+        for p in some {
+            for d in some.into_iter().chain([f32::NAN]) {
+                let sum = p + d;
+                let expected = if d > 0.0 {
+                    sum.next_up()
+                } else if d < 0.0 {
+                    sum.next_down()
+                } else {
+                    sum
+                };
+                let found = moved_on(p, d);
+                let same = found.to_bits() == expected.to_bits();
+                assert!(
+                    same || found.is_nan() && expected.is_nan(),
+                    "{p} + {d}: {found}"
+                );
+            }
+        }
+    }
+
+    #[test]
     fn the_normal_of_a_tiny_triangle_or_a_sliver_has_unit_length() {
         for size in [1e-18_f32, 1e-6, 1.0, 1e12] {
-            let n = Plane::of([Vec3::ZERO, Vec3::X * size, Vec3::NEG_Z * size]).normal;
+            let n = Plane::exact_normal([Vec3::ZERO, Vec3::X * size, Vec3::NEG_Z * size]);
             assert!((n - Vec3::Y).length() < 1e-6, "size {size:e}: {n}");
         }
-        let n = Plane::of([Vec3::ZERO, Vec3::X, Vec3::new(0.5, 0.0, -1e-7)]).normal;
+        let n = Plane::exact_normal([Vec3::ZERO, Vec3::X, Vec3::new(0.5, 0.0, -1e-7)]);
         assert!((n - Vec3::Y).length() < 1e-6, "sliver: {n}");
     }
 

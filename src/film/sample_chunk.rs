@@ -159,9 +159,7 @@ pub(super) struct Scratch {
     samples: Vec<SampleId>,
     /// Plane by plane.
     values: Vec<Vec3>,
-    /// Those of one plane.
-    colors: Vec<[f32; 3]>,
-    /// The values of the samples, all planes together.
+    /// The values of the samples, all planes together, where there are several.
     folded: Vec<Vec3>,
     workspace: Workspace,
     /// When others last had the core for the asking.
@@ -179,7 +177,6 @@ impl Default for Scratch {
             columns: SumColumns::default(),
             samples: Vec::new(),
             values: Vec::new(),
-            colors: Vec::new(),
             folded: Vec::new(),
             workspace: Workspace::default(),
             gave_way: None,
@@ -255,18 +252,18 @@ impl Scratch {
         while left > 0 {
             let count = (batch.get() as u64).min(left);
             let first_place = place;
-            let ids = (0..count).map(|_| {
-                let id = SampleId {
-                    pixel: places[place].0,
-                    index,
-                };
-                place += 1;
+            self.samples.clear();
+            while self.samples.len() < count as usize {
+                let more = places.len() - place;
+                let more = more.min(count as usize - self.samples.len());
+                let pixels = places[place..place + more].iter();
+                (self.samples).extend(pixels.map(|&(pixel, _)| SampleId { pixel, index }));
+                place += more;
                 if place == places.len() {
                     (place, index) = (0, index + 1);
                 }
-                id
-            });
-            rays += self.evaluate(subject, wanted, ids, batch);
+            }
+            rays += self.evaluate_samples(subject, wanted, batch);
             self.sum_batch(planes, places.len(), first_place);
             left -= count;
             if stopped() {
@@ -292,9 +289,7 @@ impl Scratch {
                 // Most batches of many pictures see no light.
                 continue;
             }
-            self.colors.clear();
-            (self.colors).extend(values.iter().map(|value| value.to_array()));
-            let (mut at, mut rest) = (first_place, &self.colors[..]);
+            let (mut at, mut rest) = (first_place, values);
             while !rest.is_empty() {
                 let (run, others) = rest.split_at(rest.len().min(pixels - at));
                 self.columns.add(plane * pixels + at, run);
@@ -303,7 +298,7 @@ impl Scratch {
         }
         // Neighbours are often as bright as each other.
         let (mut same, mut samples) = (0, 0);
-        for value in &self.folded {
+        for value in folded(&self.folded, &self.values, self.samples.len()) {
             let octave = octave(*value);
             if octave != same {
                 self.octaves[same] += std::mem::take(&mut samples);
@@ -322,9 +317,19 @@ impl Scratch {
         ids: impl Iterator<Item = SampleId>,
         batch: &BatchSize,
     ) -> RayCounts {
-        let start = Instant::now();
         self.samples.clear();
         self.samples.extend(ids);
+        self.evaluate_samples(subject, wanted, batch)
+    }
+
+    /// The radiance of `self.samples`.
+    fn evaluate_samples(
+        &mut self,
+        subject: &Subject,
+        wanted: PlaneSet,
+        batch: &BatchSize,
+    ) -> RayCounts {
+        let start = Instant::now();
         let Untinted {
             world,
             planes,
@@ -343,10 +348,12 @@ impl Scratch {
             &mut self.workspace,
         );
         self.folded.clear();
-        self.folded.extend_from_slice(&self.values[..count]);
-        for (values, tint) in self.values.chunks_exact(count).zip(tints).skip(OWN + 1) {
-            for (sum, value) in self.folded.iter_mut().zip(values) {
-                *sum += *tint * *value;
+        if planes.count() > 1 {
+            self.folded.extend_from_slice(&self.values[..count]);
+            for (values, tint) in self.values.chunks_exact(count).zip(tints).skip(OWN + 1) {
+                for (sum, value) in self.folded.iter_mut().zip(values) {
+                    *sum += *tint * *value;
+                }
             }
         }
         let end = Instant::now();
@@ -363,6 +370,15 @@ impl Scratch {
 
     /// What the last [`Self::evaluate`] found, all planes together.
     pub fn folded(&self) -> &[Vec3] {
-        &self.folded
+        folded(&self.folded, &self.values, self.samples.len())
+    }
+}
+
+/// The values of so many samples, all planes together: those of the only plane, where there is one.
+fn folded<'a>(folded: &'a [Vec3], values: &'a [Vec3], samples: usize) -> &'a [Vec3] {
+    if folded.is_empty() {
+        &values[..samples]
+    } else {
+        folded
     }
 }

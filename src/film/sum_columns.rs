@@ -3,6 +3,7 @@
 use super::Sum;
 use super::sum::{FRACTION_BITS, LARGEST};
 use crate::instruction_sets::vectorized;
+use glam::Vec3;
 
 /// The sums of pixels, 128-bit fixed-point numbers as two columns of 64 bits, three for each pixel.
 #[derive(Clone, Debug, Default)]
@@ -21,10 +22,10 @@ impl SumColumns {
     }
 
     /// Adds a colour to each pixel from the `first` on, as [`Sum::add`] does.
-    pub fn add(&mut self, first: usize, values: &[[f32; 3]]) {
+    pub fn add(&mut self, first: usize, values: &[Vec3]) {
         let range = 3 * first..3 * (first + values.len());
         let (low, high) = (&mut self.low[range.clone()], &mut self.high[range]);
-        add_columns(values.as_flattened(), low, high);
+        add_columns(bytemuck::cast_slice(values), low, high);
     }
 
     /// The sum of one pixel.
@@ -92,7 +93,6 @@ fn shifted_right(bits: u64, by: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec3;
     use proptest::prelude::*;
 
     proptest! {
@@ -101,14 +101,15 @@ mod tests {
             bits in prop::collection::vec(any::<[u32; 3]>(), 1..40),
             pixels in 1_usize..5,
         ) {
-            let values: Vec<[f32; 3]> = (bits.iter()).map(|bits| bits.map(f32::from_bits)).collect();
+            let values: Vec<Vec3> =
+                (bits.iter()).map(|bits| Vec3::from_array(bits.map(f32::from_bits))).collect();
             let mut columns = SumColumns::default();
             columns.reset(pixels);
             let mut sums = vec![Sum::default(); pixels];
             for run in values.chunks(pixels) {
                 columns.add(pixels - run.len(), run);
                 for (sum, value) in sums[pixels - run.len()..].iter_mut().zip(run) {
-                    sum.add(Vec3::from_array(*value));
+                    sum.add(*value);
                 }
             }
             for (pixel, sum) in sums.iter().enumerate() {
@@ -126,9 +127,9 @@ mod tests {
                     let mut columns = SumColumns::default();
                     columns.reset(1);
                     let mut sum = Sum::default();
-                    for added in [[value; 3], [-1.0, 2.5, value]] {
+                    for added in [Vec3::splat(value), Vec3::new(-1.0, 2.5, value)] {
                         columns.add(0, &[added]);
-                        sum.add(Vec3::from_array(added));
+                        sum.add(added);
                     }
                     assert_eq!(columns.get(0), sum, "{value:e}");
                 }

@@ -81,12 +81,13 @@ impl CameraRays {
             );
         }
         rays.clear();
-        rays.extend((0..count).map(|i| Ray {
-            origin: self.origins.get(i),
-            direction: self.directions.get(i),
-            t_max: f32::INFINITY,
-            time: self.times[i],
-        }));
+        rays.resize(count, Ray::new(Vec3::ZERO, Vec3::ZERO));
+        to_rays(
+            self.origins.columns(),
+            self.directions.columns(),
+            &self.times,
+            rays,
+        );
     }
 
     /// Who asks for the camera's numbers: all samples.
@@ -102,6 +103,22 @@ fn place(i: usize, [x, y]: [&[u32]; 2], [u, v]: [&[f32]; 2]) -> Vec2 {
 }
 
 vectorized! {
+    /// Rays without an end, of columns.
+    fn to_rays(origins: [&[f32]; 3], directions: [&[f32]; 3], times: &[f32], rays: &mut [Ray]) {
+        let count = rays.len();
+        let [ox, oy, oz] = origins.map(|column| &column[..count]);
+        let [dx, dy, dz] = directions.map(|column| &column[..count]);
+        let times = &times[..count];
+        for i in 0..count {
+            rays[i] = Ray {
+                origin: Vec3::new(ox[i], oy[i], oz[i]),
+                direction: Vec3::new(dx[i], dy[i], dz[i]),
+                t_max: f32::INFINITY,
+                time: times[i],
+            };
+        }
+    }
+
     /// [`ImagePlane::ray`] of each place, of a camera without a lens.
     fn rays_without_lens(
         plane: &ImagePlane,

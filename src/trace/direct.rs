@@ -1,16 +1,19 @@
 //! Direct light, one light after another: points of it for all vertices of a batch, shadow rays there, and what arrives.
 
-use super::chosen_places::ChosenPlaces;
+use super::glossy_places::GlossyPlaces;
 use super::lamp::Lamp;
 use super::light_frames::Frame;
-use super::lights::{LightPoint, sample_count};
+use super::lights::{LightPoint, MIDDLE, sample_count};
+use super::matt_light::{LANES, Questions, Replies, Source};
 use super::numbers::{Asking, Pairs};
-use super::radiance::{Batch, Vertex};
+use super::radiance::Batch;
 use super::recorder::{Adding, LitPoint, Recorder};
 use super::sampler::Purpose;
 use super::shading::reflected;
 use super::transmittance::through;
-use super::{DOME, Dome, Lights, SampleId, Surface, World};
+use super::vectors::Vectors;
+use super::vertices::Vertices;
+use super::{DOME, Dome, SampleId, Surface, World};
 use crate::bvh::{Aggregate, Hit, Order, Ray, Transmittances};
 use crate::scene::{Lighting, RenderSettings};
 use glam::Vec3;
@@ -22,12 +25,21 @@ const SHORT_OF_THE_LIGHT: f32 = 1.0 - 64.0 * f32::EPSILON;
 /// The arrays of one light's points, and of the shadow rays to them.
 #[derive(Default)]
 pub(super) struct ShadowRays {
-    /// The vertex of each question for a point, which numbers choose it, those numbers, and what they choose where
-    /// points of the light are not all alike.
+    /// What each vertex's reflected radiance is multiplied by.
+    weights: Vectors,
+    /// The questions for points of the light: the vertex of each, how many share what it reflects, which numbers choose its
+    /// point, and those numbers.
     askers: Vec<u32>,
+    counts: Vec<f32>,
     asking: Asking,
     numbers: Pairs,
-    chosen: ChosenPlaces,
+    /// Those that are answered in columns, and those that are answered one by one; what is chosen for the latter where
+    /// points of the light are not all alike.
+    matt: Vec<u32>,
+    others: Vec<u32>,
+    glossy: GlossyPlaces,
+    /// The answers to all.
+    replies: Vec<Reply>,
     /// Points of lights so far at this bounce, those that nothing comes from included: what tells them apart.
     points: u32,
     rays: Vec<Ray>,
@@ -36,6 +48,14 @@ pub(super) struct ShadowRays {
     occluded: Vec<bool>,
     /// How much of the light passes what lies on each ray, where anything lets light through.
     passing: Transmittances,
+}
+
+/// What a point of a light adds if nothing is in the way, and the ray that finds out.
+#[derive(Clone, Copy)]
+struct Reply {
+    /// Zero where nothing comes from there.
+    value: Vec3,
+    ray: Ray,
 }
 
 /// What a shadow ray adds to which sample, if the light arrives.
@@ -47,17 +67,27 @@ struct Shadow {
     point: u32,
 }
 
+/// A light as it is asked for points.
+struct Asked<'a> {
+    lamp: Lamp<'a>,
+    /// What choosing its points for a surface takes, where they are not all alike.
+    frame: Option<&'a Frame>,
+    /// Whether more than its middle is asked for.
+    has_extent: bool,
+}
+
 impl<R: Recorder> Batch<'_, R> {
     /// Adds what arrives at the vertices from the lights.
-    pub(super) fn add_direct_light(&mut self, vertices: &[Vertex], shadow_rays: &mut ShadowRays) {
+    pub(super) fn add_direct_light(&mut self, vertices: &Vertices, shadow_rays: &mut ShadowRays) {
         shadow_rays.points = 0;
-        if vertices.is_empty() {
+        if vertices.len() == 0 {
             return;
         }
         let is_even =
             self.settings.lighting == Lighting::Classic || !self.settings.features.soft_shadows;
         let lights = &*self.world.lights;
         let dome = Dome::of(&self.world.environment, self.settings).map(Lamp::Dome);
+        self.weigh(vertices, &mut shadow_rays.weights);
         for (i, lamp) in lights.all().chain(dome).enumerate() {
             let plane = self.planes.of_light(i);
             if !self.wanted.has(plane) {
@@ -69,6 +99,21 @@ impl<R: Recorder> Batch<'_, R> {
         }
     }
 
+    /// What a light's reflected radiance is multiplied by: the path's throughput times the surface's opacity, shared by
+    /// all lights where the lighting is Classic.
+    fn weigh(&self, vertices: &Vertices, weights: &mut Vectors) {
+        let lights = self.world.lights.count().max(1) as f32;
+        weights.resize(vertices.len());
+        for (i, path) in vertices.paths.iter().enumerate() {
+            let opaque = path.throughput * vertices.opacity[i];
+            let weight = match self.settings.lighting {
+                Lighting::Physical => opaque,
+                Lighting::Classic => opaque / lights,
+            };
+            weights.set(i, weight);
+        }
+    }
+
     /// Points of a light for every vertex, and a shadow ray to each that can add something: `samples` of them at a first
     /// hit, stratified together over all samples of the pixel; one at later hits, and its middle where there are no soft
     /// shadows.
@@ -77,90 +122,190 @@ impl<R: Recorder> Batch<'_, R> {
         lamp: Lamp,
         plane: usize,
         frame: Option<&Frame>,
-        vertices: &[Vertex],
+        vertices: &Vertices,
         shadow_rays: &mut ShadowRays,
     ) {
-        shadow_rays.rays.clear();
-        shadow_rays.shadows.clear();
-        let world = self.world;
-        let lights = &*world.lights;
-        let lighting = self.settings.lighting;
         let features = &self.settings.features;
         let samples = lamp.samples(features.soft_shadows);
-        let at_first_hits = samples
-            .map(|(samples, size)| sample_count(samples, size, features.scale_light_samples));
-        let count_at = |vertex: &Vertex| match at_first_hits {
-            Some(count) if vertex.path.first => count,
-            _ => 1,
+        let at_first_hits = samples.map_or(1, |(samples, size)| {
+            sample_count(samples, size, features.scale_light_samples)
+        });
+        let has_extent = samples.is_some();
+        let asked = Asked {
+            lamp,
+            frame,
+            has_extent,
         };
-        let from = |vertex: &Vertex| {
-            lights.in_rest_frame(lamp.id(), vertex.surface.point.position, vertex.ray.time)
-        };
-        if samples.is_some() {
-            shadow_rays.ask(vertices, count_at, self.samples, self.pixels);
+        shadow_rays.ask(vertices, at_first_hits, self.samples, self.pixels);
+        if has_extent {
             let ShadowRays {
-                askers,
-                asking,
-                numbers,
-                chosen,
-                ..
-            } = shadow_rays;
+                asking, numbers, ..
+            } = &mut *shadow_rays;
             numbers.draw(asking, Purpose::Light(lamp.id()), self.settings);
-            if let Some(frame) = frame {
-                chosen.choose(frame, vertices, askers, numbers, from);
+        }
+        self.answer(&asked, vertices, shadow_rays);
+        self.collect(&asked, plane, vertices, shadow_rays);
+    }
+
+    /// Answers all questions for points of a light.
+    fn answer(&self, asked: &Asked, vertices: &Vertices, shadow_rays: &mut ShadowRays) {
+        let Asked { lamp, frame, .. } = *asked;
+        let is_physical = self.settings.lighting == Lighting::Physical;
+        let source = is_physical
+            .then(|| Source::of(lamp, frame, self.settings.features.soft_shadows))
+            .flatten();
+        let ShadowRays {
+            weights,
+            askers,
+            counts,
+            numbers,
+            matt,
+            others,
+            glossy,
+            replies,
+            ..
+        } = shadow_rays;
+        replies.clear();
+        replies.resize(askers.len(), Reply::NOTHING);
+        matt.clear();
+        others.clear();
+        for (question, asker) in askers.iter().enumerate() {
+            let asker = *asker as usize;
+            let in_columns =
+                source.is_some() && !vertices.has_highlight(asker) && !vertices.is_near_edge[asker];
+            let list = if in_columns { &mut *matt } else { &mut *others };
+            list.push(question as u32);
+        }
+        let from = |vertex: usize| self.seen_from(lamp, vertices, vertex);
+        if let Some(source) = source {
+            let t_max = if source.is_far() {
+                f32::INFINITY
+            } else {
+                SHORT_OF_THE_LIGHT
+            };
+            let mut questions = Questions::nothing();
+            for some in matt.chunks(LANES) {
+                questions.ask(some, askers, counts, weights, vertices, from);
+                if asked.has_extent {
+                    questions.draw(some, numbers);
+                }
+                let Replies {
+                    value,
+                    origin,
+                    along,
+                    is_rare,
+                } = source.answer(&questions);
+                for (lane, &question) in some.iter().enumerate() {
+                    if is_rare[lane] != 0 {
+                        others.push(question);
+                        continue;
+                    }
+                    let vector = |columns: &[[f32; LANES]; 3]| {
+                        Vec3::new(columns[0][lane], columns[1][lane], columns[2][lane])
+                    };
+                    replies[question as usize] = Reply {
+                        value: vector(&value),
+                        ray: Ray {
+                            origin: vector(&origin),
+                            direction: vector(&along),
+                            t_max,
+                            time: vertices.times[askers[question as usize] as usize],
+                        },
+                    };
+                }
             }
         }
-        let mut asked = 0;
-        for vertex in vertices {
-            let surface = &vertex.surface;
-            let weight = vertex.weight(lights, lighting);
-            let count = count_at(vertex);
-            if weight == Vec3::ZERO {
-                asked += count as usize;
-                continue;
-            }
+        if let Some(frame) = frame {
+            glossy.choose(frame, vertices, askers, others, numbers, from);
+        }
+        for (i, &question) in others.iter().enumerate() {
+            let question = question as usize;
+            let vertex = askers[question] as usize;
+            let surface = vertices.surface(vertex);
+            let numbers = numbers_of(asked, numbers, question);
             let from = from(vertex);
-            for _ in 0..count {
-                let point = match (samples, frame) {
-                    (None, _) => lamp.middle(surface, from, lighting),
-                    (Some(_), None) => {
-                        let numbers = shadow_rays.numbers.get(asked);
-                        lamp.point(surface, from, numbers, lighting)
-                    }
-                    (Some(_), Some(_)) => lamp.chosen(from, shadow_rays.chosen.get(asked)),
+            let point = if frame.is_some() && vertices.has_highlight(vertex) {
+                lamp.chosen(from, glossy.get(i))
+            } else {
+                asked.point(&surface, from, numbers, self.settings.lighting)
+            };
+            if let Some(point) = point {
+                let reflected = reflected(&surface, &point, self.settings.lighting);
+                let time = vertices.times[vertex];
+                replies[question] = Reply {
+                    value: weights.get(vertex) / counts[question] * reflected,
+                    ray: shadow_ray(&self.world.aggregate, &surface, &point, time),
                 };
-                asked += 1;
-                let number = shadow_rays.points;
-                shadow_rays.points += 1;
-                let Some(point) = point else { continue };
-                self.recorder.light_sample(
-                    number,
-                    &LitPoint {
-                        path: vertex.number,
+            }
+        }
+    }
+
+    /// Where a vertex lies in the frame that moves with a light.
+    #[inline(always)]
+    fn seen_from(&self, lamp: Lamp, vertices: &Vertices, vertex: usize) -> Vec3 {
+        let position = vertices.position.get(vertex);
+        (self.world.lights).in_rest_frame(lamp.id(), position, vertices.times[vertex])
+    }
+
+    /// Takes the shadow rays that can add something, in the order of the questions.
+    fn collect(
+        &mut self,
+        asked: &Asked,
+        plane: usize,
+        vertices: &Vertices,
+        shadow_rays: &mut ShadowRays,
+    ) {
+        let ShadowRays {
+            askers,
+            counts,
+            numbers,
+            replies,
+            points,
+            rays,
+            shadows,
+            ..
+        } = shadow_rays;
+        rays.clear();
+        shadows.clear();
+        for (question, (asker, reply)) in askers.iter().zip(&*replies).enumerate() {
+            let vertex = *asker as usize;
+            let number = *points;
+            *points += 1;
+            if R::LISTENS {
+                let Asked {
+                    lamp, has_extent, ..
+                } = *asked;
+                let surface = &vertices.surface(vertex);
+                let numbers = numbers_of(asked, numbers, question);
+                let from = self.seen_from(lamp, vertices, vertex);
+                if let Some(point) = asked.point(surface, from, numbers, self.settings.lighting) {
+                    let lit = LitPoint {
+                        path: vertices.numbers[vertex],
                         kind: lamp.kind(),
                         id: lamp.id(),
-                        count: samples.map(|_| count),
+                        count: has_extent.then_some(counts[question] as u32),
                         surface,
                         point,
-                    },
-                );
-                let value = weight / count as f32 * reflected(surface, &point, lighting);
-                if value == Vec3::ZERO {
-                    continue;
+                    };
+                    self.recorder.light_sample(number, &lit);
                 }
-                if !features.shadows {
-                    self.add(vertex.path.sample, plane, Adding::Light(number), value);
-                    continue;
-                }
-                let ray = shadow_ray(&world.aggregate, surface, &point, vertex.ray.time);
-                self.recorder.shadow_ray(number, &ray);
-                shadow_rays.rays.push(ray);
-                shadow_rays.shadows.push(Shadow {
-                    sample: vertex.path.sample,
-                    value,
-                    point: number,
-                });
             }
+            let Reply { value, ray } = *reply;
+            if value == Vec3::ZERO {
+                continue;
+            }
+            let sample = vertices.paths[vertex].sample;
+            if !self.settings.features.shadows {
+                self.add(sample, plane, Adding::Light(number), value);
+                continue;
+            }
+            self.recorder.shadow_ray(number, &ray);
+            rays.push(ray);
+            shadows.push(Shadow {
+                sample,
+                value,
+                point: number,
+            });
         }
     }
 
@@ -202,43 +347,80 @@ impl<R: Recorder> Batch<'_, R> {
     }
 }
 
-impl Vertex {
-    /// What a light's reflected radiance is multiplied by: the path's throughput times the surface's opacity, shared by
-    /// all lights where the lighting is Classic.
-    fn weight(&self, lights: &Lights, lighting: Lighting) -> Vec3 {
-        let opaque = self.path.throughput * self.surface.opacity;
-        match lighting {
-            Lighting::Physical => opaque,
-            Lighting::Classic => opaque / lights.count().max(1) as f32,
+impl Reply {
+    const NOTHING: Self = Self {
+        value: Vec3::ZERO,
+        ray: Ray {
+            origin: Vec3::ZERO,
+            direction: Vec3::ZERO,
+            t_max: 0.0,
+            time: 0.0,
+        },
+    };
+}
+
+impl Asked<'_> {
+    /// The point that numbers choose for a surface at `from`, by itself.
+    fn point(
+        &self,
+        surface: &Surface,
+        from: Vec3,
+        numbers: [f32; 2],
+        lighting: Lighting,
+    ) -> Option<LightPoint> {
+        match self.frame {
+            _ if !self.has_extent => self.lamp.middle(surface, from, lighting),
+            None => self.lamp.point(surface, from, numbers, lighting),
+            Some(frame) => self.lamp.point_for(frame, surface, from, numbers),
         }
     }
 }
 
+/// The numbers that choose the point of a question, where any do.
+fn numbers_of(asked: &Asked, numbers: &Pairs, question: usize) -> [f32; 2] {
+    if asked.has_extent {
+        numbers.get(question)
+    } else {
+        MIDDLE
+    }
+}
+
 impl ShadowRays {
-    /// Every vertex asks for so many points: their numbers go on from sample to sample of the pixel.
+    /// Every vertex that light can add something to asks for so many points at a first hit, and for one later: their numbers
+    /// go on from sample to sample of the pixel.
     fn ask(
         &mut self,
-        vertices: &[Vertex],
-        count_at: impl Fn(&Vertex) -> u32,
+        vertices: &Vertices,
+        at_first_hits: u32,
         samples: &[SampleId],
         pixels: &[u32],
     ) {
         self.asking.clear();
         self.askers.clear();
-        for (asker, vertex) in vertices.iter().enumerate() {
-            let sample = vertex.path.sample as usize;
-            let count = u64::from(count_at(vertex));
-            let first = samples[sample].index * count;
-            for index in first..first + count {
+        self.counts.clear();
+        for (asker, path) in vertices.paths.iter().enumerate() {
+            if self.weights.get(asker) == Vec3::ZERO {
+                continue;
+            }
+            let sample = path.sample as usize;
+            let count = if path.first { at_first_hits } else { 1 };
+            let first = samples[sample].index * u64::from(count);
+            for index in first..first + u64::from(count) {
                 self.askers.push(asker as u32);
-                self.asking.push(pixels[sample], vertex.path.name, index);
+                self.counts.push(count as f32);
+                self.asking.push(pixels[sample], path.name, index);
             }
         }
     }
 }
 
 /// From a surface to a light point, ending just before it.
-fn shadow_ray(aggregate: &Aggregate, surface: &Surface, point: &LightPoint, time: f32) -> Ray {
+pub(super) fn shadow_ray(
+    aggregate: &Aggregate,
+    surface: &Surface,
+    point: &LightPoint,
+    time: f32,
+) -> Ray {
     let origin = aggregate.leave(&surface.point, point.direction);
     if point.distance == f32::INFINITY {
         return Ray {

@@ -1,6 +1,6 @@
 //! Lights of all kinds as one list: what a stage that goes from light to light wants to know of each.
 
-use super::chosen_places::ChosenPlace;
+use super::glossy_places::ChosenPlace;
 use super::light_frames::Frame;
 use super::lights::{
     DirectionalLight, LightPoint, MIDDLE, ParallelogramLight, PointLight, SegmentLight,
@@ -75,6 +75,25 @@ impl Lamp<'_> {
             Self::Point(_) | Self::Directional(_) | Self::Dome(_) => None,
             Self::Segment(light) => light.chosen(from, place[0], arriving),
             Self::Parallelogram(light) => light.chosen(from, place, arriving),
+        }
+    }
+
+    /// The same, chosen for one surface by itself.
+    pub(super) fn point_for(
+        self,
+        frame: &Frame,
+        surface: &Surface,
+        from: Vec3,
+        u: [f32; 2],
+    ) -> Option<LightPoint> {
+        match (self, frame) {
+            (Self::Segment(light), Frame::Segment(frame)) => {
+                light.point_for(frame, surface, from, u[0])
+            }
+            (Self::Parallelogram(light), Frame::Parallelogram(frame)) => {
+                light.point_for(frame, surface, from, u)
+            }
+            _ => None,
         }
     }
 

@@ -43,14 +43,14 @@ impl SegmentLight {
         if !(arriving > 0.0 && arriving < f32::INFINITY) {
             return None;
         }
-        let along = self.ends[1] - self.ends[0];
-        let (direction, distance) = towards((self.ends[0] - from) + u * along)?;
+        let (direction, distance) = towards(self.offset(from, u))?;
+        let length = (self.ends[1] - self.ends[0]).length();
         Some(LightPoint {
             direction,
             distance,
-            arriving: self.colors[0].lerp(self.colors[1], u) * arriving,
+            arriving: self.color(u) * arriving,
             place: [u, MIDDLE[1]],
-            density: along.length() * inverse_square(distance) / arriving,
+            density: length * inverse_square(distance) / arriving,
         })
     }
 }
@@ -91,8 +91,7 @@ impl ParallelogramLight {
         if !(solid_angle > 0.0 && solid_angle < f32::INFINITY) {
             return None;
         }
-        let offset = (self.corner - from) + u * self.edges[0] + v * self.edges[1];
-        let (direction, distance) = towards(offset)?;
+        let (direction, distance) = towards(self.offset(from, [u, v]))?;
         let facing = direction.dot(self.area_normal()).abs();
         Some(LightPoint {
             direction,

@@ -134,7 +134,7 @@ const LEAST_SQUARED_DISTANCE: f32 = 1e-30;
 /// sum of positions loses the digits that their difference has.
 pub(super) fn towards(offset: Vec3) -> Option<(Vec3, f32)> {
     let squared = offset.length_squared();
-    if (1e-20..1e30).contains(&squared) {
+    if !is_near_or_far(squared) {
         let length = squared.sqrt();
         return Some((offset * (1.0 / length), length));
     }
@@ -147,6 +147,13 @@ pub(super) fn towards(offset: Vec3) -> Option<(Vec3, f32)> {
     Some(((offset / scale) / length, length * scale))
 }
 
+/// Whether squares of an offset with that squared length may have left f32's range.
+#[inline(always)]
+pub(super) fn is_near_or_far(squared: f32) -> bool {
+    !(squared >= 1e-20 && squared < 1e30)
+}
+
+#[inline(always)]
 pub(super) fn inverse_square(distance: f32) -> f32 {
     1.0 / (distance * distance).max(LEAST_SQUARED_DISTANCE)
 }
@@ -221,16 +228,28 @@ impl DirectionalLight {
 }
 
 impl SegmentLight {
+    /// The way from a place to the point at fraction `u`.
+    #[inline(always)]
+    pub(super) fn offset(&self, from: Vec3, u: f32) -> Vec3 {
+        (self.ends[0] - from) + u * (self.ends[1] - self.ends[0])
+    }
+
+    /// Linear RGB at fraction `u`.
+    #[inline(always)]
+    pub(super) fn color(&self, u: f32) -> Vec3 {
+        self.colors[0].lerp(self.colors[1], u)
+    }
+
     /// The point at fraction `u` of the segment, as `from` sees it.
     pub fn point(&self, from: Vec3, u: f32, lighting: Lighting) -> Option<LightPoint> {
-        let along = self.ends[1] - self.ends[0];
-        let (direction, distance) = towards((self.ends[0] - from) + u * along)?;
-        let color = self.colors[0].lerp(self.colors[1], u);
+        let (direction, distance) = towards(self.offset(from, u))?;
+        let color = self.color(u);
+        let length = (self.ends[1] - self.ends[0]).length();
         Some(LightPoint {
             direction,
             distance,
             arriving: match lighting {
-                Lighting::Physical => color * (along.length() * inverse_square(distance)),
+                Lighting::Physical => color * (length * inverse_square(distance)),
                 Lighting::Classic => color,
             },
             place: [u, MIDDLE[1]],
@@ -245,7 +264,14 @@ impl ParallelogramLight {
         self.edges[0].cross(self.edges[1])
     }
 
+    /// The way from a place to the point at (u, v).
+    #[inline(always)]
+    pub(super) fn offset(&self, from: Vec3, [u, v]: [f32; 2]) -> Vec3 {
+        (self.corner - from) + u * self.edges[0] + v * self.edges[1]
+    }
+
     /// Linear RGB at the place (u, v) in [0, 1]².
+    #[inline(always)]
     pub fn color(&self, u: f32, v: f32) -> Vec3 {
         let near = self.colors[0].lerp(self.colors[1], u);
         let far = self.colors[2].lerp(self.colors[3], u);
@@ -254,8 +280,7 @@ impl ParallelogramLight {
 
     /// The point at `u` in [0, 1)², as `from` sees it; `None` from behind a one-sided light.
     pub fn point(&self, from: Vec3, u: [f32; 2], lighting: Lighting) -> Option<LightPoint> {
-        let offset = (self.corner - from) + u[0] * self.edges[0] + u[1] * self.edges[1];
-        let (direction, distance) = towards(offset)?;
+        let (direction, distance) = towards(self.offset(from, u))?;
         let color = self.color(u[0], u[1]);
         if lighting == Lighting::Classic {
             return Some(LightPoint {

@@ -25,7 +25,6 @@
 
 pub mod camera;
 mod camera_rays;
-mod chosen_places;
 mod cut_out;
 mod digest;
 mod direct;
@@ -36,10 +35,12 @@ mod emitters;
 mod environment;
 mod first_hit;
 mod footprint;
+mod glossy_places;
 mod lamp;
 mod light_frames;
 pub mod lights;
 mod material;
+mod matt_light;
 mod mipmap;
 mod needs;
 mod normal_map;
@@ -64,10 +65,13 @@ mod spot_cone;
 pub mod srgb;
 mod sun_disc;
 mod surface;
+#[cfg(test)]
+mod test_scene;
 mod texels;
 mod texture;
 mod transmittance;
 mod vectors;
+mod vertices;
 mod world;
 mod wrap;
 

@@ -1,5 +1,6 @@
 use super::{Camera, Object, World};
 use crate::scene::{Alpha, RenderSettings};
+use glam::Vec3;
 
 /// What of the model a world uses at all. What it does not use is not computed, drawn or asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -8,6 +9,8 @@ pub struct Needs {
     pub transparency: bool,
     /// Some light is to be seen itself.
     pub visible_lights: bool,
+    /// Some material shines by itself.
+    pub emission: bool,
     /// Samples of a pixel that moving objects and lights ask for; 0 where none moves.
     pub motion_samples: u32,
 }
@@ -20,6 +23,7 @@ impl Needs {
         Self {
             transparency: world.objects.iter().any(|o| world.lets_light_through(o)),
             visible_lights: world.lights.parallelograms.iter().any(|l| l.visible),
+            emission: (world.materials.iter()).any(|material| material.emission != Vec3::ZERO),
             motion_samples: objects.chain(lights).max().unwrap_or(0),
         }
     }

@@ -3,7 +3,8 @@
 //! ```text
 //! camera     samples  -> rays                         camera_rays
 //! nearest    rays     -> hits                         here
-//! vertices   hits     -> vertices, and what shines    here
+//! vertices   hits     -> vertices                     vertices
+//!            what shines by itself -> values          here
 //! lights     vertices -> shadow rays, of one light    direct
 //!            what arrives -> values
 //! continue   vertices -> the next bounce's rays       scatter
@@ -14,7 +15,8 @@ use super::direct::ShadowRays;
 use super::planes::{OWN, PlaneSet, Planes};
 use super::recorder::{Adding, Recorder};
 use super::sampler::Sampler;
-use super::{Camera, Cone, ParallelogramLight, RayCounts, Surface, World};
+use super::vertices::Vertices;
+use super::{Camera, Cone, ParallelogramLight, RayCounts, World};
 use crate::bvh::{Hit, Order, Ray};
 use crate::scene::{Lighting, RenderSettings};
 use glam::{UVec2, Vec3};
@@ -38,7 +40,7 @@ pub struct Workspace {
     next: Paths,
     hits: Vec<Option<Hit>>,
     behind: Behind,
-    vertices: Vec<Vertex>,
+    vertices: Vertices,
     shadow_rays: ShadowRays,
 }
 
@@ -97,7 +99,7 @@ pub(super) struct Path {
 }
 
 impl Path {
-    fn from_camera(sample: u32, cone: Cone) -> Self {
+    pub(super) fn from_camera(sample: u32, cone: Cone) -> Self {
         Self {
             throughput: Vec3::ONE,
             cone,
@@ -109,16 +111,6 @@ impl Path {
             after: None,
         }
     }
-}
-
-/// A hit that is shaded.
-pub(super) struct Vertex {
-    /// Number of the path in this bounce.
-    pub number: u32,
-    pub path: Path,
-    pub ray: Ray,
-    pub hit: Hit,
-    pub surface: Surface,
 }
 
 /// Rays that go on behind a hit are asked one by one, all others together: their numbers, the rays and what they hit.
@@ -251,11 +243,11 @@ fn evaluate<R: Recorder>(
     while !paths.rays.is_empty() {
         batch.find_nearest(paths, hits, behind);
         next.clear();
-        batch.find_vertices(paths, cone, hits, vertices, next);
+        batch.find_vertices(paths, cone, hits, vertices);
         if settings.features.shading {
             batch.add_direct_light(vertices, shadow_rays);
         }
-        batch.continue_paths(vertices, next);
+        batch.continue_paths(vertices, paths, next);
         std::mem::swap(paths, next);
         batch.recorder.next_bounce();
     }
@@ -324,29 +316,58 @@ impl<R: Recorder> Batch<'_, R> {
         }
     }
 
-    /// Turns every hit into a vertex, and adds what shines by itself: surfaces, visible lights and the background. Paths
-    /// that meet what is not there go on.
+    /// Turns every hit into a vertex, and adds what shines by itself: surfaces, visible lights and the background.
     fn find_vertices(
         &mut self,
         paths: &Paths,
         cone: Cone,
         hits: &[Option<Hit>],
-        vertices: &mut Vec<Vertex>,
-        next: &mut Paths,
+        vertices: &mut Vertices,
     ) {
         vertices.clear();
         // Classic lights are nowhere to be seen, as in simple Phong ray tracers.
         let lights_are_visible =
             self.world.needs.visible_lights && self.settings.lighting == Lighting::Physical;
+        if !lights_are_visible && paths.states.is_empty() {
+            // Most rays of most pictures.
+            for (i, (ray, hit)) in paths.rays.iter().zip(hits).enumerate() {
+                let number = i as u32;
+                if let Some(hit) = hit {
+                    vertices.push_from_camera(number, *hit);
+                } else {
+                    let background = self.background(ray.direction);
+                    self.recorder.met_background(number, background);
+                    self.add(number, OWN, Adding::Path(number), background);
+                }
+            }
+            vertices.start_at_camera(cone);
+        } else {
+            self.sort_hits(paths, cone, hits, lights_are_visible, vertices);
+        }
+        vertices.look_up(self.world, self.settings, &paths.rays);
+        if R::LISTENS {
+            for (i, number) in vertices.numbers.iter().enumerate() {
+                let surface = vertices.surface(i);
+                self.recorder
+                    .met_surface(*number, &vertices.hits[i], &surface);
+            }
+        }
+        if self.world.needs.emission || !self.settings.features.shading {
+            self.add_emission(vertices);
+        }
+    }
+
+    /// Adds what paths meet that is no surface, and takes the hits of the others.
+    fn sort_hits(
+        &mut self,
+        paths: &Paths,
+        cone: Cone,
+        hits: &[Option<Hit>],
+        lights_are_visible: bool,
+        vertices: &mut Vertices,
+    ) {
         for (i, (ray, hit)) in paths.rays.iter().zip(hits).enumerate() {
             let number = i as u32;
-            if hit.is_none() && !lights_are_visible && paths.states.is_empty() {
-                // Most rays of most pictures.
-                let background = self.background(ray.direction);
-                self.recorder.met_background(number, background);
-                self.add(number, OWN, Adding::Path(number), background);
-                continue;
-            }
             let path = paths.get(i, cone);
             if lights_are_visible
                 && let Some((i, t, light)) = self.visible_light(&path, ray, hit.as_ref())
@@ -366,41 +387,27 @@ impl<R: Recorder> Batch<'_, R> {
                 self.add(path.sample, OWN, Adding::Path(number), value);
                 continue;
             };
-            let width = path.cone.width_at(hit.t);
-            let surface = Surface::at(self.world, self.settings, ray, width, &hit);
-            self.recorder.met_surface(number, &hit, &surface);
-            let vertex = Vertex {
-                number,
-                path,
-                ray: *ray,
-                hit,
-                surface,
-            };
-            if vertex.surface.opacity == 0.0 {
-                self.pass(&vertex, next);
-                continue;
-            }
-            self.add_emission(&vertex);
-            vertices.push(vertex);
+            vertices.push(number, path, hit);
         }
     }
 
-    /// What a surface sends back by itself: its emission, or kd where shading is off.
-    fn add_emission(&mut self, vertex: &Vertex) {
-        let Vertex {
-            number,
-            path,
-            surface,
-            ..
-        } = vertex;
-        let radiance = match (self.settings.features.shading, self.settings.lighting) {
-            (false, _) => surface.diffuse,
-            (true, Lighting::Physical) => surface.emission,
+    /// What surfaces send back by themselves: their emission, or kd where shading is off.
+    fn add_emission(&mut self, vertices: &Vertices) {
+        let shines = match (self.settings.features.shading, self.settings.lighting) {
+            (false, _) => &vertices.diffuse,
+            (true, Lighting::Physical) => &vertices.emission,
             (true, Lighting::Classic) => return,
         };
-        self.recorder.shines(*number, surface.opacity * radiance);
-        let value = path.throughput * surface.opacity * radiance;
-        self.add(path.sample, OWN, Adding::Path(*number), value);
+        for (i, path) in vertices.paths.iter().enumerate() {
+            let (opacity, radiance) = (vertices.opacity[i], shines.get(i));
+            if opacity == 0.0 {
+                continue;
+            }
+            let number = vertices.numbers[i];
+            self.recorder.shines(number, opacity * radiance);
+            let value = path.throughput * opacity * radiance;
+            self.add(path.sample, OWN, Adding::Path(number), value);
+        }
     }
 
     pub(super) fn add(&mut self, sample: u32, plane: usize, by: Adding, value: Vec3) {

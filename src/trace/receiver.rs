@@ -1,5 +1,7 @@
 use super::Surface;
 use super::piecewise::larger;
+use super::vectors::set_column;
+use super::vertices::Vertices;
 use glam::Vec3;
 
 /// What points of a light are chosen for: places that see it, and how they reflect, in columns. What a place
@@ -31,31 +33,40 @@ impl<const N: usize> Receivers<N> {
 }
 
 impl<const N: usize> Receivers<N> {
-    /// Surfaces, each with where it is, as a light's points are chosen for them.
+    pub(super) const NOWHERE: Self = Self {
+        from: [[0.0; N]; 3],
+        normal: [[0.0; N]; 3],
+        mirrored: [[0.0; N]; 3],
+        diffuse: [0.0; N],
+        specular: [0.0; N],
+        shininess: [1.0; N],
+    };
+
+    /// Vertices with a highlight, each with where it is.
     #[inline(always)]
-    pub(super) fn gather<'a>(receiver: impl Fn(usize) -> (&'a Surface, Vec3)) -> Self {
-        let mut receivers = Self {
-            from: [[0.0; N]; 3],
-            normal: [[0.0; N]; 3],
-            mirrored: [[0.0; N]; 3],
-            diffuse: [0.0; N],
-            specular: [0.0; N],
-            shininess: [1.0; N],
-        };
+    pub(super) fn glossy(
+        vertices: &Vertices,
+        vertex: impl Fn(usize) -> usize,
+        from: impl Fn(usize) -> Vec3,
+    ) -> Self {
+        let mut receivers = Self::NOWHERE;
         for i in 0..N {
-            let (surface, from) = receiver(i);
-            let n = surface.normal;
-            let mirrored = 2.0 * n.dot(surface.to_viewer) * n - surface.to_viewer;
-            for axis in 0..3 {
-                receivers.from[axis][i] = from[axis];
-                receivers.normal[axis][i] = n[axis];
-                receivers.mirrored[axis][i] = mirrored[axis];
-            }
-            receivers.diffuse[i] = surface.diffuse.element_sum() / 3.0;
-            receivers.specular[i] = surface.specular.element_sum() / 3.0;
-            receivers.shininess[i] = surface.shininess;
+            let vertex = vertex(i);
+            receivers.set(i, &vertices.surface(vertex), from(vertex));
         }
         receivers
+    }
+
+    #[inline(always)]
+    fn set(&mut self, i: usize, surface: &Surface, from: Vec3) {
+        let n = surface.normal;
+        let mirrored = 2.0 * n.dot(surface.to_viewer) * n - surface.to_viewer;
+        set_column(&mut self.from, i, from);
+        set_column(&mut self.normal, i, n);
+        set_column(&mut self.mirrored, i, mirrored);
+        self.diffuse[i] = surface.diffuse.element_sum() / 3.0;
+        self.specular[i] = surface.specular.element_sum() / 3.0;
+        self.shininess[i] = surface.shininess;
     }
 }
 
@@ -63,6 +74,8 @@ impl Receivers<1> {
     /// One place, as the light's points are chosen for a surface there.
     #[inline(always)]
     pub fn of(surface: &Surface, from: Vec3) -> Self {
-        Self::gather(|_| (surface, from))
+        let mut receivers = Self::NOWHERE;
+        receivers.set(0, surface, from);
+        receivers
     }
 }

@@ -52,6 +52,9 @@ pub(super) struct LitPoint<'a> {
 /// which they were continued; points of lights have theirs. Every method has an empty body, so that a batch without a
 /// recorder is the same code as one that knows none.
 pub(super) trait Recorder {
+    /// Whether anything is done with what it is told: what only it wants to know is else not looked up.
+    const LISTENS: bool = true;
+
     /// The next path starts at the camera.
     #[inline(always)]
     fn camera_ray(&mut self, _ray: &Ray) {}
@@ -97,4 +100,6 @@ pub(super) trait Recorder {
     fn added(&mut self, _by: Adding, _value: Vec3) {}
 }
 
-impl Recorder for () {}
+impl Recorder for () {
+    const LISTENS: bool = false;
+}

@@ -1,10 +1,12 @@
 //! How paths go on: mirrors, glossy reflections, transparency and translucency.
 
+use super::Surface;
 use super::disc::offset_direction;
-use super::radiance::{Batch, Path, Paths, Vertex};
+use super::radiance::{Batch, Path, Paths};
 use super::recorder::{Recorder, Way};
 use super::sampler::{Purpose, mix};
-use crate::bvh::Ray;
+use super::vertices::Vertices;
+use crate::bvh::{Hit, Ray};
 use glam::Vec3;
 
 /// A path that both reflects and transmits goes on as two while its largest throughput exceeds
@@ -15,44 +17,75 @@ const SPLIT_ABOVE: f32 = 0.125;
 /// scattering walls it would go on for ever.
 const MAX_SCATTERINGS: u32 = 256;
 
+/// A vertex that paths leave, and the ray that met it.
+struct Departure {
+    /// Number of the path that met it.
+    number: u32,
+    path: Path,
+    ray: Ray,
+    hit: Hit,
+    surface: Surface,
+}
+
 impl<R: Recorder> Batch<'_, R> {
     /// Adds the paths that leave the vertices: what each reflects and what it lets through.
-    pub(super) fn continue_paths(&mut self, vertices: &[Vertex], next: &mut Paths) {
-        let settings = self.settings;
-        for vertex in vertices {
-            if !settings.features.shading {
-                self.transmit(vertex, 1.0, next);
+    pub(super) fn continue_paths(&mut self, vertices: &Vertices, paths: &Paths, next: &mut Paths) {
+        for (i, path) in vertices.paths.iter().enumerate() {
+            let reflects = self.reflectance(vertices, i);
+            let transmits = (path.throughput * (1.0 - vertices.opacity[i])).max_element();
+            // Neither of most surfaces.
+            if !(reflects > 0.0 || transmits > 0.0) {
                 continue;
             }
-            let Vertex { path, surface, .. } = vertex;
-            let mirrors = settings.features.mirrors && path.bounces < settings.max_depth;
-            let reflects = if mirrors {
-                (path.throughput * surface.opacity * surface.mirror).max_element()
-            } else {
-                0.0
+            let vertex = Departure {
+                number: vertices.numbers[i],
+                path: *path,
+                ray: paths.rays[vertices.numbers[i] as usize],
+                hit: vertices.hits[i],
+                surface: vertices.surface(i),
             };
-            let transmits = (path.throughput * (1.0 - surface.opacity)).max_element();
-            if reflects > 0.0 && transmits > 0.0 && path.throughput.max_element() <= SPLIT_ABOVE {
-                let (sampler, index) = self.sampler(path.sample);
-                let u = sampler.block(index, Purpose::Branch, path.name)[0];
-                let share = reflects / (reflects + transmits);
-                if u < share {
-                    self.reflect(vertex, 1.0 / share, next);
-                } else {
-                    self.transmit(vertex, 1.0 / (1.0 - share), next);
-                }
-                continue;
-            }
-            if reflects > 0.0 {
-                self.reflect(vertex, 1.0, next);
-            }
-            self.transmit(vertex, 1.0, next);
+            self.depart(&vertex, reflects, transmits, next);
         }
+    }
+
+    /// The largest channel of what a path carries on from a mirror; 0 where none is looked into.
+    fn reflectance(&self, vertices: &Vertices, i: usize) -> f32 {
+        let path = &vertices.paths[i];
+        let features = &self.settings.features;
+        let mirrors =
+            features.shading && features.mirrors && path.bounces < self.settings.max_depth;
+        if !mirrors {
+            return 0.0;
+        }
+        (path.throughput * vertices.opacity[i] * vertices.mirror.get(i)).max_element()
+    }
+
+    fn depart(&mut self, vertex: &Departure, reflects: f32, transmits: f32, next: &mut Paths) {
+        let Departure { path, surface, .. } = vertex;
+        if surface.opacity == 0.0 {
+            self.pass(vertex, next);
+            return;
+        }
+        if reflects > 0.0 && transmits > 0.0 && path.throughput.max_element() <= SPLIT_ABOVE {
+            let (sampler, index) = self.sampler(path.sample);
+            let u = sampler.block(index, Purpose::Branch, path.name)[0];
+            let share = reflects / (reflects + transmits);
+            if u < share {
+                self.reflect(vertex, 1.0 / share, next);
+            } else {
+                self.transmit(vertex, 1.0 / (1.0 - share), next);
+            }
+            return;
+        }
+        if reflects > 0.0 {
+            self.reflect(vertex, 1.0, next);
+        }
+        self.transmit(vertex, 1.0, next);
     }
 
     /// The same path goes on behind a surface that is not there: it is no first hit, scatters nothing and names no path,
     /// so that the picture is the one without it, bit for bit.
-    pub(super) fn pass(&mut self, vertex: &Vertex, next: &mut Paths) {
+    fn pass(&mut self, vertex: &Departure, next: &mut Paths) {
         let path = Path {
             after: Some(vertex.hit),
             ..vertex.path
@@ -61,8 +94,8 @@ impl<R: Recorder> Batch<'_, R> {
         self.counts.transmission += 1;
     }
 
-    fn reflect(&mut self, vertex: &Vertex, weight: f32, next: &mut Paths) {
-        let Vertex {
+    fn reflect(&mut self, vertex: &Departure, weight: f32, next: &mut Paths) {
+        let Departure {
             path, surface, hit, ..
         } = vertex;
         let throughput = path.throughput * surface.mirror * (surface.opacity * weight);
@@ -102,8 +135,8 @@ impl<R: Recorder> Batch<'_, R> {
     }
 
     /// Adds the path through the surface, if it lets anything through; `weight` corrects for chance.
-    fn transmit(&mut self, vertex: &Vertex, weight: f32, next: &mut Paths) {
-        let Vertex {
+    fn transmit(&mut self, vertex: &Departure, weight: f32, next: &mut Paths) {
+        let Departure {
             path, surface, hit, ..
         } = vertex;
         let throughput = path.throughput * ((1.0 - surface.opacity) * weight);
@@ -160,7 +193,7 @@ impl<R: Recorder> Batch<'_, R> {
     )]
     fn go_on(
         &mut self,
-        from: &Vertex,
+        from: &Departure,
         ray: Ray,
         path: Path,
         way: Way,

@@ -16,17 +16,20 @@ pub fn reflected(surface: &Surface, light: &LightPoint, lighting: Lighting) -> V
     let l = light.direction;
     let cosine = surface.normal.dot(l);
     match lighting {
+        Lighting::Physical if surface.specular == Vec3::ZERO => lambert(
+            surface.diffuse,
+            surface.normal,
+            surface.geometric_normal,
+            l,
+            light.arriving,
+        ),
         Lighting::Physical => {
-            // A smooth normal may face a light that the triangle itself turns its back to.
-            if cosine <= 0.0 || surface.geometric_normal.dot(l) <= 0.0 {
+            if !faces(surface.geometric_normal, cosine, l) {
                 return Vec3::ZERO;
             }
-            let mut value = surface.diffuse * FRAC_1_PI;
-            if surface.specular != Vec3::ZERO {
-                let s = surface.shininess;
-                value += surface.specular * ((s + 2.0) / (2.0 * PI) * lobe(surface, l));
-            }
-            light.arriving * value * cosine
+            let s = surface.shininess;
+            let highlight = surface.specular * ((s + 2.0) / (2.0 * PI) * lobe(surface, l));
+            light.arriving * (surface.diffuse * FRAC_1_PI + highlight) * cosine
         }
         Lighting::Classic => {
             let mut value = surface.diffuse * cosine.max(0.0);
@@ -36,6 +39,30 @@ pub fn reflected(surface: &Surface, light: &LightPoint, lighting: Lighting) -> V
             light.arriving * value
         }
     }
+}
+
+/// The same of a matt surface, Physical. Without a branch.
+#[inline(always)]
+pub(super) fn lambert(
+    diffuse: Vec3,
+    normal: Vec3,
+    geometric_normal: Vec3,
+    l: Vec3,
+    arriving: Vec3,
+) -> Vec3 {
+    let cosine = normal.dot(l);
+    let value = arriving * (diffuse * FRAC_1_PI) * cosine;
+    if faces(geometric_normal, cosine, l) {
+        value
+    } else {
+        Vec3::ZERO
+    }
+}
+
+/// Whether a surface sees a light: a smooth normal may face one that the triangle itself turns its back to.
+#[inline(always)]
+fn faces(geometric_normal: Vec3, cosine: f32, l: Vec3) -> bool {
+    !(cosine <= 0.0) & !(geometric_normal.dot(l) <= 0.0)
 }
 
 /// `n·l` and `r·v`, as [`reflected`] takes them for a light along the unit vector `l`.

@@ -1,6 +1,6 @@
 use super::footprint::texture_footprint;
-use super::{Material, Reading, World, normal_map};
-use crate::bvh::{Hit, Ray, SurfacePoint};
+use super::{Material, Object, Reading, World, normal_map};
+use crate::bvh::{Hit, Placement, Ray, SurfacePoint};
 use crate::scene::{Alpha, Lighting, PhongMap, RenderSettings, TextureFilter};
 use glam::{Vec2, Vec3};
 
@@ -47,6 +47,95 @@ struct Textured {
     is_turned: bool,
 }
 
+impl Object {
+    /// The vertices of the triangle of a hit on it.
+    #[inline(always)]
+    pub(super) fn corners(&self, hit: &Hit) -> [u32; 3] {
+        self.mesh.tree.triangles().indices()[hit.triangle as usize]
+    }
+
+    /// Of each vertex, where the mesh has them and they are to be seen.
+    pub(super) fn smooth_normals(&self, settings: &RenderSettings) -> Option<&[Vec3]> {
+        let normals = &self.mesh.normals;
+        (settings.features.normal_interpolation && !normals.is_empty()).then_some(normals)
+    }
+
+    /// Whether a hit's numbers may differ from those of the material, as [`Surface::vary`] has it.
+    pub(super) fn varies(&self, material: &Material, settings: &RenderSettings) -> bool {
+        let has_maps = !material.maps.is_empty() && settings.features.textures;
+        !self.mesh.colors.is_empty() || (has_maps && !self.mesh.uvs.is_empty())
+    }
+}
+
+/// Which way a surface faces.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Facing {
+    /// As [`Surface`] has them.
+    pub geometric_normal: Vec3,
+    pub normal: Vec3,
+    /// Whether the normal is the opposite of the mesh's.
+    pub is_turned: bool,
+    /// Whether the ray is too grazing to tell: where it started has to be asked.
+    pub is_grazing: bool,
+}
+
+impl Facing {
+    /// Of a triangle with that normal, shaded by the other one; unit vectors. Without a branch.
+    #[inline(always)]
+    pub fn of(triangle: Vec3, shading: Vec3, to_viewer: Vec3, is_physical: bool) -> Self {
+        let cosine = triangle.dot(to_viewer);
+        Self {
+            is_grazing: !(cosine > GRAZING || cosine < -GRAZING),
+            ..Self::from_side(triangle, shading, cosine >= 0.0, is_physical)
+        }
+    }
+
+    #[inline(always)]
+    fn from_side(triangle: Vec3, shading: Vec3, is_above: bool, is_physical: bool) -> Self {
+        let side = if is_above { 1.0 } else { -1.0 };
+        let geometric_normal = side * triangle;
+        let is_turned = is_physical & (shading.dot(geometric_normal) < 0.0);
+        let side = if is_turned { -1.0 } else { 1.0 };
+        Self {
+            geometric_normal,
+            normal: side * shading,
+            is_turned,
+            is_grazing: false,
+        }
+    }
+}
+
+/// A smooth normal in the world, of those at the corners in the mesh; the triangle's where it has no direction.
+#[inline(always)]
+pub(super) fn smooth_normal(
+    placement: &Placement,
+    [a, b, c]: [Vec3; 3],
+    [u, v]: [f32; 2],
+    triangle: Vec3,
+) -> Vec3 {
+    let smooth = Vec3::ZERO + (1.0 - u - v) * a + u * b + v * c;
+    let smooth = placement.to_world_normal(smooth);
+    let scale = 1.0 / smooth.length();
+    let has_direction = scale > 0.0 && scale < f32::INFINITY;
+    if has_direction {
+        smooth * scale
+    } else {
+        triangle
+    }
+}
+
+/// What becomes of a material's opacity.
+pub(super) fn cut_opacity(opacity: f32, alpha: Alpha, settings: &RenderSettings) -> f32 {
+    if !settings.features.transparency {
+        return 1.0;
+    }
+    match alpha {
+        Alpha::Blend => opacity,
+        Alpha::Mask { cutoff } => f32::from(opacity >= cutoff),
+        Alpha::Opaque => 1.0,
+    }
+}
+
 impl Surface {
     /// What `ray`, `width` metres wide at the hit, found at `hit`.
     pub fn at(world: &World, settings: &RenderSettings, ray: &Ray, width: f32, hit: &Hit) -> Self {
@@ -57,35 +146,21 @@ impl Surface {
         let to_viewer = -ray.direction.normalize();
 
         let mut normal = point.normal;
-        let mesh = &object.mesh;
-        let corners = mesh.tree.triangles().indices()[hit.triangle as usize];
-        let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
-        if settings.features.normal_interpolation && !mesh.normals.is_empty() {
-            let smooth: Vec3 = (0..3)
-                .map(|i| weights[i] * mesh.normals[corners[i] as usize])
-                .sum();
-            if let Some(smooth) = instance.to_world_normal(smooth).try_normalize() {
-                normal = smooth;
-            }
+        if let Some(normals) = object.smooth_normals(settings) {
+            let corners = object.corners(hit).map(|corner| normals[corner as usize]);
+            normal = smooth_normal(&instance.placement(), corners, [hit.u, hit.v], normal);
         }
-        let cosine = point.normal.dot(to_viewer);
-        let above = if cosine.abs() > GRAZING {
-            cosine > 0.0
-        } else {
-            let above = instance.is_above(hit.triangle, ray.origin, ray.time);
-            above.unwrap_or(cosine >= 0.0)
-        };
-        let geometric_normal = if above { point.normal } else { -point.normal };
-        let is_turned =
-            settings.lighting == Lighting::Physical && normal.dot(geometric_normal) < 0.0;
-        if is_turned {
-            normal = -normal;
+        let is_physical = settings.lighting == Lighting::Physical;
+        let mut facing = Facing::of(point.normal, normal, to_viewer, is_physical);
+        if facing.is_grazing
+            && let Some(is_above) = instance.is_above(hit.triangle, ray.origin, ray.time)
+        {
+            facing = Facing::from_side(point.normal, normal, is_above, is_physical);
         }
-
         let mut surface = Self {
             point,
-            geometric_normal,
-            normal,
+            geometric_normal: facing.geometric_normal,
+            normal: facing.normal,
             to_viewer,
             diffuse: material.diffuse,
             specular: material.specular,
@@ -94,13 +169,33 @@ impl Surface {
             opacity: material.opacity,
             emission: material.emission,
         };
+        surface.vary(world, settings, hit, facing.is_turned, width);
+        surface.opacity = cut_opacity(surface.opacity, material.alpha, settings);
+        surface
+    }
+
+    /// Multiplies what differs over the object: the vertices' colours and the material's maps.
+    pub(super) fn vary(
+        &mut self,
+        world: &World,
+        settings: &RenderSettings,
+        hit: &Hit,
+        is_turned: bool,
+        width: f32,
+    ) {
+        let instance = &world.aggregate.instances()[hit.instance as usize];
+        let object = &world.objects[hit.instance as usize];
+        let material = &world.materials[object.material as usize];
+        let mesh = &object.mesh;
+        let corners = object.corners(hit);
+        let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
         if !mesh.colors.is_empty() {
             let [a, b, c] = corners.map(|corner| mesh.colors[corner as usize]);
-            surface.diffuse *= weights[0] * a + weights[1] * b + weights[2] * c;
+            self.diffuse *= weights[0] * a + weights[1] * b + weights[2] * c;
             if !mesh.alphas.is_empty() {
                 let [a, b, c] = corners.map(|corner| mesh.alphas[corner as usize]);
                 let alpha = weights[0] * a + weights[1] * b + weights[2] * c;
-                surface.opacity = (surface.opacity * alpha).clamp(0.0, 1.0);
+                self.opacity = (self.opacity * alpha).clamp(0.0, 1.0);
             }
         }
         if !material.maps.is_empty() && settings.features.textures && !mesh.uvs.is_empty() {
@@ -113,17 +208,8 @@ impl Surface {
                 width,
                 is_turned,
             };
-            surface.multiply_maps(world, settings, material, &triangle);
+            self.multiply_maps(world, settings, material, &triangle);
         }
-        match material.alpha {
-            Alpha::Blend => {}
-            Alpha::Mask { cutoff } => surface.opacity = f32::from(surface.opacity >= cutoff),
-            Alpha::Opaque => surface.opacity = 1.0,
-        }
-        if !settings.features.transparency {
-            surface.opacity = 1.0;
-        }
-        surface
     }
 
     /// Every number times its map.

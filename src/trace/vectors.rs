@@ -1,6 +1,7 @@
 //! Columns of vectors.
 
 use glam::Vec3;
+use std::ops::Range;
 
 /// Vectors as three columns of numbers, so that loops over them vectorise.
 #[derive(Clone, Debug, Default)]
@@ -25,7 +26,39 @@ impl Vectors {
         [self.x[i], self.y[i], self.z[i]] = vector.to_array();
     }
 
+    /// Puts the same vector into each place of a range.
+    pub fn fill(&mut self, range: Range<usize>, vector: Vec3) {
+        for (column, value) in self.slices().into_iter().zip(vector.to_array()) {
+            column[range.clone()].fill(value);
+        }
+    }
+
+    /// Puts the first of other columns into a range.
+    pub fn copy_from(&mut self, range: Range<usize>, columns: &[impl AsRef<[f32]>; 3]) {
+        for (to, from) in self.slices().into_iter().zip(columns) {
+            to[range.clone()].copy_from_slice(&from.as_ref()[..range.len()]);
+        }
+    }
+
+    pub fn columns(&self) -> [&[f32]; 3] {
+        [&self.x, &self.y, &self.z]
+    }
+
     pub fn slices(&mut self) -> [&mut [f32]; 3] {
         [&mut self.x, &mut self.y, &mut self.z]
     }
+}
+
+/// A vector of columns of some length.
+#[inline(always)]
+pub(super) fn column_vector<const N: usize>(columns: &[[f32; N]; 3], i: usize) -> Vec3 {
+    Vec3::new(columns[0][i], columns[1][i], columns[2][i])
+}
+
+/// Puts a vector into columns of some length.
+#[inline(always)]
+pub(super) fn set_column<const N: usize>(columns: &mut [[f32; N]; 3], i: usize, vector: Vec3) {
+    columns[0][i] = vector.x;
+    columns[1][i] = vector.y;
+    columns[2][i] = vector.z;
 }

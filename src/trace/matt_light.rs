@@ -1,0 +1,401 @@
+//! What one light gives matt surfaces, and the shadow rays to its points: a stage over columns.
+//!
+//! Lights that are the same for all (a point, a direction) and those whose places are chosen for the surface (segments,
+//! parallelograms) go through here. Whatever takes a branch, a highlight, a cone, a disc of directions or a hit beside an edge,
+//! is asked question by question in [`direct`](super::direct), by the same formulas.
+
+use super::lamp::Lamp;
+use super::light_frames::Frame;
+use super::lights::{ParallelogramLight, SegmentLight, inverse_square, is_near_or_far};
+use super::numbers::Pairs;
+use super::parallelogram_frame::ParallelogramFrame;
+use super::receiver::Receivers;
+use super::segment_warp::SegmentFrame;
+use super::shading::lambert;
+use super::vectors::{Vectors, column_vector, set_column};
+use super::vertices::Vertices;
+use crate::bvh::beyond_error;
+use crate::instruction_sets::vectorized;
+use glam::Vec3;
+
+/// Questions that are answered together: what fills the widest vectors.
+pub(super) const LANES: usize = 32;
+
+/// Points of one light that matt vertices ask for.
+pub(super) struct Questions<const N: usize> {
+    /// Where they are in the frame in which the light stands still, and their normals.
+    pub receivers: Receivers<N>,
+    /// Two in [0, 1) for each.
+    pub numbers: [[f32; N]; 2],
+    /// As in [`Vertices`](super::vertices::Vertices).
+    pub position: [[f32; N]; 3],
+    pub error: [[f32; N]; 3],
+    pub triangle_normal: [[f32; N]; 3],
+    pub geometric_normal: [[f32; N]; 3],
+    pub diffuse: [[f32; N]; 3],
+    /// What the reflected radiance is multiplied by, and how many points share it.
+    pub weight: [[f32; N]; 3],
+    pub count: [f32; N],
+}
+
+impl Questions<LANES> {
+    pub fn nothing() -> Self {
+        Self {
+            receivers: Receivers::NOWHERE,
+            numbers: [[0.5; LANES]; 2],
+            position: [[0.0; LANES]; 3],
+            error: [[0.0; LANES]; 3],
+            triangle_normal: [[0.0; LANES]; 3],
+            geometric_normal: [[0.0; LANES]; 3],
+            diffuse: [[0.0; LANES]; 3],
+            weight: [[0.0; LANES]; 3],
+            count: [1.0; LANES],
+        }
+    }
+
+    /// Puts some questions into the first lanes: `askers` names the vertex of each, `counts` says how many share what it
+    /// reflects, and `from` where a vertex is in the frame that moves with the light. The other lanes keep what they had.
+    #[inline(always)]
+    pub fn ask(
+        &mut self,
+        some: &[u32],
+        askers: &[u32],
+        counts: &[f32],
+        weights: &Vectors,
+        vertices: &Vertices,
+        from: impl Fn(usize) -> Vec3,
+    ) {
+        let mut of = [0; LANES];
+        for (lane, &question) in some.iter().enumerate() {
+            of[lane] = askers[question as usize];
+            self.count[lane] = counts[question as usize];
+        }
+        let of = &of[..some.len()];
+        gather(&vertices.normal, of, &mut self.receivers.normal);
+        gather(&vertices.position, of, &mut self.position);
+        gather(&vertices.error, of, &mut self.error);
+        gather(&vertices.triangle_normal, of, &mut self.triangle_normal);
+        gather(&vertices.geometric_normal, of, &mut self.geometric_normal);
+        gather(&vertices.diffuse, of, &mut self.diffuse);
+        gather(weights, of, &mut self.weight);
+        for (lane, &vertex) in of.iter().enumerate() {
+            set_column(&mut self.receivers.from, lane, from(vertex as usize));
+        }
+    }
+
+    /// The numbers that choose the places of the same questions.
+    pub fn draw(&mut self, some: &[u32], numbers: &Pairs) {
+        for (lane, &question) in some.iter().enumerate() {
+            self.numbers[0][lane] = numbers.u[question as usize];
+            self.numbers[1][lane] = numbers.v[question as usize];
+        }
+    }
+}
+
+/// Vectors into the first lanes. Most vertices ask in turn: those are copied at once.
+#[inline(always)]
+fn gather(vectors: &Vectors, of: &[u32], lanes: &mut [[f32; LANES]; 3]) {
+    let first = of[0];
+    let in_turn = (first..).zip(of).all(|(turn, &vertex)| turn == vertex);
+    for (lanes, column) in lanes.iter_mut().zip(vectors.columns()) {
+        if in_turn {
+            lanes[..of.len()].copy_from_slice(&column[first as usize..][..of.len()]);
+        } else {
+            for (lane, &vertex) in lanes.iter_mut().zip(of) {
+                *lane = column[vertex as usize];
+            }
+        }
+    }
+}
+
+/// What the light adds if nothing is in the way, and the ray that finds out.
+pub(super) struct Replies<const N: usize> {
+    pub value: [[f32; N]; 3],
+    pub origin: [[f32; N]; 3],
+    /// All the way to the point of the light; a unit vector where that is infinitely far.
+    pub along: [[f32; N]; 3],
+    /// Not zero where lengths leave f32's range: to be asked by themselves.
+    pub is_rare: [u32; N],
+}
+
+/// A light that gives columns of questions their answers.
+pub(super) enum Source<'a> {
+    /// A point, and its W/sr.
+    Point(Vec3, Vec3),
+    /// A unit vector there, and W/m² that arrive.
+    Direction(Vec3, Vec3),
+    Segment(&'a SegmentLight, &'a SegmentFrame),
+    Parallelogram(&'a ParallelogramLight, &'a ParallelogramFrame),
+}
+
+impl<'a> Source<'a> {
+    /// Of a lamp with that frame; `None` where its points are asked for one by one.
+    pub fn of(lamp: Lamp<'a>, frame: Option<&'a Frame>, soft_shadows: bool) -> Option<Self> {
+        match (lamp, frame) {
+            (Lamp::Point(light), _) if light.cone.is_none() => {
+                Some(Self::Point(light.position, light.color))
+            }
+            (Lamp::Directional(light), _) if light.disc.is_none() || !soft_shadows => {
+                Some(Self::Direction(light.to_light, light.color))
+            }
+            (Lamp::Segment(light), Some(Frame::Segment(frame))) => {
+                Some(Self::Segment(light, frame))
+            }
+            (Lamp::Parallelogram(light), Some(Frame::Parallelogram(frame))) => {
+                Some(Self::Parallelogram(light, frame))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether the light is infinitely far.
+    pub fn is_far(&self) -> bool {
+        matches!(self, Self::Direction(..))
+    }
+
+    pub fn answer(&self, questions: &Questions<LANES>) -> Replies<LANES> {
+        match *self {
+            Self::Point(position, color) => of_point(position, color, questions),
+            Self::Direction(to_light, color) => of_direction(to_light, color, questions),
+            Self::Segment(light, frame) => of_segment(light, frame, questions),
+            Self::Parallelogram(light, frame) => of_parallelogram(light, frame, questions),
+        }
+    }
+}
+
+vectorized! {
+    fn of_point(position: Vec3, color: Vec3, questions: &Questions<LANES>) -> Replies<LANES> {
+        let mut replies = Replies::nothing();
+        for i in 0..LANES {
+            let offset = position - column_vector(&questions.receivers.from, i);
+            let distance = offset.length();
+            let arriving = color * inverse_square(distance);
+            replies.set_near(questions, i, offset, distance, arriving);
+        }
+        replies
+    }
+
+    fn of_direction(to_light: Vec3, color: Vec3, questions: &Questions<LANES>) -> Replies<LANES> {
+        let mut replies = Replies::nothing();
+        for i in 0..LANES {
+            replies.set(questions, i, to_light, color);
+            set_column(&mut replies.along, i, to_light);
+        }
+        replies
+    }
+
+    fn of_segment(
+        light: &SegmentLight,
+        frame: &SegmentFrame,
+        questions: &Questions<LANES>,
+    ) -> Replies<LANES> {
+        let places = frame.matt_places(&questions.receivers, &questions.numbers[0]);
+        let mut replies = Replies::nothing();
+        for i in 0..LANES {
+            let from = column_vector(&questions.receivers.from, i);
+            let offset = light.offset(from, places.u[i]);
+            let arriving = light.color(places.u[i]) * arriving_part(places.arriving[i]);
+            replies.set_near(questions, i, offset, offset.length(), arriving);
+        }
+        replies
+    }
+
+    fn of_parallelogram(
+        light: &ParallelogramLight,
+        frame: &ParallelogramFrame,
+        questions: &Questions<LANES>,
+    ) -> Replies<LANES> {
+        let places = frame.matt_places(&questions.receivers, &questions.numbers);
+        let mut replies = Replies::nothing();
+        for i in 0..LANES {
+            let from = column_vector(&questions.receivers.from, i);
+            let [u, v] = [places.uv[0][i], places.uv[1][i]];
+            let offset = light.offset(from, [u, v]);
+            let arriving = light.color(u, v) * arriving_part(places.solid_angle[i]);
+            replies.set_near(questions, i, offset, offset.length(), arriving);
+        }
+        replies
+    }
+}
+
+/// What arrives for a density of which the reciprocal is a number; else nothing.
+#[inline(always)]
+fn arriving_part(per_density: f32) -> f32 {
+    let counts = per_density > 0.0 && per_density < f32::INFINITY;
+    if counts { per_density } else { 0.0 }
+}
+
+impl<const N: usize> Replies<N> {
+    #[inline(always)]
+    fn nothing() -> Self {
+        Self {
+            value: [[0.0; N]; 3],
+            origin: [[0.0; N]; 3],
+            along: [[0.0; N]; 3],
+            is_rare: [0; N],
+        }
+    }
+
+    /// The reply to one question about a point `offset` away.
+    #[inline(always)]
+    fn set_near(
+        &mut self,
+        questions: &Questions<N>,
+        i: usize,
+        offset: Vec3,
+        distance: f32,
+        arriving: Vec3,
+    ) {
+        let direction = offset * (1.0 / distance);
+        let origin = self.set(questions, i, direction, arriving);
+        // From the moved origin to the light itself, so that the ray still ends there.
+        let moved = origin - column_vector(&questions.position, i);
+        set_column(&mut self.along, i, distance * direction - moved);
+        self.is_rare[i] = is_near_or_far(offset.length_squared()) as u32;
+    }
+
+    /// What arrives from a direction, and where a ray there starts.
+    #[inline(always)]
+    fn set(&mut self, questions: &Questions<N>, i: usize, direction: Vec3, arriving: Vec3) -> Vec3 {
+        let reflected = lambert(
+            column_vector(&questions.diffuse, i),
+            column_vector(&questions.receivers.normal, i),
+            column_vector(&questions.geometric_normal, i),
+            direction,
+            arriving,
+        );
+        let weight = column_vector(&questions.weight, i) / questions.count[i];
+        set_column(&mut self.value, i, weight * reflected);
+        let origin = beyond_error(
+            column_vector(&questions.position, i),
+            column_vector(&questions.error, i),
+            column_vector(&questions.triangle_normal, i),
+            direction,
+        );
+        set_column(&mut self.origin, i, origin);
+        origin
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::direct::shadow_ray;
+    use super::super::lights::{DirectionalLight, PointLight};
+    use super::super::shading::reflected;
+    use super::super::test_scene::{self, Numbers};
+    use super::super::{Cone, LightPoint, Surface};
+    use super::*;
+    use crate::bvh::{Hit, Ray};
+    use crate::scene::{Lighting, RenderSettings};
+
+    /// The point that numbers choose for one surface by itself.
+    fn point(
+        lamp: Lamp,
+        frame: Option<&Frame>,
+        surface: &Surface,
+        numbers: [f32; 2],
+    ) -> Option<LightPoint> {
+        let from = surface.point.position;
+        match frame {
+            Some(frame) => lamp.point_for(frame, surface, from, numbers),
+            None => lamp.middle(surface, from, Lighting::Physical),
+        }
+    }
+
+    #[test]
+    fn columns_give_a_matt_surface_what_it_is_given_alone_to_the_bit() {
+        let world = test_scene::world();
+        let (rays, hits) = test_scene::rays(&world);
+        let settings = RenderSettings::default();
+        let vertices = test_scene::vertices(&world, &settings, (&rays, &hits), Cone::default());
+        let mut weights = Vectors::default();
+        weights.resize(vertices.len());
+        let mut numbers = Numbers(5);
+        let mut drawn = Pairs::default();
+        drawn.fill(vertices.len(), [0.0; 2]);
+        for i in 0..vertices.len() {
+            weights.set(i, numbers.in_cube().abs());
+            (drawn.u[i], drawn.v[i]) = (numbers.next(), numbers.next());
+        }
+        let askers: Vec<u32> = (0..vertices.len() as u32).collect();
+        let counts: Vec<f32> = (0..vertices.len()).map(|i| 1.0 + (i % 3) as f32).collect();
+
+        let points =
+            [Vec3::new(0.5, 2.0, 0.3), Vec3::new(1e6, 1.0, 0.0)].map(|position| PointLight {
+                id: 1,
+                position,
+                color: Vec3::new(3.0, 2.0, 1.0),
+                cone: None,
+            });
+        let direction = DirectionalLight {
+            id: 2,
+            to_light: Vec3::new(0.6, 0.8, 0.0),
+            color: Vec3::ONE,
+            disc: None,
+            samples: 1,
+        };
+        let segments = [Vec3::ONE, Vec3::X].map(|color| SegmentLight {
+            id: 3,
+            ends: [Vec3::new(-1.0, 1.5, 0.0), Vec3::new(2.0, 1.0, 0.5)],
+            colors: [Vec3::ONE, color],
+            samples: 1,
+        });
+        let parallelograms =
+            [(Vec3::ONE, false), (Vec3::X, true)].map(|(color, two_sided)| ParallelogramLight {
+                id: 4,
+                corner: Vec3::new(-0.5, 1.2, -0.4),
+                edges: [Vec3::X, Vec3::new(0.2, 0.1, 0.8)],
+                colors: [Vec3::ONE, color, Vec3::ONE, Vec3::ONE],
+                two_sided,
+                visible: false,
+                samples: 1,
+            });
+        let lamps = (points.iter().map(Lamp::Point))
+            .chain([Lamp::Directional(&direction)])
+            .chain(segments.iter().map(Lamp::Segment))
+            .chain(parallelograms.iter().map(Lamp::Parallelogram));
+        for lamp in lamps {
+            let frame = lamp.frame();
+            let source = Source::of(lamp, frame.as_ref(), true).unwrap();
+            let matt: Vec<u32> = (askers.iter().copied())
+                .filter(|&i| {
+                    !vertices.has_highlight(i as usize) && !vertices.is_near_edge[i as usize]
+                })
+                .collect();
+            let mut lit = 0;
+            let mut questions = Questions::nothing();
+            for some in matt.chunks(LANES) {
+                let from = |i: usize| vertices.position.get(i);
+                questions.ask(some, &askers, &counts, &weights, &vertices, from);
+                questions.draw(some, &drawn);
+                let replies = source.answer(&questions);
+                for (lane, &question) in some.iter().enumerate() {
+                    let i = question as usize;
+                    let surface = vertices.surface(i);
+                    let point = point(lamp, frame.as_ref(), &surface, drawn.get(i));
+                    let value = point.map_or(Vec3::ZERO, |point| {
+                        let reflected = reflected(&surface, &point, Lighting::Physical);
+                        weights.get(i) / counts[i] * reflected
+                    });
+                    let place: (&Ray, &Hit) = (&rays[i], &hits[i]);
+                    if replies.is_rare[lane] != 0 {
+                        continue;
+                    }
+                    let found = column_vector(&replies.value, lane);
+                    assert_eq!(found, value, "{lamp:?}: {place:?}");
+                    if let Some(point) = point
+                        && value != Vec3::ZERO
+                    {
+                        lit += 1;
+                        let ray = shadow_ray(&world.aggregate, &surface, &point, 0.0);
+                        let found = [&replies.origin, &replies.along]
+                            .map(|columns| column_vector(columns, lane));
+                        assert_eq!(found, [ray.origin, ray.direction], "{lamp:?}: {place:?}");
+                        assert_eq!(source.is_far(), ray.t_max == f32::INFINITY);
+                    }
+                }
+            }
+            assert!(lit > 1000, "{lamp:?} lights only {lit}");
+        }
+    }
+}
