@@ -11,7 +11,7 @@ use super::recorder::{Adding, LitPoint, Recorder};
 use super::sampler::Purpose;
 use super::shading::reflected;
 use super::transmittance::through;
-use super::vectors::Vectors;
+use super::vectors::{Vectors, column_vector};
 use super::vertices::Vertices;
 use super::{DOME, Dome, SampleId, Surface, World};
 use crate::bvh::{Aggregate, Hit, Order, Ray, Transmittances};
@@ -27,14 +27,15 @@ const SHORT_OF_THE_LIGHT: f32 = 1.0 - 64.0 * f32::EPSILON;
 pub(super) struct ShadowRays {
     /// What each vertex's reflected radiance is multiplied by.
     weights: Vectors,
-    /// The questions for points of the light: the vertex of each, how many share what it reflects, which numbers choose its
-    /// point, and those numbers.
+    /// How many points of the light each vertex asks for, which share what it reflects, and the first of its questions.
+    counts: Vec<u32>,
+    firsts: Vec<u32>,
+    /// The vertex of each question, which numbers choose its point, and those numbers.
     askers: Vec<u32>,
-    counts: Vec<f32>,
     asking: Asking,
     numbers: Pairs,
-    /// Those that are answered in columns, and those that are answered one by one; what is chosen for the latter where
-    /// points of the light are not all alike.
+    /// The vertices whose questions are answered in columns, and the questions that are answered one by one; what is chosen
+    /// for those of them with a highlight where points of the light are not all alike.
     matt: Vec<u32>,
     others: Vec<u32>,
     glossy: GlossyPlaces,
@@ -156,8 +157,9 @@ impl<R: Recorder> Batch<'_, R> {
             .flatten();
         let ShadowRays {
             weights,
-            askers,
             counts,
+            firsts,
+            askers,
             numbers,
             matt,
             others,
@@ -169,12 +171,15 @@ impl<R: Recorder> Batch<'_, R> {
         replies.resize(askers.len(), Reply::NOTHING);
         matt.clear();
         others.clear();
-        for (question, asker) in askers.iter().enumerate() {
-            let asker = *asker as usize;
-            let in_columns =
-                source.is_some() && !vertices.has_highlight(asker) && !vertices.is_near_edge[asker];
-            let list = if in_columns { &mut *matt } else { &mut *others };
-            list.push(question as u32);
+        for (vertex, (&count, &first)) in counts.iter().zip(&*firsts).enumerate() {
+            let in_columns = source.is_some()
+                && !vertices.has_highlight(vertex)
+                && !vertices.is_near_edge[vertex];
+            if !in_columns {
+                others.extend(first..first + count);
+            } else if count > 0 {
+                matt.push(vertex as u32);
+            }
         }
         let from = |vertex: usize| self.seen_from(lamp, vertices, vertex);
         if let Some(source) = source {
@@ -185,33 +190,40 @@ impl<R: Recorder> Batch<'_, R> {
             };
             let mut questions = Questions::nothing();
             for some in matt.chunks(LANES) {
-                questions.ask(some, askers, counts, weights, vertices, from);
-                if asked.has_extent {
-                    questions.draw(some, numbers);
-                }
-                let Replies {
-                    value,
-                    origin,
-                    along,
-                    is_rare,
-                } = source.answer(&questions);
-                for (lane, &question) in some.iter().enumerate() {
-                    if is_rare[lane] != 0 {
-                        others.push(question);
-                        continue;
+                questions.ask(some, counts, weights, vertices, from);
+                let prepared = source.prepare(&questions);
+                let most = some.iter().map(|&i| counts[i as usize]).max().unwrap_or(0);
+                for k in 0..most {
+                    // Those that ask for fewer points ask for their last one again.
+                    let question = |&vertex: &u32| {
+                        let vertex = vertex as usize;
+                        (firsts[vertex] + k.min(counts[vertex] - 1)) as usize
+                    };
+                    if asked.has_extent {
+                        questions.draw(numbers, some.iter().map(question));
                     }
-                    let vector = |columns: &[[f32; LANES]; 3]| {
-                        Vec3::new(columns[0][lane], columns[1][lane], columns[2][lane])
-                    };
-                    replies[question as usize] = Reply {
-                        value: vector(&value),
-                        ray: Ray {
-                            origin: vector(&origin),
-                            direction: vector(&along),
-                            t_max,
-                            time: vertices.times[askers[question as usize] as usize],
-                        },
-                    };
+                    let Replies {
+                        value,
+                        origin,
+                        along,
+                        is_rare,
+                    } = source.answer(&prepared, &questions);
+                    for (lane, vertex) in some.iter().enumerate() {
+                        let (question, vertex) = (question(vertex), *vertex as usize);
+                        if is_rare[lane] != 0 {
+                            others.push(question as u32);
+                            continue;
+                        }
+                        replies[question] = Reply {
+                            value: column_vector(&value, lane),
+                            ray: Ray {
+                                origin: column_vector(&origin, lane),
+                                direction: column_vector(&along, lane),
+                                t_max,
+                                time: vertices.times[vertex],
+                            },
+                        };
+                    }
                 }
             }
         }
@@ -233,7 +245,7 @@ impl<R: Recorder> Batch<'_, R> {
                 let reflected = reflected(&surface, &point, self.settings.lighting);
                 let time = vertices.times[vertex];
                 replies[question] = Reply {
-                    value: weights.get(vertex) / counts[question] * reflected,
+                    value: weights.get(vertex) / counts[vertex] as f32 * reflected,
                     ray: shadow_ray(&self.world.aggregate, &surface, &point, time),
                 };
             }
@@ -283,7 +295,7 @@ impl<R: Recorder> Batch<'_, R> {
                         path: vertices.numbers[vertex],
                         kind: lamp.kind(),
                         id: lamp.id(),
-                        count: has_extent.then_some(counts[question] as u32),
+                        count: has_extent.then_some(counts[vertex]),
                         surface,
                         point,
                     };
@@ -398,16 +410,21 @@ impl ShadowRays {
         self.asking.clear();
         self.askers.clear();
         self.counts.clear();
-        for (asker, path) in vertices.paths.iter().enumerate() {
-            if self.weights.get(asker) == Vec3::ZERO {
-                continue;
-            }
+        self.firsts.clear();
+        for (vertex, path) in vertices.paths.iter().enumerate() {
+            let count = if self.weights.get(vertex) == Vec3::ZERO {
+                0
+            } else if path.first {
+                at_first_hits
+            } else {
+                1
+            };
+            self.counts.push(count);
+            self.firsts.push(self.askers.len() as u32);
             let sample = path.sample as usize;
-            let count = if path.first { at_first_hits } else { 1 };
             let first = samples[sample].index * u64::from(count);
             for index in first..first + u64::from(count) {
-                self.askers.push(asker as u32);
-                self.counts.push(count as f32);
+                self.askers.push(vertex as u32);
                 self.asking.push(pixels[sample], path.name, index);
             }
         }

@@ -9,6 +9,7 @@ use super::light_frames::Frame;
 use super::lights::{ParallelogramLight, SegmentLight, inverse_square, is_near_or_far};
 use super::numbers::Pairs;
 use super::parallelogram_frame::ParallelogramFrame;
+use super::parallelogram_warp::MattPrepared;
 use super::receiver::Receivers;
 use super::segment_warp::SegmentFrame;
 use super::shading::lambert;
@@ -53,46 +54,41 @@ impl Questions<LANES> {
         }
     }
 
-    /// Puts some questions into the first lanes: `askers` names the vertex of each, `counts` says how many share what it
-    /// reflects, and `from` where a vertex is in the frame that moves with the light. The other lanes keep what they had.
+    /// Puts vertices into the first lanes, each with how many points share what it reflects: `from` says where a vertex is
+    /// in the frame that moves with the light. The other lanes keep what they had.
     #[inline(always)]
     pub fn ask(
         &mut self,
         some: &[u32],
-        askers: &[u32],
-        counts: &[f32],
+        counts: &[u32],
         weights: &Vectors,
         vertices: &Vertices,
         from: impl Fn(usize) -> Vec3,
     ) {
-        let mut of = [0; LANES];
-        for (lane, &question) in some.iter().enumerate() {
-            of[lane] = askers[question as usize];
-            self.count[lane] = counts[question as usize];
-        }
-        let of = &of[..some.len()];
-        gather(&vertices.normal, of, &mut self.receivers.normal);
-        gather(&vertices.position, of, &mut self.position);
-        gather(&vertices.error, of, &mut self.error);
-        gather(&vertices.triangle_normal, of, &mut self.triangle_normal);
-        gather(&vertices.geometric_normal, of, &mut self.geometric_normal);
-        gather(&vertices.diffuse, of, &mut self.diffuse);
-        gather(weights, of, &mut self.weight);
-        for (lane, &vertex) in of.iter().enumerate() {
-            set_column(&mut self.receivers.from, lane, from(vertex as usize));
+        gather(&vertices.normal, some, &mut self.receivers.normal);
+        gather(&vertices.position, some, &mut self.position);
+        gather(&vertices.error, some, &mut self.error);
+        gather(&vertices.triangle_normal, some, &mut self.triangle_normal);
+        gather(&vertices.geometric_normal, some, &mut self.geometric_normal);
+        gather(&vertices.diffuse, some, &mut self.diffuse);
+        gather(weights, some, &mut self.weight);
+        for (lane, &vertex) in some.iter().enumerate() {
+            let vertex = vertex as usize;
+            self.count[lane] = counts[vertex] as f32;
+            set_column(&mut self.receivers.from, lane, from(vertex));
         }
     }
 
-    /// The numbers that choose the places of the same questions.
-    pub fn draw(&mut self, some: &[u32], numbers: &Pairs) {
-        for (lane, &question) in some.iter().enumerate() {
-            self.numbers[0][lane] = numbers.u[question as usize];
-            self.numbers[1][lane] = numbers.v[question as usize];
+    /// The numbers that choose the places of those vertices' next questions.
+    #[inline(always)]
+    pub fn draw(&mut self, numbers: &Pairs, questions: impl Iterator<Item = usize>) {
+        for (lane, question) in questions.enumerate() {
+            [self.numbers[0][lane], self.numbers[1][lane]] = numbers.get(question);
         }
     }
 }
 
-/// Vectors into the first lanes. Most vertices ask in turn: those are copied at once.
+/// Vectors into the first lanes. Most vertices come in turn: those are copied at once.
 #[inline(always)]
 fn gather(vectors: &Vectors, of: &[u32], lanes: &mut [[f32; LANES]; 3]) {
     let first = of[0];
@@ -153,12 +149,28 @@ impl<'a> Source<'a> {
         matches!(self, Self::Direction(..))
     }
 
-    pub fn answer(&self, questions: &Questions<LANES>) -> Replies<LANES> {
+    /// What is the same for all points that the same vertices ask for.
+    pub fn prepare(&self, questions: &Questions<LANES>) -> Option<MattPrepared<LANES>> {
+        match *self {
+            Self::Parallelogram(_, frame) => Some(prepare(frame, &questions.receivers)),
+            _ => None,
+        }
+    }
+
+    /// What was [prepared](Self::prepare) for these vertices, and their numbers.
+    pub fn answer(
+        &self,
+        prepared: &Option<MattPrepared<LANES>>,
+        questions: &Questions<LANES>,
+    ) -> Replies<LANES> {
         match *self {
             Self::Point(position, color) => of_point(position, color, questions),
             Self::Direction(to_light, color) => of_direction(to_light, color, questions),
             Self::Segment(light, frame) => of_segment(light, frame, questions),
-            Self::Parallelogram(light, frame) => of_parallelogram(light, frame, questions),
+            Self::Parallelogram(light, frame) => match prepared {
+                Some(prepared) => of_parallelogram(light, frame, prepared, questions),
+                None => Replies::nothing(),
+            },
         }
     }
 }
@@ -200,12 +212,20 @@ vectorized! {
         replies
     }
 
+    fn prepare(
+        frame: &ParallelogramFrame,
+        receivers: &Receivers<LANES>,
+    ) -> MattPrepared<LANES> {
+        frame.matt_prepared(receivers)
+    }
+
     fn of_parallelogram(
         light: &ParallelogramLight,
         frame: &ParallelogramFrame,
+        prepared: &MattPrepared<LANES>,
         questions: &Questions<LANES>,
     ) -> Replies<LANES> {
-        let places = frame.matt_places(&questions.receivers, &questions.numbers);
+        let places = frame.matt_places_of(prepared, &questions.numbers);
         let mut replies = Replies::nothing();
         for i in 0..LANES {
             let from = column_vector(&questions.receivers.from, i);
@@ -317,8 +337,7 @@ mod tests {
             weights.set(i, numbers.in_cube().abs());
             (drawn.u[i], drawn.v[i]) = (numbers.next(), numbers.next());
         }
-        let askers: Vec<u32> = (0..vertices.len() as u32).collect();
-        let counts: Vec<f32> = (0..vertices.len()).map(|i| 1.0 + (i % 3) as f32).collect();
+        let counts: Vec<u32> = (0..vertices.len()).map(|i| 1 + i as u32 % 3).collect();
 
         let points =
             [Vec3::new(0.5, 2.0, 0.3), Vec3::new(1e6, 1.0, 0.0)].map(|position| PointLight {
@@ -357,7 +376,7 @@ mod tests {
         for lamp in lamps {
             let frame = lamp.frame();
             let source = Source::of(lamp, frame.as_ref(), true).unwrap();
-            let matt: Vec<u32> = (askers.iter().copied())
+            let matt: Vec<u32> = (0..vertices.len() as u32)
                 .filter(|&i| {
                     !vertices.has_highlight(i as usize) && !vertices.is_near_edge[i as usize]
                 })
@@ -366,16 +385,16 @@ mod tests {
             let mut questions = Questions::nothing();
             for some in matt.chunks(LANES) {
                 let from = |i: usize| vertices.position.get(i);
-                questions.ask(some, &askers, &counts, &weights, &vertices, from);
-                questions.draw(some, &drawn);
-                let replies = source.answer(&questions);
+                questions.ask(some, &counts, &weights, &vertices, from);
+                questions.draw(&drawn, some.iter().map(|&i| i as usize));
+                let replies = source.answer(&source.prepare(&questions), &questions);
                 for (lane, &question) in some.iter().enumerate() {
                     let i = question as usize;
                     let surface = vertices.surface(i);
                     let point = point(lamp, frame.as_ref(), &surface, drawn.get(i));
                     let value = point.map_or(Vec3::ZERO, |point| {
                         let reflected = reflected(&surface, &point, Lighting::Physical);
-                        weights.get(i) / counts[i] * reflected
+                        weights.get(i) / counts[i] as f32 * reflected
                     });
                     let place: (&Ray, &Hit) = (&rays[i], &hits[i]);
                     if replies.is_rare[lane] != 0 {

@@ -54,6 +54,19 @@ struct Lobes<const N: usize> {
     shininess: [f32; N],
 }
 
+/// What choosing places for some receivers takes that does not depend on the numbers.
+pub(super) struct Prepared<const ROWS: usize, const N: usize> {
+    views: Views<N>,
+    lobes: Lobes<N>,
+    /// What the lines at the nodes along α give.
+    marginal: [[f32; N]; ROWS],
+    /// The widths of their intervals of q together: how large the light looks.
+    seen: [f32; N],
+}
+
+/// Of receivers without a highlight.
+pub(super) type MattPrepared<const N: usize> = Prepared<MATT_ROWS, N>;
+
 impl ParallelogramFrame {
     /// The places that `numbers` in [0, 1) choose for matt receivers, of which nothing but where they are and their
     /// normals is read.
@@ -63,9 +76,32 @@ impl ParallelogramFrame {
         receivers: &Receivers<N>,
         numbers: &[[f32; N]; 2],
     ) -> Places<N> {
+        let prepared = self.matt_prepared(receivers);
+        self.matt_places_of(&prepared, numbers)
+    }
+
+    /// The first part of [`Self::matt_places`].
+    #[inline(always)]
+    pub(super) fn matt_prepared<const N: usize>(
+        &self,
+        receivers: &Receivers<N>,
+    ) -> MattPrepared<N> {
         match self.is_even {
-            true => self.places::<false, true, MATT_ROWS, N>(receivers, numbers),
-            false => self.places::<false, false, MATT_ROWS, N>(receivers, numbers),
+            true => self.prepare::<false, true, MATT_ROWS, N>(receivers),
+            false => self.prepare::<false, false, MATT_ROWS, N>(receivers),
+        }
+    }
+
+    /// The rest of it.
+    #[inline(always)]
+    pub(super) fn matt_places_of<const N: usize>(
+        &self,
+        prepared: &MattPrepared<N>,
+        numbers: &[[f32; N]; 2],
+    ) -> Places<N> {
+        match self.is_even {
+            true => self.places::<false, true, MATT_ROWS, N>(prepared, numbers),
+            false => self.places::<false, false, MATT_ROWS, N>(prepared, numbers),
         }
     }
 
@@ -77,17 +113,22 @@ impl ParallelogramFrame {
         numbers: &[[f32; N]; 2],
     ) -> Places<N> {
         match self.is_even {
-            true => self.places::<true, true, GLOSSY_ROWS, N>(receivers, numbers),
-            false => self.places::<true, false, GLOSSY_ROWS, N>(receivers, numbers),
+            true => {
+                let prepared = self.prepare::<true, true, GLOSSY_ROWS, N>(receivers);
+                self.places::<true, true, GLOSSY_ROWS, N>(&prepared, numbers)
+            }
+            false => {
+                let prepared = self.prepare::<true, false, GLOSSY_ROWS, N>(receivers);
+                self.places::<true, false, GLOSSY_ROWS, N>(&prepared, numbers)
+            }
         }
     }
 
     #[inline(always)]
-    fn places<const GLOSSY: bool, const EVEN: bool, const ROWS: usize, const N: usize>(
+    fn prepare<const GLOSSY: bool, const EVEN: bool, const ROWS: usize, const N: usize>(
         &self,
         receivers: &Receivers<N>,
-        numbers: &[[f32; N]; 2],
-    ) -> Places<N> {
+    ) -> Prepared<ROWS, N> {
         let views = self.views::<GLOSSY, N>(receivers);
         let lobes = self.lobes::<GLOSSY, ROWS, N>(receivers, &views);
         let mut marginal = [[0.0; N]; ROWS];
@@ -112,11 +153,31 @@ impl ParallelogramFrame {
                 seen[i] += angle;
             }
         }
-        let across = choose(&marginal, &numbers[0]);
+        Prepared {
+            views,
+            lobes,
+            marginal,
+            seen,
+        }
+    }
+
+    #[inline(always)]
+    fn places<const GLOSSY: bool, const EVEN: bool, const ROWS: usize, const N: usize>(
+        &self,
+        prepared: &Prepared<ROWS, N>,
+        numbers: &[[f32; N]; 2],
+    ) -> Places<N> {
+        let Prepared {
+            views,
+            lobes,
+            marginal,
+            seen,
+        } = prepared;
+        let across = choose(marginal, &numbers[0]);
         let looks_large =
             |i: usize| seen[i] * views.width[i] > 0.5 / SQRT_2 * LEAST_SOLID_ANGLE * ROWS as f32;
-        let lines = self.lines::<GLOSSY, N>(&views, |i| across.place[i], looks_large);
-        let nodes = self.nodes::<GLOSSY, EVEN, 5, N>(&views, &lobes, &lines);
+        let lines = self.lines::<GLOSSY, N>(views, |i| across.place[i], looks_large);
+        let nodes = self.nodes::<GLOSSY, EVEN, 5, N>(views, lobes, &lines);
         let along = choose(&nodes, &numbers[1]);
 
         let [mut u, mut v, mut solid_angle] = [[0.0; N]; 3];
@@ -133,7 +194,7 @@ impl ParallelogramFrame {
             let [v0, v1] = [lines.v[0][i], lines.v[1][i]];
             let even_v = v0 + along.place[i] * (v1 - v0);
             let shown = (views.ends[1][i] - views.ends[0][i]) * (v1 - v0);
-            let even = shown * self.even_solid_angle(&views, i, [lines.u[i], even_v]);
+            let even = shown * self.even_solid_angle(views, i, [lines.u[i], even_v]);
             let is_large = looks_large(i);
             u[i] = lines.u[i];
             v[i] = if is_large {

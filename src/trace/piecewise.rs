@@ -28,38 +28,34 @@ pub(super) fn choose<const NODES: usize, const N: usize>(
     numbers: &[f32; N],
 ) -> Chosen<N> {
     let cells = (NODES - 1) as f32;
-    let mut least = [LEAST; N];
-    for node in nodes {
-        for i in 0..N {
-            least[i] = larger(least[i], LEAST_NODE * node[i]);
-        }
-    }
-    let mut total = [0.0; N];
-    for (k, node) in nodes.iter().enumerate() {
-        let weight = if k == 0 || k == NODES - 1 { 1.0 } else { 2.0 };
-        for i in 0..N {
-            total[i] += weight * larger(node[i], least[i]);
-        }
-    }
-    let (mut sum, mut before, mut cell) = ([0.0; N], [0.0; N], [0.0; N]);
-    let (mut a, mut b) = (nodes[0], nodes[1]);
-    for k in 1..NODES - 1 {
-        for i in 0..N {
-            sum[i] += larger(nodes[k - 1][i], least[i]) + larger(nodes[k][i], least[i]);
-            let beyond = numbers[i] * total[i] >= sum[i];
-            before[i] = if beyond { sum[i] } else { before[i] };
-            cell[i] = if beyond { k as f32 } else { cell[i] };
-            a[i] = if beyond { nodes[k][i] } else { a[i] };
-            b[i] = if beyond { nodes[k + 1][i] } else { b[i] };
-        }
-    }
     let (mut place, mut density) = ([0.0; N], [0.0; N]);
+    // Lane by lane, so that all choices are between numbers at hand: stores that depend on one would keep the loop from being
+    // vectorised.
     for i in 0..N {
-        let [a, b] = [larger(a[i], least[i]), larger(b[i], least[i])];
-        let share = within_one((numbers[i] * total[i] - before[i]) / (a + b));
+        let mut least = LEAST;
+        for node in nodes {
+            least = larger(least, LEAST_NODE * node[i]);
+        }
+        let mut total = 0.0;
+        for (k, node) in nodes.iter().enumerate() {
+            let weight = if k == 0 || k == NODES - 1 { 1.0 } else { 2.0 };
+            total += weight * larger(node[i], least);
+        }
+        let (mut sum, mut before, mut cell) = (0.0, 0.0, 0.0);
+        let (mut a, mut b) = (nodes[0][i], nodes[1][i]);
+        for k in 1..NODES - 1 {
+            sum += larger(nodes[k - 1][i], least) + larger(nodes[k][i], least);
+            let beyond = numbers[i] * total >= sum;
+            before = if beyond { sum } else { before };
+            cell = if beyond { k as f32 } else { cell };
+            a = if beyond { nodes[k][i] } else { a };
+            b = if beyond { nodes[k + 1][i] } else { b };
+        }
+        let [a, b] = [larger(a, least), larger(b, least)];
+        let share = within_one((numbers[i] * total - before) / (a + b));
         let root = ((1.0 - share) * (a * a) + share * (b * b)).sqrt();
-        place[i] = smaller((cell[i] + share * (a + b) / (a + root)) / cells, 1.0);
-        density[i] = 2.0 * cells * root / total[i];
+        place[i] = smaller((cell + share * (a + b) / (a + root)) / cells, 1.0);
+        density[i] = 2.0 * cells * root / total;
     }
     Chosen { place, density }
 }
