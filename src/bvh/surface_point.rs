@@ -211,7 +211,7 @@ impl Placement {
 
     /// A normal of the mesh, in the world. Not normalised.
     #[inline(always)]
-    pub(crate) fn to_world_normal(&self, normal: Vec3) -> Vec3 {
+    pub(crate) fn world_normal(&self, normal: Vec3) -> Vec3 {
         if self.is_identity {
             normal
         } else {

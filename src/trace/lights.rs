@@ -150,7 +150,7 @@ pub(super) fn towards(offset: Vec3) -> Option<(Vec3, f32)> {
 /// Whether squares of an offset with that squared length may have left f32's range.
 #[inline(always)]
 pub(super) fn is_near_or_far(squared: f32) -> bool {
-    !(squared >= 1e-20 && squared < 1e30)
+    !(1e-20..1e30).contains(&squared)
 }
 
 #[inline(always)]

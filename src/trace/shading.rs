@@ -62,7 +62,8 @@ pub(super) fn lambert(
 /// Whether a surface sees a light: a smooth normal may face one that the triangle itself turns its back to.
 #[inline(always)]
 fn faces(geometric_normal: Vec3, cosine: f32, l: Vec3) -> bool {
-    !(cosine <= 0.0) & !(geometric_normal.dot(l) <= 0.0)
+    let is_behind = (cosine <= 0.0) | (geometric_normal.dot(l) <= 0.0);
+    !is_behind
 }
 
 /// `n·l` and `r·v`, as [`reflected`] takes them for a light along the unit vector `l`.

@@ -84,8 +84,9 @@ impl Facing {
     #[inline(always)]
     pub fn of(triangle: Vec3, shading: Vec3, to_viewer: Vec3, is_physical: bool) -> Self {
         let cosine = triangle.dot(to_viewer);
+        let is_clear = cosine.abs() > GRAZING;
         Self {
-            is_grazing: !(cosine > GRAZING || cosine < -GRAZING),
+            is_grazing: !is_clear,
             ..Self::from_side(triangle, shading, cosine >= 0.0, is_physical)
         }
     }
@@ -114,7 +115,7 @@ pub(super) fn smooth_normal(
     triangle: Vec3,
 ) -> Vec3 {
     let smooth = Vec3::ZERO + (1.0 - u - v) * a + u * b + v * c;
-    let smooth = placement.to_world_normal(smooth);
+    let smooth = placement.world_normal(smooth);
     let scale = 1.0 / smooth.length();
     let has_direction = scale > 0.0 && scale < f32::INFINITY;
     if has_direction {
