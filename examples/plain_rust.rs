@@ -50,13 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             id: 1,
             material: 0,
             motion_samples: 0,
-            mesh: Arc::new(Mesh {
-                tree,
-                normals: vec![],
-                uvs: vec![],
-                colors: Vec::new(),
-                alphas: Vec::new(),
-            }),
+            mesh: Arc::new(Mesh::of(tree)),
         }]),
         materials: Arc::new(vec![Material::default()]),
         lights: Arc::new(Lights {

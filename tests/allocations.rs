@@ -125,13 +125,7 @@ fn a_batch_allocates_nothing_once_its_arrays_have_grown() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let options = BuildOptions::default();
     let (tree, instances) = instances(32, &options);
-    let mesh = Arc::new(Mesh {
-        tree,
-        normals: vec![],
-        uvs: vec![],
-        colors: Vec::new(),
-        alphas: Vec::new(),
-    });
+    let mesh = Arc::new(Mesh::of(tree));
     let objects = (0..2)
         .map(|i| Object {
             id: i + 1,

@@ -36,13 +36,7 @@ pub(super) fn world() -> World {
             id: i as u64 + 1,
             material: i as u32,
             motion_samples: 0,
-            mesh: Arc::new(Mesh {
-                tree,
-                normals: vec![],
-                uvs: vec![],
-                colors: Vec::new(),
-                alphas: Vec::new(),
-            }),
+            mesh: Arc::new(Mesh::of(tree)),
         });
     }
     let paint = |r, g, b| Material {

@@ -142,6 +142,8 @@ pub enum Problem {
     NotAFile,
     #[error("is empty")]
     Empty,
+    #[error("is packed ({0}); unpack it first")]
+    Packed(&'static str),
     #[error("{size} bytes, and the limit is {limit}; split it up")]
     TooLarge { size: u64, limit: u64 },
     #[error(

@@ -114,6 +114,8 @@ pub(crate) struct MeshParts<'a> {
     pub uvs: &'a [[f32; 2]],
     /// As many as positions, or none: linear, with alpha.
     pub colors: &'a [[f32; 4]],
+    /// As many as positions, or none: with the bitangent's sign.
+    pub tangents: &'a [[f32; 4]],
     pub indices: &'a Indices,
 }
 
@@ -134,7 +136,7 @@ impl<'a> MeshParts<'a> {
             Ok(Some(Values::Float32x2(values))) if whole(values.len()) => values.as_slice(),
             _ => &[],
         };
-        let colors = match mesh.try_attribute_option(Mesh::ATTRIBUTE_COLOR) {
+        let four = |id| match mesh.try_attribute_option(id) {
             Ok(Some(Values::Float32x4(values))) if whole(values.len()) => values.as_slice(),
             _ => &[],
         };
@@ -144,7 +146,8 @@ impl<'a> MeshParts<'a> {
                 .filter(|values| whole(values.len()))
                 .unwrap_or(&[]),
             uvs,
-            colors,
+            colors: four(Mesh::ATTRIBUTE_COLOR),
+            tangents: four(Mesh::ATTRIBUTE_TANGENT),
             indices: mesh.try_indices_option().ok().flatten()?,
         })
     }

@@ -4,7 +4,7 @@
 use super::budget::Budget;
 use super::error::{FileError, Problem};
 use std::fs::{self, File};
-use std::io::{BufReader, Read};
+use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
 /// The most that is read of a text that people write: a script, preferences, a table.
@@ -37,7 +37,28 @@ pub(super) fn open_to_read(path: &Path, limit: u64) -> Result<BufReader<File>, F
     if size == 0 {
         return Err(FileError::new(path, Problem::Empty));
     }
-    Ok(BufReader::with_capacity(1 << 16, file))
+    let mut reader = BufReader::with_capacity(1 << 16, file);
+    let start = reader.fill_buf();
+    let start = start.map_err(|error| FileError::reading(path, &error))?;
+    match packed(start) {
+        Some(format) => Err(FileError::new(path, Problem::Packed(format))),
+        None => Ok(reader),
+    }
+}
+
+/// The format of a packed file, by how it begins: what is in it may have any.
+fn packed(start: &[u8]) -> Option<&'static str> {
+    const FORMATS: [(&[u8], &str); 7] = [
+        (b"\x1f\x8b\x08", "gzip"),
+        (b"PK\x03\x04", "zip"),
+        (b"7z\xbc\xaf\x27\x1c", "7z"),
+        (b"Rar!\x1a\x07", "rar"),
+        (b"\xfd7zXZ\0", "xz"),
+        (b"\x28\xb5\x2f\xfd", "zstd"),
+        (b"BZh", "bzip2"),
+    ];
+    let format = FORMATS.iter().find(|(bytes, _)| start.starts_with(bytes));
+    format.map(|&(_, name)| name)
 }
 
 /// The content of a file, no larger than the limit, and claimed before it is read.

@@ -1,5 +1,5 @@
 //! A Bevy mesh as the tracer keeps it: positions and triangles in a tree, normals, texture
-//! coordinates and colours beside it.
+//! coordinates, colours and tangents beside it.
 
 use crate::bvh::{BuildOptions, MeshTree, Triangles};
 use crate::trace;
@@ -41,6 +41,7 @@ pub(super) struct MeshCopy {
     uvs: Vec<Vec2>,
     colors: Vec<Vec3>,
     alphas: Vec<f32>,
+    tangents: Vec<Vec4>,
 }
 
 impl MeshCopy {
@@ -61,19 +62,26 @@ impl MeshCopy {
         let indices = triangle_indices(mesh, count)?;
 
         // Attributes that do not fit the positions are no use: shading then takes the flat normal.
-        let normals = match mesh.try_attribute(Mesh::ATTRIBUTE_NORMAL) {
+        let normals: Vec<Vec3> = match mesh.try_attribute(Mesh::ATTRIBUTE_NORMAL) {
             Ok(VertexAttributeValues::Float32x3(values)) if values.len() == count => {
                 values.iter().copied().map(Vec3::from).collect()
             }
             _ => Vec::new(),
         };
-        let uvs = match mesh.try_attribute(Mesh::ATTRIBUTE_UV_0) {
+        let uvs: Vec<Vec2> = match mesh.try_attribute(Mesh::ATTRIBUTE_UV_0) {
             Ok(VertexAttributeValues::Float32x2(values)) if values.len() == count => {
                 values.iter().copied().map(Vec2::from).collect()
             }
             _ => Vec::new(),
         };
         let (colors, alphas) = vertex_colors(mesh, count);
+        let is_bent = !normals.is_empty() && !uvs.is_empty();
+        let tangents = match mesh.try_attribute(Mesh::ATTRIBUTE_TANGENT) {
+            Ok(VertexAttributeValues::Float32x4(values)) if is_bent && values.len() == count => {
+                values.iter().copied().map(Vec4::from).collect()
+            }
+            _ => Vec::new(),
+        };
         Ok(Self {
             positions,
             indices,
@@ -81,6 +89,7 @@ impl MeshCopy {
             uvs,
             colors,
             alphas,
+            tangents,
         })
     }
 
@@ -94,6 +103,7 @@ impl MeshCopy {
             uvs: self.uvs,
             colors: self.colors,
             alphas: self.alphas,
+            tangents: self.tangents,
         })
     }
 }

@@ -135,6 +135,10 @@ impl Hash {
         self.words(uvs.into_iter());
         self.words(glam_words(&mesh.colors).into_iter());
         self.words(mesh.alphas.iter().map(|alpha| alpha.to_bits()));
+        if !mesh.tangents.is_empty() {
+            let tangents: Vec<[f32; 4]> = mesh.tangents.iter().map(|t| t.to_array()).collect();
+            self.words(tangents.as_flattened().iter().map(|part| part.to_bits()));
+        }
     }
 
     fn texture(&mut self, texture: &Texture) {

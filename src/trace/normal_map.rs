@@ -1,18 +1,27 @@
 //! Normals from a picture, in tangent space.
 //!
 //! The tangent points where u grows, perpendicular to the shading normal; the bitangent to the picture's upper
-//! edge, as glTF 2.0 has it (section 3.9.3). Both are the triangle's own: they follow from its corners and their
-//! texture coordinates (Lengyel 2001, "Computing tangent space basis vectors for an arbitrary mesh").
+//! edge, as glTF 2.0 has it (section 3.9.3). A mesh may have tangents at its vertices: those that a map was painted
+//! for. Else both are the triangle's own: they follow from its corners and their texture coordinates (Lengyel 2001,
+//! "Computing tangent space basis vectors for an arbitrary mesh").
 
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 
 /// The least angle in radians between a mirror direction and the surface that a normal map may leave: rounding
 /// does not reach it, and nobody sees it.
 const LEAST_ELEVATION: f32 = 1e-3;
 
+/// The square of the least sine of the angle between a mesh's normal and its tangent: rounding makes a millionth, and
+/// what tools write lies far above.
+const LEAST_SIDEWAYS: f32 = 1e-10;
+
 /// Unit tangent and bitangent of a triangle around a unit normal; `None` where its texture coordinates have no
 /// area. `edges` and `uvs` leave its first corner.
-fn tangents(edges: [Vec3; 2], uvs: [Vec2; 2], normal: Vec3) -> Option<[Vec3; 2]> {
+pub(super) fn tangents_of_triangle(
+    edges: [Vec3; 2],
+    uvs: [Vec2; 2],
+    normal: Vec3,
+) -> Option<[Vec3; 2]> {
     let [a, b] = edges;
     let [d, e] = uvs;
     // Times the sign of the texture coordinates' area, which division by the area would give.
@@ -33,17 +42,30 @@ fn tangents(edges: [Vec3; 2], uvs: [Vec2; 2], normal: Vec3) -> Option<[Vec3; 2]>
     Some([tangent, upwards])
 }
 
+/// The same from a tangent that a mesh has there, with the sign of `w · normal × tangent`; `None` where it has no
+/// direction beside the normal.
+pub(super) fn tangents_given(tangent: Vec4, normal: Vec3) -> Option<[Vec3; 2]> {
+    let along_u = tangent.truncate();
+    let across = along_u - normal * normal.dot(along_u);
+    // Of a tangent along the normal rounding leaves some direction or other.
+    if across.length_squared() < LEAST_SIDEWAYS * along_u.length_squared() {
+        return None;
+    }
+    let across = across.try_normalize()?;
+    let side = if tangent.w < 0.0 { -1.0 } else { 1.0 };
+    Some([across, side * normal.cross(across)])
+}
+
 /// The unit normal that a map's texel makes of `normal`, whose mesh has it the other way around where it is
-/// `turned`. What the triangle's texture coordinates cannot place stays as it is.
+/// `turned`. Without tangents it stays as it is.
 pub(super) fn bent(
     normal: Vec3,
     turned: bool,
     texel: Vec3,
     scale: f32,
-    edges: [Vec3; 2],
-    uvs: [Vec2; 2],
+    tangents: Option<[Vec3; 2]>,
 ) -> Vec3 {
-    let Some([tangent, bitangent]) = tangents(edges, uvs, normal) else {
+    let Some([tangent, bitangent]) = tangents else {
         return normal;
     };
     let local = 2.0 * texel - 1.0;
@@ -94,7 +116,8 @@ mod tests {
     #[test]
     fn red_bends_to_the_right_of_the_picture_and_green_to_its_upper_edge() {
         let (right, up) = (Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.0, 0.6, 0.8));
-        let bend = |texel, scale| bent(Vec3::Y, false, encoded(texel), scale, EDGES, UVS);
+        let of = |uvs| tangents_of_triangle(EDGES, uvs, Vec3::Y);
+        let bend = |texel, scale| bent(Vec3::Y, false, encoded(texel), scale, of(UVS));
         assert!(bend(right, 1.0).abs_diff_eq(Vec3::new(0.6, 0.8, 0.0), 1e-6));
         assert!(bend(up, 1.0).abs_diff_eq(Vec3::new(0.0, 0.8, -0.6), 1e-6));
         assert_eq!(bend(right, 0.0), Vec3::Y);
@@ -102,7 +125,7 @@ mod tests {
         assert!(bend(right, 2.0).abs_diff_eq(twice, 1e-6));
         // The picture is mirrored: its right is where it was, its up is not.
         let mirrored = [Vec2::X, Vec2::NEG_Y];
-        let bend = |texel| bent(Vec3::Y, false, encoded(texel), 1.0, EDGES, mirrored);
+        let bend = |texel| bent(Vec3::Y, false, encoded(texel), 1.0, of(mirrored));
         assert!(bend(right).abs_diff_eq(Vec3::new(0.6, 0.8, 0.0), 1e-6));
         assert!(bend(up).abs_diff_eq(Vec3::new(0.0, 0.8, 0.6), 1e-6));
     }
@@ -110,8 +133,9 @@ mod tests {
     #[test]
     fn from_behind_a_bent_normal_is_the_opposite_one() {
         let texel = encoded(Vec3::new(0.3, -0.5, 0.7));
-        let front = bent(Vec3::Y, false, texel, 1.0, EDGES, UVS);
-        let back = bent(Vec3::NEG_Y, true, texel, 1.0, EDGES, UVS);
+        let of = |normal| tangents_of_triangle(EDGES, UVS, normal);
+        let front = bent(Vec3::Y, false, texel, 1.0, of(Vec3::Y));
+        let back = bent(Vec3::NEG_Y, true, texel, 1.0, of(Vec3::NEG_Y));
         assert!(back.abs_diff_eq(-front, 1e-6), "{front} {back}");
     }
 
@@ -119,7 +143,20 @@ mod tests {
     fn where_texture_coordinates_say_nothing_a_normal_stays() {
         for uvs in [[Vec2::ZERO; 2], [Vec2::X, 2.0 * Vec2::X]] {
             let texel = encoded(Vec3::X);
-            assert_eq!(bent(Vec3::Y, false, texel, 1.0, EDGES, uvs), Vec3::Y);
+            let none = tangents_of_triangle(EDGES, uvs, Vec3::Y);
+            assert_eq!(bent(Vec3::Y, false, texel, 1.0, none), Vec3::Y);
+        }
+    }
+
+    #[test]
+    fn a_given_tangent_is_made_perpendicular_and_its_sign_turns_the_bitangent() {
+        let leaning = Vec3::new(3.0, 4.0, 0.0);
+        for side in [1.0, -1.0] {
+            let found = tangents_given(leaning.extend(side), Vec3::Y);
+            assert_eq!(found, Some([Vec3::X, side * Vec3::NEG_Z]));
+        }
+        for useless in [Vec3::ZERO, Vec3::NEG_Y, Vec3::splat(f32::NAN), Vec3::MAX] {
+            assert_eq!(tangents_given(useless.extend(1.0), Vec3::Y), None);
         }
     }
 

@@ -2,7 +2,7 @@ use super::footprint::texture_footprint;
 use super::{Material, Object, Reading, World, normal_map};
 use crate::bvh::{Hit, Placement, Ray, SurfacePoint};
 use crate::scene::{Alpha, Lighting, PhongMap, RenderSettings, TextureFilter};
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 
 /// Below this cosine rounding may turn a normal to the wrong side of the ray: which one it came from is then asked of
 /// where it started.
@@ -45,6 +45,8 @@ struct Textured {
     width: f32,
     /// Whether the normal is the opposite of the mesh's.
     is_turned: bool,
+    /// Of the mesh, in world space, around the normal as it is turned; `None` where the mesh has none.
+    tangent: Option<Vec4>,
 }
 
 impl Object {
@@ -202,12 +204,20 @@ impl Surface {
         if !material.maps.is_empty() && settings.features.textures && !mesh.uvs.is_empty() {
             let uvs = corners.map(|corner| mesh.uvs[corner as usize]);
             let [a, b, c] = mesh.tree.triangles().corners(hit.triangle);
+            let tangent = (!mesh.tangents.is_empty()).then(|| {
+                let [a, b, c] = corners.map(|corner| mesh.tangents[corner as usize]);
+                let tangent = weights[0] * a + weights[1] * b + weights[2] * c;
+                let opposite = instance.mirrored() != is_turned;
+                let side = if opposite { -tangent.w } else { tangent.w };
+                (instance.to_world_vector(tangent.truncate())).extend(side)
+            });
             let triangle = Textured {
                 edges: [b - a, c - a].map(|edge| instance.to_world_vector(edge)),
                 uvs,
                 uv: (0..3).map(|i| weights[i] * uvs[i]).sum(),
                 width,
                 is_turned,
+                tangent,
             };
             self.multiply_maps(world, settings, material, &triangle);
         }
@@ -263,16 +273,13 @@ impl Surface {
 
     /// Takes the normal of a map's texel, as far as mirror directions stay above the surface.
     fn bend_normal(&mut self, texel: Vec3, scale: f32, triangle: &Textured) {
-        let [a, b, c] = triangle.uvs;
-        let uvs = [b - a, c - a];
-        let bent = normal_map::bent(
-            self.normal,
-            triangle.is_turned,
-            texel,
-            scale,
-            triangle.edges,
-            uvs,
-        );
+        let given = triangle.tangent;
+        let given = given.and_then(|tangent| normal_map::tangents_given(tangent, self.normal));
+        let tangents = given.or_else(|| {
+            let [a, b, c] = triangle.uvs;
+            normal_map::tangents_of_triangle(triangle.edges, [b - a, c - a], self.normal)
+        });
+        let bent = normal_map::bent(self.normal, triangle.is_turned, texel, scale, tangents);
         // Classic leaves normals on the side where the mesh has them.
         let faces_viewer = self.normal.dot(self.geometric_normal) >= 0.0;
         let above = |n| normal_map::above_surface(n, self.geometric_normal, self.to_viewer);

@@ -1,6 +1,6 @@
 use super::{Environment, Lights, Material, Needs, Texture};
 use crate::bvh::{Aggregate, MeshTree};
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 use std::sync::Arc;
 
 /// What rays read: flat arrays, indices instead of pointers, immutable while traced.
@@ -47,6 +47,7 @@ pub struct Object {
 }
 
 /// A mesh: its tree, and what shading interpolates over its triangles.
+#[derive(Clone)]
 pub struct Mesh {
     /// Positions, indices and the tree over them.
     pub tree: Arc<MeshTree>,
@@ -58,4 +59,22 @@ pub struct Mesh {
     pub colors: Vec<Vec3>,
     /// In [0, 1], multiplies opacity, one per vertex; empty where all are 1, and where there are no colours.
     pub alphas: Vec<f32>,
+    /// Where the normal map's picture grows to the right, and in `w` the sign of the bitangent `w · normal × tangent`
+    /// to its upper edge, as in glTF and Bevy. One per vertex, not necessarily of unit length; empty where the mesh has
+    /// none, or no normals: then they follow from the triangles' texture coordinates.
+    pub tangents: Vec<Vec4>,
+}
+
+impl Mesh {
+    /// Triangles with flat normals, and nothing else to interpolate.
+    pub fn of(tree: Arc<MeshTree>) -> Self {
+        Self {
+            tree,
+            normals: Vec::new(),
+            uvs: Vec::new(),
+            colors: Vec::new(),
+            alphas: Vec::new(),
+            tangents: Vec::new(),
+        }
+    }
 }

@@ -19,18 +19,17 @@ fn square(
     let corners = quad(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0);
     let (instance, mut square) = object(1, &corners, 0);
     square.mesh = Arc::new(Mesh {
-        tree: square.mesh.tree.clone(),
-        normals: Vec::new(),
         uvs: corners.map(|c| (Vec2::new(c.x, c.z) + 1.0) / 2.0).to_vec(),
         colors,
         alphas,
+        ..Mesh::of(square.mesh.tree.clone())
     });
     let mut world = world(vec![(instance, square)], vec![material]);
     world.textures = Arc::new(textures.into_iter().map(Arc::new).collect());
     world.with_needs()
 }
 
-fn settings() -> RenderSettings {
+pub(super) fn settings() -> RenderSettings {
     RenderSettings {
         texture_filter: TextureFilter::Nearest,
         ..RenderSettings::default()
@@ -38,7 +37,13 @@ fn settings() -> RenderSettings {
 }
 
 /// The surface at a place of the square, as seen along a direction.
-fn at(world: &World, settings: &RenderSettings, x: f32, z: f32, direction: Vec3) -> Surface {
+pub(super) fn at(
+    world: &World,
+    settings: &RenderSettings,
+    x: f32,
+    z: f32,
+    direction: Vec3,
+) -> Surface {
     let target = Vec3::new(x, 0.0, z);
     let ray = Ray {
         origin: target - direction,
@@ -236,11 +241,8 @@ fn a_map_wraps_and_is_filtered_in_its_own_way() {
         // Four pictures side by side: u = 2 x + 2.
         let mut object = world.objects[0].clone();
         object.mesh = Arc::new(Mesh {
-            tree: object.mesh.tree.clone(),
-            normals: Vec::new(),
             uvs: corners.map(|c| Vec2::new(2.0 * c.x + 2.0, c.z)).to_vec(),
-            colors: Vec::new(),
-            alphas: Vec::new(),
+            ..Mesh::of(object.mesh.tree.clone())
         });
         world.objects = Arc::new(vec![object]);
         let settings = RenderSettings {
@@ -271,7 +273,7 @@ fn a_map_wraps_and_is_filtered_in_its_own_way() {
 }
 
 /// A normal map of one texel.
-fn bent(normal: Vec3, scale: f32) -> World {
+pub(super) fn bent(normal: Vec3, scale: f32) -> World {
     let [r, g, b] = ((normal + 1.0) / 2.0).to_array();
     let texture = Texture::new(1, 1, Texels::Linear32(vec![[r, g, b]])).unwrap();
     let material = Material {

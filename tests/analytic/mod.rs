@@ -6,6 +6,7 @@ mod irradiance;
 mod light_points;
 mod materials;
 mod mirrors;
+mod normal_maps;
 mod views;
 
 use glam::{UVec2, Vec3};
@@ -59,13 +60,7 @@ pub fn object(id: u64, corners: &[Vec3], material: u32) -> (Instance, Object) {
         .collect();
     let triangles = Triangles::new(corners.to_vec(), indices).unwrap();
     let tree = Arc::new(MeshTree::build(triangles, &BuildOptions::default()));
-    let mesh = Mesh {
-        tree: tree.clone(),
-        normals: vec![],
-        uvs: vec![],
-        colors: Vec::new(),
-        alphas: Vec::new(),
-    };
+    let mesh = Mesh::of(tree.clone());
     let instance = Instance::new(tree, &glam::Affine3A::IDENTITY).unwrap();
     (
         instance,

@@ -73,11 +73,8 @@ fn sphere() -> World {
     let corners: Vec<Vec3> = normals.iter().map(|n| center + n).collect();
     let (instance, mut object) = object(1, &corners, 0);
     object.mesh = Arc::new(Mesh {
-        tree: object.mesh.tree.clone(),
         normals,
-        uvs: vec![],
-        colors: Vec::new(),
-        alphas: Vec::new(),
+        ..Mesh::of(object.mesh.tree.clone())
     });
     world(vec![(instance, object)], vec![Material::default()])
 }

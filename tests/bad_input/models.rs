@@ -61,6 +61,19 @@ fn an_empty_file() {
 }
 
 #[test]
+fn a_packed_file_is_called_so_whatever_its_name_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let gzip = b"\x1f\x8b\x08\0\0\0\0\0\0\x03".as_slice();
+    let zip = b"PK\x03\x04\x14\0\0\0".as_slice();
+    for (bytes, format) in [(gzip, "gzip"), (zip, "zip")] {
+        for name in ["a.obj", "a.ply", "a.stl", "a.gltf", "a.glb", "a.scn.ron"] {
+            let file = write(folder.path(), name, bytes);
+            says(&refused(&file), &[name, format, "unpack it"]);
+        }
+    }
+}
+
+#[test]
 fn an_obj_without_triangles() {
     let (_folder, file) = obj("# nothing else\n");
     says(&refused(&file), &["model.obj", "no triangles"]);

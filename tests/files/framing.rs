@@ -60,15 +60,18 @@ fn a_model_without_lights_gets_three_that_can_be_edited_and_says_so_in_one_note(
 #[test]
 fn what_is_dark_itself_stands_before_grey() {
     let folder = tempfile::tempdir().unwrap();
-    let mtl = "newmtl soot\nKd 0.01 0.01 0.01\nKs 0 0 0\n";
-    write(folder.path(), "a.mtl", mtl);
-    let text = format!("mtllib a.mtl\nusemtl soot\n{}", cube([0; 3], 1, 1));
-    let (app, opened) = opened(&write(folder.path(), "a.obj", text));
-    let background = app.world().resource::<Environment>().background;
-    let is_grey = background.red > 0.1 && background.red == background.blue;
-    assert!(is_grey, "{background:?}");
-    let said = notes(&opened, "has no light");
-    assert!(said[0].contains("grey background"), "{:?}", opened.notes);
+    // Where it shines it does so in spots, and a mirror shows the black around it.
+    for shine in ["Ks 0 0 0", "Ks 0.5 0.5 0.5\nillum 2", "Ks 1 1 1\nillum 3"] {
+        let mtl = format!("newmtl soot\nKd 0.01 0.01 0.01\n{shine}\n");
+        write(folder.path(), "a.mtl", mtl);
+        let text = format!("mtllib a.mtl\nusemtl soot\n{}", cube([0; 3], 1, 1));
+        let (app, opened) = opened(&write(folder.path(), "a.obj", text));
+        let background = app.world().resource::<Environment>().background;
+        let is_grey = background.red > 0.1 && background.red == background.blue;
+        assert!(is_grey, "{shine}: {background:?}");
+        let said = notes(&opened, "has no light");
+        assert!(said[0].contains("grey background"), "{:?}", opened.notes);
+    }
 }
 
 /// Share of the object's pixels that are darker than a linear 0.05.

@@ -287,7 +287,7 @@ fn what_was_not_read_is_told_by_its_name_and_what_was_is_not() {
             "extensions": { "KHR_materials_iridescence": {} },
         }]);
         d["meshes"][0]["primitives"][0]["material"] = json!(0);
-        d["meshes"][0]["primitives"][0]["attributes"]["TANGENT"] = json!(0);
+        d["meshes"][0]["primitives"][0]["attributes"]["_HEAT"] = json!(0);
     });
     let told = told(&notes);
     for (place, what) in [
@@ -296,7 +296,7 @@ fn what_was_not_read_is_told_by_its_name_and_what_was_is_not() {
             "materials[0].extensions.KHR_materials_iridescence",
             "left out",
         ),
-        ("attributes.TANGENT", "`TANGENT`"),
+        ("attributes._HEAT", "`_HEAT`"),
         ("extensionsUsed", "`ABC_of_tomorrow`"),
     ] {
         let is_told = |note: &&String| note.contains(place) && note.contains(what);

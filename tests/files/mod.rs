@@ -6,6 +6,7 @@ mod framing;
 mod gltf;
 mod gltf_pictures;
 mod gltf_rest;
+mod gltf_tangents;
 mod materials;
 pub mod models;
 mod names;

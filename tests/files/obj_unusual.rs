@@ -4,6 +4,7 @@ use super::app::{opened, write};
 use super::models::objects;
 use super::obj::{SQUARE, area, attribute, obj, open};
 use bevy::mesh::{Mesh, VertexAttributeValues};
+use glassbox::scene::{Phong, Wrap};
 
 #[test]
 fn seven_numbers_are_a_colour_with_alpha_or_w_and_a_colour() {
@@ -109,4 +110,52 @@ fn a_bump_map_that_holds_normals_is_a_normal_map_and_heights_are_told() {
         );
         assert!(told.contains("map_Bump"), "{color:?}: {told}");
     }
+}
+
+/// What remains of a line of options before the picture `wall.png`: the material, and what was told.
+fn with_map(line: &str) -> (Phong, String) {
+    let folder = tempfile::tempdir().unwrap();
+    image::RgbImage::from_pixel(2, 2, image::Rgb([0, 0, 255]))
+        .save(folder.path().join("wall.png"))
+        .unwrap();
+    write(folder.path(), "a.mtl", format!("newmtl a\n{line}\n"));
+    let text = format!("mtllib a.mtl\nusemtl a\n{SQUARE}f 1/1 2/2 3/3\n");
+    let (mut app, opened) = opened(&write(folder.path(), "a.obj", text));
+    let phong = objects(app.world_mut())[0].1.clone();
+    (phong, opened.notes.lines().join("\n"))
+}
+
+#[test]
+fn options_behind_a_picture_s_name_and_such_as_there_are_none_do_not_cost_the_picture() {
+    let (phong, told) = with_map("map_Kd wall.png -clamp on");
+    let map = phong.diffuse_map.expect("a picture");
+    assert_eq!((map.path.as_str(), map.wrap_u), ("wall.png", Wrap::Clamp));
+    assert!(!told.contains("a.mtl"), "{told}");
+    let (phong, told) = with_map("map_Kd wall.png -clamp on black");
+    assert!(
+        phong.diffuse_map.is_some() && told.contains("behind a picture"),
+        "{told}"
+    );
+    for line in [
+        "map_Kd -colorspace srgb wall.png",
+        "map_Kd -linear wall.png",
+        "map_Kd -colorspace srgb -clamp on wall.png",
+    ] {
+        let (phong, told) = with_map(line);
+        assert!(phong.diffuse_map.is_some(), "{line}: {told}");
+        assert!(told.contains("which is none"), "{line}: {told}");
+    }
+    let (phong, told) = with_map("map_Kd -gone and.png");
+    assert_eq!(phong.diffuse_map, None);
+    assert!(told.contains("`-gone and.png`"), "{told}");
+}
+
+#[test]
+fn words_behind_the_corners_of_a_face_do_not_cost_the_face() {
+    let (mut app, told) = obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 front\n");
+    assert_eq!(area(&mut app), 0.5);
+    assert!(
+        told.len() == 1 && told[0].contains("behind the corners"),
+        "{told:?}"
+    );
 }

@@ -243,3 +243,17 @@ fn vertices_in_doubles_that_lie_far_off_keep_their_digits_near_the_origin() {
     );
     assert!(told.len() == 1 && told[0].contains("far off"), "{told:?}");
 }
+
+#[test]
+fn a_byte_order_mark_and_what_microsoft_writes_for_no_number_do_not_cost_the_file() {
+    let whole = square("", "", [""; 4], &["4 0 1 2 3"]);
+    let (mut app, told) = open(format!("\u{feff}{whole}"));
+    assert_eq!(objects(app.world_mut())[0].2.len(), 2);
+    assert!(told.is_empty(), "{told:?}");
+    for none in ["-nan(ind)", "nan(snan)", "1.#QNAN", "-1.#IND", "1.#INF"] {
+        let broken = square("", "", [""; 4], &["3 0 1 3", "3 1 2 3"]);
+        let (mut app, told) = open(broken.replacen("1 1 0", &format!("1 1 {none}"), 1));
+        assert_eq!(objects(app.world_mut())[0].2.len(), 1, "{none}");
+        assert!(!told.is_empty(), "{none}");
+    }
+}

@@ -18,11 +18,8 @@ fn s7_normals_stand_on_the_vertices_and_between_them() {
     let corners = quad(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0);
     let (instance, plain) = object(1, &corners, 0);
     let mesh = Arc::new(Mesh {
-        tree: plain.mesh.tree.clone(),
         normals: vec![Vec3::Y * 3.0; 6],
-        uvs: vec![],
-        colors: Vec::new(),
-        alphas: Vec::new(),
+        ..Mesh::of(plain.mesh.tree.clone())
     });
     let world = world(
         vec![(instance, Object { mesh, ..plain })],

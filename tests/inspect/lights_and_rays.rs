@@ -281,11 +281,8 @@ fn s8_the_camera_ray_takes_the_texels_colour() {
     // u along x and v along z; 2 × 2 texels of one metre each way.
     let uvs = floor().map(|p| Vec2::new((p.x + 2.0) / 4.0, (p.z + 2.0) / 4.0));
     let mesh = Arc::new(Mesh {
-        tree: plain.mesh.tree.clone(),
-        normals: vec![],
         uvs: uvs.to_vec(),
-        colors: Vec::new(),
-        alphas: Vec::new(),
+        ..Mesh::of(plain.mesh.tree.clone())
     });
     let texels = vec![
         [0.9, 0.1, 0.1],

@@ -37,13 +37,7 @@ fn of_mesh(corners: Vec<Vec3>, builder: Builder) -> World {
     let triangles = Triangles::new(corners, indices.collect()).unwrap();
     let tree = Arc::new(MeshTree::build(triangles, &options));
     let instance = Instance::new(tree.clone(), &glam::Affine3A::IDENTITY).unwrap();
-    let mesh = Mesh {
-        tree,
-        normals: vec![],
-        uvs: vec![],
-        colors: Vec::new(),
-        alphas: Vec::new(),
-    };
+    let mesh = Mesh::of(tree);
     let object = Object {
         id: 5,
         material: 0,

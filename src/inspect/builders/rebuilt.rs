@@ -24,10 +24,7 @@ pub fn rebuilt(world: &World, options: &BuildOptions) -> World {
                 let triangles = object.mesh.tree.triangles().clone();
                 Arc::new(Mesh {
                     tree: Arc::new(MeshTree::build(triangles, &mesh_options)),
-                    normals: object.mesh.normals.clone(),
-                    uvs: object.mesh.uvs.clone(),
-                    colors: object.mesh.colors.clone(),
-                    alphas: object.mesh.alphas.clone(),
+                    ..Mesh::clone(&object.mesh)
                 })
             });
             Object {

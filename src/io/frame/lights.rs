@@ -65,9 +65,10 @@ pub(super) fn is_dark(world: &mut World) -> bool {
     let mut is_dark = query.iter(world).map(|(shared, own)| {
         let shared = shared.and_then(|UsesMaterial(material)| world.get::<Phong>(*material));
         let phong = shared.unwrap_or(own);
-        let colors = [phong.diffuse, phong.specular, phong.emission];
+        // Highlights are spots, and a mirror shows what is around it, which is as black.
+        let colors = [phong.diffuse, phong.emission];
         let most = colors.map(|color| color.red.max(color.green).max(color.blue));
-        phong.diffuse_map.is_none() && most.iter().all(|&most| most < DARK)
+        most.iter().all(|&most| most < DARK)
     });
     let any = is_dark.next();
     any == Some(true) && is_dark.all(|is_dark| is_dark)

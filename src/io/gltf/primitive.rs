@@ -8,7 +8,7 @@ use super::document::Document;
 use super::json::Json;
 use super::material::is_unlit;
 use super::pictures::placing_texture;
-use super::rest::Pose;
+use super::rest::{Pose, Vertices};
 use super::texture::TextureInfo;
 use bevy::math::Vec2;
 use bevy::mesh::Mesh;
@@ -60,7 +60,19 @@ fn triangles(
     let mut positions = floats::<3>(document, positions)?;
     let count = positions.len();
     let mut normals: Vec<[f32; 3]> = attribute(document, attributes, "NORMAL", name, count, floats);
-    pose.apply(document, primitive, name, &mut positions, &mut normals);
+    let mut tangents: Vec<[f32; 4]> =
+        attribute(document, attributes, "TANGENT", name, count, floats);
+    if normals.is_empty() && !tangents.is_empty() {
+        // Without them there is nothing to be perpendicular to (glTF 2.0, 3.7.2.1).
+        document.note(name, "tangents without normals", "left out");
+        tangents.clear();
+    }
+    let mut vertices = Vertices {
+        positions: &mut positions,
+        normals: &mut normals,
+        tangents: &mut tangents,
+    };
+    pose.apply(document, primitive, name, &mut vertices);
     let material = primitive.index("material");
     let texture = placing_texture(document, material);
     let set = texture.map_or(0, |texture| texture.set);
@@ -80,9 +92,9 @@ fn triangles(
         }
     }
     let colors: Vec<[f32; 4]> = attribute(document, attributes, "COLOR_0", name, count, colors);
-    let repaired = clear(&mut normals) | clear(&mut uvs);
+    let repaired = clear(&mut normals) | clear(&mut uvs) | clear(&mut tangents);
     if repaired {
-        let what = "normals or texture coordinates that are not finite numbers";
+        let what = "normals, tangents or texture coordinates that are not finite numbers";
         document.note(name, what, "0 is taken for them");
     }
     let corners = match primitive.index("indices") {
@@ -115,6 +127,9 @@ fn triangles(
         }
     }
     let mut mesh = triangle_mesh(positions, normals, uvs, corners);
+    if !tangents.is_empty() {
+        mesh.insert_attribute(Mesh::ATTRIBUTE_TANGENT, tangents);
+    }
     if colors.iter().any(|&color| color != [1.0; 4]) {
         if is_unlit(document, material) {
             let what = "vertex colours of what is unlit";

@@ -5,7 +5,7 @@ use super::super::error::Problem;
 use super::accessors::{floats, joints};
 use super::document::Document;
 use super::json::Json;
-use bevy::math::{Affine3A, Mat4, Quat, Vec3};
+use bevy::math::{Affine3A, Mat4, Quat};
 
 /// How a mesh stands.
 #[derive(Clone, Debug, Default)]
@@ -16,25 +16,33 @@ pub(super) struct Pose {
     pub joints: Vec<Affine3A>,
 }
 
+/// What moves with a mesh's vertices. Normals and tangents may be empty.
+pub(super) struct Vertices<'a> {
+    pub positions: &'a mut [[f32; 3]],
+    pub normals: &'a mut [[f32; 3]],
+    pub tangents: &'a mut [[f32; 4]],
+}
+
 impl Pose {
     /// Moves vertices to where they are at rest. What cannot be used is noted.
-    pub fn apply(
-        &self,
-        document: &Document,
-        primitive: Json,
-        name: &str,
-        positions: &mut [[f32; 3]],
-        normals: &mut [[f32; 3]],
-    ) {
+    pub fn apply(&self, document: &Document, primitive: Json, name: &str, vertices: &mut Vertices) {
         for (target, &weight) in primitive.list("targets").zip(&self.weights) {
             if weight == 0.0 {
                 continue;
             }
-            morph(document, target, "POSITION", name, weight, positions);
-            morph(document, target, "NORMAL", name, weight, normals);
+            morph(
+                document,
+                target,
+                "POSITION",
+                name,
+                weight,
+                vertices.positions,
+            );
+            morph(document, target, "NORMAL", name, weight, vertices.normals);
+            morph(document, target, "TANGENT", name, weight, vertices.tangents);
         }
         if !self.joints.is_empty()
-            && let Err(problem) = self.skin(document, primitive, positions, normals)
+            && let Err(problem) = self.skin(document, primitive, vertices)
         {
             document.note(name, format!("its skin: {problem}"), "shown without");
         }
@@ -44,12 +52,11 @@ impl Pose {
         &self,
         document: &Document,
         primitive: Json,
-        positions: &mut [[f32; 3]],
-        normals: &mut [[f32; 3]],
+        vertices: &mut Vertices,
     ) -> Result<(), Problem> {
         let missing = || Problem::Malformed("it has no joints".to_owned());
         let attributes = primitive.get("attributes").ok_or_else(missing)?;
-        let count = positions.len();
+        let count = vertices.positions.len();
         let mut sums = vec![(Mat4::ZERO, 0.0_f32); count];
         for set in 0.. {
             let joints_of = attributes.index(&format!("JOINTS_{set}"));
@@ -76,30 +83,39 @@ impl Pose {
         if sums.iter().all(|(_, weight)| *weight == 0.0) {
             return Err(missing());
         }
-        for (place, (matrix, weight)) in positions.iter_mut().zip(&sums) {
+        for (place, (matrix, weight)) in vertices.positions.iter_mut().zip(&sums) {
             if *weight > 0.0 {
                 // Weights that do not add up to 1 would scale the mesh.
                 let matrix = *matrix * weight.recip();
                 *place = matrix.transform_point3((*place).into()).to_array();
             }
         }
-        for (normal, (matrix, weight)) in normals.iter_mut().zip(&sums) {
+        let turn = |direction: &mut [f32; 3], (matrix, weight): &(Mat4, f32)| {
             if *weight > 0.0 {
-                let turned = matrix.transform_vector3((*normal).into());
-                *normal = turned.normalize_or_zero().to_array();
+                let turned = matrix.transform_vector3((*direction).into());
+                *direction = turned.normalize_or_zero().to_array();
+            }
+        };
+        for (normal, sum) in vertices.normals.iter_mut().zip(&sums) {
+            turn(normal, sum);
+        }
+        for (tangent, sum) in vertices.tangents.iter_mut().zip(&sums) {
+            if let Some((direction, _)) = tangent.split_first_chunk_mut() {
+                turn(direction, sum);
             }
         }
         Ok(())
     }
 }
 
-fn morph(
+/// Adds a target's moves to vectors; a fourth number, a tangent's sign, stays.
+fn morph<const N: usize>(
     document: &Document,
     target: Json,
     key: &str,
     name: &str,
     weight: f32,
-    values: &mut [[f32; 3]],
+    values: &mut [[f32; N]],
 ) {
     let Some(accessor) = target.index(key).filter(|_| !values.is_empty()) else {
         return;
@@ -107,7 +123,9 @@ fn morph(
     match floats::<3>(document, accessor) {
         Ok(moves) if moves.len() == values.len() => {
             for (value, by) in values.iter_mut().zip(moves) {
-                *value = (Vec3::from(*value) + weight * Vec3::from(by)).to_array();
+                for (value, by) in value.iter_mut().zip(by) {
+                    *value += weight * by;
+                }
             }
         }
         Ok(_) => document.note(

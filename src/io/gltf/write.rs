@@ -255,6 +255,9 @@ impl Glb<'_> {
             if !parts.normals.is_empty() {
                 attributes["NORMAL"] = json!(self.bytes.push_vectors(parts.normals));
             }
+            if !parts.tangents.is_empty() && !parts.normals.is_empty() {
+                attributes["TANGENT"] = json!(self.bytes.push_vectors(parts.tangents));
+            }
             if !parts.uvs.is_empty() {
                 attributes["TEXCOORD_0"] = json!(self.bytes.push_vectors(parts.uvs));
             }

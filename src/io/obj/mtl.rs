@@ -217,8 +217,49 @@ impl Reader<'_, '_> {
             self.note(&format!("`{word}` without a picture"), LEFT_OUT);
             return None;
         }
+        let name = self.name_among_options(name, word, &mut map);
         let path = self.picture(name);
         Some(path.map(|path| Map { path, ..map }))
+    }
+
+    /// The name of a picture that is there: options may stand behind it, or be none that the format has. Where no
+    /// part of the words is one, all of them.
+    fn name_among_options<'t>(&mut self, words: &'t str, word: &str, map: &mut Map) -> &'t str {
+        if self.is_there(words) {
+            return words;
+        }
+        let behind = words.match_indices(" -").map(|(at, _)| words.split_at(at));
+        for (name, options) in behind {
+            if !name.is_empty() && self.is_there(name.trim_end()) {
+                let left = self.options(options.trim_start(), word, map);
+                if !left.is_empty() {
+                    self.note("words behind a picture's name", LEFT_OUT);
+                }
+                return name.trim_end();
+            }
+        }
+        let Some((option, after)) = words
+            .strip_prefix('-')
+            .and_then(|words| words.split_once(char::is_whitespace))
+        else {
+            return words;
+        };
+        // With a value or without.
+        let after = after.trim_start();
+        let value = after.split_once(char::is_whitespace);
+        for name in [Some(after), value.map(|(_, name)| name)] {
+            let name = name.map(|name| self.options(name.trim_start(), word, map));
+            if let Some(name) = name.filter(|name| self.is_there(name)) {
+                let what = format!("the option `-{option}` of {word}, which is none");
+                self.note(&what, LEFT_OUT);
+                return name;
+            }
+        }
+        words
+    }
+
+    fn is_there(&mut self, name: &str) -> bool {
+        self.names.find(self.prefix, unquoted(name)).is_ok()
     }
 
     /// The picture of this name, or of what stands before a comment.

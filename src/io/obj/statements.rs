@@ -324,11 +324,18 @@ impl Reader<'_> {
             return Err(self.too_many("triangles", self.triangles, self.limits.triangles));
         }
         let part = self.part();
+        let mut count = count as u32;
         let start = self.content.parts[part].corners.len();
         for word in values(rest) {
             match self.corner(word) {
                 Ok(corner) => self.content.parts[part].corners.push(corner),
                 Err(problem) => {
+                    let before = self.content.parts[part].corners.len() - start;
+                    if before >= 3 && word[0].is_ascii_alphabetic() {
+                        self.note("words behind the corners of a face", LEFT_OUT);
+                        count = before as u32;
+                        break;
+                    }
                     self.fault("a face whose corner is no index", problem, LEFT_OUT);
                     self.content.parts[part].corners.truncate(start);
                     return Ok(());
@@ -336,7 +343,7 @@ impl Reader<'_> {
             }
         }
         let face = Face {
-            corners: count as u32,
+            corners: count,
             group: self.group,
             line: u32::try_from(self.line).unwrap_or(u32::MAX),
         };

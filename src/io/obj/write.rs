@@ -138,9 +138,15 @@ impl<'a> Drawn<'a> {
                 let what = "the alpha of the vertices' colours of";
                 (exported.notes).add_named(file, Place::Whole, what, &object.name, "left out");
             }
+            let material = &exported.materials[object.material];
+            if !parts.tangents.is_empty() && material.phong.normal_map.is_some() {
+                let what = "the tangents of";
+                let instead = "left out: normal maps then follow texture coordinates";
+                (exported.notes).add_named(file, Place::Whole, what, &object.name, instead);
+            }
             objects.push(DrawnObject {
                 name: object.name,
-                material: exported.materials[object.material].name.clone(),
+                material: material.name.clone(),
                 parts,
                 world_from_object: world_from(world, object.entity),
             });

@@ -79,6 +79,9 @@ impl<R: BufRead> Body<R> {
                 .map(f64::from),
             _ => word.and_then(|word| word.parse::<f64>().ok()),
         };
+        let is_float = matches!(scalar, Scalar::Float32 | Scalar::Float64);
+        let is_none = || is_float && word.is_some_and(says_not_a_number);
+        let value = value.or_else(|| is_none().then_some(f64::NAN));
         value.ok_or_else(|| {
             let word = String::from_utf8_lossy(&self.word);
             Fault::Of(Problem::Malformed(format!("`{word}` is not a number")))
@@ -155,6 +158,12 @@ impl<R: BufRead> Body<R> {
             self.reader.consume(count);
         }
     }
+}
+
+/// Microsoft's spellings of what is no finite number: `-nan(ind)`, `1.#QNAN`, `-1.#IND`, `1.#INF`.
+fn says_not_a_number(word: &str) -> bool {
+    let word = word.trim_start_matches(['-', '+']);
+    word.starts_with("nan(") || word.starts_with("1.#")
 }
 
 fn ended() -> Fault {

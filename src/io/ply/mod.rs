@@ -29,6 +29,16 @@ const MESH: &str = "mesh";
 pub(crate) fn read_ply(file: &Path, folder: &Folder, limits: &Limits) -> Result<Model, FileError> {
     let mut reader = open_to_read(file, limits.file_bytes)?;
     let mut work = Work::of(file, limits);
+    let start = reader.fill_buf();
+    let start = start.map_err(|error| FileError::reading(file, &error))?;
+    // Editors of text put one in front.
+    let mark: &[u8] = b"\xef\xbb\xbf";
+    let mark = if start.starts_with(mark) {
+        mark.len()
+    } else {
+        0
+    };
+    reader.consume(mark);
     let header = read_header(&mut reader, &mut work)?;
     let mut body = Body::of(reader, header.format, header.lines);
     let mut content = Content::default();

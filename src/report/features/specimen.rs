@@ -117,11 +117,9 @@ impl Specimen {
             let color = |i: usize| Vec3::new(0.5, 1.0 / (1 + i % 3) as f32, 0.75);
             Object {
                 mesh: Arc::new(Mesh {
-                    tree: object.mesh.tree.clone(),
-                    normals: object.mesh.normals.clone(),
-                    uvs: object.mesh.uvs.clone(),
                     colors: (0..count).map(color).collect(),
                     alphas: Vec::new(),
+                    ..Mesh::clone(&object.mesh)
                 }),
                 ..object.clone()
             }
@@ -154,11 +152,8 @@ impl Specimen {
     pub fn without_normals(&mut self) {
         let flat = |object: &Object| Object {
             mesh: Arc::new(Mesh {
-                tree: object.mesh.tree.clone(),
                 normals: Vec::new(),
-                uvs: object.mesh.uvs.clone(),
-                colors: object.mesh.colors.clone(),
-                alphas: object.mesh.alphas.clone(),
+                ..Mesh::clone(&object.mesh)
             }),
             ..object.clone()
         };
@@ -182,10 +177,7 @@ impl Specimen {
             objects.push(Object {
                 mesh: Arc::new(Mesh {
                     tree,
-                    normals: object.mesh.normals.clone(),
-                    uvs: object.mesh.uvs.clone(),
-                    colors: object.mesh.colors.clone(),
-                    alphas: object.mesh.alphas.clone(),
+                    ..Mesh::clone(&object.mesh)
                 }),
                 ..object.clone()
             });

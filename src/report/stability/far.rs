@@ -38,11 +38,8 @@ fn scene(at: Vec3, velocity: Vec3) -> World {
     let triangles = triangles.expect("every index has its position");
     let tree = Arc::new(MeshTree::build(triangles, &BuildOptions::default()));
     let mesh = Mesh {
-        tree: tree.clone(),
-        normals: Vec::new(),
         uvs,
-        colors: Vec::new(),
-        alphas: Vec::new(),
+        ..Mesh::of(tree.clone())
     };
     let instance = Instance::new(tree, &Affine3A::from_translation(at))
         .and_then(|instance| instance.moving(velocity))

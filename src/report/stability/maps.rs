@@ -39,10 +39,7 @@ pub(super) fn cut_outs(effort: &Effort) -> Outcome {
         uvs: corners
             .map(|corner| (corner.truncate() + 1.0) / 2.0)
             .to_vec(),
-        tree: square.mesh.tree.clone(),
-        normals: Vec::new(),
-        colors: Vec::new(),
-        alphas: Vec::new(),
+        ..Mesh::of(square.mesh.tree.clone())
     });
     let material = Material {
         diffuse: Vec3::ONE,

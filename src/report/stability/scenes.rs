@@ -33,11 +33,8 @@ pub(super) fn placed(
     let tree = Arc::new(MeshTree::build(triangles, &BuildOptions::default()));
     let instance = Instance::new(tree.clone(), transform);
     let mesh = Arc::new(Mesh {
-        tree,
         normals,
-        uvs: Vec::new(),
-        colors: Vec::new(),
-        alphas: Vec::new(),
+        ..Mesh::of(tree)
     });
     let object = Object {
         id,
