@@ -84,6 +84,13 @@ impl<E: Eight, G: Goal, V: Visitor> Leaves<E, G, V> for MeshLeaves<'_> {
     }
 
     #[inline(always)]
+    fn prefetch(&self, block: u32) {
+        if let Some(block) = self.mesh.blocks.get(block as usize) {
+            E::prefetch(block);
+        }
+    }
+
+    #[inline(always)]
     fn rest(&self, block: u32) -> Option<u32> {
         let continues = self.mesh.blocks[block as usize].continues();
         continues.then_some(block + 1)
@@ -101,6 +108,17 @@ impl<E: Eight, G: Goal, V: Visitor> Leaves<E, G, V> for InstanceLeaves<'_> {
     #[inline(always)]
     fn tree(&self) -> TreeRef {
         TreeRef::Top
+    }
+
+    #[inline(always)]
+    fn prefetch(&self, leaf: u32) {
+        let places = self.scene.wide_leaves.get(leaf as usize);
+        let place = places.and_then(|places| self.places.get(places.start));
+        if let Some(&number) = place
+            && let Some(instance) = self.scene.instances().get(number as usize)
+        {
+            instance.prefetch::<E>();
+        }
     }
 
     #[inline(always)]

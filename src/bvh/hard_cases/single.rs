@@ -5,7 +5,6 @@ use glam::{Vec3, Vec3A, Vec3Swizzles};
 
 use crate::bvh::{
     Ray,
-    goal::Nearest,
     mesh_tree::ObjectRay,
     safe_ray::SafeRay,
     triangle::{Crossing, Shear, accept},
@@ -68,7 +67,7 @@ impl SingleTriangle {
         if !(det != 0.0 && det.is_finite()) {
             return None;
         }
-        let crossing = accept::<Nearest>(shear, &ray.slab, self.corners(), edges, limit);
+        let crossing = accept(shear, &ray.slab, self.corners(), edges, limit);
         crossing.map(|Crossing { t, u, v }| (t, u, v))
     }
 }

@@ -124,6 +124,16 @@ impl Lanes for Avx2 {
     }
 
     #[inline(always)]
+    fn prefetch<T>(soon: &T) {
+        for line in 0..size_of::<T>().div_ceil(64) {
+            let line = (&raw const *soon).cast::<i8>().wrapping_add(64 * line);
+            // SAFETY: every x86-64 machine has the instruction; it reads nothing that the program sees, and does not fail
+            // at any address.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(line) };
+        }
+    }
+
+    #[inline(always)]
     fn to_array(self) -> [f32; 8] {
         let mut array = [0.0; 8];
         // SAFETY: AVX is there, by the privacy of this type; the array is good for 32 bytes, at any alignment.

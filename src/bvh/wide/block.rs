@@ -161,7 +161,8 @@ impl TriangleBlock {
             let lane = passed.trailing_zeros() as usize % 8;
             passed &= passed - 1;
             let edges = [u[lane], v[lane], w[lane]];
-            if let Some(crossing) = accept::<G>(shear, slab, self.corners(lane), edges, limit) {
+            let corners = self.corners(lane);
+            if let Some(crossing) = accept(shear, slab, corners, edges, limit) {
                 let (is_wanted, new) =
                     question.meet((instance, self.number(lane)), crossing, limit);
                 limit = new;

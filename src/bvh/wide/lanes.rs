@@ -58,6 +58,10 @@ pub(crate) trait Lanes: Copy {
     /// `yes` where the mask says so, and else `no`; bit for bit.
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
 
+    /// Asks for something that is soon to be read, all of its cache lines.
+    #[inline(always)]
+    fn prefetch<T>(_soon: &T) {}
+
     /// The same `f64` for every lane.
     fn splat_f64(x: f64) -> Self::Doubles;
     /// As `f64`, exactly.

@@ -69,10 +69,10 @@ impl<E: Eight> WideRay<E> {
     #[inline(always)]
     fn enter(&self, node: &WideNode, limit: f32) -> (u32, E) {
         let [x, y, z] = self.faces(node, self.near, &self.near_origin);
-        // The start last, so that no entry is -0.0.
-        let entry = x.max(y).max(z).max(self.start);
+        // In pairs, since the next node waits for it; the start last, so that no entry is -0.0.
+        let entry = x.max(y).max(z.max(self.start));
         let [x, y, z] = self.faces(node, self.near.map(|row| row ^ 1), &self.far_origin);
-        let exit = x.min(y).min(z).min(E::splat(limit));
+        let exit = x.min(y).min(z.min(E::splat(limit)));
         (E::bits(entry.le(exit)), entry)
     }
 
@@ -109,6 +109,10 @@ pub(crate) trait Leaves<E, G, V> {
         stack: &mut [u64],
         question: &mut Question<G, V>,
     ) -> f32;
+
+    /// Has a leaf brought nearer that the ray will visit soon.
+    #[inline(always)]
+    fn prefetch(&self, _leaf: u32) {}
 
     /// What to visit next, where that leaf was only a part of one.
     #[inline(always)]
@@ -197,6 +201,7 @@ pub(crate) fn walk_from<E: Eight, G: Goal, V: Visitor>(
                     let (near, far) = (a.min(b), a.max(b));
                     if hits == 0 {
                         stack[pending] = far;
+                        prefetch::<E, G, V>(tree, leaves, far as u32);
                         watched.put_off(&[far]);
                         pending += 1;
                         next = near as u32;
@@ -218,6 +223,7 @@ pub(crate) fn walk_from<E: Eight, G: Goal, V: Visitor>(
                         count += 1;
                     }
                     let near = window[(count - 1) % 8];
+                    prefetch::<E, G, V>(tree, leaves, window[(count - 2) % 8] as u32);
                     watched.put_off(&window[..count - 1]);
                     next = near as u32;
                     entry = entry_of(near);
@@ -230,6 +236,7 @@ pub(crate) fn walk_from<E: Eight, G: Goal, V: Visitor>(
                     let mut count = 0;
                     while hits != 0 {
                         let lane = hits.trailing_zeros();
+                        prefetch::<E, G, V>(tree, leaves, node.child(lane));
                         window[count % 8] = if V::LOOKS {
                             waiting(node, &entries, lane)
                         } else {
@@ -260,6 +267,20 @@ pub(crate) fn walk_from<E: Eight, G: Goal, V: Visitor>(
                 question.visitor.node(name, node, NodeEvent::Pruned, entry);
             }
         }
+    }
+}
+
+/// Has a child brought nearer that waits.
+#[inline(always)]
+fn prefetch<E: Eight, G: Goal, V: Visitor>(
+    tree: &WideTree,
+    leaves: &impl Leaves<E, G, V>,
+    child: u32,
+) {
+    if child & LEAF != 0 {
+        leaves.prefetch(child & !LEAF);
+    } else if let Some(node) = tree.nodes.get(child as usize) {
+        E::prefetch(node);
     }
 }
 
