@@ -76,8 +76,8 @@ pub use open::{OpenOptions, Opened, SceneSource, open, open_empty};
 pub use part::{Merge, MergeError, Part, read_part, write_part};
 pub(crate) use picture::stage_picture;
 pub use picture::{
-    Note, PICTURE_EXTENSIONS, PictureFormat, check_picture, check_size, picture_notes,
-    write_lights, write_picture, write_picture_with_notes, write_rendered,
+    LightLayers, Note, PICTURE_EXTENSIONS, PictureFormat, check_picture, check_size, layer_name,
+    picture_notes, write_lights, write_picture, write_picture_with_notes, write_rendered,
 };
 pub use problems::{LoadProblem, LoadProblems};
 pub(crate) use regular::{TEXT_BYTES, open_regular, read_text};

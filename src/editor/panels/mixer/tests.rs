@@ -1,0 +1,1 @@
+//! The mixer as a person meets it.
