@@ -31,6 +31,11 @@ pub struct LightPicture {
 impl LightPictures {
     /// Pictures of one light each, at most; the others share one more.
     pub const MOST: usize = Planes::MOST - 1;
+
+    /// How many pictures there are of so many lights, that of what shines by itself among them.
+    pub fn planes(lights: usize) -> usize {
+        1 + lights.min(Self::MOST + 1)
+    }
 }
 
 /// What [`render`](super::render()) renders, and the same light by light.

@@ -61,7 +61,7 @@ mod text;
 #[cfg(feature = "editor")]
 pub(crate) use budget::beside;
 pub(crate) use budget::film_bytes;
-pub use budget::{Budget, Size, check_film};
+pub use budget::{Budget, Size, check_film, check_film_of_lights};
 pub use error::{FileError, Place, Problem};
 pub use folder::Folder;
 pub use identity::check_outputs;

@@ -381,3 +381,20 @@ fn a_gain_that_is_none_or_is_for_nobody_is_refused_and_says_what_there_is() {
             .all(|value| value.is_finite())
     );
 }
+
+#[test]
+fn lights_that_are_kept_apart_are_refused_where_the_picture_alone_has_room() {
+    let folder = tempfile::tempdir().unwrap();
+    let render = ["render", "showcase", "-o", "a.exr", "--spp", "1"];
+    let size = ["--size", "700x700", "--memory", "250M"];
+    let whole = glassbox(folder.path(), &[&render[..], &size].concat());
+    assert_eq!(whole.status.code(), Some(0), "{:?}", texts(&whole));
+    let apart = [&render[..], &size, &["--lights-separately"]].concat();
+    let refused = glassbox(folder.path(), &apart);
+    let (_, said) = texts(&refused);
+    assert_eq!(refused.status.code(), Some(1), "{said}");
+    assert!(
+        said.contains("--memory") || said.contains("memory"),
+        "{said}"
+    );
+}

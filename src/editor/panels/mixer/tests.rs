@@ -15,6 +15,7 @@ use bevy::ecs::name::Name;
 use bevy::ecs::query::With;
 use bevy::math::Vec3;
 use bevy::transform::components::Transform;
+use bevy_egui::egui::{Modifiers, vec2};
 
 fn lamp(desk: &mut Desk) -> (Entity, SceneId, String) {
     let mut lamps = desk
@@ -139,6 +140,24 @@ fn with_lights_in_one_plane_the_view_hears_of_it_and_another_scene_of_no_mix() {
 }
 
 #[test]
+fn a_light_that_is_deleted_while_its_gain_is_dragged_is_baked_into_nothing() {
+    let mut desk = open();
+    let (entity, id, _) = lamp(&mut desk);
+    let at = desk.place_of("Gain") + vec2(60.0, 0.0);
+    desk.point(at);
+    desk.button(at, true, Modifiers::NONE);
+    desk.point(at + vec2(20.0, 0.0));
+    let dragged = desk.world().resource::<Mixer>().strip(id).gain;
+    assert!(dragged > 0.0 && dragged != 1.0, "{dragged}");
+    desk.world().despawn(entity);
+    desk.point(at + vec2(30.0, 0.0));
+    desk.button(at, false, Modifiers::NONE);
+    assert!(desk.find("Gain").is_none());
+    run(&mut desk, "lights.bake");
+    assert!(mix(&mut desk).gains.is_neutral());
+}
+
+#[test]
 fn of_a_thousand_lights_only_those_rows_are_laid_out_that_are_seen() {
     let mut desk = open();
     for number in 0..1000 {
@@ -149,6 +168,8 @@ fn of_a_thousand_lights_only_those_rows_are_laid_out_that_are_seen() {
             Transform::default(),
         ));
     }
+    // The list has rows of the same names.
+    desk.world().resource_mut::<Preferences>().show_hierarchy = false;
     desk.settle();
     desk.place_of("⏷ Bulb (1000)");
     let seen = (0..1000).filter(|number| desk.find(&format!("Bulb {number}")).is_some());
