@@ -69,21 +69,21 @@ impl Bench {
         let world = app.world_mut();
         let mut settings = world.resource_mut::<RenderSettings>();
         (settings.size, settings.spp) = (SIZE, 1);
-        let lamps = (0..lights).map(|i| {
+        let mut lamp = None;
+        for i in 0..lights {
             let place = Transform::from_xyz(0.06 * i as f32 - 0.3, 0.4, 0.2);
-            let lamp = PointLamp {
+            let bulb = PointLamp {
                 intensity: 0.1,
                 ..PointLamp::default()
             };
-            world.spawn((lamp, place)).id()
-        });
-        let lamp = lamps.last().expect("a light");
+            lamp = Some(world.spawn((bulb, place)).id());
+        }
         app.update();
         let mut objects = app
             .world_mut()
             .query_filtered::<Entity, (With<MeshSource>, With<Phong>)>();
         Self {
-            lamp,
+            lamp: lamp.expect("a light"),
             object: objects.iter(app.world()).next().expect("an object"),
             app,
             render: None,

@@ -336,7 +336,7 @@ fn a_gain_that_is_none_or_is_for_nobody_is_refused_and_says_what_there_is() {
     render(folder, "showcase", "a.exr", &["--lights-separately"]);
     render(folder, "showcase", "plain.exr", &[]);
     let before = files(folder);
-    for (more, code, words) in [
+    let cases: &[(&[&str], i32, &[&str])] = &[
         (
             &["a.exr", "--gain", "Lamp=2"][..],
             2,
@@ -362,8 +362,9 @@ fn a_gain_that_is_none_or_is_for_nobody_is_refused_and_says_what_there_is() {
             1,
             &["a.exr"],
         ),
-    ] {
-        let arguments = [&["merge", "-o", "b.exr"], more].concat();
+    ];
+    for &(more, code, words) in cases {
+        let arguments = [&["merge", "-o", "b.exr"][..], more].concat();
         let output = glassbox(folder, &arguments);
         let (_, said) = texts(&output);
         assert_eq!(output.status.code(), Some(code), "{more:?}: {said}");
