@@ -2,7 +2,6 @@
 
 mod changed;
 mod files;
-mod light_edits;
 mod pasting;
 mod random;
 mod recovery;
