@@ -1,7 +1,8 @@
-//! `glassbox merge`: parts of a picture to a picture.
+//! `glassbox merge`: parts of a picture to a picture, or another mix of its lights.
 
 use super::Failure;
 use super::memory::MemoryArgs;
+use super::mix::{self, Gain};
 use super::output::{say, tell};
 use super::shown::read_output;
 use crate::io::{
@@ -13,12 +14,15 @@ use std::path::PathBuf;
 
 #[derive(Args)]
 pub(super) struct Merge {
-    /// Parts that `glassbox render --samples A..B` wrote
+    /// Parts that `glassbox render --samples A..B` wrote; with --gain one picture that `--lights-separately` wrote
     #[arg(required = true, value_name = "PART.exr")]
     pub parts: Vec<PathBuf>,
     /// Picture file; an .exr is a part again, with the samples of all
     #[arg(short, long, value_name = "OUT")]
     pub output: PathBuf,
+    /// Multiply a light, by its name, as often as there are lights; `Own` is what shines by itself
+    #[arg(long, value_name = "LIGHT=FACTOR")]
+    pub gain: Vec<Gain>,
     #[command(flatten)]
     pub memory: MemoryArgs,
     /// Print nothing but errors
@@ -30,6 +34,9 @@ pub(super) fn run(args: Merge) -> Result<(), Failure> {
     let format = PictureFormat::of(&args.output).map_err(Failure::of_output)?;
     check_outputs([&*args.output], args.parts.iter().map(PathBuf::as_path))?;
     check_writable(&args.output)?;
+    if !args.gain.is_empty() {
+        return mix::run(&args, format);
+    }
     let mut merge = io::Merge::default();
     let mut output = None;
     for file in &args.parts {
@@ -41,7 +48,7 @@ pub(super) fn run(args: Merge) -> Result<(), Failure> {
         let part = read_part(file, &limits)?;
         let size = part.film.size();
         check_picture(&args.output, size.x.into(), size.y.into()).map_err(Failure::of_output)?;
-        output.get_or_insert(read_output(file, &part)?);
+        output.get_or_insert(read_output(file, &part.output)?);
         merge.add(file, part)?;
     }
     let part = merge.finish()?;

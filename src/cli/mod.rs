@@ -13,6 +13,7 @@ mod gizmos;
 mod inspect;
 mod memory;
 mod merge;
+mod mix;
 mod output;
 mod progress;
 mod render;
@@ -55,7 +56,7 @@ struct Cli {
 enum Command {
     /// Render a scene to picture files
     Render(render::Render),
-    /// Add up parts of a picture that `render --samples A..B` wrote
+    /// Add up parts of a picture that `render --samples A..B` wrote, or mix the lights of one
     Merge(merge::Merge),
     /// Build a scene's tree with each builder and print its statistics
     Bvh(bvh::Bvh),

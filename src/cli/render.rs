@@ -105,6 +105,9 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
     check_picture(&args.output, size.x.into(), size.y.into()).map_err(Failure::of_output)?;
     stage.check_film(size)?;
     let world = stage.sync().world.clone();
+    if args.lights_separately {
+        stage.check_film_of_lights(size, world.lights.count())?;
+    }
     let cameras = chosen(&stage, args)?;
     let files = file_names(&args.output, &cameras);
     stage.check_outputs(files.iter().chain(&args.stats).map(PathBuf::as_path))?;

@@ -1,7 +1,7 @@
 //! How a picture is shown, as a part of a picture keeps it.
 
 use super::set::Assignment;
-use crate::io::{FileError, Part, Problem};
+use crate::io::{FileError, Problem};
 use crate::scene::{Output, RenderSettings, SETTINGS, range_problems};
 use std::path::Path;
 
@@ -15,15 +15,15 @@ pub(super) fn output_text(settings: &RenderSettings) -> String {
     words.join(" ")
 }
 
-/// How a part is shown: takes over what [`output_text`] wrote into it. A part may come from anywhere, so its values are
-/// checked as the command line's are.
-pub(super) fn read_output(file: &Path, part: &Part) -> Result<Output, FileError> {
+/// How a file's picture is shown: takes over what [`output_text`] wrote into it. A file may come from anywhere, so its
+/// values are checked as the command line's are.
+pub(super) fn read_output(file: &Path, output: &str) -> Result<Output, FileError> {
     let damaged = |why: String| {
-        let text = format!("is a part whose `output` cannot be read ({why}); render it again");
+        let text = format!("says an `output` that cannot be read ({why}); render it again");
         FileError::new(file, Problem::Malformed(text))
     };
     let mut settings = RenderSettings::default();
-    for word in part.output.split_whitespace() {
+    for word in output.split_whitespace() {
         if !word.starts_with("output.") {
             return Err(damaged(format!("`{word}`")));
         }
@@ -40,19 +40,7 @@ pub(super) fn read_output(file: &Path, part: &Part) -> Result<Output, FileError>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::film::Film;
     use crate::scene::ViewTransform;
-    use bevy::math::UVec2;
-
-    fn part(output: String) -> Part {
-        Part {
-            digest: "0".into(),
-            samples: std::iter::once(0..1).collect(),
-            uniform: true,
-            output,
-            film: Film::new(UVec2::ONE),
-        }
-    }
 
     #[test]
     fn what_a_part_keeps_of_the_output_gives_the_same_output() {
@@ -60,7 +48,7 @@ mod tests {
         settings.output.exposure = -1.25;
         settings.output.view_transform = ViewTransform::AgX;
         settings.output.bloom.intensity = 0.5;
-        let read = read_output(Path::new("a.exr"), &part(output_text(&settings))).unwrap();
+        let read = read_output(Path::new("a.exr"), &output_text(&settings)).unwrap();
         assert_eq!(read, settings.output);
     }
 
@@ -74,7 +62,7 @@ mod tests {
             "output.none=1",
             "size=4x4",
         ] {
-            let error = read_output(Path::new("a.exr"), &part(output.into())).unwrap_err();
+            let error = read_output(Path::new("a.exr"), output).unwrap_err();
             let text = error.to_string();
             assert!(
                 text.starts_with("a.exr: ") && text.contains("output"),

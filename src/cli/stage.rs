@@ -5,7 +5,8 @@ use super::memory::MemoryArgs;
 use super::output::tell;
 use crate::app::headless_app;
 use crate::io::{
-    LoadProblems, OpenOptions, SceneFiles, SceneSource, check_film, check_outputs, open,
+    LoadProblems, OpenOptions, SceneFiles, SceneSource, check_film, check_film_of_lights,
+    check_outputs, open,
 };
 use crate::scene::{RenderSettings, SceneId};
 use crate::sync::{Traced, TracedCamera, TracedCameras};
@@ -97,6 +98,12 @@ impl Stage {
     /// Refuses a film of this size that does not fit into memory beside the scene.
     pub fn check_film(&self, size: UVec2) -> Result<(), Failure> {
         Ok(check_film(self.app.world(), Path::new(&self.name), size)?)
+    }
+
+    /// The same of one that keeps the light of so many lights apart.
+    pub fn check_film_of_lights(&self, size: UVec2, lights: usize) -> Result<(), Failure> {
+        let name = Path::new(&self.name);
+        Ok(check_film_of_lights(self.app.world(), name, size, lights)?)
     }
 
     /// Brings the tracer's world up to date, and warns of what it had to leave out.

@@ -62,6 +62,8 @@ pub struct Preferences {
     pub rays_height: f32,
     /// Screen pixels along each side of one that is traced, 1 to 8: larger is quicker and coarser.
     pub pixel_size: u32,
+    /// The traced view keeps what each light adds apart, which takes memory and makes edits of lights quick.
+    pub lights_apart: bool,
     /// The first-run hint was read.
     pub hint_seen: bool,
     /// Keys that were given to commands.
@@ -83,6 +85,7 @@ impl Default for Preferences {
             rays_float: false,
             rays_height: 240.0,
             pixel_size: 1,
+            lights_apart: true,
             hint_seen: false,
             keys: Bindings::default(),
             recent: Vec::new(),

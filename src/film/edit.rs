@@ -6,10 +6,10 @@
 
 use super::engine::Engine;
 use super::lock;
-use super::sample_chunk::Subject;
+use super::sample_chunk::{MOST_APART, Subject};
 use crate::scene::Lighting;
 use crate::trace::planes::OWN;
-use crate::trace::{Lamp, World, samples_per_pixel};
+use crate::trace::{Gains, Lamp, Lights, World, samples_per_pixel};
 use glam::Vec3;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -27,8 +27,9 @@ pub(super) struct Edit {
 
 impl Edit {
     /// From what is rendered to another world. `None` where nothing of the picture stays true.
-    pub fn between(old: &Subject, world: World) -> Option<Self> {
-        let same_paths = Arc::ptr_eq(&old.world.aggregate, &world.aggregate)
+    pub fn between(old: &Subject, world: World, gains: &Gains) -> Option<Self> {
+        let same_paths = old.stays_apart
+            && Arc::ptr_eq(&old.world.aggregate, &world.aggregate)
             && Arc::ptr_eq(&old.world.objects, &world.objects)
             && Arc::ptr_eq(&old.world.materials, &world.materials)
             && Arc::ptr_eq(&old.world.textures, &world.textures)
@@ -41,7 +42,8 @@ impl Edit {
         if !same_paths || is_shared {
             return None;
         }
-        let subject = old.edited(world);
+        let first = edited_first(old, &gains.applied(&world));
+        let subject = old.edited(world, first, gains.clone());
         let from = same_planes(old, &subject)?;
         Some(Self { subject, from })
     }
@@ -68,6 +70,35 @@ impl Edit {
     fn needs_rays(&self) -> bool {
         self.from.contains(&None)
     }
+}
+
+/// Who has a plane of its own before others after an edit that leads to this world: a light that is edited, and those that
+/// were before. Where more lights change at once than there are planes nobody edits one.
+fn edited_first(old: &Subject, world: &World) -> Vec<u64> {
+    let mut before: Vec<_> = old.world.lights.all().enumerate().collect();
+    before.sort_by_key(|(_, lamp)| lamp.id());
+    let planes = &old.light.planes;
+    let is_edited = |lamp: Lamp| {
+        let was = before.binary_search_by_key(&lamp.id(), |(_, lamp)| lamp.id());
+        let was = was.ok().map(|at| before[at]);
+        let velocity = |lights: &Lights| lights.velocity(lamp.id());
+        was.is_none_or(|(place, was)| {
+            !planes.is_of_one(planes.of_light(place))
+                && !(was.is_same(lamp) && velocity(&old.world.lights) == velocity(&world.lights))
+        })
+    };
+    let edited = world.lights.all().filter(|lamp| is_edited(*lamp));
+    let mut first: Vec<u64> = edited.map(|lamp| lamp.id()).collect();
+    if first.len() > MOST_APART {
+        first.clear();
+    }
+    for id in &old.first {
+        if !first.contains(id) && world.lights.all().any(|lamp| lamp.id() == *id) {
+            first.push(*id);
+        }
+    }
+    first.truncate(MOST_APART);
+    first
 }
 
 /// A light, and where it is kept.
@@ -134,16 +165,16 @@ fn same_planes(old: &Subject, new: &Subject) -> Option<Vec<Option<usize>>> {
 }
 
 impl Engine {
-    /// Renders another world from now on, and keeps what stays true of the picture. False, and nothing done, where that is
+    /// Renders another world from now on, its lights with these gains, and keeps what stays true of the picture. False, and nothing done, where that is
     /// nothing, or where another render has its first picture sooner.
-    pub fn edit(&self, world: World) -> bool {
+    pub fn edit(&self, world: World, gains: &Gains) -> bool {
         if !self.has_begun() {
             return false;
         }
         let mut waiting = lock(&self.edits);
         let now = self.subject();
         let old = waiting.as_ref().map_or(&*now, |edit| &edit.subject);
-        let Some(mut edit) = Edit::between(old, world) else {
+        let Some(mut edit) = Edit::between(old, world, gains) else {
             return false;
         };
         if let Some(before) = &*waiting {
@@ -166,14 +197,16 @@ impl Engine {
 
     /// Becomes what the edit that waits wants, while nothing is traced.
     pub(super) fn take_edit(&self) {
-        let Some(edit) = lock(&self.edits).take() else {
+        let Some(mut edit) = lock(&self.edits).take() else {
             return;
         };
         self.edit_waits.store(false, Ordering::Relaxed);
         let needs_rays = edit.needs_rays();
+        let arrangement = self.subject().arrangement.wrapping_add(1);
+        edit.subject.arrangement = arrangement;
         self.set_subject(edit.subject);
         for tile in &self.tiles {
-            lock(tile).rearrange(&edit.from);
+            lock(tile).rearrange(&edit.from, arrangement);
         }
         if needs_rays {
             // Until it has light everywhere again, what is seen stays.
@@ -186,11 +219,9 @@ impl Engine {
 #[cfg(test)]
 mod tests {
     use super::super::sample_chunk::Subject;
-    use super::super::test_scene::{camera, settings, world};
+    use super::super::test_scene::{camera, edited, lit, many, settings};
     use super::super::{Ending, Progressive};
-    use crate::trace::{
-        DirectionalLight, Lights, ParallelogramLight, PointLight, SegmentLight, Untinted, World,
-    };
+    use crate::trace::{Gains, Lights, PointLight, Untinted, World};
     use glam::{UVec2, Vec3};
     use std::sync::Arc;
 
@@ -198,60 +229,6 @@ mod tests {
 
     fn start(world: &World, spp: u32) -> Progressive {
         Progressive::start(world.clone(), camera(), settings(SIZE, spp)).unwrap()
-    }
-
-    /// The world with one light of each kind, and two of the last.
-    fn lit() -> World {
-        let panel = |id: u64, x: f32, colors| ParallelogramLight {
-            id,
-            corner: Vec3::new(x, 1.5, 0.2),
-            edges: [Vec3::X * 0.4, Vec3::Z * 0.3],
-            colors,
-            two_sided: true,
-            visible: false,
-            samples: 2,
-        };
-        let lights = Lights {
-            points: vec![PointLight {
-                id: 100,
-                position: Vec3::new(0.3, 1.2, 1.0),
-                color: Vec3::new(2.0, 1.0, 0.5),
-                cone: None,
-            }],
-            directionals: vec![DirectionalLight {
-                id: 101,
-                to_light: Vec3::new(0.3, 0.9, 0.2).normalize(),
-                color: Vec3::splat(0.4),
-                disc: None,
-                samples: 1,
-            }],
-            segments: vec![SegmentLight {
-                id: 102,
-                ends: [Vec3::new(-0.5, 1.0, 0.6), Vec3::new(0.5, 1.3, 0.4)],
-                colors: [Vec3::ONE, Vec3::Z],
-                samples: 1,
-            }],
-            parallelograms: vec![
-                panel(103, -0.6, [Vec3::ONE, Vec3::X, Vec3::splat(0.3), Vec3::Y]),
-                panel(104, 0.4, [Vec3::ONE; 4]),
-            ],
-            moving: Vec::new(),
-        };
-        World {
-            lights: Arc::new(lights),
-            ..world()
-        }
-        .with_needs()
-    }
-
-    fn edited(world: &World, edit: impl FnOnce(&mut Lights)) -> World {
-        let mut lights = (*world.lights).clone();
-        edit(&mut lights);
-        World {
-            lights: Arc::new(lights),
-            ..world.clone()
-        }
-        .with_needs()
     }
 
     #[test]
@@ -268,7 +245,7 @@ mod tests {
                     *color *= factor.max_element();
                 }
             });
-            assert!(render.edit(world.clone()));
+            assert!(render.edit(world.clone(), &Gains::default()));
             assert_eq!(render.wait(), Ending::Samples);
             assert_eq!(render.status().rays, rays, "no ray more");
             let fresh = start(&world, 16);
@@ -349,7 +326,7 @@ mod tests {
                 }
                 now = edited(&now, |lights| change(lights, &mut numbers));
                 kept += 1;
-                if render.edit(now.clone()) {
+                if render.edit(now.clone(), &Gains::default()) {
                     taken += 1;
                 } else {
                     render = start(&now, spp);
@@ -371,7 +348,7 @@ mod tests {
     fn lights_that_share_a_plane_are_rendered_again_together_and_a_light_that_is_seen_with_all() {
         let before = lit();
         let subject = |world: &World, lights| Subject {
-            light: Untinted::of(world, lights),
+            light: Untinted::of(world, lights, &[], &Gains::default()),
             ..Subject::new(world.clone(), camera(), settings(SIZE, 1), true)
         };
         let planes = |world: &World, lights| {
@@ -397,6 +374,27 @@ mod tests {
             materials: Arc::new((*before.materials).clone()),
             ..before.clone()
         };
-        assert!(super::Edit::between(&subject(&before, 8), other).is_none());
+        assert!(super::Edit::between(&subject(&before, 8), other, &Gains::default()).is_none());
+    }
+
+    #[test]
+    fn who_is_edited_comes_first_and_nobody_where_all_are() {
+        let world = many(1..41);
+        let subject = Subject::new(world.clone(), camera(), settings(SIZE, 1), true);
+        let first = |edit: &dyn Fn(&mut Lights)| {
+            let world = edited(&world, |lights| edit(lights));
+            super::edited_first(&subject, &world)
+        };
+        assert_eq!(first(&|lights| lights.points[36].color.x = 0.5), [37]);
+        let none: [u64; 0] = [];
+        assert_eq!(first(&|lights| lights.points[2].color.x = 0.5), none);
+        let all = |lights: &mut Lights| lights.points.iter_mut().for_each(|l| l.color *= 0.5);
+        assert_eq!(first(&all), none);
+        let subject = subject.edited(world.clone(), vec![30, 20], Gains::default());
+        let moved = edited(&world, |lights| {
+            lights.points[39].position.x = 0.5;
+            lights.points.remove(19);
+        });
+        assert_eq!(super::edited_first(&subject, &moved), [40, 30]);
     }
 }

@@ -3,14 +3,15 @@
 use super::control::{Control, Signal};
 use super::edit::Edit;
 use super::error::{Decline, ErrorEstimate, Moves};
-use super::lock;
 use super::preview::Preview;
 use super::queue::Queue;
 use super::sample_chunk::{BatchSize, Subject, with_scratch};
 use super::status::{Ending, State, Status, TrendPoint, seconds_left};
+use super::tile_planes::PLANE_BYTES;
 use super::tile_state::{Chunk, TileState};
-use super::tiles::{Tile, TileGrid};
+use super::tiles::{FilmPixel, Tile, TileGrid};
 use super::unmet::Unmet;
+use super::{FilmMemory, lock};
 use crate::trace::RayCounts;
 use crate::trace::planes::OWN;
 use bevy::math::URect;
@@ -144,6 +145,22 @@ impl Engine {
 
     pub fn size(&self) -> UVec2 {
         self.grid.size
+    }
+
+    pub fn memory(&self) -> FilmMemory {
+        let subject = self.subject();
+        let pixels = self.grid.pixels();
+        let planes = if subject.stays_apart {
+            subject.planes()
+        } else {
+            0
+        };
+        let plane = pixels * PLANE_BYTES as u64;
+        FilmMemory {
+            planes,
+            plane,
+            total: pixels * size_of::<FilmPixel>() as u64 + planes as u64 * plane,
+        }
     }
 
     /// Whether a tile is one of those that are rendered.

@@ -3,10 +3,11 @@
 use super::engine::{Engine, Mode};
 use super::render::{Rendered, finish};
 use super::sample_chunk::Subject;
-use super::{Picture, Status};
+use super::{Picture, Status, TILE, lock};
 use crate::scene::RenderSettings;
 use crate::trace::planes::OWN;
-use crate::trace::{Camera, Planes, Untinted, World, samples_per_pixel};
+use crate::trace::{Camera, Gains, Planes, Untinted, World, samples_per_pixel};
+use glam::{UVec2, Vec3};
 use std::ops::Range;
 
 /// What shines by itself, and what each light adds: together they are the picture, but for the rounding of f32.
@@ -30,6 +31,11 @@ pub struct LightPicture {
 impl LightPictures {
     /// Pictures of one light each, at most; the others share one more.
     pub const MOST: usize = Planes::MOST - 1;
+
+    /// How many pictures there are of so many lights, that of what shines by itself among them.
+    pub fn planes(lights: usize) -> usize {
+        1 + lights.min(Self::MOST + 1)
+    }
 }
 
 /// What [`render`](super::render()) renders, and the same light by light.
@@ -40,7 +46,8 @@ pub fn render_lights(
     progress: &(dyn Fn(&Status) + Sync),
 ) -> (Rendered, LightPictures) {
     let subject = Subject {
-        light: Untinted::of(world, LightPictures::MOST),
+        light: Untinted::of(world, LightPictures::MOST, &[], &Gains::default()),
+        stays_apart: true,
         ..Subject::new(world.clone(), camera.clone(), settings.clone(), true)
     };
     let samples: Range<u64> = 0..samples_per_pixel(world, camera, settings).into();
@@ -58,23 +65,11 @@ pub fn render_lights(
 impl Engine {
     fn light_pictures(&self) -> LightPictures {
         let subject = self.subject();
-        let planes = &subject.light.planes;
-        let lights = (OWN + 1..planes.count()).map(|plane| {
-            let all = subject.world.lights.all().enumerate();
-            let here = all.filter(|(light, _)| planes.of_light(*light) == plane);
-            LightPicture {
-                ids: here.map(|(_, light)| light.id()).collect(),
-                picture: self.plane_picture(plane),
-            }
-        });
-        LightPictures {
-            own: self.plane_picture(OWN),
-            lights: lights.collect(),
-        }
+        let pictures = |plane| self.plane_picture(plane, subject.light.tints[plane]);
+        of_planes(&subject, (0..subject.planes()).map(pictures).collect())
     }
 
-    fn plane_picture(&self, plane: usize) -> Picture {
-        let tint = self.subject().light.tints[plane];
+    fn plane_picture(&self, plane: usize, tint: Vec3) -> Picture {
         let mut picture = Picture::black(self.size());
         let width = picture.width as usize;
         for tile in 0..self.tiles.len() {
@@ -85,6 +80,59 @@ impl Engine {
             }
         }
         picture
+    }
+
+    /// Of every plane a picture of this size, for which a few pixels are read: with the lights' colours, and with the gains
+    /// of those alone that share a plane. `None` where light is not kept apart, and while some of it is missing.
+    pub fn light_sketches(&self, size: UVec2) -> Option<LightPictures> {
+        let subject = self.subject();
+        let mut pictures = vec![Picture::black(size); subject.planes()];
+        let per_side = UVec2::splat(SKETCH_SIDE);
+        let part = 1.0 / per_side.element_product() as f32;
+        for y in 0..size.y * per_side.y {
+            for x in 0..size.x * per_side.x {
+                let place = UVec2::new(x, y);
+                let middle = (place.as_vec2() + 0.5) / (size * per_side).as_vec2();
+                let pixel = (middle * self.size().as_vec2()).as_uvec2();
+                let pixel = pixel.min(self.size() - 1);
+                let state = lock(&self.tiles[self.grid.tile_of(pixel)]);
+                if !state.has_planes_of(&subject) {
+                    return None;
+                }
+                let within = pixel % TILE;
+                let at = (within.y * TILE + within.x) as usize;
+                let to = place / per_side;
+                for (plane, picture) in pictures.iter_mut().enumerate() {
+                    picture.pixels[(to.y * size.x + to.x) as usize] +=
+                        part * subject.light.colors[plane] * state.plane_mean(plane, at);
+                }
+            }
+        }
+        Some(of_planes(&subject, pictures))
+    }
+}
+
+/// Pixels along each side that are read for one of a sketch: enough for it to be told what it shows.
+const SKETCH_SIDE: u32 = 2;
+
+/// Pictures of a subject's planes, in their order, with their lights.
+fn of_planes(subject: &Subject, pictures: Vec<Picture>) -> LightPictures {
+    let planes = &subject.light.planes;
+    let ids = |plane| {
+        let all = subject.world.lights.all().enumerate();
+        let here = all.filter(move |(light, _)| planes.of_light(*light) == plane);
+        here.map(|(_, light)| light.id()).collect()
+    };
+    let mut pictures = pictures.into_iter();
+    LightPictures {
+        own: pictures.next().unwrap_or(Picture::black(UVec2::ZERO)),
+        lights: (OWN + 1..)
+            .zip(pictures)
+            .map(|(plane, picture)| LightPicture {
+                ids: ids(plane),
+                picture,
+            })
+            .collect(),
     }
 }
 

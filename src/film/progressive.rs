@@ -4,12 +4,13 @@ use super::control::Signal;
 use super::engine::{Engine, Mode};
 use super::pool::{Purpose, shared_pool};
 use super::sample_chunk::Subject;
-use super::{Ending, Film, PixelError, Snapshot, Status, Sum};
+use super::{Ending, Film, FilmMemory, LightMix, LightPictures, PixelError, Snapshot, Status, Sum};
 use crate::scene::RenderSettings;
-use crate::trace::{Camera, World, samples_per_pixel};
+use crate::trace::{Camera, Gains, World, samples_per_pixel};
 use bevy::math::URect;
 use glam::{UVec2, Vec2};
 use std::io;
+use std::ops::Range;
 use std::sync::Arc;
 use std::sync::mpsc::{Sender, channel};
 use std::thread;
@@ -33,19 +34,22 @@ impl Progressive {
     /// threads that all such renders share and that give way to others. The error is that of a system
     /// which has no more threads.
     pub fn start(world: World, camera: Camera, settings: RenderSettings) -> io::Result<Self> {
-        Self::start_region(world, camera, settings, None)
+        Self::start_region(world, camera, settings, None, &LightMix::default())
     }
 
     /// The same, of a region of the picture alone, in pixels: of the [`TILE`](super::TILE)s that it
     /// touches. They get the samples that they have in the whole picture; status and error are theirs,
-    /// and the rest of a snapshot stays as it is.
+    /// and the rest of a snapshot stays as it is. Lights are mixed as `mix` says.
     pub fn start_region(
         world: World,
         camera: Camera,
         settings: RenderSettings,
         region: Option<URect>,
+        mix: &LightMix,
     ) -> io::Result<Self> {
-        Self::start_for(Purpose::View, world, camera, settings, region)
+        let samples = 0..u64::from(samples_per_pixel(&world, &camera, &settings));
+        let subject = Subject::mixed(world, camera, settings, Vec::new(), mix);
+        Self::start_for(Purpose::View, subject, samples, region)
     }
 
     /// [`start`](Self::start) for a file that is written in the end: on threads of its own, which give way to
@@ -55,18 +59,17 @@ impl Progressive {
         camera: Camera,
         settings: RenderSettings,
     ) -> io::Result<Self> {
-        Self::start_for(Purpose::File, world, camera, settings, None)
+        let samples = 0..u64::from(samples_per_pixel(&world, &camera, &settings));
+        let subject = Subject::new(world, camera, settings, false);
+        Self::start_for(Purpose::File, subject, samples, None)
     }
 
     fn start_for(
         purpose: Purpose,
-        world: World,
-        camera: Camera,
-        settings: RenderSettings,
+        subject: Subject,
+        samples: Range<u64>,
         region: Option<URect>,
     ) -> io::Result<Self> {
-        let samples = 0..u64::from(samples_per_pixel(&world, &camera, &settings));
-        let subject = Subject::new(world, camera, settings, purpose == Purpose::View);
         let mode = Mode {
             watched: true,
             samples,
@@ -86,11 +89,12 @@ impl Progressive {
         Ok(Self { engine, edited })
     }
 
-    /// Renders another world from now on, which differs in its lights alone: the colour of one costs no ray, and one that
-    /// moved its own. Samples and error are those that there are; the last picture is that of a render of this world, but
+    /// Renders another world from now on, which differs in its lights alone, and their `gains`: the colour or the gain of one
+    /// costs no ray, and one that moved its own. Only of lights that share a plane, since there are many, another colour
+    /// costs rays too; one that is edited has its own from then on. Samples and error are those that there are; the last picture is that of a render of this world, but
     /// for the rounding of f32. False, and nothing done, where another render would show its first picture sooner.
-    pub fn edit(&self, world: World) -> bool {
-        let edited = self.engine.edit(world);
+    pub fn edit(&self, world: World, gains: &Gains) -> bool {
+        let edited = self.engine.edit(world, gains);
         if edited {
             // It fails only where the thread is gone by a bug that has been reported.
             let _ = self.edited.send(());
@@ -143,6 +147,23 @@ impl Progressive {
     /// Drawn on the current rayon pool.
     pub fn refresh(&self, snapshot: &mut Snapshot) -> bool {
         self.engine.redraw(snapshot)
+    }
+
+    /// Of what shines by itself and of each light that is kept apart a picture of this size, some pixels of the film: with
+    /// the lights' colours, and only where several share a picture with their gains. `None` where light is not kept apart,
+    /// and while some of it is missing.
+    pub fn light_sketches(&self, size: UVec2) -> Option<LightPictures> {
+        self.engine.light_sketches(size)
+    }
+
+    /// Pixels of the picture.
+    pub fn size(&self) -> UVec2 {
+        self.engine.size()
+    }
+
+    /// What the film takes when every pixel has samples.
+    pub fn memory(&self) -> FilmMemory {
+        self.engine.memory()
     }
 
     /// The film as it is now.
@@ -345,7 +366,13 @@ mod tests {
     fn a_region_gets_the_pictures_own_samples_and_the_rest_of_a_snapshot_stays() {
         let region = URect::new(20, 5, 40, 17);
         let grown = URect::new(16, 0, 48, 32);
-        let render = Progressive::start_region(world(), camera(), settings(SIZE, 20), Some(region));
+        let render = Progressive::start_region(
+            world(),
+            camera(),
+            settings(SIZE, 20),
+            Some(region),
+            &LightMix::default(),
+        );
         let render = render.unwrap();
         let mut snapshot = Snapshot::black(SIZE);
         snapshot.picture.pixels.fill(Vec3::splat(7.0));
@@ -396,8 +423,14 @@ mod tests {
     #[test]
     fn a_region_outside_the_picture_ends_at_once() {
         let outside = Some(URect::new(900, 0, 950, 9));
-        let render =
-            Progressive::start_region(world(), camera(), settings(SIZE, 20), outside).unwrap();
+        let render = Progressive::start_region(
+            world(),
+            camera(),
+            settings(SIZE, 20),
+            outside,
+            &LightMix::default(),
+        )
+        .unwrap();
         assert_eq!(render.wait(), Ending::Samples);
         assert_eq!(render.status().rays.total(), 0);
         assert_eq!(render.snapshot().picture, Picture::black(SIZE));

@@ -1,15 +1,17 @@
 //! The samples of a chunk: batch by batch, so that a render can stop between two of them.
 
-use super::Sum;
 use super::sum_columns::SumColumns;
+use super::tile_planes::PLANE_BYTES;
 use super::tile_state::{Chunk, TILE_PIXELS};
-use super::tiles::Tile;
+use super::tiles::{Tile, TileGrid};
 use super::unmet::{NO_OCTAVES, Octaves, octave};
+use super::{LightMix, Sum};
 use crate::scene::RenderSettings;
 use crate::trace::lights::sample_count;
 use crate::trace::planes::OWN;
 use crate::trace::{
-    Camera, Dome, PlaneSet, RayCounts, SampleId, Untinted, Workspace, World, radiance_in_planes,
+    Camera, Dome, Gains, PlaneSet, RayCounts, SampleId, Untinted, Workspace, World,
+    radiance_in_planes,
 };
 use glam::{UVec2, Vec3};
 use std::cell::RefCell;
@@ -20,51 +22,81 @@ use std::time::{Duration, Instant};
 /// What samples depend on.
 #[derive(Clone)]
 pub(super) struct Subject {
+    /// With the gains of the mix.
     pub world: World,
     pub camera: Camera,
     pub settings: RenderSettings,
     /// The same world as it is traced: its lights without the tints that can be changed afterwards.
     pub light: Untinted,
-    /// Whether its lights may be edited, and so have planes of their own.
+    /// Whether its lights have planes of their own.
     pub stays_apart: bool,
+    /// Lights that have a plane of their own before others: those that were edited last, by their `SceneId`s.
+    pub first: Vec<u64>,
     /// Counts its edits.
     pub edit: u32,
+    /// Counts those that gave planes other lights.
+    pub arrangement: u32,
 }
 
-/// How many lights of a picture of this size have a plane each; the others share one. At most eight, and no more than fit
-/// into 1 GB: a pixel of a plane that stays apart takes 60 bytes.
-fn lights_apart(size: UVec2) -> usize {
-    let plane = 60.0 * size.as_dvec2().element_product();
-    ((1e9 / plane.max(1.0)) as usize).min(8)
+/// Lights of a picture that have a plane each, at the most; the others share one.
+pub(super) const MOST_APART: usize = 8;
+/// What all planes of a picture may take together, in bytes.
+const MOST_BYTES: f64 = 1e9;
+
+/// How many lights of a picture of this size have a plane each, so that all planes, that of the others and that of what
+/// shines by itself among them, take no more than [`MOST_BYTES`]. `None` where there is no room for any.
+fn lights_apart(size: UVec2) -> Option<usize> {
+    let plane = PLANE_BYTES as f64 * TileGrid::new(size).pixels() as f64;
+    let planes = (MOST_BYTES / plane.max(1.0)) as usize;
+    Some(planes.checked_sub(2)?.min(MOST_APART))
 }
 
 impl Subject {
-    /// Of a world, seen in some way. Where its lights may be edited, they have planes of their own.
+    /// Of a world, seen in some way.
     pub fn new(world: World, camera: Camera, settings: RenderSettings, stays_apart: bool) -> Self {
+        let mix = LightMix {
+            apart: stays_apart,
+            ..LightMix::default()
+        };
+        Self::mixed(world, camera, settings, Vec::new(), &mix)
+    }
+
+    /// The same with a mix. Where its lights are kept apart they have planes of their own, and those in `first` before
+    /// others.
+    pub fn mixed(
+        world: World,
+        camera: Camera,
+        settings: RenderSettings,
+        first: Vec<u64>,
+        mix: &LightMix,
+    ) -> Self {
+        let apart = lights_apart(settings.size).filter(|_| mix.apart);
         Self {
-            stays_apart,
-            light: if stays_apart {
-                Untinted::of(&world, lights_apart(settings.size))
-            } else {
-                Untinted::together(&world)
+            stays_apart: apart.is_some(),
+            light: match apart {
+                Some(own) => Untinted::of(&world, own, &first, &mix.gains),
+                None => Untinted::together(&world, &mix.gains),
             },
+            world: mix.gains.applied(&world),
+            first,
             edit: 0,
-            world,
+            arrangement: 0,
             camera,
             settings,
         }
     }
 
     /// The same of another world, seen in the same way.
-    pub fn edited(&self, world: World) -> Self {
+    pub fn edited(&self, world: World, first: Vec<u64>, gains: Gains) -> Self {
+        let mix = LightMix {
+            apart: self.stays_apart,
+            gains,
+        };
+        let (camera, settings) = (self.camera.clone(), self.settings.clone());
         Self {
             edit: self.edit + 1,
-            ..Self::new(
-                world,
-                self.camera.clone(),
-                self.settings.clone(),
-                self.stays_apart,
-            )
+            arrangement: self.arrangement,
+            ..Self::mixed(world, camera, settings, first, &mix)
         }
     }
 
@@ -334,6 +366,7 @@ impl Scratch {
             world,
             planes,
             tints,
+            ..
         } = &subject.light;
         let count = self.samples.len();
         self.values.resize(planes.count() * count, Vec3::ZERO);

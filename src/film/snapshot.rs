@@ -106,9 +106,7 @@ impl Engine {
         if pixel.cmpge(self.size()).any() {
             return None;
         }
-        let columns = self.size().x.div_ceil(TILE);
-        let tile = (pixel.y / TILE) * columns + pixel.x / TILE;
-        let state = self.tile(tile as usize);
+        let state = self.tile(self.grid.tile_of(pixel));
         let mut pixels = state.pixels.to_vec();
         // A tile that no pass has reached has none.
         pixels.resize(TILE_PIXELS, FilmPixel::default());

@@ -28,10 +28,14 @@ impl Sum {
         }
     }
 
-    /// Adds what another sum holds times a factor for each channel: rounded to 53 bits, where that is not 1.
+    /// Adds what another sum holds times a factor for each channel: rounded to 53 bits, where that is not 1. What is larger
+    /// than a sum can hold stays as large as that.
     pub fn merge_scaled(&mut self, other: &Self, factor: DVec3) {
         if factor == DVec3::ONE {
-            return self.merge(other);
+            for (sum, other) in self.0.iter_mut().zip(other.0) {
+                *sum = sum.saturating_add(other);
+            }
+            return;
         }
         for ((sum, other), factor) in self.0.iter_mut().zip(other.0).zip(factor.to_array()) {
             if other != 0 {

@@ -2,7 +2,10 @@
 
 use crate::bvh::{Aggregate, BuildOptions, Instance, MeshTree, Triangles};
 use crate::scene::RenderSettings;
-use crate::trace::{Camera, Lights, Material, Mesh, Object, ParallelogramLight, World};
+use crate::trace::{
+    Camera, DirectionalLight, Lights, Material, Mesh, Object, ParallelogramLight, PointLight,
+    SegmentLight, World,
+};
 use glam::{Affine3A, UVec2, Vec3};
 use std::sync::Arc;
 
@@ -84,4 +87,72 @@ pub(super) fn settings(size: UVec2, spp: u32) -> RenderSettings {
         spp,
         ..RenderSettings::default()
     }
+}
+
+/// The world with one light of each kind, and two of the last.
+pub(super) fn lit() -> World {
+    let panel = |id: u64, x: f32, colors| ParallelogramLight {
+        id,
+        corner: Vec3::new(x, 1.5, 0.2),
+        edges: [Vec3::X * 0.4, Vec3::Z * 0.3],
+        colors,
+        two_sided: true,
+        visible: false,
+        samples: 2,
+    };
+    let lights = Lights {
+        points: vec![PointLight {
+            id: 100,
+            position: Vec3::new(0.3, 1.2, 1.0),
+            color: Vec3::new(2.0, 1.0, 0.5),
+            cone: None,
+        }],
+        directionals: vec![DirectionalLight {
+            id: 101,
+            to_light: Vec3::new(0.3, 0.9, 0.2).normalize(),
+            color: Vec3::splat(0.4),
+            disc: None,
+            samples: 1,
+        }],
+        segments: vec![SegmentLight {
+            id: 102,
+            ends: [Vec3::new(-0.5, 1.0, 0.6), Vec3::new(0.5, 1.3, 0.4)],
+            colors: [Vec3::ONE, Vec3::Z],
+            samples: 1,
+        }],
+        parallelograms: vec![
+            panel(103, -0.6, [Vec3::ONE, Vec3::X, Vec3::splat(0.3), Vec3::Y]),
+            panel(104, 0.4, [Vec3::ONE; 4]),
+        ],
+        moving: Vec::new(),
+    };
+    World {
+        lights: Arc::new(lights),
+        ..world()
+    }
+    .with_needs()
+}
+
+pub(super) fn edited(world: &World, edit: impl FnOnce(&mut Lights)) -> World {
+    let mut lights = (*world.lights).clone();
+    edit(&mut lights);
+    World {
+        lights: Arc::new(lights),
+        ..world.clone()
+    }
+    .with_needs()
+}
+
+/// Point lights in a row, with these numbers.
+pub(super) fn many(ids: std::ops::Range<u64>) -> World {
+    edited(&lit(), |lights| {
+        lights.points = ids
+            .map(|id| PointLight {
+                id,
+                position: Vec3::new(0.01 * id as f32 - 1.0, 1.2, 0.9),
+                color: Vec3::new(0.4, 0.3, 0.2),
+                cone: None,
+            })
+            .collect();
+    })
 }

@@ -20,6 +20,9 @@ struct Plane {
     counts: [u32; 2],
 }
 
+/// What a pixel of a plane takes.
+pub(super) const PLANE_BYTES: usize = size_of::<Sum>() + size_of::<[f32; 3]>();
+
 impl Plane {
     fn empty() -> Self {
         Self {

@@ -80,6 +80,8 @@ pub(super) struct TileState {
     planes: Option<Box<TilePlanes>>,
     /// The edit by whose tints they are.
     edit: u32,
+    /// [`Subject::arrangement`] of its planes.
+    arrangement: u32,
     pending: Option<Box<Pending>>,
     /// How far the means moved, for each half of the pixels.
     pub moves: [Moves; 2],
@@ -105,6 +107,7 @@ impl TileState {
             pixels: Box::default(),
             planes: None,
             edit: 0,
+            arrangement: 0,
             pending: None,
             moves: [Moves::default(); 2],
             rays: 0,
@@ -220,7 +223,8 @@ impl TileState {
 
     /// The pixels are what they are with the subject's tints.
     pub fn retint(&mut self, subject: &Subject) {
-        if self.edit == subject.edit {
+        // While an edit arrives here its tints are those of other planes.
+        if self.edit == subject.edit || self.arrangement != subject.arrangement {
             return;
         }
         self.edit = subject.edit;
@@ -234,12 +238,11 @@ impl TileState {
         }
     }
 
-    /// The planes of an edited scene are those of these numbers before. What has arrived of a pass is of no plane that
-    /// there is.
-    pub fn rearrange(&mut self, from: &[Option<usize>]) {
+    /// The planes of an edited scene, its `arrangement`, are those of these numbers before. What has arrived of a pass is of
+    /// no plane that there is.
+    pub fn rearrange(&mut self, from: &[Option<usize>], arrangement: u32) {
         self.pending = None;
-        // Whoever looked since the tints are others has folded planes that were not theirs.
-        self.edit = u32::MAX;
+        self.arrangement = arrangement;
         if let Some(planes) = &mut self.planes {
             planes.rearrange(from);
         }
@@ -261,6 +264,12 @@ impl TileState {
     pub fn plane_mean(&self, plane: usize, at: usize) -> Vec3 {
         let planes = self.planes.as_ref();
         planes.map_or(Vec3::ZERO, |planes| planes.mean(plane, at))
+    }
+
+    /// Whether it has all the light that a subject has, in the same planes.
+    pub fn has_planes_of(&self, subject: &Subject) -> bool {
+        let has_all = |planes: &TilePlanes| !planes.lacks_light();
+        self.arrangement == subject.arrangement && self.planes.as_deref().is_some_and(has_all)
     }
 
     /// Whether something that shines is missing in its pixels.

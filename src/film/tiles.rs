@@ -155,6 +155,17 @@ impl TileGrid {
         self.columns() * self.size.y.div_ceil(TILE)
     }
 
+    /// Pixels in memory: those of whole tiles.
+    pub fn pixels(&self) -> u64 {
+        u64::from(self.count()) * u64::from(TILE * TILE)
+    }
+
+    /// The number of the tile that a pixel of the picture lies in.
+    pub fn tile_of(&self, pixel: UVec2) -> usize {
+        let tile = pixel / TILE;
+        tile.y as usize * self.columns() as usize + tile.x as usize
+    }
+
     pub fn tile(&self, i: u32) -> Tile {
         let origin = UVec2::new(i % self.columns(), i / self.columns()) * TILE;
         let extent = (self.size - origin).min(UVec2::splat(TILE));

@@ -11,6 +11,7 @@
 use super::error::{FileError, Problem};
 use super::model::MeshParts;
 use super::sources::SceneFiles;
+use crate::film::LightPictures;
 use bevy::asset::Assets;
 use bevy::ecs::world::World;
 use bevy::image::Image;
@@ -203,12 +204,35 @@ pub(crate) fn beside(budget: &Budget, world: &World) -> Budget {
     }
 }
 
+/// Of a film that keeps this many lights apart, besides: for each sums with their errors, of 60 bytes a pixel, the picture of
+/// them, and its channels before they are written.
+fn light_bytes(size: UVec2, lights: usize) -> u64 {
+    const PIXEL: u64 = 84;
+    let planes = LightPictures::planes(lights) as u64;
+    (u64::from(size.x) * u64::from(size.y) * PIXEL).saturating_mul(planes)
+}
+
 /// Refuses a film of this size that does not fit beside the open scene, before it is rendered.
 pub fn check_film(world: &World, file: &Path, size: UVec2) -> Result<(), FileError> {
+    check_bytes(world, file, film_bytes(size))
+}
+
+/// The same of one that keeps the light of so many lights apart ([`render_lights`](crate::film::render_lights)).
+pub fn check_film_of_lights(
+    world: &World,
+    file: &Path,
+    size: UVec2,
+    lights: usize,
+) -> Result<(), FileError> {
+    let bytes = film_bytes(size).saturating_add(light_bytes(size, lights));
+    check_bytes(world, file, bytes)
+}
+
+fn check_bytes(world: &World, file: &Path, bytes: u64) -> Result<(), FileError> {
     let files = world.get_resource::<SceneFiles>();
     let budget = files.map_or_else(Budget::default, |files| files.limits.memory.clone());
     beside(&budget, world)
-        .claim(film_bytes(size))
+        .claim(bytes)
         .map_err(|problem| FileError::new(file, problem))
 }
 

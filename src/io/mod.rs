@@ -61,7 +61,7 @@ mod text;
 #[cfg(feature = "editor")]
 pub(crate) use budget::beside;
 pub(crate) use budget::film_bytes;
-pub use budget::{Budget, Size, check_film};
+pub use budget::{Budget, Size, check_film, check_film_of_lights};
 pub use error::{FileError, Place, Problem};
 pub use folder::Folder;
 pub use identity::check_outputs;
@@ -76,8 +76,8 @@ pub use open::{OpenOptions, Opened, SceneSource, open, open_empty};
 pub use part::{Merge, MergeError, Part, read_part, write_part};
 pub(crate) use picture::stage_picture;
 pub use picture::{
-    Note, PICTURE_EXTENSIONS, PictureFormat, check_picture, check_size, picture_notes,
-    write_lights, write_picture, write_picture_with_notes, write_rendered,
+    LightLayers, Note, PICTURE_EXTENSIONS, PictureFormat, check_picture, check_size, layer_name,
+    picture_notes, write_lights, write_picture, write_picture_with_notes, write_rendered,
 };
 pub use problems::{LoadProblem, LoadProblems};
 pub(crate) use regular::{TEXT_BYTES, open_regular, read_text};

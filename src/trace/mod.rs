@@ -35,6 +35,7 @@ mod emitters;
 mod environment;
 mod first_hit;
 mod footprint;
+mod gains;
 mod glossy_places;
 mod lamp;
 mod light_frames;
@@ -82,6 +83,7 @@ pub use emitters::emitters;
 pub use environment::Environment;
 pub use first_hit::{FirstHit, central_hits, central_ray, first_hits};
 pub use footprint::Cone;
+pub use gains::Gains;
 pub use lamp::Lamp;
 pub use lights::{
     DirectionalLight, LightPoint, Lights, MovingLight, ParallelogramLight, PointLight, SegmentLight,

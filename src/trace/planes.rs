@@ -4,7 +4,8 @@
 //! `own + Σ tint · plane`: one plane for what shines by itself (surfaces, the background), and one for what each light
 //! adds at a tint of 1. Another tint is another sum of the same planes, without a ray.
 
-use super::{Lights, World};
+use super::gains::times;
+use super::{Gains, Lights, World};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -32,7 +33,9 @@ pub struct Untinted {
     pub world: World,
     /// Which plane is whose.
     pub planes: Planes,
-    /// Of each plane: linear RGB, 1 of those that hold what is not tinted.
+    /// Of each plane what was taken off its light: linear RGB, 1 of those that hold what is not tinted.
+    pub colors: Vec<Vec3>,
+    /// Of each plane what it is multiplied by: that colour, and the light's gain.
     pub tints: Vec<Vec3>,
 }
 
@@ -45,13 +48,29 @@ impl Planes {
         Self::default()
     }
 
-    /// The first `own` lights get a plane each; the others share the last.
-    pub fn of(lights: &Lights, own: usize) -> Self {
+    /// `own` lights get a plane each: those in `first`, by their `SceneId`s, and then the first of the others. What is left
+    /// shares the last one.
+    pub fn of(lights: &Lights, own: usize, first: &[u64]) -> Self {
         let own = own.min(Self::MOST - 1);
-        let count = lights.count();
+        let ids: Vec<u64> = lights.all().map(|light| light.id()).collect();
+        let wanted = first
+            .iter()
+            .filter_map(|id| ids.iter().position(|other| other == id));
+        let mut is_alone = vec![false; ids.len()];
+        let mut left = own;
+        for light in wanted.chain(0..ids.len()) {
+            if left > 0 && !std::mem::replace(&mut is_alone[light], true) {
+                left -= 1;
+            }
+        }
+        let mut last = 0;
+        let of_light = is_alone.into_iter().map(|is_alone| {
+            last += u8::from(is_alone);
+            if is_alone { last } else { 1 + own as u8 }
+        });
         Self {
-            of_light: (0..count).map(|light| 1 + light.min(own) as u8).collect(),
-            apart: count.min(own + 1) as u8,
+            of_light: of_light.collect(),
+            apart: ids.len().min(own + 1) as u8,
         }
     }
 
@@ -69,7 +88,7 @@ impl Planes {
     }
 
     /// Whether a plane is one light's alone.
-    fn is_of_one(&self, plane: usize) -> bool {
+    pub fn is_of_one(&self, plane: usize) -> bool {
         self.of_light
             .iter()
             .filter(|of| usize::from(**of) == plane)
@@ -97,25 +116,34 @@ impl PlaneSet {
 }
 
 impl Untinted {
-    /// The world as it is, in one plane.
-    pub fn together(world: &World) -> Self {
+    /// The world with these gains, in one plane.
+    pub fn together(world: &World, gains: &Gains) -> Self {
         Self {
-            world: world.clone(),
+            world: gains.applied(world),
             planes: Planes::together(),
+            colors: vec![Vec3::ONE],
             tints: vec![Vec3::ONE],
         }
     }
 
-    /// Takes the tints off the lights of a world that get a plane each: the first `own`. The tint of a light that is of one
+    /// Takes the tints off the lights of a world that get a plane each ([`Planes::of`]). The tint of a light that is of one
     /// colour is that colour. Of one with a gradient it is a power of two, so that what is left of it is the same gradient,
-    /// digit for digit, and chooses the same places.
-    pub fn of(world: &World, own: usize) -> Self {
-        let planes = Planes::of(&world.lights, own);
-        let mut tints = vec![Vec3::ONE; planes.count()];
+    /// digit for digit, and chooses the same places. A light that shares a plane shines with its gain by itself.
+    pub fn of(world: &World, own: usize, first: &[u64], gains: &Gains) -> Self {
+        let planes = Planes::of(&world.lights, own, first);
+        let mut taken = vec![Vec3::ONE; planes.count()];
+        let mut tints = taken.clone();
         let mut lights = (*world.lights).clone();
+        let gains: Vec<Vec3> = lights.all().map(|light| gains.of(light.id())).collect();
+        let is_alone: Vec<bool> = (0..planes.count())
+            .map(|plane| planes.is_of_one(plane))
+            .collect();
         for (light, colors) in lights.colors_mut().enumerate() {
-            let plane = planes.of_light(light);
-            if !planes.is_of_one(plane) {
+            let (plane, gain) = (planes.of_light(light), gains[light]);
+            if !is_alone[plane] {
+                for color in colors {
+                    *color = times(*color, gain);
+                }
                 continue;
             }
             let first = colors[0];
@@ -125,7 +153,8 @@ impl Untinted {
                 let brightest = colors.iter().map(|color| color.max_element());
                 Vec3::splat(brightest.fold(0.0, f32::max).log2().floor().exp2())
             };
-            tints[plane] = tint;
+            taken[plane] = tint;
+            tints[plane] = times(tint, gain);
             for color in colors {
                 *color = Vec3::select(tint.cmpgt(Vec3::ZERO), *color / tint, Vec3::ONE);
             }
@@ -136,6 +165,7 @@ impl Untinted {
                 ..world.clone()
             },
             planes,
+            colors: taken,
             tints,
         }
     }
@@ -143,7 +173,7 @@ impl Untinted {
 
 impl Lights {
     /// The colours of every light, in the order of [`Self::all`].
-    fn colors_mut(&mut self) -> impl Iterator<Item = &mut [Vec3]> {
+    pub(super) fn colors_mut(&mut self) -> impl Iterator<Item = &mut [Vec3]> {
         use std::slice::from_mut;
         let points = self
             .points

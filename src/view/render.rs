@@ -4,7 +4,7 @@ use super::darkroom::{Darkroom, Order, Subject};
 use super::reference::TracedPicture;
 use super::traced::TracedView;
 use crate::film::views::Scale;
-use crate::film::{Progressive, State, Status};
+use crate::film::{LightMix, Progressive, State, Status};
 use crate::scene::RenderSettings;
 use crate::trace;
 use bevy::asset::Handle;
@@ -53,6 +53,7 @@ pub(super) struct Running {
     camera: trace::Camera,
     settings: RenderSettings,
     region: Option<URect>,
+    mix: LightMix,
     order: Order,
     pub(super) started: Instant,
     paused: bool,
@@ -66,7 +67,7 @@ impl TracedRender {
     }
 
     /// The render itself.
-    pub fn render(&self) -> Option<&Progressive> {
+    pub fn render(&self) -> Option<&Arc<Progressive>> {
         Some(&self.running.as_ref()?.render)
     }
 
@@ -137,6 +138,7 @@ pub(super) struct Wanted {
     pub settings: RenderSettings,
     /// In pixels; all where that is `None`.
     pub region: Option<URect>,
+    pub mix: LightMix,
     pub order: Order,
 }
 
@@ -148,6 +150,7 @@ impl TracedRender {
                 && running.camera == wanted.camera
                 && running.settings == wanted.settings
                 && running.region == wanted.region
+                && running.mix == wanted.mix
         })
     }
 
@@ -186,10 +189,11 @@ impl TracedRender {
             camera,
             settings,
             region,
+            mix,
             order,
         } = wanted;
         let (scene, seen_from, how) = ((*world).clone(), camera.clone(), settings.clone());
-        let render = match Progressive::start_region(scene, seen_from, how, region) {
+        let render = match Progressive::start_region(scene, seen_from, how, region, &mix) {
             Ok(render) => Arc::new(render),
             Err(problem) => {
                 self.fail(format!("the traced view cannot render: {problem}"));
@@ -202,6 +206,7 @@ impl TracedRender {
             camera,
             settings,
             region,
+            mix,
             order: order.clone(),
             started,
             paused: false,
@@ -219,11 +224,14 @@ impl Running {
     fn takes(&mut self, wanted: &Wanted) -> bool {
         let same_view = self.camera == wanted.camera
             && self.settings == wanted.settings
-            && self.region == wanted.region;
-        if !(same_view && self.render.edit((*wanted.world).clone())) {
+            && self.region == wanted.region
+            && self.mix.apart == wanted.mix.apart;
+        let gains = &wanted.mix.gains;
+        if !(same_view && self.render.edit((*wanted.world).clone(), gains)) {
             return false;
         }
         self.world = wanted.world.clone();
+        self.mix = wanted.mix.clone();
         self.order = wanted.order.clone();
         true
     }
@@ -278,6 +286,7 @@ mod tests {
             },
             settings,
             region,
+            mix: LightMix::default(),
         }
     }
 

@@ -8,8 +8,8 @@
 use super::darkroom::{Darkroom, Order, Print};
 use super::render::{PrintInfo, TracedRender, Wanted};
 use super::screen::{Screen, depth_image, depth_numbers, no_depth, picture_image};
-use crate::film::Ending;
 use crate::film::views::View;
+use crate::film::{Ending, LightMix};
 use crate::scene::{self, Output, RenderSettings, Sampling, SceneId};
 use crate::sync::{SyncSystems, Traced, TracedCameras};
 use crate::trace;
@@ -103,6 +103,10 @@ pub struct ViewSettings {
     pub spp: Option<u32>,
     /// The error or the time to stop at.
     pub sampling: Option<Sampling>,
+    /// Whether lights are kept apart, and what multiplies each: no ray is traced for another gain, and the scene stays as it
+    /// is.
+    #[reflect(ignore)]
+    pub mix: LightMix,
 }
 
 /// Triggered on a view when its picture is done and on the screen: by samples, error or time. Another
@@ -237,6 +241,7 @@ fn follow(
                 ..settings.clone()
             },
             region: view.region.map(|region| pixels_of(region, size)),
+            mix: own.mix,
             order: Order {
                 output: settings.output,
                 view: view.view,

@@ -10,6 +10,7 @@ use glassbox::film::Progressive;
 use glassbox::io::{OpenOptions, SceneSource, builtin, open};
 use glassbox::scene::{DirectionalLamp, ParallelogramLamp, PointLamp, RenderSettings, SegmentLamp};
 use glassbox::sync::{Traced, TracedCameras};
+use glassbox::trace::Gains;
 use std::path::Path;
 
 /// Changes every lamp of a kind; whether there is one.
@@ -43,7 +44,10 @@ fn start(app: &App) -> Progressive {
 
 fn edit(app: &mut App, render: &Progressive) -> bool {
     app.update();
-    let taken = render.edit((*app.world().resource::<Traced>().world).clone());
+    let taken = render.edit(
+        (*app.world().resource::<Traced>().world).clone(),
+        &Gains::default(),
+    );
     render.wait();
     taken
 }

@@ -19,6 +19,7 @@
 //! | [`answer`], [`first_steps`] | why a pixel is as it is; three things to try |
 //! | [`told`], [`readout`] | what is under the pointer: a line of the gizmos, a pixel |
 //! | [`context_menu`], [`palette`] | the table of commands: what fits a right click, and all of it |
+//! | [`mixer`] | what each light adds, and a mix of them, in a window over the picture |
 //! | [`dialogs`] | what is in front of everything |
 
 mod answer;
@@ -35,6 +36,7 @@ mod inspector;
 mod kind_icons;
 mod line_legend;
 mod menu_bar;
+mod mixer;
 mod notices;
 mod number_field;
 mod number_text;
@@ -115,7 +117,10 @@ fn order_pass(app: &mut App) {
 
 /// The commands of the panels, and what they hear of.
 fn add_commands(app: &mut App) {
-    app.add_commands(commands::commands())
+    app.init_resource::<mixer::Mixer>()
+        .add_commands(commands::commands())
+        .add_commands(mixer::commands())
+        .add_observer(mixer::forget_scene)
         .add_observer(commands::let_go)
         .add_observer(answer::note_question)
         .add_observer(answer::forget_question)
@@ -155,6 +160,7 @@ fn panels_ui(context: &egui::Context, world: &mut World) {
         readout::readout_ui(&ui, free, world, panels);
         told::told_ui(context, free, world, panels);
         rays::window_ui(context, free, world, panels);
+        mixer::mixer_ui(context, free, world);
         context_menu::context_menu_ui(context, world, panels);
         dialogs::dialogs_ui(context, world, panels);
         palette::palette_ui(context, world, panels);
@@ -167,6 +173,7 @@ fn panels_ui(context: &egui::Context, world: &mut World) {
         );
     });
     dispatch(world);
+    mixer::apply(world);
 }
 
 /// Lets go of what belongs to the scene that was open before.

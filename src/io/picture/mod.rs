@@ -6,6 +6,7 @@ mod content;
 mod dds;
 mod exr_blocks;
 mod jpeg;
+mod light_layers;
 mod open_exr;
 mod radiance;
 mod read;
@@ -14,6 +15,7 @@ mod write;
 
 pub(crate) use exr_blocks::block_bytes;
 pub(crate) use jpeg::cut_short;
+pub use light_layers::{LightLayers, layer_name};
 pub(crate) use read::{PictureUse, decode_picture, read_picture};
 pub use rendered::{Note, picture_notes, write_lights, write_rendered};
 pub(crate) use write::{encode_png, stage_picture};

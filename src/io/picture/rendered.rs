@@ -1,6 +1,7 @@
 //! Rendered pictures as files that say how they came about.
 
 use super::super::error::FileError;
+use super::light_layers::{LAYER, layer_name};
 use super::write::write_exr_layers;
 use super::{PictureFormat, write_picture_with_notes};
 use crate::film::{LightPictures, Picture, Status, develop};
@@ -39,17 +40,12 @@ pub fn write_lights(
     name: impl Fn(u64) -> String,
     notes: &[Note],
 ) -> Result<(), FileError> {
-    let mut layers = vec![("Combined_Own".to_owned(), &lights.own)];
+    let mut layers = vec![(format!("{LAYER}Own"), &lights.own)];
     for light in &lights.lights {
-        // A dot parts a layer's name from its channel's.
-        let names: Vec<String> = light
-            .ids
-            .iter()
-            .map(|id| name(*id).replace('.', "_"))
-            .collect();
+        let names: Vec<String> = light.ids.iter().map(|id| layer_name(&name(*id))).collect();
         let mut layer = match &names[..] {
-            [name] => format!("Combined_{name}"),
-            _ => "Combined_Others".to_owned(),
+            [name] => format!("{LAYER}{name}"),
+            _ => format!("{LAYER}Others"),
         };
         if layers.iter().any(|(taken, _)| *taken == layer) {
             layer = format!("{layer}-{}", light.ids[0]);

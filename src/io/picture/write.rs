@@ -153,11 +153,15 @@ pub(super) fn write_exr_layers(
 }
 
 /// The format's letters are those of Latin-1.
-fn latin(text: &str) -> Option<exr::meta::attribute::Text> {
+pub(super) fn latin_text(text: &str) -> String {
     let known = |letter: char| {
         if u32::from(letter) < 256 { letter } else { '?' }
     };
-    exr::meta::attribute::Text::new_or_none(text.chars().map(known).collect::<String>())
+    text.chars().map(known).collect()
+}
+
+fn latin(text: &str) -> Option<exr::meta::attribute::Text> {
+    exr::meta::attribute::Text::new_or_none(latin_text(text))
 }
 
 /// In this order however many threads compress the tiles, so that the same picture is the same file.

@@ -1,10 +1,15 @@
 //! The tab Render: every setting of the render, in groups.
 
-use super::super::fields::{properties_ui, row, section};
+use super::super::fields::{properties_ui, row, section, switch};
 use super::super::says::Says;
 use super::super::state::Panels;
 use super::environment::environment_ui;
+use crate::editor::preferences::Preferences;
+use crate::editor::viewport::EditorCamera;
+use crate::io::Size;
 use crate::scene::{RenderSettings, range_problems};
+use crate::view::TracedRender;
+use bevy::ecs::query::With;
 use bevy::ecs::world::World;
 use bevy::math::UVec2;
 use bevy_egui::egui::Ui;
@@ -108,6 +113,7 @@ pub(super) fn render_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
             }
         });
     }
+    film_ui(ui, world);
     for problem in range_problems(&settings) {
         ui.colored_label(ui.visuals().warn_fg_color, problem.to_string());
     }
@@ -125,6 +131,30 @@ pub(super) fn render_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     if settings != before {
         *world.resource_mut::<RenderSettings>() = settings;
     }
+}
+
+/// What the view's film takes, and whether it keeps lights apart: of the view, not of the scene.
+fn film_ui(ui: &mut Ui, world: &mut World) {
+    let mut renders = world.query_filtered::<&TracedRender, With<EditorCamera>>();
+    let render = renders.single(world).ok().and_then(TracedRender::render);
+    let film = render.map(|render| render.memory());
+    section(ui, "Film", true, |ui| {
+        let mut is_apart = world.resource::<Preferences>().lights_apart;
+        let says = "What each light adds is kept by itself: another colour, intensity or mix of lights costs no ray, and one that moves only its own. Off, the picture is the same and takes less memory, and each edit renders all of it again. Of the view: scenes and pictures do not keep it";
+        if switch(ui, "Keep lights apart", says, &mut is_apart, false) {
+            world.resource_mut::<Preferences>().lights_apart = is_apart;
+        }
+        let Some(film) = film else { return };
+        let says = "Memory of the view's film when every pixel has samples: the picture, and what is kept apart. Up to eight lights have a plane each, and the others and what shines by itself one each, as far as 1 GB goes; a light that is edited has its own";
+        let planes = match film.planes {
+            0 => "no planes".to_owned(),
+            planes => format!("{planes} × {}", Size(film.plane)),
+        };
+        row(ui, "Planes", says, |ui| ui.label(planes).says(says));
+        row(ui, "Whole film", says, |ui| {
+            ui.label(Size(film.total).to_string()).says(says)
+        });
+    });
 }
 
 /// Sizes that are often wanted, beside the field for the size.

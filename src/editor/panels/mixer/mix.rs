@@ -1,0 +1,238 @@
+//! What the mixer sets: factors of lights that the scene does not have until they are baked into it.
+
+use super::sketches::Sketches;
+use super::temperature::{self, WHITE};
+use crate::editor::edits::scene_entity;
+use crate::editor::history::History;
+use crate::editor::notice::Notices;
+use crate::editor::preferences::Preferences;
+use crate::editor::viewport::EditorCamera;
+use crate::film::LightMix;
+use crate::scene::{DirectionalLamp, ParallelogramLamp, PointLamp, SceneId, SegmentLamp};
+use crate::trace::Gains;
+use crate::view::ViewSettings;
+use bevy::camera::visibility::InheritedVisibility;
+use bevy::color::LinearRgba;
+use bevy::ecs::entity::Entity;
+use bevy::ecs::name::Name;
+use bevy::ecs::query::{Or, With};
+use bevy::ecs::resource::Resource;
+use bevy::ecs::world::World;
+use bevy::math::Vec3;
+use std::collections::{BTreeSet, HashMap};
+
+/// What is set for one light.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Strip {
+    /// Multiplies its light.
+    pub gain: f32,
+    /// Multiplies it too, channel by channel.
+    pub color: LinearRgba,
+    /// Kelvin; [`WHITE`] leaves it as it is.
+    pub kelvin: f32,
+    pub is_muted: bool,
+    pub is_solo: bool,
+}
+
+impl Default for Strip {
+    fn default() -> Self {
+        Self {
+            gain: 1.0,
+            color: LinearRgba::WHITE,
+            kelvin: WHITE,
+            is_muted: false,
+            is_solo: false,
+        }
+    }
+}
+
+impl Strip {
+    /// What colour and temperature make of a white light.
+    fn hue(&self) -> Vec3 {
+        let color = Vec3::new(self.color.red, self.color.green, self.color.blue);
+        color * temperature::factor(self.kelvin)
+    }
+
+    /// What its light is multiplied by where it is heard.
+    pub fn factor(&self) -> Vec3 {
+        self.gain * self.hue()
+    }
+}
+
+/// The light mixer: what it sets, and what it remembers between two frames.
+#[derive(Resource, Default)]
+pub(in crate::editor::panels) struct Mixer {
+    /// Whether it is shown.
+    pub is_open: bool,
+    strips: HashMap<SceneId, Strip>,
+    /// Groups of which only the heading is shown.
+    pub(super) folded: BTreeSet<String>,
+    pub(super) sketches: Sketches,
+}
+
+impl Mixer {
+    /// What is set for a light.
+    pub(super) fn strip(&self, id: SceneId) -> Strip {
+        self.strips.get(&id).cloned().unwrap_or_default()
+    }
+
+    /// Sets it.
+    pub(super) fn set(&mut self, id: SceneId, strip: Strip) {
+        if strip == Strip::default() {
+            self.strips.remove(&id);
+        } else {
+            self.strips.insert(id, strip);
+        }
+    }
+
+    /// Whether nothing is set.
+    pub fn is_neutral(&self) -> bool {
+        self.strips.is_empty()
+    }
+
+    /// Whether a light is not heard: it is muted, or others are alone.
+    pub fn is_silent(&self, id: SceneId) -> bool {
+        let strip = self.strips.get(&id);
+        let is_alone = self.strips.values().any(|strip| strip.is_solo);
+        strip.is_some_and(|strip| strip.is_muted) || is_alone && !strip.is_some_and(|s| s.is_solo)
+    }
+
+    /// What a light is multiplied by.
+    pub fn factor(&self, id: SceneId) -> Vec3 {
+        match self.is_silent(id) {
+            true => Vec3::ZERO,
+            false => self.strip(id).factor(),
+        }
+    }
+
+    /// Nothing is set any more.
+    pub fn reset(&mut self) {
+        self.strips.clear();
+    }
+
+    /// Another scene is open: its lights are others, whatever their numbers.
+    pub fn forget_scene(&mut self) {
+        self.strips.clear();
+        self.folded.clear();
+        self.sketches = Sketches::default();
+    }
+}
+
+/// A light of the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct LightRow {
+    pub id: SceneId,
+    pub name: String,
+    /// It is not hidden.
+    pub is_shown: bool,
+}
+
+type IsLamp = Or<(
+    With<PointLamp>,
+    With<DirectionalLamp>,
+    With<SegmentLamp>,
+    With<ParallelogramLamp>,
+)>;
+
+/// All lights of the scene, by their names and numbers.
+pub(super) fn lights(world: &mut World) -> Vec<LightRow> {
+    let mut query =
+        world.query_filtered::<(&SceneId, Option<&Name>, Option<&InheritedVisibility>), IsLamp>();
+    let rows = query.iter(world).map(|(&id, name, visibility)| LightRow {
+        id,
+        name: name.map_or_else(|| format!("light {}", id.0), ToString::to_string),
+        is_shown: visibility.is_none_or(|visibility| visibility.get()),
+    });
+    let mut rows: Vec<LightRow> = rows.collect();
+    rows.sort_by(|a, b| (&a.name, a.id).cmp(&(&b.name, b.id)));
+    rows
+}
+
+/// The editor's view shows the mix.
+pub(in crate::editor::panels) fn apply(world: &mut World) {
+    let apart = world.resource::<Preferences>().lights_apart;
+    let gains = if world.resource::<Mixer>().is_neutral() {
+        Gains::default()
+    } else {
+        let rows = lights(world);
+        let mixer = world.resource::<Mixer>();
+        let gains = rows.iter().map(|row| (row.id.0, mixer.factor(row.id)));
+        gains.collect()
+    };
+    let mix = LightMix { apart, gains };
+    let mut views = world.query_filtered::<(Entity, Option<&ViewSettings>), With<EditorCamera>>();
+    let other: Vec<Entity> = views
+        .iter(world)
+        .filter(|(_, own)| own.map_or(mix != LightMix::default(), |own| own.mix != mix))
+        .map(|(view, _)| view)
+        .collect();
+    for view in other {
+        let own = world.get::<ViewSettings>(view).cloned();
+        world.entity_mut(view).insert(ViewSettings {
+            mix: mix.clone(),
+            ..own.unwrap_or_default()
+        });
+    }
+}
+
+/// A lamp's intensity, and its colours.
+fn strengths(world: &mut World, lamp: Entity, change: impl Fn(&mut f32, &mut [LinearRgba])) {
+    if let Some(mut lamp) = world.get_mut::<PointLamp>(lamp) {
+        let PointLamp {
+            intensity, color, ..
+        } = &mut *lamp;
+        change(intensity, std::slice::from_mut(color));
+    }
+    if let Some(mut lamp) = world.get_mut::<DirectionalLamp>(lamp) {
+        let DirectionalLamp {
+            intensity, color, ..
+        } = &mut *lamp;
+        change(intensity, std::slice::from_mut(color));
+    }
+    if let Some(mut lamp) = world.get_mut::<SegmentLamp>(lamp) {
+        let SegmentLamp {
+            intensity, colors, ..
+        } = &mut *lamp;
+        change(intensity, colors);
+    }
+    if let Some(mut lamp) = world.get_mut::<ParallelogramLamp>(lamp) {
+        let ParallelogramLamp {
+            intensity, colors, ..
+        } = &mut *lamp;
+        change(intensity, colors);
+    }
+}
+
+/// The lights become what the mix makes of them, and the mix is neutral: the picture stays, and undo brings the lights back.
+/// One that is not heard has no intensity, and keeps its colour.
+pub(super) fn bake(world: &mut World) {
+    let rows = lights(world);
+    let mixer = world.resource::<Mixer>();
+    let shown = rows.iter().filter(|row| row.is_shown);
+    let mixed: Vec<_> = shown
+        .filter(|row| mixer.factor(row.id) != Vec3::ONE)
+        .map(|row| (row.id, mixer.is_silent(row.id), mixer.strip(row.id)))
+        .collect();
+    let count = mixed.len();
+    for (id, is_silent, strip) in mixed {
+        let Some(lamp) = scene_entity(world, id) else {
+            continue;
+        };
+        let gain = if is_silent { 0.0 } else { strip.gain };
+        let hue = strip.hue();
+        strengths(world, lamp, |intensity, colors| {
+            *intensity = (*intensity * gain).min(f32::MAX);
+            for color in colors {
+                color.red = (color.red * hue.x).min(f32::MAX);
+                color.green = (color.green * hue.y).min(f32::MAX);
+                color.blue = (color.blue * hue.z).min(f32::MAX);
+            }
+        });
+    }
+    world.resource_mut::<Mixer>().reset();
+    let mut history = world.resource_mut::<History>();
+    history.name_next("Bake the mix into the lights");
+    let said = crate::editor::texts::counted(count as u64, "light");
+    let mut notices = world.resource_mut::<Notices>();
+    notices.tell(format!("The mix is baked into {said}; undo takes it back."));
+}

@@ -1,0 +1,69 @@
+//! The colour of a glowing body.
+
+use bevy::math::Vec3;
+
+/// The temperature whose light counts as white, in kelvin: another one multiplies a light by what differs from it.
+pub(super) const WHITE: f32 = 6500.0;
+/// What [`factor`] is known of.
+pub(super) const RANGE: [f32; 2] = [1667.0, 25_000.0];
+
+/// What a light is multiplied by, linear RGB, so that what was as a body of 6500 K shines as one of this temperature does, of
+/// the same luminance. Kelvin, brought into [`RANGE`].
+pub(super) fn factor(kelvin: f32) -> Vec3 {
+    if kelvin == WHITE {
+        return Vec3::ONE;
+    }
+    let [least, most] = RANGE;
+    color(kelvin.clamp(least, most)) / color(WHITE)
+}
+
+/// Linear sRGB of luminance 1. The chromaticity is that of Kim et al., "Design of Advanced Color Temperature Control System
+/// for HDTV Applications" (2002): cubics that follow Planck's law to about 0.001 in x and y.
+fn color(kelvin: f32) -> Vec3 {
+    let t = 1e3 / kelvin;
+    let x = if kelvin < 4000.0 {
+        ((-0.266_123_9 * t - 0.234_358_9) * t + 0.877_695_6) * t + 0.179_910
+    } else {
+        ((-3.025_846_9 * t + 2.107_037_9) * t + 0.222_634_7) * t + 0.240_390
+    };
+    let y = if kelvin < 2222.0 {
+        ((-1.106_381_4 * x - 1.348_110_2) * x + 2.185_558_3) * x - 0.202_196_83
+    } else if kelvin < 4000.0 {
+        ((-0.954_947_6 * x - 1.374_185_9) * x + 2.091_370_2) * x - 0.167_488_67
+    } else {
+        ((3.081_758 * x - 5.873_386_7) * x + 3.751_13) * x - 0.370_014_83
+    };
+    let (x, z) = (x / y, (1.0 - x - y) / y);
+    // IEC 61966-2-1, from XYZ.
+    let red = 3.240_97 * x - 1.537_383 - 0.498_611 * z;
+    let green = -0.969_244 * x + 1.875_968 + 0.041_555 * z;
+    let blue = 0.055_63 * x - 0.203_977 + 1.056_972 * z;
+    // Below 1900 K such light is redder than a screen can be.
+    Vec3::new(red, green, blue).max(Vec3::ZERO)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cool_bodies_are_red_hot_ones_blue_and_all_are_as_bright() {
+        let mut before = f32::INFINITY;
+        for kelvin in [
+            1700.0, 2200.0, 2300.0, 3900.0, 4100.0, 6500.0, 9000.0, 25_000.0,
+        ] {
+            let light = factor(kelvin);
+            let ratio = light.x / light.z.max(1e-6);
+            assert!(ratio < before, "{kelvin} K: {light}");
+            before = ratio;
+            let luminance = color(kelvin).dot(Vec3::new(0.2126, 0.7152, 0.0722));
+            assert!((luminance - 1.0).abs() < 0.02, "{kelvin} K: {luminance}");
+        }
+        assert_eq!(factor(WHITE), Vec3::ONE);
+        assert_eq!(factor(0.0), factor(RANGE[0]));
+        // A lamp's 2856 K, CIE illuminant A, has the chromaticity (0.4476, 0.4074).
+        let lamp = color(2856.0);
+        let expected = Vec3::new(1.845, 0.826, 0.233);
+        assert!((lamp - expected).abs().max_element() < 0.01, "{lamp}");
+    }
+}
