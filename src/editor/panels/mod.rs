@@ -10,6 +10,7 @@
 //! | [`menu_bar`], [`toolbar`] | what is above; made of the table of commands |
 //! | [`hierarchy`] | the list of entities, from the [`outline`] |
 //! | [`fields`], [`number_field`] | rows of properties, as the schema says |
+//! | [`reflected`] | rows of what the schema does not know: parts of an app's own components |
 //! | [`inspector`] | the tabs Object, Render, Debug and BVH |
 //! | [`status`] | the line below |
 //! | [`overlays`], [`compare`], [`notices`] | divider, legend, region, a kept picture, messages over the picture |
@@ -22,6 +23,7 @@
 //! | [`dialogs`] | what is in front of everything |
 
 mod answer;
+mod any_number;
 mod bindings;
 mod commands;
 mod compare;
@@ -45,6 +47,7 @@ mod palette;
 mod pattern;
 mod rays;
 mod readout;
+mod reflected;
 mod says;
 mod several;
 mod state;
@@ -53,6 +56,7 @@ mod theme;
 mod told;
 mod toolbar;
 mod tree_pair;
+mod turn;
 
 #[cfg(test)]
 mod tests;

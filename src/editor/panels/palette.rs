@@ -176,7 +176,7 @@ fn find(world: &World, text: &str) -> Vec<Arc<Command>> {
 
 /// How well a name fits what was typed: letters at beginnings of words and letters in a row are
 /// worth most, long gaps and long names little. `None` where a letter is missing.
-fn score(text: &str, name: &str) -> Option<i32> {
+pub(super) fn score(text: &str, name: &str) -> Option<i32> {
     let letters = |text: &str| -> Vec<char> { text.to_lowercase().chars().collect() };
     let (wanted, name) = (letters(text), letters(name));
     let wanted: Vec<char> = wanted.into_iter().filter(|c| !c.is_whitespace()).collect();

@@ -4,7 +4,7 @@ use super::answer::Asked;
 use super::compare::Kept;
 use super::dialogs::{Gallery, PathForm, RenderForm};
 use super::hierarchy::ListKeys;
-use super::inspector::{Builders, ErrorCurve, PerformanceForm, Thumbnails, Trees, Turns};
+use super::inspector::{Builders, ErrorCurve, PerformanceForm, Thumbnails, Trees};
 use super::line_legend::LineTexts;
 use super::outline_rows::{Filter, Folded, Rows};
 use super::palette::Palette;
@@ -107,7 +107,6 @@ pub(super) struct Panels {
     pub kept: Option<Kept>,
     /// A name that is being typed in the inspector.
     pub naming: Option<Renaming>,
-    pub turns: Turns,
     pub thumbnails: Thumbnails,
     pub error_curve: ErrorCurve,
     pub trees: Trees,

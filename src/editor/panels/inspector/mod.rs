@@ -8,6 +8,7 @@ mod debug;
 mod environment;
 mod error_plot;
 mod figure_table;
+mod foreign;
 mod gizmos;
 mod lamps;
 mod maps;
@@ -37,7 +38,6 @@ pub(super) use bvh::Trees;
 pub(super) use error_plot::ErrorCurve;
 pub(super) use maps::Thumbnails;
 pub(super) use performance::PerformanceForm;
-pub(super) use transform::Turns;
 
 /// What was typed into a field that is drawn no more, and what was chosen in a file dialog, reaches
 /// those for whom it was meant: another object may be selected by now.

@@ -5,7 +5,7 @@ use super::super::kind_icons::kind_ui;
 use super::super::outline::{Kind, Outline};
 use super::super::says::Says;
 use super::super::state::{Panels, Renaming};
-use super::{camera, lamps, material, motion, shape, transform};
+use super::{camera, foreign, lamps, material, motion, shape, transform};
 use crate::editor::action::Action;
 use crate::editor::selection::Selection;
 use crate::scene::SceneId;
@@ -71,13 +71,14 @@ pub(super) fn object_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     );
     ui.add_space(4.0);
     if active.kind != Kind::Material {
-        transform::transform_ui(ui, world, &entities, panels);
+        transform::transform_ui(ui, world, &entities);
     }
     lamps::lamps_ui(ui, world, &entities);
     camera::camera_ui(ui, world, &entities);
     shape::shape_ui(ui, world, &entities);
     material::material_ui(ui, world, &entities, panels);
     motion::motion_ui(ui, world, &entities);
+    foreign::foreign_ui(ui, world, &entities);
 }
 
 /// The field for an entity's name.
