@@ -2,12 +2,16 @@
 //! and components that Glassbox has never heard of. Add `EditorPlugins`; that the window
 //! asks before it closes is the one setting beside it.
 //!
+//! `Turning` is reflected: select the box and its section stands in the inspector. Its edits are undone, it is copied
+//! along, other things get it with "Add component…", and saved scenes keep it.
+//!
 //! `cargo run --release --example embed_editor`; F10 switches between the editor and the app.
 
 use bevy::asset::RenderAssetUsages;
 use bevy::prelude::*;
 use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat};
 use glassbox::editor::{Editing, EditorPlugins};
+use glassbox::prelude::{KeepInSceneFiles, Quantity};
 
 fn main() {
     App::new()
@@ -17,18 +21,39 @@ fn main() {
             ..default()
         }))
         .add_plugins(EditorPlugins)
+        .keep_in_scene_files::<Turning>()
         .add_systems(Startup, spawn_scene)
         .add_systems(Update, (switch, turn, bob))
         .run();
 }
 
-/// The app's own: undo of a deletion brings it back as well.
-#[derive(Component)]
+/// The app's own. What is said of a field with `@` is heeded by the editor's fields; without it they take every number.
+#[derive(Component, Reflect)]
+#[reflect(Component, Default)]
 struct Turning {
     /// Radians a second.
+    #[reflect(@Quantity::within(-20.0, 20.0, "rad/s"))]
     speed: f32,
+    axis: Axis,
 }
 
+#[derive(Reflect, Default)]
+enum Axis {
+    #[default]
+    Up,
+    Other(Vec3),
+}
+
+impl Default for Turning {
+    fn default() -> Self {
+        Self {
+            speed: 1.0,
+            axis: Axis::Up,
+        }
+    }
+}
+
+/// Not reflected, so the editor cannot show it; undo of a deletion brings it back all the same.
 #[derive(Component)]
 struct Bobbing;
 
@@ -50,7 +75,10 @@ fn spawn_scene(
     ));
     commands.spawn((
         Name::new("Box"),
-        Turning { speed: 0.8 },
+        Turning {
+            speed: 0.8,
+            ..default()
+        },
         Mesh3d(meshes.add(Cuboid::default())),
         MeshMaterial3d(materials.add(Color::srgb(0.9, 0.35, 0.1))),
         Transform::from_xyz(-1.2, 0.5, 0.0),
@@ -123,7 +151,11 @@ fn turn(time: Res<Time>, editing: Res<Editing>, mut things: Query<(&Turning, &mu
         return;
     }
     for (turning, mut place) in &mut things {
-        place.rotate_y(turning.speed * time.delta_secs());
+        let axis = match turning.axis {
+            Axis::Up => Dir3::Y,
+            Axis::Other(axis) => Dir3::new(axis).unwrap_or(Dir3::Y),
+        };
+        place.rotate_axis(axis, turning.speed * time.delta_secs());
     }
 }
 

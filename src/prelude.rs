@@ -1,8 +1,9 @@
 //! What a Bevy app mostly names of Glassbox: `use glassbox::prelude::*;` beside Bevy's own.
 
+pub use crate::io::KeepInSceneFiles;
 pub use crate::scene::{
     DirectionalLamp, Environment, Lens, Motion, NotTraced, ParallelogramLamp, Phong, PhongMaps,
-    PointLamp, RenderSettings, Sampling, SceneCamera, SceneId, SegmentLamp, UsesMaterial,
+    PointLamp, Quantity, RenderSettings, Sampling, SceneCamera, SceneId, SegmentLamp, UsesMaterial,
 };
 pub use crate::sync::{Traced, TracedCameras};
 #[cfg(feature = "view")]

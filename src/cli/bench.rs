@@ -23,13 +23,19 @@ pub(super) struct Bench {
     #[arg(long)]
     with_none: bool,
     /// Print comma-separated values instead of Markdown
-    #[arg(long)]
+    #[arg(long, conflicts_with = "json")]
     csv: bool,
+    /// Print JSON instead of Markdown
+    #[arg(long)]
+    json: bool,
 }
 
 pub(super) fn run(args: Bench) -> Result<(), Failure> {
     args.settings.check()?;
     let measured = with_threads(args.settings.threads, || measure(&args))?;
+    if args.json {
+        return say(format_args!("{:#}", measured.json()));
+    }
     if args.csv {
         return say(measured.csv().trim_end());
     }
@@ -41,7 +47,7 @@ pub(super) fn run(args: Bench) -> Result<(), Failure> {
 }
 
 fn measure(args: &Bench) -> Result<Performance, Failure> {
-    let mut stage = Stage::open(&args.scene, args.csv)?;
+    let mut stage = Stage::open(&args.scene, args.csv || args.json)?;
     args.settings.apply(stage.app.world_mut())?;
     let settings = stage.settings();
     let settings = settings.clone();
@@ -55,7 +61,7 @@ fn measure(args: &Bench) -> Result<Performance, Failure> {
         runs: args.runs,
         with_none: args.with_none,
     };
-    let progress = Progress::new(args.csv, "");
+    let progress = Progress::new(args.csv || args.json, "");
     let mut tell = |what: &str, part: f32| {
         progress.show_step(what, (part * 1000.0) as u64, 1000);
         ControlFlow::Continue(())

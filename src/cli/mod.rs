@@ -22,6 +22,7 @@ mod scenes;
 mod set;
 mod set_entity;
 mod settings;
+mod shell;
 mod shown;
 mod stage;
 mod stats;
@@ -63,7 +64,7 @@ enum Command {
     /// Evaluate a pixel's samples again and show every ray: as text, JSON, or over the picture
     Inspect(inspect::Inspect),
     /// List the built-in scenes: name, triangles, lights, and what they show
-    Scenes,
+    Scenes(scenes::Scenes),
     /// Convert a scene or a model, a file or a built-in one, to .scn.ron, .obj or .glb
     Convert(convert::Convert),
     /// Open files without rendering them: what they hold, and what of it cannot be shown
@@ -72,6 +73,10 @@ enum Command {
     Bench(bench::Bench),
     /// Measure speed against error and write a report
     Report(report::Report),
+    /// Print a script that completes commands and options in a shell
+    Completions(shell::Completions),
+    /// Print a manual page, for `man -l -`
+    Man(shell::Man),
 }
 
 /// Runs the command line of this process.
@@ -93,11 +98,13 @@ fn execute(arguments: impl IntoIterator<Item = OsString>) -> Result<ExitCode, Fa
         Some(Command::Merge(merge)) => merge::run(merge)?,
         Some(Command::Bvh(bvh)) => bvh::run(bvh)?,
         Some(Command::Inspect(inspect)) => inspect::run(inspect)?,
-        Some(Command::Scenes) => scenes::run()?,
+        Some(Command::Scenes(scenes)) => scenes::run(scenes)?,
         Some(Command::Convert(convert)) => convert::run(convert)?,
         Some(Command::Check(check)) => check::run(check)?,
         Some(Command::Bench(bench)) => bench::run(bench)?,
         Some(Command::Report(report)) => report::run(report)?,
+        Some(Command::Completions(completions)) => shell::completions(completions)?,
+        Some(Command::Man(man)) => shell::man(man)?,
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -10,28 +10,64 @@ use bevy::asset::Assets;
 use bevy::ecs::query::{Or, With};
 use bevy::ecs::world::World;
 use bevy::mesh::{Mesh, Mesh3d};
+use clap::Args;
+use serde::Serialize;
 
-pub(super) fn run() -> Result<(), Failure> {
+#[derive(Args)]
+pub(super) struct Scenes {
+    /// Print JSON instead of a line each
+    #[arg(long)]
+    json: bool,
+}
+
+/// What there is to say of one.
+#[derive(Serialize)]
+struct Line {
+    name: &'static str,
+    triangles: usize,
+    lights: usize,
+    shows: &'static str,
+}
+
+pub(super) fn run(args: Scenes) -> Result<(), Failure> {
+    let lines = lines()?;
+    if args.json {
+        let text = serde_json::to_string_pretty(&lines);
+        return say(text.map_err(|error| Failure::System(error.to_string()))?);
+    }
+    let width = lines.iter().map(|line| line.name.len()).max().unwrap_or(0);
+    for Line {
+        name,
+        triangles,
+        lights,
+        shows,
+    } in lines
+    {
+        let plural = if lights == 1 { " " } else { "s" };
+        say(format_args!(
+            "{name:width$}  {triangles:>6} triangles  {lights} light{plural}  {shows}"
+        ))?;
+    }
+    Ok(())
+}
+
+fn lines() -> Result<Vec<Line>, Failure> {
     let mut app = headless_app();
-    let width = SCENES
-        .iter()
-        .map(|scene| scene.name.len())
-        .max()
-        .unwrap_or(0);
+    let mut lines = Vec::new();
     for scene in SCENES {
         open(
             app.world_mut(),
             &SceneSource::Builtin(scene),
             OpenOptions::default(),
         )?;
-        let (triangles, lights) = (triangles(app.world_mut()), lights(app.world_mut()));
-        let (name, sentence) = (scene.name, scene.sentence);
-        let plural = if lights == 1 { " " } else { "s" };
-        say(format_args!(
-            "{name:width$}  {triangles:>6} triangles  {lights} light{plural}  {sentence}"
-        ))?;
+        lines.push(Line {
+            name: scene.name,
+            triangles: triangles(app.world_mut()),
+            lights: lights(app.world_mut()),
+            shows: scene.sentence,
+        });
     }
-    Ok(())
+    Ok(lines)
 }
 
 /// Triangles of all objects, as their meshes have them: no tree is built for this.

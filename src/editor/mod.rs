@@ -17,6 +17,7 @@
 //! | [`viewport`] | the part of the window that shows the scene, and how |
 //! | `plugins` | what it consists of; [`EditorPlugins`] for an app with a scene of its own |
 //! | `embed` | what is different there |
+//! | `foreign` | components that the app brings along |
 //! | `schedule`, `cameras` | when it works, and what draws it |
 //! | `window` | the program: its window and first scene |
 //! | `panels` | everything that egui draws |
@@ -37,6 +38,7 @@ pub mod document;
 pub mod edits;
 mod embed;
 mod extent;
+mod foreign;
 pub mod handles;
 mod headless;
 pub mod history;

@@ -46,6 +46,10 @@ use bevy::app::{App, Plugin, PluginGroup, PluginGroupBuilder};
 /// done in the editor. A deleted entity that undo brings back is another `Entity` with the same
 /// components; children that are no part of the scene are lost.
 ///
+/// **Components of the app's own** that are registered for reflection are shown in the inspector, edited by their fields,
+/// undone, copied and given to other entities. Scene files keep those that the app
+/// [asks for](crate::io::KeepInSceneFiles).
+///
 /// **Does not touch** the app's assets, its window's title, how often it draws, or its files. An
 /// edit of a place, a name, a visibility or a camera's field of view is one of the app's own
 /// components; an edit of a material or a light reaches the traced picture alone, until the app

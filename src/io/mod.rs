@@ -89,9 +89,10 @@ pub(crate) use replace::{Staged, replace_file};
 #[cfg(feature = "editor")]
 pub(crate) use save::check_not_read;
 pub use save::{check_save, save};
+pub use scene_file::KeepInSceneFiles;
 #[cfg(feature = "editor")]
 pub(crate) use scene_file::{
-    AnyKeptChanged, KeptComponents, Rebase, SceneContent, kept_components, kept_types,
+    AnyKeptChanged, KeptComponents, KeptTypes, Rebase, SceneContent, keeps, kept_components,
     read_scene_text,
 };
 pub use sources::SceneFiles;

@@ -145,7 +145,7 @@ fn open_scene(
         limits, tolerant, ..
     }: OpenOptions,
 ) -> Result<Notes, FileError> {
-    let scene = read_scene(file, &limits)?;
+    let scene = read_scene(world, file, &limits)?;
     let on_disk = scene.on_disk.clone();
     check_shapes(&scene, &limits.memory).map_err(|problem| FileError::new(file, problem))?;
     let mut loaded = Loaded::for_scene(&scene, &folder, &limits, tolerant)

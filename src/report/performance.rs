@@ -8,6 +8,7 @@ use crate::scene::RenderSettings;
 use crate::trace::{Camera, World, samples_per_pixel};
 use bevy::platform::collections::HashSet;
 use glam::UVec2;
+use serde_json::json;
 use std::fmt::Write;
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -307,6 +308,33 @@ impl Performance {
             text += &format!("\n{why}.\n");
         }
         text
+    }
+
+    /// The figures of [`Self::csv`] as JSON: what was rendered, and an object for each builder.
+    pub fn json(&self) -> serde_json::Value {
+        let column = |column: &PerformanceColumn| {
+            json!({
+                "builder": builder_name(column.builder),
+                "triangles": column.triangles,
+                "build_ms": column.build_ms,
+                "render_ms": column.render_ms,
+                "render_mean_ms": column.mean(),
+                "render_sigma_ms": column.sigma(),
+                "render_median_ms": column.median(),
+                "rays": column.rays,
+                "mrays_per_s": column.mrays_per_s(),
+                "levels": column.levels,
+                "largest_leaf": column.largest_leaf,
+            })
+        };
+        json!({
+            "scene": self.test.scene,
+            "size": [self.size.x, self.size.y],
+            "spp": self.spp,
+            "threads": self.threads,
+            "builders": self.columns.iter().map(column).collect::<Vec<_>>(),
+            "left_out_triangles": self.left_out,
+        })
     }
 
     /// Comma-separated values with a header: a line for each builder, with all digits, each

@@ -193,6 +193,50 @@ fn scenes_are_listed_one_a_line() {
 }
 
 #[test]
+fn lists_and_timings_are_json_where_that_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let parse = |arguments: &[&str]| -> serde_json::Value {
+        serde_json::from_str(&succeeds(folder.path(), arguments)).unwrap()
+    };
+    let scenes = parse(&["scenes", "--json"]);
+    let found = scenes.as_array().unwrap();
+    assert_eq!(found.len(), glassbox::io::builtin::SCENES.len());
+    assert!(
+        found.iter().all(|scene| scene["triangles"].is_u64()),
+        "{scenes}"
+    );
+    let bench = [
+        "bench", "triangle", "--size", "8x8", "--spp", "1", "--runs", "2", "--json",
+    ];
+    let bench = parse(&bench);
+    assert_eq!(bench["size"], serde_json::json!([8, 8]));
+    for builder in bench["builders"].as_array().unwrap() {
+        assert_eq!(builder["render_ms"].as_array().unwrap().len(), 2, "{bench}");
+    }
+}
+
+#[test]
+fn every_command_is_completed_and_has_a_manual_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let whole = succeeds(folder.path(), &["man"]);
+    assert!(whole.contains("glassbox"), "{whole}");
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = succeeds(folder.path(), &["completions", shell]);
+        for command in [
+            "render", "merge", "bvh", "inspect", "scenes", "convert", "man",
+        ] {
+            assert!(script.contains(command), "{shell} lacks {command}");
+            let page = succeeds(folder.path(), &["man", command]);
+            assert!(page.contains(&format!("glassbox\\-{command}")), "{page}");
+        }
+    }
+    let output = glassbox(folder.path(), &["man", "rendr"]);
+    let why = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{why}");
+    assert!(why.contains("did you mean render?"), "{why}");
+}
+
+#[test]
 fn help_lists_every_setting_and_the_version_is_the_packages() {
     let folder = tempfile::tempdir().unwrap();
     let help = succeeds(folder.path(), &["render", "--help"]);

@@ -61,8 +61,6 @@ pub struct Document {
     then: Option<FileTask>,
     /// The path that was given last, while nothing has come of it.
     given: Option<(Purpose, PathBuf)>,
-    /// Counts the scenes that were opened.
-    scene: u64,
 }
 
 impl Default for Document {
@@ -75,7 +73,6 @@ impl Default for Document {
             unsaved: false,
             then: None,
             given: None,
-            scene: 0,
         }
     }
 }
@@ -84,11 +81,6 @@ impl Document {
     /// Whether anything would be lost if it were closed now.
     pub fn unsaved(&self) -> bool {
         self.unsaved
-    }
-
-    /// Another number for another scene: what is known by a `SceneId` is true of one scene only.
-    pub(in crate::editor) fn scene(&self) -> u64 {
-        self.scene
     }
 
     /// For the window's title: the name, with an asterisk where something is unsaved.
@@ -169,7 +161,6 @@ pub fn adopt(world: &mut World, name: impl Into<String>, path: Option<&Path>) {
     let mut document = world.resource_mut::<Document>();
     document.opened(name.into(), path, state);
     document.question = None;
-    document.scene += 1;
     world.trigger(SceneOpened);
 }
 

@@ -19,9 +19,10 @@ use bevy::reflect::Reflect;
 use bevy::transform::components::Transform;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
+use std::sync::Arc;
 
 /// What was copied, as the text of a scene file.
-#[derive(Resource, Clone, Debug, Default, PartialEq)]
+#[derive(Resource, Clone, Debug, Default)]
 pub struct Clipboard {
     /// Empty until something was copied.
     pub text: String,
@@ -30,6 +31,8 @@ pub struct Clipboard {
     /// Materials that were copied because objects use them, by their numbers, and where they came
     /// from: pasted into the same scene the objects go on sharing them.
     shared: Vec<(SceneId, Phong)>,
+    /// What the text cannot say: components of an app's own by their entities' numbers and their places.
+    foreign: Vec<(SceneId, usize, Arc<dyn Reflect>)>,
 }
 
 impl Clipboard {
@@ -38,7 +41,7 @@ impl Clipboard {
         Self {
             text: text.into(),
             folder: scene_folder(world),
-            shared: Vec::new(),
+            ..Self::default()
         }
     }
 }
@@ -141,7 +144,25 @@ pub fn copy(world: &mut World, ids: &[SceneId]) -> Result<Clipboard, FileError> 
         text,
         folder: scene_folder(world),
         shared,
+        foreign: foreign_of(world, &entities),
     })
+}
+
+/// What entities carry of an app's own.
+fn foreign_of(world: &World, entities: &[Entity]) -> Vec<(SceneId, usize, Arc<dyn Reflect>)> {
+    let kinds = world.resource::<Kinds>();
+    let mut found = Vec::new();
+    for &entity in entities {
+        let Some(&id) = world.get::<SceneId>(entity) else {
+            continue;
+        };
+        for (place, value) in kinds.clones(world, entity) {
+            if kinds.is_foreign(place) {
+                found.push((id, place, Arc::from(value)));
+            }
+        }
+    }
+    found
 }
 
 /// Adds what was copied; returns the new roots.
@@ -153,7 +174,8 @@ pub fn paste(world: &mut World, clipboard: &Clipboard) -> Result<Vec<SceneId>, F
         .get_resource::<SceneFiles>()
         .map(|files| (files.folder.clone(), files.limits.clone()))
         .unwrap_or_default();
-    let mut content = read_scene_text(Path::new("clipboard"), clipboard.text.as_bytes(), &limits)?;
+    let text = clipboard.text.as_bytes();
+    let mut content = read_scene_text(world, Path::new("clipboard"), text, &limits)?;
     let mut free = FreeIds::new(world);
     let mut names = Names::new(world);
     let rebase = Rebase::between(clipboard.folder.clone(), here, Path::new("clipboard"));
@@ -166,6 +188,15 @@ pub fn paste(world: &mut World, clipboard: &Clipboard) -> Result<Vec<SceneId>, F
         for &entity in &spawned {
             if let Some(&id) = world.get::<SceneId>(entity) {
                 index.learn(world, id, entity);
+            }
+        }
+    });
+    world.resource_scope(|world, kinds: Mut<Kinds>| {
+        for (old, place, value) in &clipboard.foreign {
+            let copy = renumbered.get(old);
+            if let Some(entity) = copy.and_then(|&id| scene_entity(world, id)) {
+                // What the text says names the entities that were copied along.
+                kinds.insert_missing(&mut world.entity_mut(entity), *place, value.as_ref());
             }
         }
     });

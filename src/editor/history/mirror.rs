@@ -7,12 +7,16 @@ use super::within::OnlyWithin;
 use super::{Changes, Removals, ResourceChanges};
 use crate::io::AnyKeptChanged;
 use crate::scene::{Environment, RenderSettings, SceneId};
+use bevy::ecs::change_detection::Tick;
+use bevy::ecs::component::ComponentId;
 use bevy::ecs::entity::Entity;
+use bevy::ecs::lifecycle::Remove;
 use bevy::ecs::name::Name;
-use bevy::ecs::query::{Changed, Or, With};
+use bevy::ecs::observer::{Observer, On};
+use bevy::ecs::query::{Changed, Or, QueryBuilder, QueryState, With};
 use bevy::ecs::resource::Resource;
-use bevy::ecs::system::{Query, SystemState};
-use bevy::ecs::world::{Mut, World};
+use bevy::ecs::system::{Query, ResMut, SystemState};
+use bevy::ecs::world::{EntityRef, Mut, World};
 use bevy::mesh::Mesh3d;
 use std::collections::{BTreeSet, HashMap};
 
@@ -21,12 +25,65 @@ type ChangedEntities =
 
 /// Remembers when it last looked.
 #[derive(Resource)]
-pub(super) struct Watch(SystemState<ChangedEntities>);
+pub(super) struct Watch {
+    scene: SystemState<ChangedEntities>,
+    foreign: Option<ForeignWatch>,
+}
 
 impl Watch {
     pub fn new(world: &mut World) -> Self {
-        Self(SystemState::new(world))
+        Self {
+            scene: SystemState::new(world),
+            foreign: None,
+        }
     }
+}
+
+/// The same for components of an app's own, whose types are known only to Bevy.
+struct ForeignWatch {
+    kinds: Vec<ComponentId>,
+    carriers: QueryState<EntityRef<'static>, With<SceneId>>,
+    last_look: Tick,
+}
+
+impl ForeignWatch {
+    fn changed(&mut self, world: &mut World) -> Vec<Entity> {
+        let now = world.increment_change_tick();
+        let last = std::mem::replace(&mut self.last_look, now);
+        let has_changed = |entity: &EntityRef| {
+            let ticks = |&kind: &ComponentId| entity.get_change_ticks_by_id(kind);
+            let mut ticks = self.kinds.iter().filter_map(ticks);
+            ticks.any(|ticks| ticks.is_changed(last, now))
+        };
+        let carriers = self.carriers.iter(world);
+        carriers.filter(has_changed).map(|e| e.id()).collect()
+    }
+}
+
+/// From now on what the app's own components say is watched, too.
+pub(super) fn watch_foreign(world: &mut World) {
+    let new = world.resource_scope(|world, mut kinds: Mut<Kinds>| kinds.learn(world));
+    if new.is_empty() {
+        return;
+    }
+    let note = |gone: On<Remove>, mut removals: ResMut<Removals>| removals.0.push(gone.entity);
+    world.spawn(Observer::new(note).with_components(new.iter().copied()));
+    let known = world.resource_mut::<Watch>().foreign.take();
+    let mut kinds = known.map_or_else(Vec::new, |known| known.kinds);
+    kinds.extend(new);
+    let carriers = QueryBuilder::<EntityRef, With<SceneId>>::new(world)
+        .or(|any| {
+            for &kind in &kinds {
+                any.with_id(kind);
+            }
+        })
+        .build();
+    let last_look = world.change_tick();
+    world.resource_mut::<Watch>().foreign = Some(ForeignWatch {
+        kinds,
+        carriers,
+        last_look,
+    });
 }
 
 /// Entities of which something kept has changed, appeared or gone since this was asked last.
@@ -34,8 +91,11 @@ pub(super) fn changed_entities(world: &mut World) -> Vec<Entity> {
     let mut entities = std::mem::take(&mut world.resource_mut::<Removals>().0);
     world.resource_scope(|world, mut watch: Mut<Watch>| {
         // It reads nothing that could be missing.
-        if let Ok(changed) = watch.0.get(world) {
+        if let Ok(changed) = watch.scene.get(world) {
             entities.extend(&changed);
+        }
+        if let Some(foreign) = &mut watch.foreign {
+            entities.extend(foreign.changed(world));
         }
     });
     entities

@@ -1,7 +1,7 @@
 //! Undo and redo of everything, however it was changed.
 //!
-//! [`History`] holds a mirror of the scene: the components that scene files keep, of every entity
-//! with a [`SceneId`], and the scene's two resources. At the end of a frame, when no [`Gesture`] is
+//! [`History`] holds a mirror of the scene: the components that scene files keep and those that an app has registered of
+//! its own, of every entity with a [`SceneId`], and the scene's two resources. At the end of a frame, when no [`Gesture`] is
 //! under way, what Bevy's change detection names is compared with the mirror, and the differences
 //! become one step. So whoever edits just changes components; a drag is one step because the
 //! gesture holds the comparison back.
@@ -37,7 +37,7 @@ use bevy::ecs::observer::On;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::ResMut;
 use bevy::ecs::world::{Mut, World};
-use mirror::{Mirror, Watch};
+use mirror::{Mirror, Watch, watch_foreign};
 use std::collections::VecDeque;
 use std::sync::Arc;
 use step::{Change, Step};
@@ -216,6 +216,7 @@ fn commit_to(world: &mut World, history: &mut History) -> bool {
 
 /// Forgets all steps: the scene as it is now is the first state. For after opening a scene.
 pub fn reset(world: &mut World) {
+    watch_foreign(world);
     world.resource_scope(|world, mut history: Mut<History>| {
         let last_serial = history.last_serial + 1;
         *history = History {

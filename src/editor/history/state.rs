@@ -1,23 +1,31 @@
-//! An entity of the scene as undo keeps it: the components that scene files keep, and nothing
+//! An entity of the scene as undo keeps it: the components that scene files keep and those of an app's own, and nothing
 //! that is derived from them.
 
 use super::super::edits::SceneIndex;
-use crate::io::{kept_components, kept_types};
+use super::super::foreign::{foreign_kinds, is_same, put};
+use crate::io::kept_components;
 use crate::scene::{MeshSource, Phong, PhongMaps, SceneId, UsesMaterial};
+use bevy::ecs::component::ComponentId;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::hierarchy::ChildOf;
-use bevy::ecs::reflect::ReflectComponent;
+use bevy::ecs::reflect::{AppTypeRegistry, ReflectComponent};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::{EntityWorldMut, World};
 use bevy::mesh::Mesh3d;
-use bevy::reflect::{FromType, PartialReflect, Reflect, ReflectRef, TypeRegistry};
+use bevy::reflect::{
+    FromType, PartialReflect, Reflect, ReflectFromReflect, ReflectRef, TypeInfo, TypeRegistration,
+    TypeRegistry,
+};
 use std::any::TypeId;
 use std::sync::Arc;
 
 /// How each kept component is reached.
 #[derive(Resource)]
 pub(in crate::editor) struct Kinds {
+    /// The scene's first, then those of an app's own.
     kinds: Vec<(TypeId, ReflectComponent)>,
+    /// How many are the scene's.
+    of_scene: usize,
     registry: TypeRegistry,
 }
 
@@ -27,9 +35,14 @@ impl Default for Kinds {
         // Where there is no `MeshSource` the handle is all that says which mesh it is: an app's own.
         let mesh = <ReflectComponent as FromType<Mesh3d>>::from_type();
         kinds.push((TypeId::of::<Mesh3d>(), mesh));
-        let mut registry = kept_types();
+        let of_scene = kinds.len();
+        let mut registry = crate::io::KeptTypes::of(&World::new()).registry;
         registry.register::<Mesh3d>();
-        Self { kinds, registry }
+        Self {
+            kinds,
+            of_scene,
+            registry,
+        }
     }
 }
 
@@ -48,8 +61,7 @@ impl PartialEq for Kept {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Value(a), Self::Value(b)) => {
-                Arc::ptr_eq(a, b)
-                    || (**a).reflect_partial_eq((**b).as_partial_reflect()) == Some(true)
+                Arc::ptr_eq(a, b) || is_same((**a).as_partial_reflect(), (**b).as_partial_reflect())
             }
             (Self::Entity(a), Self::Entity(b)) => a == b,
             _ => false,
@@ -116,6 +128,76 @@ impl Kinds {
         self.kinds.get(place).map(|(id, _)| *id)
     }
 
+    /// What the type of the component at a place is called.
+    pub fn name_at(&self, place: usize) -> Option<&'static str> {
+        let info: &TypeInfo = self.registry.get_type_info(self.type_at(place)?)?;
+        Some(info.type_path_table().short_path())
+    }
+
+    /// The components of an app's own: their places, and what is known of their types.
+    pub fn foreign(&self) -> impl Iterator<Item = (usize, &TypeRegistration)> {
+        let kinds = self.kinds.iter().enumerate().skip(self.of_scene);
+        kinds.filter_map(|(place, (id, _))| Some((place, self.registry.get(*id)?)))
+    }
+
+    /// A copy of the component at a place; `None` where the entity has none.
+    pub fn clone_at(
+        &self,
+        world: &World,
+        entity: Entity,
+        place: usize,
+    ) -> Option<Box<dyn Reflect>> {
+        let (_, kind) = self.kinds.get(place)?;
+        self.copy_of(kind.reflect(world.get_entity(entity).ok()?)?)
+    }
+
+    /// Takes the component at a place away.
+    pub fn remove(&self, entity: &mut EntityWorldMut, place: usize) {
+        if let Some((_, kind)) = self.kinds.get(place) {
+            kind.remove(entity);
+        }
+    }
+
+    /// What is known of the types of components, and of what they are made of.
+    pub fn registry(&self) -> &TypeRegistry {
+        &self.registry
+    }
+
+    /// Whether the component at a place is an app's own.
+    pub fn is_foreign(&self, place: usize) -> bool {
+        place >= self.of_scene
+    }
+
+    /// Takes the components in that an app has registered since. Returns how Bevy numbers them.
+    pub(super) fn learn(&mut self, world: &mut World) -> Vec<ComponentId> {
+        let mut new = Vec::new();
+        if let Some(all) = world.get_resource::<AppTypeRegistry>() {
+            // What they are made of, too.
+            for kind in all.read().iter() {
+                self.registry.add_registration(kind.clone());
+            }
+        }
+        for kind in foreign_kinds(world) {
+            let id = kind.type_id();
+            if let Some(component) = kind.data::<ReflectComponent>()
+                && !self.kinds.iter().any(|(known, _)| *known == id)
+            {
+                new.push(component.register_component(world));
+                self.kinds.push((id, component.clone()));
+            }
+        }
+        new
+    }
+
+    /// A copy of a component; `None` where its type offers none.
+    fn copy_of(&self, value: &dyn Reflect) -> Option<Box<dyn Reflect>> {
+        value.reflect_clone().ok().or_else(|| {
+            let id = value.as_any().type_id();
+            let make = self.registry.get_type_data::<ReflectFromReflect>(id)?;
+            make.from_reflect(value.as_partial_reflect())
+        })
+    }
+
     /// Copies of an entity's kept components, with their places.
     pub fn clones(&self, world: &World, entity: Entity) -> Vec<(usize, Box<dyn Reflect>)> {
         let Ok(entity) = world.get_entity(entity) else {
@@ -123,16 +205,23 @@ impl Kinds {
         };
         let values = self.kinds.iter().enumerate();
         values
-            .filter_map(|(place, (_, kind))| {
-                Some((place, kind.reflect(entity)?.reflect_clone().ok()?))
-            })
+            .filter_map(|(place, (_, kind))| Some((place, self.copy_of(kind.reflect(entity)?)?)))
             .collect()
     }
 
     /// Gives an entity the component of a place.
     pub fn insert(&self, entity: &mut EntityWorldMut, place: usize, value: &dyn Reflect) {
-        if let Some((_, kind)) = self.kinds.get(place) {
-            kind.insert(entity, value.as_partial_reflect(), &self.registry);
+        match self.kinds.get(place) {
+            Some((_, kind)) if self.is_foreign(place) => put(entity, kind, value, &self.registry),
+            Some((_, kind)) => kind.insert(entity, value.as_partial_reflect(), &self.registry),
+            None => {}
+        }
+    }
+
+    /// The same where it has none.
+    pub fn insert_missing(&self, entity: &mut EntityWorldMut, place: usize, value: &dyn Reflect) {
+        if (self.kinds.get(place)).is_some_and(|(_, kind)| !kind.contains(&*entity)) {
+            self.insert(entity, place, value);
         }
     }
 
@@ -162,13 +251,11 @@ impl Kinds {
                 }
             }
             if let Some(Kept::Value(old)) = before
-                && (**old).reflect_partial_eq(value.as_partial_reflect()) == Some(true)
+                && is_same((**old).as_partial_reflect(), value.as_partial_reflect())
             {
                 return Some(Kept::Value(old.clone()));
             }
-            // Every kept component can be cloned: the room `scene` says so of each.
-            let copy = value.reflect_clone().ok()?;
-            Some(Kept::Value(Arc::from(copy)))
+            Some(Kept::Value(Arc::from(self.copy_of(value)?)))
         };
         self.kinds
             .iter()

@@ -148,9 +148,12 @@ impl Step {
             return format!("Change the parent of {whose}");
         }
         let what = component_names().into_iter().find(|(id, _)| is(*id));
-        match what {
-            Some((_, what)) => format!("Change {what} of {whose}"),
-            None => format!("Change {whose}"),
+        let name = kinds.name_at(*first).unwrap_or("a component");
+        match (what, values) {
+            (Some((_, what)), _) => format!("Change {what} of {whose}"),
+            (None, [None, _]) => format!("Add {name} to {whose}"),
+            (None, [_, None]) => format!("Remove {name} from {whose}"),
+            (None, _) => format!("Change {name} of {whose}"),
         }
     }
 

@@ -1,8 +1,8 @@
 //! Why a pixel has its value, in one sentence beside it; and what the pointer is waited for with.
 
 use super::says::Says;
-use super::state::Panels;
 use crate::editor::action::Action;
+use crate::editor::document::SceneOpened;
 use crate::editor::inspection::{DebugRay, Names};
 use crate::editor::pick::to_points;
 use crate::editor::pointer::{Armed, PixelAsked};
@@ -14,6 +14,7 @@ use crate::inspect::{InspectPreset, answer};
 use crate::scene::SceneId;
 use crate::trace::RayKind;
 use bevy::ecs::observer::On;
+use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Res, ResMut};
 use bevy::ecs::world::World;
 use bevy::math::Vec2;
@@ -24,8 +25,12 @@ use bevy_egui::egui::{
 /// Points.
 const WIDTH: f32 = 300.0;
 
+/// What was asked and is being answered.
+#[derive(Resource, Default)]
+pub(super) struct Answer(Option<Asked>);
+
 /// A pixel that was asked about.
-pub(super) struct Asked {
+struct Asked {
     /// Logical pixels of the window.
     at: Vec2,
     /// Which of the debug ray's shots it is.
@@ -39,16 +44,20 @@ pub(super) fn arm(world: &mut World) {
     *world.resource_mut::<Armed>() = Armed::Why;
 }
 
-pub(super) fn note_question(asked: On<PixelAsked>, ray: Res<DebugRay>, mut panels: ResMut<Panels>) {
-    panels.asked = Some(Asked {
+pub(super) fn note_question(asked: On<PixelAsked>, ray: Res<DebugRay>, mut answer: ResMut<Answer>) {
+    answer.0 = Some(Asked {
         at: asked.at,
         shots: ray.shots(),
         known: None,
     });
 }
 
-pub(super) fn forget_question(_: On<Escaped>, mut panels: ResMut<Panels>) {
-    panels.asked = None;
+pub(super) fn forget_question(_: On<Escaped>, mut answer: ResMut<Answer>) {
+    answer.0 = None;
+}
+
+pub(super) fn forget_scene(_: On<SceneOpened>, mut answer: ResMut<Answer>) {
+    answer.0 = None;
 }
 
 /// The cross of a command that waits for a click.
@@ -77,14 +86,14 @@ pub(super) fn answer_ui(
     context: &egui::Context,
     free: Rect,
     world: &mut World,
-    panels: &mut Panels,
+    shown: &mut Answer,
 ) -> bool {
-    let Some(asked) = &mut panels.asked else {
+    let Some(asked) = &mut shown.0 else {
         return false;
     };
     let ray = world.resource::<DebugRay>();
     if ray.shots() != asked.shots {
-        panels.asked = None;
+        shown.0 = None;
         return false;
     }
     let names = world.resource::<Names>();
@@ -172,9 +181,9 @@ pub(super) fn answer_ui(
         Some(Wish::Go(id)) => {
             world.write_message(Action::Select(vec![id]));
             world.write_message(Action::run("view.frame-selected"));
-            panels.asked = None;
+            shown.0 = None;
         }
-        Some(Wish::Close) => panels.asked = None,
+        Some(Wish::Close) => shown.0 = None,
         None => {}
     }
     let pointer = context.pointer_latest_pos();

@@ -1,7 +1,6 @@
 //! Which keys send which command, and giving them others.
 
 use super::says::Says;
-use super::state::Panels;
 use crate::editor::command::{Command, CommandTable};
 use crate::editor::keys::{Keys, Recording};
 use crate::editor::preferences::Preferences;
@@ -21,7 +20,7 @@ enum Wish {
     Reset(Arc<Command>),
 }
 
-pub(super) fn bindings_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
+pub(super) fn bindings_ui(ui: &mut Ui, world: &mut World, search: &mut String) {
     let recorded = world.get_resource::<Recording>();
     let recorded = recorded.and_then(|recording| recording.0.clone());
     if recorded.is_some() {
@@ -32,7 +31,7 @@ pub(super) fn bindings_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     ui.horizontal(|ui| {
         ui.label(RichText::new("Keys").strong());
         ui.weak("Press a button, then the keys that shall send it.");
-        let field = TextEdit::singleline(&mut panels.bindings_search)
+        let field = TextEdit::singleline(&mut *search)
             .hint_text("Search")
             .desired_width(140.0);
         ui.add(field)
@@ -44,7 +43,7 @@ pub(super) fn bindings_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     let table = world.resource::<CommandTable>();
     let bindings = &world.resource::<Preferences>().keys;
     let conflicts = table.conflicts(bindings);
-    let needle = panels.bindings_search.trim().to_lowercase();
+    let needle = search.trim().to_lowercase();
     let mut wish = None;
     let width = ui.available_width() - NAMES - KEYS - 60.0;
     Grid::new("keys")

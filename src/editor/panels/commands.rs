@@ -1,7 +1,9 @@
 //! The commands that open, close and move panels and dialogs.
 
-use super::palette::Palette;
-use super::state::{Dialog, Panels, Renaming};
+use super::dialogs::{Dialog, Dialogs};
+use super::hierarchy::Hierarchy;
+use super::palette::{OpenPalette, Palette};
+use super::state::{OnlyPicture, Renaming};
 use super::{answer, first_steps};
 use crate::editor::command::{Command, Over, State, commands};
 use crate::editor::edits::name_of;
@@ -29,13 +31,13 @@ pub(super) fn commands() -> Vec<Command> {
         "view.inspector" "Inspector" [] "Shows the properties on the right"
             => |world| flip(&mut world.resource_mut::<Preferences>().show_inspector); menu("View", 5); state(|world| State::switch(world.resource::<Preferences>().show_inspector)),
         "view.only-picture" "Only the picture" ["Ctrl+Space"] "Takes the panels away, so that the picture fills the window; again, or Escape, brings them back"
-            => |world| flip(&mut world.resource_mut::<Panels>().only_picture); menu("View", 5); over(&[Over::Nothing]),
+            => |world| flip(&mut world.resource_mut::<OnlyPicture>().0); menu("View", 5); over(&[Over::Nothing]),
         "why.black" "Why is this pixel black?" ["Shift+W"] "The next click in the view answers in a sentence why the pixel there has its value"
             => answer::arm; menu("View/Rays and trees", 1); button("questions", "Why black?"); over(&[Over::Nothing, Over::Entity]),
         "help.keys" "Keys and mouse" ["F1", "?"] "Shows every key, and changes them"
             => |world| toggle(world, Dialog::Keys); menu("Help", 0),
         "help.palette" "Find a command…" ["Ctrl+P"] "Lists all commands, to be found by a few letters of their names"
-            => |world| world.resource_mut::<Panels>().palette = Some(Palette::default()); menu("Help", 0),
+            => |world| world.resource_mut::<OpenPalette>().0 = Some(Palette::default()); menu("Help", 0),
         "help.first-steps" "First steps" [] "Shows the card with three things to try"
             => first_steps::toggle; menu("Help", 0); state(first_steps::is_shown),
         "help.about" "About Glassbox" [] "Version, licences, and what it is made with"
@@ -44,9 +46,9 @@ pub(super) fn commands() -> Vec<Command> {
 }
 
 fn toggle(world: &mut World, dialog: Dialog) {
-    let mut panels = world.resource_mut::<Panels>();
-    let again = panels.dialog == Some(dialog);
-    panels.dialog = (!again).then_some(dialog);
+    let mut dialogs = world.resource_mut::<Dialogs>();
+    let again = dialogs.open == Some(dialog);
+    dialogs.open = (!again).then_some(dialog);
 }
 
 fn flip(switch: &mut bool) {
@@ -55,9 +57,9 @@ fn flip(switch: &mut bool) {
 
 fn open_render(world: &mut World) {
     let settings = world.resource::<RenderSettings>().clone();
-    let mut panels = world.resource_mut::<Panels>();
-    panels.render_form.open(settings);
-    panels.dialog = Some(Dialog::Render);
+    let mut dialogs = world.resource_mut::<Dialogs>();
+    dialogs.render_form.open(settings);
+    dialogs.open = Some(Dialog::Render);
 }
 
 fn is_one_selected(world: &World) -> State {
@@ -71,11 +73,11 @@ fn rename(world: &mut World) {
     };
     let text = name_of(world, id);
     world.resource_mut::<Preferences>().show_hierarchy = true;
-    let mut panels = world.resource_mut::<Panels>();
-    panels.only_picture = false;
-    panels.filter = Default::default();
-    panels.list_keys.reveal = Some(id);
-    panels.renaming = Some(Renaming {
+    world.resource_mut::<OnlyPicture>().0 = false;
+    let mut hierarchy = world.resource_mut::<Hierarchy>();
+    hierarchy.filter = Default::default();
+    hierarchy.list_keys.reveal = Some(id);
+    hierarchy.renaming = Some(Renaming {
         id,
         text,
         focused: false,
@@ -83,6 +85,6 @@ fn rename(world: &mut World) {
 }
 
 /// The panels come back.
-pub(super) fn let_go(_: On<Escaped>, mut panels: ResMut<Panels>) {
-    panels.only_picture = false;
+pub(super) fn let_go(_: On<Escaped>, mut only: ResMut<OnlyPicture>) {
+    only.0 = false;
 }

@@ -2,25 +2,32 @@
 //! edit changed anything is seen at once.
 
 use super::says::Says;
-use super::state::Panels;
+use crate::editor::document::SceneOpened;
 use crate::editor::viewport::{EditorCamera, Viewport};
 use crate::view::{TracedRender, TracedView};
 use bevy::asset::Handle;
+use bevy::ecs::observer::On;
 use bevy::ecs::query::With;
+use bevy::ecs::resource::Resource;
+use bevy::ecs::system::ResMut;
 use bevy::ecs::world::World;
 use bevy::image::Image;
 use bevy_egui::egui::{self, Align2, Button, Color32, FontId, Rect, TextureId, Ui, pos2, vec2};
 use bevy_egui::{EguiTextureHandle, EguiUserTextures};
 
-/// A kept picture, as egui knows it.
-pub(super) struct Kept {
+/// A picture that was kept to compare with.
+#[derive(Resource, Default)]
+pub(super) struct KeptPicture(Option<Kept>);
+
+/// As egui knows it.
+struct Kept {
     handle: Handle<Image>,
     texture: TextureId,
 }
 
 /// The button that keeps what stands on the screen, or forgets it.
-pub(super) fn keep_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
-    let on = panels.kept.is_some();
+pub(super) fn keep_ui(ui: &mut Ui, world: &mut World) {
+    let on = world.resource::<KeptPicture>().0.is_some();
     let button = ui.add(Button::selectable(on, "Keep")).says(
         "Keeps the traced picture: hold C to see it in place of the new one; press again to forget it",
     );
@@ -28,7 +35,7 @@ pub(super) fn keep_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
         return;
     }
     if on {
-        forget(world, panels);
+        world.run_system_cached(forget).ok();
         return;
     }
     let mut query = world.query_filtered::<&TracedRender, With<EditorCamera>>();
@@ -38,22 +45,34 @@ pub(super) fn keep_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     };
     if let Some(mut textures) = world.get_resource_mut::<EguiUserTextures>() {
         let texture = textures.add_image(EguiTextureHandle::Strong(handle.clone()));
-        panels.kept = Some(Kept { handle, texture });
+        world.resource_mut::<KeptPicture>().0 = Some(Kept { handle, texture });
     }
 }
 
 /// Lets go of the kept picture.
-pub(super) fn forget(world: &mut World, panels: &mut Panels) {
-    if let Some(kept) = panels.kept.take()
-        && let Some(mut textures) = world.get_resource_mut::<EguiUserTextures>()
-    {
+fn forget(mut kept: ResMut<KeptPicture>, textures: Option<ResMut<EguiUserTextures>>) {
+    if let (Some(kept), Some(mut textures)) = (kept.0.take(), textures) {
         textures.remove_image(&kept.handle);
     }
 }
 
+/// It shows another scene.
+pub(super) fn forget_scene(
+    _: On<SceneOpened>,
+    kept: ResMut<KeptPicture>,
+    textures: Option<ResMut<EguiUserTextures>>,
+) {
+    forget(kept, textures);
+}
+
 /// Shows the kept picture while C is held.
-pub(super) fn compare_ui(ui: &mut Ui, free: Rect, world: &mut World, panels: &Panels) {
-    let Some(kept) = &panels.kept else {
+pub(super) fn compare_ui(ui: &mut Ui, free: Rect, world: &mut World) {
+    let Some(texture) = world
+        .resource::<KeptPicture>()
+        .0
+        .as_ref()
+        .map(|kept| kept.texture)
+    else {
         return;
     };
     let held = ui.input(|input| input.key_down(egui::Key::C) && input.modifiers.is_none());
@@ -72,7 +91,7 @@ pub(super) fn compare_ui(ui: &mut Ui, free: Rect, world: &mut World, panels: &Pa
         free.max,
     );
     let painter = ui.painter();
-    painter.image(kept.texture, place, part, Color32::WHITE);
+    painter.image(texture, place, part, Color32::WHITE);
     let at = pos2(place.center().x, place.max.y - 14.0);
     let back = Rect::from_center_size(at, vec2(90.0, 20.0));
     painter.rect_filled(back, 4.0, Color32::from_black_alpha(170));

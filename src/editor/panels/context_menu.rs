@@ -1,28 +1,37 @@
 //! The menu of a right click, in the view and in the list: the commands whose rows ask for it.
 
 use super::menu_bar::item_ui;
-use super::state::Panels;
-use crate::editor::command::{Command, CommandTable};
+use crate::editor::command::{Command, CommandTable, Over};
 use crate::editor::pick::to_points;
 use crate::editor::pointer::RightClicked;
 use bevy::ecs::observer::On;
+use bevy::ecs::resource::Resource;
 use bevy::ecs::system::ResMut;
 use bevy::ecs::world::World;
-use bevy_egui::egui::{self, Id, LayerId, Popup, PopupKind, SetOpenCommand};
+use bevy_egui::egui::{self, Id, LayerId, Popup, PopupKind, Pos2, SetOpenCommand};
 use std::sync::Arc;
 
-/// A click with the right button that was not answered yet, in the window's logical pixels.
-pub(super) fn note_right_click(clicked: On<RightClicked>, mut panels: ResMut<Panels>) {
-    panels.right_click = Some(*clicked);
+/// The menu of a right click.
+#[derive(Resource, Default)]
+pub(super) struct ContextMenu {
+    /// A click that was not answered yet.
+    clicked: Option<RightClicked>,
+    /// Where it stands, and what was clicked.
+    over: Option<(Pos2, Over)>,
 }
 
-pub(super) fn context_menu_ui(context: &egui::Context, world: &mut World, panels: &mut Panels) {
+/// A click with the right button that was not answered yet, in the window's logical pixels.
+pub(super) fn note_right_click(clicked: On<RightClicked>, mut menu: ResMut<ContextMenu>) {
+    menu.clicked = Some(*clicked);
+}
+
+pub(super) fn context_menu_ui(context: &egui::Context, world: &mut World, menu: &mut ContextMenu) {
     let id = Id::new("menu of a right click");
-    let opens = panels.right_click.take();
+    let opens = menu.clicked.take();
     if let Some(RightClicked { at, over }) = opens {
-        panels.menu_over = Some((to_points(context, at), over));
+        menu.over = Some((to_points(context, at), over));
     }
-    let Some((at, over)) = panels.menu_over else {
+    let Some((at, over)) = menu.over else {
         return;
     };
     let table = world.resource::<CommandTable>().rows().iter();
@@ -40,6 +49,6 @@ pub(super) fn context_menu_ui(context: &egui::Context, world: &mut World, panels
             }
         });
     if !Popup::is_id_open(context, id) {
-        panels.menu_over = None;
+        menu.over = None;
     }
 }

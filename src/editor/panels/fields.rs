@@ -1,13 +1,16 @@
 //! The fields that properties are entered in: a label with its explanation on the left, the value on the right. What is
 //! asked and what may be answered is the schema's; merely being drawn changes nothing, not even a value out of range.
 
+use super::any_number::AnyNumber;
 use super::number_field::{MIXED, NumberField};
 use super::says::Says;
 use crate::scene::schema::{Choice, MostPixels, Property, Quantity, Unit, keep_order};
 use bevy::color::LinearRgba;
-use bevy::math::{UVec2, Vec2, Vec3};
+use bevy::math::UVec2;
 use bevy::reflect::enums::{DynamicEnum, DynamicVariant};
-use bevy::reflect::{PartialReflect, Reflect, ReflectPath, ReflectRef, TypeInfo, Typed};
+use bevy::reflect::{
+    PartialReflect, Reflect, ReflectMut, ReflectPath, ReflectRef, TypeInfo, Typed,
+};
 use bevy_egui::egui::{self, Align, ComboBox, Label, Layout, Ui, vec2};
 
 /// The part of the width that labels take.
@@ -49,21 +52,18 @@ pub(super) fn property_ui(
     let path = property.path.as_str();
     let mixed = is_mixed(path);
     let value = path.reflect_element_mut(root).ok()?;
-    let number = |is_whole| NumberField {
+    let field = NumberField {
         quantity: property.quantity.unwrap_or(Quantity::ANY),
-        is_whole,
+        is_whole: false,
         is_mixed: mixed,
         says,
     };
     if let Some(value) = value.try_downcast_mut::<bool>() {
         return switch(ui, label, says, value, mixed).then(|| path.to_owned());
     }
-    if let Some(value) = value.try_downcast_mut::<f32>() {
-        let changed = row(ui, label, says, |ui| float_ui(ui, number(false), value));
-        return changed.then(|| path.to_owned());
-    }
-    if let Some(value) = value.try_downcast_mut::<u32>() {
-        let changed = row(ui, label, says, |ui| whole_ui(ui, number(true), value));
+    if let Some(number) = AnyNumber::of(value) {
+        let field = number.field(field, property.quantity);
+        let changed = row(ui, label, says, |ui| number.ui(ui, field, value));
         return changed.then(|| path.to_owned());
     }
     if let Some(value) = value.try_downcast_mut::<LinearRgba>() {
@@ -77,36 +77,48 @@ pub(super) fn property_ui(
         });
         return changed.then(|| path.to_owned());
     }
-    let size = value.try_downcast_ref::<UVec2>().copied();
-    let axis = |i: usize, axis: &str| {
-        let mut quantity = number(false).quantity;
-        quantity.slider = None;
-        // What is left of the pixels that both sides may have together.
-        if let (Some(size), Some(MostPixels(most))) = (size, property.most_pixels) {
-            let other = u64::from(size[1 - i.min(1)].max(1));
-            quantity.most = quantity.most.min((most / other) as f64);
-        }
-        NumberField {
-            is_mixed: is_mixed(&format!("{path}.{axis}")),
-            quantity,
-            ..number(size.is_some())
-        }
-    };
-    let axes = [axis(0, "x"), axis(1, "y"), axis(2, "z")];
-    let changed = if let Some(value) = value.try_downcast_mut::<Vec3>() {
-        let values = value.as_mut().each_mut();
-        vector_ui(ui, label, says, values, axes, float_ui)
-    } else if let Some(value) = value.try_downcast_mut::<Vec2>() {
-        let values = value.as_mut().each_mut();
-        vector_ui(ui, label, says, values, axes, float_ui)
-    } else if let Some(value) = value.try_downcast_mut::<UVec2>() {
-        let values = value.as_mut().each_mut();
-        vector_ui(ui, label, says, values, axes, whole_ui)
-    } else {
+    let Some(axes) = axes_of(value) else {
         let choices = property.choices();
         return choice_ui(ui, label, says, value, &choices, mixed).then(|| path.to_owned());
     };
-    changed.map(|axis| format!("{path}.{}", ["x", "y", "z"][axis]))
+    let size = value.try_downcast_ref::<UVec2>().copied();
+    let ReflectMut::Struct(parts) = value.reflect_mut() else {
+        return None;
+    };
+    let changed = vector_ui(ui, label, says, axes.len(), |ui, i| {
+        let (axis, part) = (axes[i], parts.field_at_mut(i)?);
+        let number = AnyNumber::of(part)?;
+        let mut field = NumberField {
+            is_mixed: is_mixed(&format!("{path}.{axis}")),
+            ..number.field(field, property.quantity)
+        };
+        field.quantity.slider = None;
+        // What is left of the pixels that both sides may have together.
+        if let (Some(size), Some(MostPixels(most))) = (size, property.most_pixels) {
+            let other = u64::from(size[1 - i.min(1)].max(1));
+            field.quantity.most = field.quantity.most.min((most / other) as f64);
+        }
+        Some(number.ui(ui, field, part))
+    });
+    changed.map(|i| format!("{path}.{}", axes[i]))
+}
+
+/// The axes of a vector of whatever numbers; `None` where it is none.
+pub(super) fn axes_of(value: &dyn PartialReflect) -> Option<&'static [&'static str]> {
+    const AXES: [&str; 4] = ["x", "y", "z", "w"];
+    let ReflectRef::Struct(parts) = value.reflect_ref() else {
+        return None;
+    };
+    let axes = AXES
+        .get(..parts.field_len())
+        .filter(|axes| axes.len() > 1)?;
+    let is_axis = |(i, axis): (usize, &&str)| {
+        parts.name_at(i) == Some(*axis)
+            && parts
+                .field_at(i)
+                .is_some_and(|p| AnyNumber::of(p).is_some())
+    };
+    axes.iter().enumerate().all(is_axis).then_some(axes)
 }
 
 /// The rows of these properties of a value by itself: the settings of the scene, for example. What is read only with
@@ -160,23 +172,22 @@ pub(super) fn whole_ui(ui: &mut Ui, field: NumberField, value: &mut u32) -> bool
     changed
 }
 
-/// Numbers in a line; returns which was changed.
-fn vector_ui<T, const N: usize>(
+/// Numbers in a line, each drawn by `one`; returns which was changed.
+fn vector_ui(
     ui: &mut Ui,
     label: &str,
     says: &str,
-    values: [&mut T; N],
-    fields: [NumberField; 3],
-    one: impl Fn(&mut Ui, NumberField, &mut T) -> bool,
+    count: usize,
+    mut one: impl FnMut(&mut Ui, usize) -> Option<bool>,
 ) -> Option<usize> {
     row(ui, label, says, |ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
-        let width = (ui.available_width() - 3.0 * (N as f32 - 1.0)) / N as f32;
+        let width = (ui.available_width() - 3.0 * (count as f32 - 1.0)) / count as f32;
         let mut changed = None;
-        for (axis, (value, field)) in values.into_iter().zip(fields).enumerate() {
+        for axis in 0..count {
             let size = vec2(width.clamp(30.0, 110.0), ui.spacing().interact_size.y);
             ui.allocate_ui(size, |ui| {
-                if one(ui, field, value) {
+                if one(ui, axis) == Some(true) {
                     changed = Some(axis);
                 }
             });
@@ -270,7 +281,7 @@ pub(super) fn color_ui(ui: &mut Ui, says: &str, value: &mut LinearRgba, mixed: b
     }
     let changed = response.changed() && rgb.iter().all(|part| part.is_finite());
     if changed {
-        *value = LinearRgba::rgb(rgb[0], rgb[1], rgb[2]);
+        *value = LinearRgba::new(rgb[0], rgb[1], rgb[2], value.alpha);
     }
     changed
 }

@@ -2,15 +2,19 @@
 
 use super::notices::is_over;
 use super::says::Says;
-use super::state::Panels;
 use crate::editor::action::Action;
 use crate::editor::command::{State, find, shortcut};
 use crate::editor::notice::Notices;
 use crate::editor::preferences::Preferences;
 use crate::scene::{DirectionalLamp, ParallelogramLamp, PointLamp, SceneId, SegmentLamp};
 use bevy::ecs::query::{Or, With};
+use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{self, Align2, Button, Id, Rect, RichText, Ui, vec2};
+
+/// Which of them were tried.
+#[derive(Resource, Default)]
+pub(super) struct FirstSteps([bool; 3]);
 
 /// Points.
 const WIDTH: f32 = 250.0;
@@ -19,7 +23,7 @@ const WIDTH: f32 = 250.0;
 pub(super) fn toggle(world: &mut World) {
     let mut preferences = world.resource_mut::<Preferences>();
     preferences.hint_seen = !preferences.hint_seen;
-    world.resource_mut::<Panels>().first_steps = [false; 3];
+    *world.resource_mut::<FirstSteps>() = FirstSteps::default();
 }
 
 pub(super) fn is_shown(world: &World) -> State {
@@ -31,7 +35,7 @@ pub(super) fn first_steps_ui(
     context: &egui::Context,
     free: Rect,
     world: &mut World,
-    panels: &mut Panels,
+    tried: &mut FirstSteps,
 ) -> bool {
     if world.resource::<Preferences>().hint_seen {
         return false;
@@ -46,7 +50,7 @@ pub(super) fn first_steps_ui(
                 .inner_margin(egui::Margin::same(10))
                 .show(ui, |ui| {
                     ui.set_width(WIDTH.min(free.width() - 40.0));
-                    seen = card_ui(ui, world, panels);
+                    seen = card_ui(ui, world, tried);
                 });
         });
     if seen {
@@ -56,7 +60,7 @@ pub(super) fn first_steps_ui(
 }
 
 /// Its content; true where it is to be shown no more.
-fn card_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) -> bool {
+fn card_ui(ui: &mut Ui, world: &mut World, tried: &mut FirstSteps) -> bool {
     let mut seen = false;
     ui.horizontal(|ui| {
         ui.label(RichText::new("Three things to try").strong());
@@ -88,11 +92,11 @@ fn card_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) -> bool {
         ),
     ];
     for (i, (name, says, run)) in steps.into_iter().enumerate() {
-        let mark = if panels.first_steps[i] { "✔" } else { "➡" };
+        let mark = if tried.0[i] { "✔" } else { "➡" };
         let button = Button::new(format!("{mark}  {name}"));
         let button = button.min_size(vec2(ui.available_width(), 0.0));
         if ui.add(button).says(says).clicked() {
-            panels.first_steps[i] = true;
+            tried.0[i] = true;
             run(world);
         }
     }

@@ -3,12 +3,12 @@
 
 use super::notices::is_over;
 use super::says::Says;
-use super::state::Panels;
 use crate::editor::inspection::{DebugRay, Drawings};
 use crate::editor::pick::to_window;
 use crate::inspect::{InspectSettings, Label, LineSet, Meaning, legend};
 use crate::trace::RayTree;
 use bevy::color::{ColorToPacked, LinearRgba, Srgba};
+use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{
     self, Align2, Color32, FontId, Id, Mesh, Rect, RichText, Sense, Stroke, StrokeKind, Ui, pos2,
@@ -20,8 +20,16 @@ const SWATCH: egui::Vec2 = vec2(26.0, 3.0);
 /// Notes are broken at this width, in points.
 const WIDTH: f32 = 230.0;
 
+/// What the legend remembers between two frames.
+#[derive(Resource, Default)]
+pub(super) struct LineLegend {
+    /// Only the heading is shown.
+    is_folded: bool,
+    texts: Option<LineTexts>,
+}
+
 /// What the lines that are drawn say in words.
-pub(super) struct LineTexts {
+struct LineTexts {
     /// Of the [`Drawings`].
     version: u64,
     meanings: Vec<Meaning>,
@@ -45,7 +53,12 @@ impl LineTexts {
 }
 
 /// Draws them; true where the pointer is over the legend.
-pub(super) fn line_legend_ui(ui: &Ui, free: Rect, world: &mut World, panels: &mut Panels) -> bool {
+pub(super) fn line_legend_ui(
+    ui: &Ui,
+    free: Rect,
+    world: &mut World,
+    legend: &mut LineLegend,
+) -> bool {
     let Some(inspect) = world.get_resource::<InspectSettings>().filter(|i| i.on) else {
         return false;
     };
@@ -53,7 +66,7 @@ pub(super) fn line_legend_ui(ui: &Ui, free: Rect, world: &mut World, panels: &mu
     let Some(drawings) = world.get_resource::<Drawings>() else {
         return false;
     };
-    let known = panels.line_texts.take();
+    let known = legend.texts.take();
     let texts = match known.filter(|texts| texts.version == drawings.version()) {
         Some(texts) => texts,
         None => LineTexts::of(drawings, inspect, rays.map(|rays| &**rays)),
@@ -62,7 +75,7 @@ pub(super) fn line_legend_ui(ui: &Ui, free: Rect, world: &mut World, panels: &mu
         inspect.lobes || inspect.pattern.on || inspect.rays.visited || inspect.rays.pruned;
     let lacks_rays = wants_rays && rays.is_none();
     labels_ui(ui, free, world, &texts.labels);
-    let texts = panels.line_texts.insert(texts);
+    let texts = legend.texts.insert(texts);
     if texts.meanings.is_empty() && texts.notes.is_empty() && !lacks_rays {
         return false;
     }
@@ -77,7 +90,7 @@ pub(super) fn line_legend_ui(ui: &Ui, free: Rect, world: &mut World, panels: &mu
                 .inner_margin(egui::Margin::symmetric(7, 4))
                 .show(ui, |ui| {
                     ui.spacing_mut().item_spacing.y = 1.0;
-                    let heading = if panels.legend_folded {
+                    let heading = if legend.is_folded {
                         "Lines ⏵"
                     } else {
                         "Lines ⏷"
@@ -85,9 +98,9 @@ pub(super) fn line_legend_ui(ui: &Ui, free: Rect, world: &mut World, panels: &mu
                     let heading = egui::Button::new(RichText::new(heading).small()).frame(false);
                     let says = "What the colours of the lines mean; a click folds it up";
                     if ui.add(heading).says(says).clicked() {
-                        panels.legend_folded = !panels.legend_folded;
+                        legend.is_folded = !legend.is_folded;
                     }
-                    if !panels.legend_folded {
+                    if !legend.is_folded {
                         body(ui, texts, lacks_rays);
                     }
                 });

@@ -1,7 +1,7 @@
 //! Everything that egui draws: menu and toolbar above, hierarchy left, inspector right, status
 //! below, and the scene in the middle, which egui leaves free but for what lies over the picture.
 //!
-//! A panel is a function `xyz_ui(ui, world, panels)` in a file of its own. It reads the world,
+//! A panel is a function `xyz_ui(ui, world, …)` in a file of its own, with a resource for what it remembers. It reads the world,
 //! works on copies, and writes back only what a person changed: a component that is only looked at
 //! must not count as changed, or the traced picture would start over in every frame.
 //!
@@ -10,6 +10,7 @@
 //! | [`menu_bar`], [`toolbar`] | what is above; made of the table of commands |
 //! | [`hierarchy`] | the list of entities, from the [`outline`] |
 //! | [`fields`], [`number_field`] | rows of properties, as the schema says |
+//! | [`reflected`] | rows of what the schema does not know: parts of an app's own components |
 //! | [`inspector`] | the tabs Object, Render, Debug and BVH |
 //! | [`status`] | the line below |
 //! | [`overlays`], [`compare`], [`notices`] | divider, legend, region, a kept picture, messages over the picture |
@@ -23,6 +24,7 @@
 //! | [`dialogs`] | what is in front of everything |
 
 mod answer;
+mod any_number;
 mod bindings;
 mod commands;
 mod compare;
@@ -47,6 +49,7 @@ mod palette;
 mod pattern;
 mod rays;
 mod readout;
+mod reflected;
 mod says;
 mod several;
 mod state;
@@ -55,13 +58,13 @@ mod theme;
 mod told;
 mod toolbar;
 mod tree_pair;
+mod turn;
 
 #[cfg(test)]
 mod tests;
 
 use super::command::AddCommands;
 use super::dispatch::dispatch;
-use super::document::Document;
 use super::embed::Editing;
 use super::history::within;
 use super::preferences::{Preferences, PreferencesPlugin};
@@ -79,7 +82,7 @@ use bevy_egui::{
     EguiContext, EguiPlugin, EguiPostUpdateSet, EguiPrimaryContextPass, PrimaryEguiContext, egui,
 };
 use outline::{Outline, outline_scene};
-use state::Panels;
+use state::{OnlyPicture, with};
 
 /// What is left for the picture at least, in egui's points.
 const LEAST_PICTURE: f32 = 240.0;
@@ -94,9 +97,8 @@ impl Plugin for PanelsPlugin {
             app.add_plugins(EguiPlugin::default());
         }
         app.add_plugins(PreferencesPlugin)
-            .init_resource::<Panels>()
             .init_resource::<Outline>();
-        add_commands(app);
+        add_panels(app);
         order_pass(app);
         app.add_systems(EguiPrimaryContextPass, (outline_scene, draw).chain());
     }
@@ -115,12 +117,38 @@ fn order_pass(app: &mut App) {
     );
 }
 
-/// The commands of the panels, and what they hear of.
-fn add_commands(app: &mut App) {
-    app.init_resource::<mixer::Mixer>()
+/// What panels remember, their commands, and what they hear of.
+fn add_panels(app: &mut App) {
+    app.init_resource::<OnlyPicture>()
+        .init_resource::<answer::Answer>()
+        .init_resource::<compare::KeptPicture>()
+        .init_resource::<context_menu::ContextMenu>()
+        .init_resource::<dialogs::Dialogs>()
+        .init_resource::<first_steps::FirstSteps>()
+        .init_resource::<gesture::OwnGesture>()
+        .init_resource::<hierarchy::Hierarchy>()
+        .init_resource::<inspector::Builders>()
+        .init_resource::<inspector::ErrorCurve>()
+        .init_resource::<inspector::Inspector>()
+        .init_resource::<inspector::PerformanceForm>()
+        .init_resource::<inspector::Trees>()
+        .init_resource::<line_legend::LineLegend>()
+        .init_resource::<mixer::Mixer>()
+        .init_resource::<overlays::RegionDrag>()
+        .init_resource::<overlays::UnderPointer>()
+        .init_resource::<palette::OpenPalette>()
+        .init_resource::<pattern::ShownPattern>()
+        .init_resource::<rays::RaysPanel>()
+        .init_resource::<status::StatusBar>()
+        .init_resource::<told::Tales>()
+        .add_observer(answer::forget_scene)
+        .add_observer(compare::forget_scene)
+        .add_observer(hierarchy::forget_scene)
+        .add_observer(inspector::forget_scene)
+        .add_observer(overlays::forget_scene)
+        .add_observer(mixer::forget_scene)
         .add_commands(commands::commands())
         .add_commands(mixer::commands())
-        .add_observer(mixer::forget_scene)
         .add_observer(commands::let_go)
         .add_observer(answer::note_question)
         .add_observer(answer::forget_question)
@@ -150,51 +178,44 @@ fn panels_ui(context: &egui::Context, world: &mut World) {
         .layer_id(egui::LayerId::background())
         .max_rect(context.viewport_rect());
     let mut ui = egui::Ui::new(context.clone(), "window".into(), window);
-    world.resource_scope(|world, mut panels: bevy::prelude::Mut<Panels>| {
-        let panels = &mut *panels;
-        forget_scene(world, panels);
-        inspector::settle(context, world, panels);
-        let free = around_ui(&mut ui, world, panels, &preferences);
-        compare::compare_ui(&mut ui, free, world, panels);
-        let over_overlay = overlays::overlays_ui(&mut ui, free, world, panels);
-        readout::readout_ui(&ui, free, world, panels);
-        told::told_ui(context, free, world, panels);
-        rays::window_ui(context, free, world, panels);
-        mixer::mixer_ui(context, free, world);
-        context_menu::context_menu_ui(context, world, panels);
-        dialogs::dialogs_ui(context, world, panels);
-        palette::palette_ui(context, world, panels);
-        gesture::note_gesture(context, world, panels);
-        note_viewport(
-            context,
-            free,
-            [over_overlay, panels.list_keys.focused],
-            world,
-        );
+    let only_picture = world.resource::<OnlyPicture>().0;
+    with(world, |world, panel| {
+        inspector::settle(context, world, panel)
     });
+    let free = match only_picture {
+        true => ui.available_rect_before_wrap(),
+        false => around_ui(&mut ui, world, &preferences),
+    };
+    compare::compare_ui(&mut ui, free, world);
+    let over_overlay = overlays::overlays_ui(&mut ui, free, world, only_picture);
+    with(world, |world, under| {
+        readout::readout_ui(&ui, free, world, under)
+    });
+    with(world, |world, tales| {
+        told::told_ui(context, free, world, tales)
+    });
+    with(world, |world, panel| {
+        rays::window_ui(context, free, world, panel)
+    });
+    mixer::mixer_ui(context, free, world);
+    with(world, |world, menu| {
+        context_menu::context_menu_ui(context, world, menu)
+    });
+    with(world, |world, dialogs| {
+        dialogs::dialogs_ui(context, world, dialogs)
+    });
+    with(world, |world, palette| {
+        palette::palette_ui(context, world, palette)
+    });
+    gesture::note_gesture(context, world);
+    let letters_taken = world.resource::<hierarchy::Hierarchy>().list_keys.focused;
+    note_viewport(context, free, [over_overlay, letters_taken], world);
     dispatch(world);
     mixer::apply(world);
 }
 
-/// Lets go of what belongs to the scene that was open before.
-fn forget_scene(world: &mut World, panels: &mut Panels) {
-    let scene = world.resource::<Document>().scene();
-    if std::mem::replace(&mut panels.scene, scene) != scene {
-        compare::forget(world, panels);
-        panels.forget_scene();
-    }
-}
-
 /// The panels around the picture; returns what they leave free.
-fn around_ui(
-    ui: &mut egui::Ui,
-    world: &mut World,
-    panels: &mut Panels,
-    preferences: &Preferences,
-) -> egui::Rect {
-    if panels.only_picture {
-        return ui.available_rect_before_wrap();
-    }
+fn around_ui(ui: &mut egui::Ui, world: &mut World, preferences: &Preferences) -> egui::Rect {
     let fill = ui.visuals().panel_fill;
     let bar = |margin| egui::Frame::new().fill(fill).inner_margin(margin);
     egui::Panel::top("menu")
@@ -202,12 +223,14 @@ fn around_ui(
         .show_inside(ui, |ui| menu_bar::menu_bar_ui(ui, world));
     egui::Panel::top("toolbar")
         .frame(bar(egui::Margin::symmetric(6, 4)))
-        .show_inside(ui, |ui| toolbar::toolbar_ui(ui, world, panels));
+        .show_inside(ui, |ui| toolbar::toolbar_ui(ui, world));
     egui::Panel::bottom("status")
         .frame(bar(egui::Margin::symmetric(8, 3)))
-        .show_inside(ui, |ui| status::status_ui(ui, world, panels));
+        .show_inside(ui, |ui| {
+            with(world, |world, bar| status::status_ui(ui, world, bar));
+        });
 
-    rays::panel_ui(ui, world, panels);
+    with(world, |world, panel| rays::panel_ui(ui, world, panel));
 
     // Narrow windows: the panels give way before the picture does.
     let for_panels = (ui.available_width() - LEAST_PICTURE).max(0.0);
@@ -227,7 +250,11 @@ fn around_ui(
     if preferences.show_hierarchy {
         widths[0] = side("hierarchy", widths[0], true)
             .show_inside(ui, |ui| {
-                contained(ui, |ui| hierarchy::hierarchy_ui(ui, world, panels))
+                contained(ui, |ui| {
+                    with(world, |world, panel| {
+                        hierarchy::hierarchy_ui(ui, world, panel)
+                    })
+                })
             })
             .response
             .rect
@@ -236,7 +263,11 @@ fn around_ui(
     if preferences.show_inspector {
         widths[1] = side("inspector", widths[1], false)
             .show_inside(ui, |ui| {
-                contained(ui, |ui| inspector::inspector_ui(ui, world, panels))
+                contained(ui, |ui| {
+                    with(world, |world, panel| {
+                        inspector::inspector_ui(ui, world, panel)
+                    })
+                })
             })
             .response
             .rect

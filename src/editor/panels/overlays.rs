@@ -9,15 +9,19 @@ use super::notices::{is_over, notices_ui};
 use super::pattern::pattern_ui;
 use super::readout::PixelValue;
 use super::says::Says;
-use super::state::Panels;
+use super::state::with;
 use super::theme::accent;
 use super::tree_pair;
+use crate::editor::document::SceneOpened;
 use crate::editor::viewport::{EditorCamera, Show, Viewport};
 use crate::film::views::{Scale, View};
 use crate::scene::{Quantity, RenderSettings};
-use crate::trace::{FirstHit, central_hits};
+use crate::trace::{Camera, FirstHit, central_hits};
 use crate::view::{TracedRender, TracedView};
+use bevy::ecs::observer::On;
 use bevy::ecs::query::With;
+use bevy::ecs::resource::Resource;
+use bevy::ecs::system::ResMut;
 use bevy::ecs::world::World;
 use bevy::math::{self, UVec2, Vec2};
 use bevy_egui::egui::{
@@ -29,8 +33,25 @@ const GRAB: f32 = 5.0;
 /// Parts of a region that are too small to be meant.
 const LEAST_REGION: f32 = 0.01;
 
+/// Dragging a frame that limits the traced view to a region.
+#[derive(Resource, Default)]
+pub(super) struct RegionDrag {
+    /// The next drag over the picture is one.
+    pub is_armed: bool,
+    /// Where it began.
+    pub start: Option<egui::Pos2>,
+}
+
+/// What the pixel under the pointer shows, and of which world, by its address, pixel and camera that is.
+#[derive(Resource, Default)]
+pub(super) struct UnderPointer(pub Option<((usize, UVec2, Camera), FirstHit)>);
+
+pub(super) fn forget_scene(_: On<SceneOpened>, mut known: ResMut<UnderPointer>) {
+    known.0 = None;
+}
+
 /// Draws them over the free rectangle; true where the pointer is over one of them.
-pub(super) fn overlays_ui(ui: &mut Ui, free: Rect, world: &mut World, panels: &mut Panels) -> bool {
+pub(super) fn overlays_ui(ui: &mut Ui, free: Rect, world: &mut World, only_picture: bool) -> bool {
     if !free.is_positive() {
         return false;
     }
@@ -43,15 +64,21 @@ pub(super) fn overlays_ui(ui: &mut Ui, free: Rect, world: &mut World, panels: &m
     if pair {
         tree_pair::labels_ui(ui, free, world, split);
     }
-    over |= region_ui(ui, free, world, panels);
-    legend_ui(ui, free, world, panels);
-    pattern_ui(ui, free, world, panels);
-    over |= line_legend_ui(ui, free, world, panels);
+    over |= with(world, |world, drag| region_ui(ui, free, world, drag));
+    with(world, |world, under| legend_ui(ui, free, world, under));
+    with(world, |world, shown| pattern_ui(ui, free, world, shown));
+    over |= with(world, |world, legend| {
+        line_legend_ui(ui, free, world, legend)
+    });
     over |= notices_ui(ui.ctx(), free, world);
-    over |= answer_ui(ui.ctx(), free, world, panels);
+    over |= with(world, |world, answer| {
+        answer_ui(ui.ctx(), free, world, answer)
+    });
     armed_ui(ui.ctx(), world);
-    if !panels.only_picture {
-        over |= first_steps_ui(ui.ctx(), free, world, panels);
+    if !only_picture {
+        over |= with(world, |world, tried| {
+            first_steps_ui(ui.ctx(), free, world, tried)
+        });
     }
     over
 }
@@ -116,7 +143,7 @@ pub(super) fn label_within(ui: &Ui, at: egui::Pos2, align: Align2, text: &str, w
 }
 
 /// The frame of the region that is traced, and dragging a new one.
-fn region_ui(ui: &Ui, free: Rect, world: &mut World, panels: &mut Panels) -> bool {
+fn region_ui(ui: &Ui, free: Rect, world: &mut World, drag: &mut RegionDrag) -> bool {
     let mut query = world.query_filtered::<&TracedView, With<EditorCamera>>();
     let region = query.single(world).ok().and_then(|view| view.region);
     let place = |at: egui::Pos2| {
@@ -130,21 +157,21 @@ fn region_ui(ui: &Ui, free: Rect, world: &mut World, panels: &mut Panels) -> boo
         ui.painter()
             .rect_stroke(rect, 0.0, stroke, StrokeKind::Outside);
     }
-    if !panels.drags_region {
+    if !drag.is_armed {
         return false;
     }
     let response = ui
         .interact(free, Id::new("region"), Sense::drag())
         .on_hover_and_drag_cursor(CursorIcon::Crosshair);
     if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
-        panels.drags_region = false;
-        panels.region_start = None;
+        drag.is_armed = false;
+        drag.start = None;
         return true;
     }
     if response.drag_started() {
-        panels.region_start = ui.input(|input| input.pointer.press_origin());
+        drag.start = ui.input(|input| input.pointer.press_origin());
     }
-    let Some(start) = panels.region_start else {
+    let Some(start) = drag.start else {
         return true;
     };
     let Some(end) = response.interact_pointer_pos() else {
@@ -155,8 +182,8 @@ fn region_ui(ui: &Ui, free: Rect, world: &mut World, panels: &mut Panels) -> boo
     ui.painter()
         .rect_stroke(rect, 0.0, stroke, StrokeKind::Inside);
     if response.drag_stopped() {
-        panels.drags_region = false;
-        panels.region_start = None;
+        drag.is_armed = false;
+        drag.start = None;
         let region = math::Rect::from_corners(place(start), place(end));
         if region.size().min_element() > LEAST_REGION {
             let mut query = world.query_filtered::<&mut TracedView, With<EditorCamera>>();
@@ -169,7 +196,7 @@ fn region_ui(ui: &Ui, free: Rect, world: &mut World, panels: &mut Panels) -> boo
 }
 
 /// The palette of a heatmap with its ends, which can be dragged, and the value under the pointer.
-fn legend_ui(ui: &Ui, free: Rect, world: &mut World, panels: &mut Panels) {
+fn legend_ui(ui: &Ui, free: Rect, world: &mut World, known: &mut UnderPointer) {
     let mut query = world.query_filtered::<(&TracedView, &TracedRender), With<EditorCamera>>();
     let Ok((view, render)) = query.single(world) else {
         return;
@@ -179,7 +206,7 @@ fn legend_ui(ui: &Ui, free: Rect, world: &mut World, panels: &mut Panels) {
         return;
     };
     let (kind, range) = (view.view, view.range);
-    let under = value_under_pointer(ui, free, view, render, panels);
+    let under = value_under_pointer(ui, free, view, render, known);
     let mut entered = range;
     egui::Area::new(Id::new("legend"))
         .anchor(
@@ -284,7 +311,7 @@ pub(super) fn value_under_pointer(
     free: Rect,
     view: &TracedView,
     render: &TracedRender,
-    panels: &mut Panels,
+    known: &mut UnderPointer,
 ) -> Option<PixelValue> {
     let at = ui
         .ctx()
@@ -311,8 +338,7 @@ pub(super) fn value_under_pointer(
                 pixel,
                 camera.clone(),
             );
-            let known = panels.under_pointer.take();
-            let hit = match known {
+            let hit = match known.0.take() {
                 Some((known, hit)) if known == key => hit,
                 _ => {
                     let mut hits = [FirstHit::MISS];
@@ -324,7 +350,7 @@ pub(super) fn value_under_pointer(
                     hits[0]
                 }
             };
-            panels.under_pointer = Some((key, hit));
+            known.0 = Some((key, hit));
             let value = match kind {
                 View::Nodes => hit.cost.nodes as f32,
                 View::Triangles => hit.cost.triangles as f32,

@@ -1,9 +1,9 @@
 //! The palette: all commands, found by a few letters of their names.
 
 use super::says::note_hint;
-use super::state::Panels;
 use crate::editor::action::Action;
 use crate::editor::command::{Command, CommandTable, State, shortcut};
+use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{
     self, Align2, FontId, Id, Key, Modal, Modifiers, Rect, ScrollArea, Sense, TextEdit, TextStyle,
@@ -18,6 +18,10 @@ const ROW: f32 = 22.0;
 /// Rows that are seen at once.
 const SEEN: f32 = 12.0;
 
+/// The palette, where it is open.
+#[derive(Resource, Default)]
+pub(super) struct OpenPalette(pub Option<Palette>);
+
 /// What is typed, and which of the rows found is chosen.
 #[derive(Default)]
 pub(super) struct Palette {
@@ -25,8 +29,8 @@ pub(super) struct Palette {
     chosen: usize,
 }
 
-pub(super) fn palette_ui(context: &egui::Context, world: &mut World, panels: &mut Panels) {
-    let Some(palette) = &mut panels.palette else {
+pub(super) fn palette_ui(context: &egui::Context, world: &mut World, open: &mut OpenPalette) {
+    let Some(palette) = &mut open.0 else {
         return;
     };
     let screen = context.content_rect();
@@ -42,7 +46,7 @@ pub(super) fn palette_ui(context: &egui::Context, world: &mut World, panels: &mu
         world.write_message(Action::Run(id));
     }
     if response.inner.is_some() || response.should_close() {
-        panels.palette = None;
+        open.0 = None;
     }
 }
 
@@ -176,7 +180,7 @@ fn find(world: &World, text: &str) -> Vec<Arc<Command>> {
 
 /// How well a name fits what was typed: letters at beginnings of words and letters in a row are
 /// worth most, long gaps and long names little. `None` where a letter is missing.
-fn score(text: &str, name: &str) -> Option<i32> {
+pub(super) fn score(text: &str, name: &str) -> Option<i32> {
     let letters = |text: &str| -> Vec<char> { text.to_lowercase().chars().collect() };
     let (wanted, name) = (letters(text), letters(name));
     let wanted: Vec<char> = wanted.into_iter().filter(|c| !c.is_whitespace()).collect();

@@ -1,11 +1,11 @@
 //! Where the samples of the picked pixel lie: an inset over the picture.
 
-use super::state::Panels;
 use crate::editor::inspection::DebugRay;
 use crate::editor::selection::Selection;
 use crate::inspect::{Dimension, InspectSettings, Pattern, PatternSettings, pattern};
 use crate::scene::RenderSettings;
 use crate::trace::{DOME, Lights, World, samples_per_pixel};
+use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World as Scene;
 use bevy::math::UVec2;
 use bevy_egui::egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, StrokeKind, Ui, pos2, vec2};
@@ -23,8 +23,12 @@ const INK: Color32 = Color32::from_rgb(220, 220, 220);
 /// The same yellow that the command line draws with.
 const POINT: Color32 = Color32::from_rgb(255, 243, 124);
 
+/// Where the picked pixel's samples lie.
+#[derive(Resource, Default)]
+pub(super) struct ShownPattern(Option<PatternOf>);
+
 /// A pattern, and of what it is.
-pub(super) struct PatternOf {
+struct PatternOf {
     /// The world is held, so that no other one takes its place in memory.
     of: (Arc<World>, RenderSettings, PatternSettings, UVec2, u64),
     pattern: Pattern,
@@ -40,16 +44,16 @@ fn heading(points: usize, [drawn, all]: [u64; 2], pixel: UVec2) -> String {
 }
 
 /// Draws it, where it is switched on and a pixel is picked.
-pub(super) fn pattern_ui(ui: &Ui, free: Rect, scene: &Scene, panels: &mut Panels) {
+pub(super) fn pattern_ui(ui: &Ui, free: Rect, scene: &Scene, shown: &mut ShownPattern) {
     let inspect = scene.get_resource::<InspectSettings>();
     let Some(choice) = inspect.filter(|i| i.on && i.pattern.on).map(|i| &i.pattern) else {
-        panels.pattern = None;
+        shown.0 = None;
         return;
     };
     let ray = scene.get_resource::<DebugRay>();
     let picked = ray.and_then(|ray| Some((ray.shot()?, ray.traced_with()?)));
     let Some((shot, (world, settings))) = picked else {
-        panels.pattern = None;
+        shown.0 = None;
         return;
     };
     let pixel = shot.pixel;
@@ -63,15 +67,15 @@ pub(super) fn pattern_ui(ui: &Ui, free: Rect, scene: &Scene, panels: &mut Panels
     let all = u64::from(samples_per_pixel(world, &shot.camera, settings));
     let count = all.min(MOST);
     let of = (world.clone(), settings.clone(), choice, pixel, count);
-    let same = panels.pattern.as_ref().is_some_and(|known| {
+    let same = shown.0.as_ref().is_some_and(|known| {
         Arc::ptr_eq(&known.of.0, &of.0)
             && (&known.of.1, &known.of.2, known.of.3, known.of.4) == (&of.1, &of.2, of.3, of.4)
     });
     if !same {
         let pattern = pattern(world, settings, &of.2, pixel, count);
-        panels.pattern = Some(PatternOf { of, pattern });
+        shown.0 = Some(PatternOf { of, pattern });
     }
-    if let Some(PatternOf { pattern, .. }) = &panels.pattern {
+    if let Some(PatternOf { pattern, .. }) = &shown.0 {
         let heading = heading(pattern.points.len(), [count, all], pixel);
         inset_ui(ui, free, pattern, heading);
     }

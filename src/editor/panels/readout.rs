@@ -1,8 +1,7 @@
 //! What the pixel under the pointer has, in the status line: the number that its colour stands for.
 
-use super::overlays::value_under_pointer;
+use super::overlays::{UnderPointer, value_under_pointer};
 use super::says::note_hint;
-use super::state::Panels;
 use crate::editor::inspection::Names;
 use crate::editor::inspection::column::{color_text, vector_text};
 use crate::editor::viewport::{EditorCamera, Viewport};
@@ -14,7 +13,7 @@ use bevy::math::{UVec2, Vec2};
 use bevy_egui::egui::{self, Rect, Ui};
 
 /// Says it where the pointer is over the traced picture.
-pub(super) fn readout_ui(ui: &Ui, free: Rect, world: &mut World, panels: &mut Panels) {
+pub(super) fn readout_ui(ui: &Ui, free: Rect, world: &mut World, known: &mut UnderPointer) {
     if !world.resource::<Viewport>().hovered {
         return;
     }
@@ -25,9 +24,9 @@ pub(super) fn readout_ui(ui: &Ui, free: Rect, world: &mut World, panels: &mut Pa
     let Some(pixel) = pixel_under_pointer(ui.ctx(), free, view, render) else {
         return;
     };
-    let value = value_under_pointer(ui, free, view, render, panels);
+    let value = value_under_pointer(ui, free, view, render, known);
     let names = world.get_resource::<Names>();
-    let hit = panels.under_pointer.as_ref().map(|(_, hit)| hit);
+    let hit = known.0.as_ref().map(|(_, hit)| hit);
     let unit = render.shown().and_then(|shown| shown.scale);
     let text = match view.view {
         View::Shaded | View::BloomThreshold | View::BloomLayer => {

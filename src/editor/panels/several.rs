@@ -1,12 +1,12 @@
 //! One property of several entities at once: a field shows the active one's value, says where the
 //! others differ, and what is entered reaches all of them.
 
-use super::fields::property_ui;
+use super::fields::{chosen_ui, property_ui};
 use crate::scene::schema::{Property, keep_order};
 use bevy::ecs::component::{Component, Mutable};
 use bevy::ecs::entity::Entity;
 use bevy::ecs::world::World;
-use bevy::reflect::{Reflect, ReflectPath, Typed};
+use bevy::reflect::{Reflect, ReflectPath, ReflectRef, Typed};
 use bevy_egui::egui::Ui;
 
 /// Copies of the same component of several entities, the active one's first.
@@ -105,6 +105,22 @@ impl<C: Component<Mutability = Mutable> + Clone + PartialEq + Reflect + Typed> S
                 self.property(ui, &property);
             }
         }
+    }
+
+    /// Which variant of an enum they are, where that is to be chosen; the name of another one that was.
+    pub fn variant_ui(&self, ui: &mut Ui, path: &str) -> Option<&'static str> {
+        let property = Property::of(C::type_info(), path)?;
+        let name = |value: &C| match path.reflect_element(value.as_partial_reflect()) {
+            Ok(value) => match value.reflect_ref() {
+                ReflectRef::Enum(value) => value.variant_name().to_owned(),
+                _ => String::new(),
+            },
+            Err(_) => String::new(),
+        };
+        let current = name(self.first());
+        let mixed = self.any(|value| name(value) != current);
+        let (label, says) = (&property.label, &property.says);
+        chosen_ui(ui, label, says, &current, &property.choices(), mixed)
     }
 
     /// One property.

@@ -1,7 +1,7 @@
 //! The line below: what the traced view has, how fast it gets on, and what is under the pointer.
 
+use super::dialogs::{Dialog, Dialogs};
 use super::says::{Says, take_hint};
-use super::state::{Dialog, Panels};
 use crate::editor::render_job::RenderJob;
 use crate::editor::texts::counted;
 use crate::editor::viewport::EditorCamera;
@@ -11,6 +11,7 @@ use crate::sync::Traced;
 use crate::trace;
 use crate::view::TracedRender;
 use bevy::ecs::query::With;
+use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{self, Popup, RichText, Ui};
 use std::sync::Arc;
@@ -19,13 +20,21 @@ use std::time::{Duration, Instant};
 /// How often the memory is asked for.
 const MEMORY_INTERVAL: Duration = Duration::from_secs(1);
 
-pub(super) fn status_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
+/// What the line remembers between two frames.
+#[derive(Resource, Default)]
+pub(super) struct StatusBar {
+    numbers: Numbers,
+    memory: Memory,
+}
+
+pub(super) fn status_ui(ui: &mut Ui, world: &mut World, bar: &mut StatusBar) {
     let hint = take_hint(ui.ctx());
     let mut query = world.query_filtered::<&TracedRender, With<EditorCamera>>();
     let render = query.single(world).ok();
     let status = render.and_then(TracedRender::status);
     let shown = render.and_then(TracedRender::shown);
     let traced = world.resource::<Traced>();
+    let mut opens = false;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 14.0;
         if let Some(status) = &status {
@@ -70,7 +79,7 @@ pub(super) fn status_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
                 "From the last edit to the first picture of it on the screen",
             );
         }
-        let numbers = panels.numbers.of(traced);
+        let numbers = bar.numbers.of(traced);
         figure(
             ui,
             &counted(numbers.triangles, "triangle"),
@@ -81,7 +90,7 @@ pub(super) fn status_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
             &counted(numbers.lights as u64, "light"),
             "Lights that are traced: hidden ones are not",
         );
-        if let Some(bytes) = panels.memory.bytes() {
+        if let Some(bytes) = bar.memory.bytes() {
             figure(
                 ui,
                 &memory_text(bytes),
@@ -89,30 +98,33 @@ pub(super) fn status_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
             );
         }
         problems_ui(ui, world);
-        job_ui(ui, world, panels);
+        opens = job_ui(ui, world);
         if let Some(hint) = hint {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 ui.add(egui::Label::new(RichText::new(hint).weak()).truncate());
             });
         }
     });
+    if opens {
+        world.resource_mut::<Dialogs>().open = Some(Dialog::Render);
+    }
 }
 
 fn figure(ui: &mut Ui, text: &str, says: &str) {
     ui.label(text).says(says);
 }
 
-/// How far a render to a file is; a click opens its dialog.
-fn job_ui(ui: &mut Ui, world: &World, panels: &mut Panels) {
+/// How far a render to a file is; true where its dialog is asked for.
+fn job_ui(ui: &mut Ui, world: &World) -> bool {
     let progress = world
         .get_resource::<RenderJob>()
         .and_then(RenderJob::progress);
-    let Some(progress) = progress else { return };
+    let Some(progress) = progress else {
+        return false;
+    };
     let text = format!("rendering {:.0} %", progress.fraction * 100.0);
     let says = "A picture is being rendered to a file; click to see it, or to stop it";
-    if ui.add(egui::Button::new(text).small()).says(says).clicked() {
-        panels.dialog = Some(Dialog::Render);
-    }
+    ui.add(egui::Button::new(text).small()).says(says).clicked()
 }
 
 /// What cannot be loaded or traced as it is.

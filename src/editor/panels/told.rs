@@ -1,7 +1,6 @@
 //! What the lines over the picture stand for: beside the pointer, and of the chosen node in a corner.
 
 use super::says::Says;
-use super::state::Panels;
 use crate::bvh::primitives_below;
 use crate::editor::inspection::choice::Node;
 use crate::editor::inspection::lit::view;
@@ -10,12 +9,13 @@ use crate::editor::inspection::{DebugRay, Hovered, Inspected, Names};
 use crate::editor::pick::to_points;
 use crate::inspect::{InspectSettings, Stands, System};
 use crate::sync::Traced;
+use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{self, Align2, Grid, Id, Order, Rect, RichText, Ui, vec2};
 use std::sync::Arc;
 
 /// What was told last, of what.
-#[derive(Default)]
+#[derive(Resource, Default)]
 pub(super) struct Tales {
     hovered: Option<(Of, Option<Told>)>,
     node: Option<(Of, Option<Told>)>,
@@ -30,12 +30,12 @@ struct Of {
     names: u64,
 }
 
-pub(super) fn told_ui(context: &egui::Context, free: Rect, world: &mut World, panels: &mut Panels) {
+pub(super) fn told_ui(context: &egui::Context, free: Rect, world: &mut World, tales: &mut Tales) {
     if !free.is_positive() || !world.contains_resource::<Inspected>() {
         return;
     }
-    hovered_ui(context, free, world, &mut panels.tales);
-    node_ui(context, free, world, &mut panels.tales);
+    hovered_ui(context, free, world, tales);
+    node_ui(context, free, world, tales);
 }
 
 /// The figures of what is under the pointer.

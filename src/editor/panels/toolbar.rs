@@ -4,8 +4,8 @@ use super::compare::keep_ui;
 use super::fields::number_row;
 use super::menu_bar::menu_ui;
 use super::number_field::NumberField;
+use super::overlays::RegionDrag;
 use super::says::Says;
-use super::state::Panels;
 use crate::editor::action::Action;
 use crate::editor::command::{CommandTable, tooltip};
 use crate::editor::handles::Tools;
@@ -19,13 +19,13 @@ use bevy::ecs::query::With;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{Button, ComboBox, Popup, PopupCloseBehavior, Ui};
 
-pub(super) fn toolbar_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
+pub(super) fn toolbar_ui(ui: &mut Ui, world: &mut World) {
     ui.horizontal(|ui| {
         group_ui(ui, world, "tools");
         ui.separator();
         group_ui(ui, world, "show");
         ui.separator();
-        traced_ui(ui, world, panels);
+        traced_ui(ui, world);
         ui.menu_button("Rays and trees", |ui| {
             menu_ui(ui, world, "View/Rays and trees");
         })
@@ -85,7 +85,7 @@ fn steps_ui(ui: &mut Ui, world: &mut World) {
 }
 
 /// What of the film is shown, and whether it goes on.
-fn traced_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
+fn traced_ui(ui: &mut Ui, world: &mut World) {
     let mut query = world.query_filtered::<&TracedView, With<EditorCamera>>();
     let Ok(before) = query.single(world).cloned() else {
         return;
@@ -108,16 +108,18 @@ fn traced_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
         view.range = None;
     }
     group_ui(ui, world, "traced");
-    let on = panels.drags_region || view.region.is_some();
+    let on = world.resource::<RegionDrag>().is_armed || view.region.is_some();
     let region = ui.add(Button::selectable(on, "Region")).says(
         "Only a part of the view is traced: press, then drag a frame over the picture; press again for all",
     );
     if region.clicked() {
-        panels.drags_region = !on;
-        panels.region_start = None;
+        *world.resource_mut::<RegionDrag>() = RegionDrag {
+            is_armed: !on,
+            start: None,
+        };
         view.region = None;
     }
-    keep_ui(ui, world, panels);
+    keep_ui(ui, world);
     if view != before {
         let mut query = world.query_filtered::<&mut TracedView, With<EditorCamera>>();
         if let Ok(mut traced) = query.single_mut(world) {

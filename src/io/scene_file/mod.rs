@@ -1,5 +1,6 @@
 //! `.scn.ron`: Bevy's own world serialization, with a version in it, restricted to the components
-//! of the room `scene` and to what says where an entity stands.
+//! of the room `scene`, to what says where an entity stands, and to what an app
+//! [keeps](KeepInSceneFiles) of its own.
 //!
 //! Entities are written in the order of their [`SceneId`], and that number is their label, so that
 //! the same scene gives the same bytes. Handles are not written: the sources are.
@@ -10,8 +11,10 @@ mod migrate;
 mod read;
 mod write;
 
+pub use kept::KeepInSceneFiles;
+pub(crate) use kept::KeptTypes;
 #[cfg(feature = "editor")]
-pub(crate) use kept::{AnyKeptChanged, KeptComponents, kept_components, kept_types};
+pub(crate) use kept::{AnyKeptChanged, KeptComponents, keeps, kept_components};
 #[cfg(feature = "editor")]
 pub(crate) use read::read_scene_text;
 pub(crate) use read::{SceneFile, read_scene};

@@ -2,10 +2,9 @@ use super::super::error::{FileError, Place, Problem};
 #[cfg(feature = "editor")]
 use super::super::notes::Notes;
 use super::super::on_disk::OnDisk;
-use super::FileVersion;
 use super::check::check_value;
-use super::kept::{is_kept_component, kept_types};
 use super::migrate::migrate;
+use super::{FileVersion, KeptTypes};
 use crate::io::Limits;
 use crate::scene::{Environment, MeshSource, Phong, RenderSettings, SceneId, UsesMaterial};
 use bevy::asset::{AssetPath, Handle, LoadFromPath, UntypedHandle};
@@ -26,18 +25,24 @@ use std::path::Path;
 /// The content of a scene file, checked, before it becomes entities.
 pub(crate) struct SceneFile {
     content: DynamicWorld,
+    types: KeptTypes,
     /// The file that it was read from.
     pub on_disk: OnDisk,
 }
 
-/// Reads a scene file and checks everything in it that can be checked without other files.
-pub(crate) fn read_scene(file: &Path, limits: &Limits) -> Result<SceneFile, FileError> {
+/// Reads a scene file for a world and checks everything in it that can be checked without other files.
+pub(crate) fn read_scene(
+    world: &World,
+    file: &Path,
+    limits: &Limits,
+) -> Result<SceneFile, FileError> {
     let bytes = super::super::read_bytes(file, limits.file_bytes, &limits.memory)?;
-    read_scene_text(file, &bytes, limits)
+    read_scene_text(world, file, &bytes, limits)
 }
 
 /// The same from the text of a file; its name is for what is wrong with it.
 pub(crate) fn read_scene_text(
+    world: &World,
     file: &Path,
     bytes: &[u8],
     limits: &Limits,
@@ -55,11 +60,11 @@ pub(crate) fn read_scene_text(
         .claim(4 * bytes.len() as u64)
         .map_err(|problem| FileError::new(file, problem))?;
     let version = check_version(file, text)?;
-    let registry = kept_types();
+    let types = KeptTypes::of(world);
     let mut deserializer =
         ron::de::Deserializer::from_str(text).map_err(|error| ron_error(file, &error))?;
     let content = WorldDeserializer {
-        type_registry: &registry,
+        type_registry: &types.registry,
         load_from_path: &mut NoAssets,
     }
     .deserialize(&mut deserializer)
@@ -67,6 +72,7 @@ pub(crate) fn read_scene_text(
     .map_err(|error| ron_error(file, &deserializer.span_error(error)))?;
     let mut scene = SceneFile {
         content,
+        types,
         on_disk: OnDisk::new(file, bytes),
     };
     scene
@@ -101,8 +107,11 @@ impl SceneFile {
         for entity in &self.content.entities {
             let place = || part(&format!("entity {}", entity.entity.to_bits()));
             let mut check = |component: &dyn PartialReflect| {
-                check_kind(component, is_kept_component)?;
-                check_value(component)?;
+                let kind = component.get_represented_type_info();
+                check_kind(component, |id| self.types.is_component(id))?;
+                if !kind.is_some_and(|kind| self.types.is_own(kind.type_id())) {
+                    check_value(component)?;
+                }
                 if let Some(id) = component.try_downcast_ref::<SceneId>()
                     && !id.is_unassigned()
                 {
@@ -222,10 +231,9 @@ impl SceneFile {
 
     /// Makes entities and resources. Returns the entities in the order of the file.
     pub fn spawn(self, world: &mut World) -> Result<Vec<Entity>, String> {
-        let registry = kept_types();
         let mut entities = EntityHashMap::default();
         self.content
-            .write_to_world_with(world, &mut entities, &registry)
+            .write_to_world_with(world, &mut entities, &self.types.registry)
             .map_err(|error| error.to_string())?;
         let mut spawned = Vec::with_capacity(self.content.entities.len());
         for dynamic in &self.content.entities {

@@ -6,12 +6,11 @@ use super::super::notes::Notes;
 use super::super::on_disk::OnDisk;
 use super::super::replace::{check_space, replace_file};
 use super::super::sources::SceneFiles;
-use super::kept::{kept_only, kept_types};
-use super::{FileVersion, scene_entities};
+use super::{FileVersion, KeptTypes, scene_entities};
 use crate::scene::{
     Environment, MeshSource, Phong, PhongMap, SceneId, TextureSource, UsesMaterial,
 };
-use bevy::ecs::entity::EntityHashMap;
+use bevy::ecs::entity::{EntityHashMap, EntityMapper};
 use bevy::ecs::hierarchy::ChildOf;
 use bevy::mesh::Mesh3d;
 use bevy::prelude::{Entity, World};
@@ -37,6 +36,7 @@ pub(crate) fn write_scene(world: &mut World, file: &Path) -> Result<Notes, FileE
 /// What a scene file says, taken from the world, so that it can be written on another thread.
 pub(crate) struct SceneContent {
     content: DynamicWorld,
+    types: KeptTypes,
     /// What the file cannot say.
     pub notes: Notes,
 }
@@ -101,14 +101,17 @@ impl SceneContent {
                 notes.add_named(file, Place::Whole, what, &id.to_string(), "left out");
             }
         }
-        let registry = kept_types();
-        let mut builder = kept_only(world, &registry).extract_entities(entities.iter().copied());
+        let types = KeptTypes::of(world);
+        let mut builder = types
+            .only_kept(world)
+            .extract_entities(entities.iter().copied());
         if rebase.is_some() {
             builder = builder.extract_resources();
         }
         let mut content = builder.build();
         for dynamic in &mut content.entities {
             dynamic.components.retain_mut(|component| {
+                types.name_entities(component.as_mut(), &mut Labels(&labels));
                 let kept = relabel(component.as_mut(), &labels);
                 if !kept {
                     let what = "a reference to an entity outside the scene";
@@ -132,16 +135,19 @@ impl SceneContent {
             .entities
             .sort_by_key(|dynamic| dynamic.entity.to_bits());
         content.resources.push(Box::new(FileVersion::CURRENT));
-        Ok(Self { content, notes })
+        Ok(Self {
+            content,
+            types,
+            notes,
+        })
     }
 
     /// As the file says it.
     pub fn to_text(&self, file: &Path) -> Result<String, FileError> {
-        let registry = kept_types();
         let malformed =
             |error: ron::Error| FileError::new(file, Problem::Malformed(error.to_string()));
-        let mut text = serialize_ron(DynamicWorldSerializer::new(&self.content, &registry))
-            .map_err(malformed)?;
+        let content = DynamicWorldSerializer::new(&self.content, &self.types.registry);
+        let mut text = serialize_ron(content).map_err(malformed)?;
         text.push('\n');
         Ok(text)
     }
@@ -153,6 +159,17 @@ impl SceneContent {
         replace_file(file, |writer| writer.write_all(text.as_bytes()))?;
         Ok(OnDisk::new(file, text.as_bytes()))
     }
+}
+
+/// Labels in place of entities; none for those that are not written.
+struct Labels<'a>(&'a EntityHashMap<Entity>);
+
+impl EntityMapper for Labels<'_> {
+    fn get_mapped(&mut self, named: Entity) -> Entity {
+        self.0.get(&named).copied().unwrap_or(Entity::PLACEHOLDER)
+    }
+
+    fn set_mapped(&mut self, _: Entity, _: Entity) {}
 }
 
 /// Replaces the entity that a component names by its label. False where it has none.

@@ -88,7 +88,8 @@ impl Property {
         found
     }
 
-    fn root(of: &'static TypeInfo) -> Self {
+    /// The whole of a type.
+    pub fn root(of: &'static TypeInfo) -> Self {
         Self {
             path: String::new(),
             label: String::new(),
@@ -128,12 +129,19 @@ impl Property {
         Some(item)
     }
 
-    /// What its type may be by name; empty where it is no choice.
+    /// What its type may be by name; empty where it is no choice of this crate.
     pub fn choices(&self) -> Vec<Choice> {
+        match is_ours(self.kind) {
+            true => self.variants(),
+            false => Vec::new(),
+        }
+    }
+
+    /// The variants of its type, whatever they hold.
+    pub fn variants(&self) -> Vec<Choice> {
         let TypeInfo::Enum(info) = self.kind else {
             return Vec::new();
         };
-        let variants = info.iter().filter(|_| is_ours(self.kind));
         let choice = |variant: &'static VariantInfo| {
             let attributes = variant.custom_attributes();
             let label = attributes.get::<Label>();
@@ -144,7 +152,7 @@ impl Property {
                 says: says.map_or_else(String::new, |says| says.text()),
             }
         };
-        variants.map(choice).collect()
+        info.iter().map(choice).collect()
     }
 
     /// Whether it is read where the whole type has this value.
@@ -180,6 +188,19 @@ impl Property {
             },
             Err(_) => String::new(),
         }
+    }
+
+    /// The same with what is said at a part of it, a field of this name or a number among its parts.
+    pub fn with(mut self, attributes: &CustomAttributes, name: &str) -> Self {
+        self.label = attributes
+            .get::<Label>()
+            .map_or_else(|| words(name), |label| label.0.to_owned());
+        self.quantity = attributes.get().copied().or(self.quantity);
+        self.most_pixels = attributes.get().copied();
+        self.says = attributes
+            .get::<Says>()
+            .map_or_else(String::new, |says| says.text());
+        self
     }
 
     /// Goes on to a part of it.
@@ -233,6 +254,10 @@ fn part_of(
             let field = variant.as_tuple_variant().ok()?.field_at(*index)?;
             Some((&*NONE, field.type_info()?))
         }),
+        (TypeInfo::TupleStruct(info), Access::TupleIndex(index)) => {
+            let field = info.field_at(*index)?;
+            Some((field.custom_attributes(), field.type_info()?))
+        }
         (TypeInfo::Array(info), Access::ListIndex(_)) => Some((&*NONE, info.item_info()?)),
         (TypeInfo::List(info), Access::ListIndex(_)) => Some((&*NONE, info.item_info()?)),
         _ => None,

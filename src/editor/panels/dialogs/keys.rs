@@ -1,7 +1,7 @@
 //! What the mouse does, and every key.
 
 use super::super::bindings::bindings_ui;
-use super::super::state::Panels;
+use super::Dialogs;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{Grid, Label, RichText, Ui};
 
@@ -39,7 +39,7 @@ const MOUSE: &[(&str, &str)] = &[
     ("Shift while dragging a number", "Changes it in small steps"),
 ];
 
-pub(super) fn keys_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
+pub(super) fn keys_ui(ui: &mut Ui, world: &mut World, dialogs: &mut Dialogs) {
     ui.weak("On a Mac, Command works as Ctrl.");
     ui.add_space(4.0);
     ui.label(RichText::new("Mouse and held keys").strong());
@@ -57,5 +57,5 @@ pub(super) fn keys_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
             }
         });
     ui.add_space(8.0);
-    bindings_ui(ui, world, panels);
+    bindings_ui(ui, world, &mut dialogs.bindings_search);
 }

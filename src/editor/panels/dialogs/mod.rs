@@ -10,13 +10,39 @@ mod render;
 mod scenes;
 
 use super::says::Says;
-use super::state::{Dialog, Panels};
+use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{self, Id, Modal, RichText, ScrollArea, Ui};
 
-pub(super) use path::PathForm;
-pub(super) use render::RenderForm;
-pub(super) use scenes::Gallery;
+use path::PathForm;
+use render::RenderForm;
+use scenes::Gallery;
+
+/// What is in front of everything else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Dialog {
+    Keys,
+    About,
+    Preferences,
+    Scenes,
+    History,
+    Render,
+}
+
+/// What dialogs remember between two frames.
+#[derive(Resource, Default)]
+pub(super) struct Dialogs {
+    /// The one that is open.
+    pub open: Option<Dialog>,
+    /// The one that was open in the frame before.
+    before: Option<Dialog>,
+    /// A path that is being typed for the document.
+    typed_path: Option<PathForm>,
+    pub render_form: RenderForm,
+    gallery: Gallery,
+    /// What is searched for among the keys.
+    pub bindings_search: String,
+}
 
 /// A dialog's title, and its width in points.
 pub(super) fn frame_of(dialog: Dialog) -> (&'static str, f32) {
@@ -30,31 +56,31 @@ pub(super) fn frame_of(dialog: Dialog) -> (&'static str, f32) {
     }
 }
 
-pub(super) fn dialogs_ui(context: &egui::Context, world: &mut World, panels: &mut Panels) {
+pub(super) fn dialogs_ui(context: &egui::Context, world: &mut World, dialogs: &mut Dialogs) {
     // What the document asks comes first: something waits for it.
-    if question::question_ui(context, world, panels) {
+    if question::question_ui(context, world, dialogs) {
         return;
     }
-    let Some(dialog) = panels.dialog else {
-        panels.dialog_before = None;
+    let Some(dialog) = dialogs.open else {
+        dialogs.before = None;
         return;
     };
     let (title, width) = frame_of(dialog);
     let stays = modal_ui(context, title, width, |ui| match dialog {
-        Dialog::Keys => keys::keys_ui(ui, world, panels),
+        Dialog::Keys => keys::keys_ui(ui, world, dialogs),
         Dialog::About => about::about_ui(ui),
         Dialog::Preferences => preferences::preferences_ui(ui, world),
-        Dialog::Scenes => scenes::scenes_ui(ui, world, panels),
+        Dialog::Scenes => scenes::scenes_ui(ui, world, dialogs),
         Dialog::History => history::history_ui(ui, world),
-        Dialog::Render => render::render_ui(ui, world, panels),
+        Dialog::Render => render::render_ui(ui, world, dialogs),
     });
     // The press that opened it does not close it again.
     let f1 = context.input(|input| input.key_pressed(egui::Key::F1));
-    let again = f1 && panels.dialog_before == Some(dialog);
-    if (!stays || again) && panels.dialog == Some(dialog) {
-        panels.dialog = None;
+    let again = f1 && dialogs.before == Some(dialog);
+    if (!stays || again) && dialogs.open == Some(dialog) {
+        dialogs.open = None;
     }
-    panels.dialog_before = panels.dialog;
+    dialogs.before = dialogs.open;
 }
 
 /// A dialog with a title and a way out; false where it was closed: by its button, by Escape, or by a

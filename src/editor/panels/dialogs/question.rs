@@ -1,7 +1,7 @@
 //! What has to be decided before anything else goes on.
 
 use super::super::says::Says;
-use super::super::state::Panels;
+use super::Dialogs;
 use super::modal_ui;
 use super::path::{PathForm, path_ui};
 use crate::editor::document::{Answer, Document, Purpose, Question, answer};
@@ -12,9 +12,13 @@ use bevy_egui::egui::{self, Key, Ui};
 use std::path::{Path, PathBuf};
 
 /// Shows the document's question, if one is open; true where it is.
-pub(super) fn question_ui(context: &egui::Context, world: &mut World, panels: &mut Panels) -> bool {
+pub(super) fn question_ui(
+    context: &egui::Context,
+    world: &mut World,
+    dialogs: &mut Dialogs,
+) -> bool {
     let Some(question) = world.resource::<Document>().question.clone() else {
-        panels.typed_path = None;
+        dialogs.typed_path = None;
         return false;
     };
     let name = world.resource::<Document>().name.clone();
@@ -51,7 +55,7 @@ pub(super) fn question_ui(context: &egui::Context, world: &mut World, panels: &m
             refused,
         } => {
             let recent = recent_folders(world);
-            let form = panels
+            let form = dialogs
                 .typed_path
                 .get_or_insert_with(|| PathForm::new(suggestion));
             answered = path_ui(ui, form, *purpose, &recent, refused.as_deref());
@@ -162,7 +166,7 @@ pub(super) fn question_ui(context: &egui::Context, world: &mut World, panels: &m
     let leaves = !stays && !matches!(question, Question::Waiting { .. });
     let answered = answered.or(leaves.then_some(Answer::Cancel));
     if let Some(answered) = answered {
-        panels.typed_path = None;
+        dialogs.typed_path = None;
         answer(world, answered);
     }
     true

@@ -3,8 +3,8 @@
 use super::super::fields::{properties_ui, row};
 use super::super::menu_bar::cameras;
 use super::super::says::Says;
-use super::super::state::Panels;
 use super::super::status::error_text;
+use super::Dialogs;
 use super::question::whole_path_ui;
 use crate::editor::render_job::{
     RenderFrom, RenderJob, RenderProgress, RenderRequest, start_render,
@@ -53,7 +53,7 @@ impl RenderForm {
     }
 }
 
-pub(super) fn render_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
+pub(super) fn render_ui(ui: &mut Ui, world: &mut World, dialogs: &mut Dialogs) {
     let progress = world.resource::<RenderJob>().progress();
     if let Some(progress) = progress {
         progress_ui(ui, world, &progress);
@@ -63,7 +63,7 @@ pub(super) fn render_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
         return;
     }
     let scene = world.resource::<RenderSettings>().clone();
-    let form = &mut panels.render_form;
+    let form = &mut dialogs.render_form;
     let mut settings = form.settings.take().unwrap_or(scene);
     let says = "PNG and JPEG as on the screen; EXR and HDR keep the linear light";
     row(ui, "File", says, |ui| {

@@ -1,7 +1,7 @@
 //! The scenes that come with Glassbox, each with a picture that is rendered beside the editor.
 
 use super::super::says::Says;
-use super::super::state::Panels;
+use super::Dialogs;
 use crate::app::headless_app;
 use crate::editor::action::Action;
 use crate::film::{develop, render};
@@ -91,9 +91,9 @@ fn picture_of(i: usize) -> Option<ColorImage> {
     Some(ColorImage::new([SIZE.x as usize, SIZE.y as usize], pixels))
 }
 
-pub(super) fn scenes_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
-    panels.gallery.update(ui.ctx());
-    let pictures = panels.gallery.pictures.clone();
+pub(super) fn scenes_ui(ui: &mut Ui, world: &mut World, dialogs: &mut Dialogs) {
+    dialogs.gallery.update(ui.ctx());
+    let pictures = dialogs.gallery.pictures.clone();
     ui.horizontal_wrapped(|ui| {
         for (scene, picture) in SCENES.iter().zip(pictures) {
             let size = vec2(SHOWN[0] + 8.0, SHOWN[1] + 26.0);
@@ -120,7 +120,7 @@ pub(super) fn scenes_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
             painter.text(at, egui::Align2::CENTER_CENTER, scene.name, font, ink);
             if response.clicked() {
                 world.write_message(Action::Open(scene.name.into()));
-                panels.dialog = None;
+                dialogs.open = None;
             }
         }
     });

@@ -4,8 +4,7 @@
 use super::super::outline::Outline;
 use super::super::outline_rows::Row;
 use super::super::says::note_hint;
-use super::super::state::Panels;
-use super::{ROW, click};
+use super::{Hierarchy, ROW, click};
 use crate::editor::selection::Selection;
 use crate::scene::SceneId;
 use bevy::ecs::world::World;
@@ -46,13 +45,13 @@ impl ListKeys {
     }
 }
 
-pub(super) fn keys_ui(ui: &Ui, list: Rect, world: &mut World, panels: &mut Panels, rows: &[Row]) {
+pub(super) fn keys_ui(ui: &Ui, list: Rect, world: &mut World, panel: &mut Hierarchy, rows: &[Row]) {
     let context = ui.ctx();
     let (pressed, place) = ui.input(|input| {
         let pointer = &input.pointer;
         (pointer.any_pressed(), pointer.interact_pos())
     });
-    let keys = &mut panels.list_keys;
+    let keys = &mut panel.list_keys;
     if pressed {
         keys.active = place.is_some_and(|place| list.contains(place));
         keys.focused &= keys.active;
@@ -70,22 +69,22 @@ pub(super) fn keys_ui(ui: &Ui, list: Rect, world: &mut World, panels: &mut Panel
                 pressed: true,
                 modifiers,
                 ..
-            } if panels.list_keys.active && !modifiers.command && !modifiers.alt => {
-                panels.list_keys.focused = true;
-                arrow(world, panels, rows, key, shift);
+            } if panel.list_keys.active && !modifiers.command && !modifiers.alt => {
+                panel.list_keys.focused = true;
+                arrow(world, panel, rows, key, shift);
             }
             Event::Key {
                 key: Key::Escape,
                 pressed: true,
                 ..
-            } => panels.list_keys.focused = false,
-            Event::Text(text) if panels.list_keys.focused => {
-                find_name(world, panels, rows, &text, time);
+            } => panel.list_keys.focused = false,
+            Event::Text(text) if panel.list_keys.focused => {
+                find_name(world, panel, rows, &text, time);
             }
             _ => {}
         }
     }
-    if panels.list_keys.focused {
+    if panel.list_keys.focused {
         let hint = "Arrows choose and fold, letters find a name; Escape gives letters back to the commands";
         note_hint(context, hint.into());
     }
@@ -98,7 +97,7 @@ fn active_row(world: &World, rows: &[Row]) -> Option<usize> {
     rows.iter().position(|row| row.item() == Some(place))
 }
 
-fn arrow(world: &mut World, panels: &mut Panels, rows: &[Row], key: Key, shift: bool) {
+fn arrow(world: &mut World, panel: &mut Hierarchy, rows: &[Row], key: Key, shift: bool) {
     let items = |row: &Row| row.item();
     let now = active_row(world, rows);
     let wanted = match (key, now) {
@@ -113,15 +112,15 @@ fn arrow(world: &mut World, panels: &mut Panels, rows: &[Row], key: Key, shift: 
             let outline = world.resource::<Outline>();
             let item = &outline.items[at];
             let has_children = item.end > at + 1;
-            let folded = panels.folded.contains(item.id);
+            let folded = panel.folded.contains(item.id);
             match key {
                 Key::ArrowLeft if has_children && !folded => {
-                    panels.folded.toggle(item.id);
+                    panel.folded.toggle(item.id);
                     None
                 }
                 Key::ArrowLeft => outline.parent(at),
                 _ if folded => {
-                    panels.folded.toggle(item.id);
+                    panel.folded.toggle(item.id);
                     None
                 }
                 _ => has_children.then_some(at + 1),
@@ -129,13 +128,13 @@ fn arrow(world: &mut World, panels: &mut Panels, rows: &[Row], key: Key, shift: 
         }
     };
     if let Some(at) = wanted {
-        choose(world, panels, rows, at, shift);
+        choose(world, panel, rows, at, shift);
     }
 }
 
 /// Selects the next row whose name begins with what was typed.
-fn find_name(world: &mut World, panels: &mut Panels, rows: &[Row], text: &str, time: f64) {
-    let keys = &mut panels.list_keys;
+fn find_name(world: &mut World, panel: &mut Hierarchy, rows: &[Row], text: &str, time: f64) {
+    let keys = &mut panel.list_keys;
     if time - keys.typed_at > PAUSE {
         keys.typed.clear();
     }
@@ -156,11 +155,11 @@ fn find_name(world: &mut World, panels: &mut Panels, rows: &[Row], text: &str, t
         .filter_map(|i| rows[(start + i) % rows.len()].item())
         .find(|&at| outline.items[at].lower_name.starts_with(&wanted));
     if let Some(at) = found {
-        choose(world, panels, rows, at, false);
+        choose(world, panel, rows, at, false);
     }
 }
 
-fn choose(world: &mut World, panels: &mut Panels, rows: &[Row], at: usize, shift: bool) {
-    panels.list_keys.reveal = Some(world.resource::<Outline>().items[at].id);
-    click(world, panels, rows, at, false, shift);
+fn choose(world: &mut World, panel: &mut Hierarchy, rows: &[Row], at: usize, shift: bool) {
+    panel.list_keys.reveal = Some(world.resource::<Outline>().items[at].id);
+    click(world, panel, rows, at, false, shift);
 }

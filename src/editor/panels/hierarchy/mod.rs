@@ -10,21 +10,25 @@ mod keys;
 mod landing;
 mod row;
 
-pub(super) use keys::ListKeys;
+use keys::ListKeys;
 
 use super::kind_icons::{SIDE, draw_kind};
 use super::outline::{Kind, Outline, Shown};
-use super::outline_rows::Row;
+use super::outline_rows::{Filter, Folded, Row, Rows};
 use super::says::Says;
-use super::state::{Panels, Renaming};
+use super::state::Renaming;
 use super::theme::accent;
 use crate::editor::action::Action;
 use crate::editor::command::Over;
+use crate::editor::document::SceneOpened;
 use crate::editor::history::History;
 use crate::editor::pointer::RightClicked;
 use crate::editor::selection::Selection;
 use crate::scene::SceneId;
 use bevy::camera::visibility::Visibility;
+use bevy::ecs::observer::On;
+use bevy::ecs::resource::Resource;
+use bevy::ecs::system::ResMut;
 use bevy::ecs::world::World;
 use bevy::math::Vec2;
 use bevy_egui::egui::{
@@ -37,6 +41,29 @@ use std::ops::Range;
 const ROW: f32 = 20.0;
 const INDENT: f32 = 13.0;
 const EYE: f32 = 20.0;
+
+/// What the list remembers between two frames.
+#[derive(Resource, Default)]
+pub(super) struct Hierarchy {
+    /// What is searched for.
+    pub filter: Filter,
+    pub list_keys: ListKeys,
+    /// Entities whose descendants are not shown.
+    pub folded: Folded,
+    rows: Rows,
+    /// Where a range of rows begins.
+    pub anchor: Option<SceneId>,
+    pub renaming: Option<Renaming>,
+    /// How many rows were laid out in this frame.
+    pub rows_drawn: usize,
+}
+
+/// Another scene was opened: the numbers of its entities are those of others.
+pub(super) fn forget_scene(_: On<SceneOpened>, mut panel: ResMut<Hierarchy>) {
+    panel.folded.clear();
+    panel.anchor = None;
+    panel.renaming = None;
+}
 
 /// What a person did to a row in this frame; rows by their places in [`Outline::items`].
 enum Deed {
@@ -53,15 +80,15 @@ enum Deed {
     Nothing,
 }
 
-pub(super) fn hierarchy_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
-    filter_ui(ui, panels);
+pub(super) fn hierarchy_ui(ui: &mut Ui, world: &mut World, panel: &mut Hierarchy) {
+    filter_ui(ui, panel);
     ui.add_space(2.0);
     let outline = world.resource::<Outline>();
     let selection = world.resource::<Selection>();
-    if let Some(at) = panels.list_keys.reveal.and_then(|id| outline.place(id)) {
-        panels.folded.reveal(outline, at);
+    if let Some(at) = panel.list_keys.reveal.and_then(|id| outline.place(id)) {
+        panel.folded.reveal(outline, at);
     }
-    let rows = panels.rows.of(outline, &panels.folded, &panels.filter);
+    let rows = panel.rows.of(outline, &panel.folded, &panel.filter);
     if rows.is_empty() {
         let text = match outline.items.is_empty() {
             true => "The scene is empty. The menu Add puts something into it.",
@@ -73,7 +100,7 @@ pub(super) fn hierarchy_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) 
     ui.spacing_mut().item_spacing.y = 0.0;
     let mut drawn = 0;
     let mut area = ScrollArea::vertical().auto_shrink([false, false]);
-    if let Some(offset) = panels.list_keys.scroll_to(outline, &rows) {
+    if let Some(offset) = panel.list_keys.scroll_to(outline, &rows) {
         area = area.vertical_scroll_offset(offset);
     }
     let shown = area.show_rows(ui, ROW, rows.len(), |ui, range: Range<usize>| {
@@ -84,12 +111,12 @@ pub(super) fn hierarchy_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) 
             rows: &rows,
         };
         for index in range {
-            list.row_ui(ui, index, panels, &mut deeds);
+            list.row_ui(ui, index, panel, &mut deeds);
         }
         landing::scroll_while_dragging(ui);
     });
-    panels.rows_drawn = drawn;
-    panels.list_keys.seen = [shown.state.offset.y, shown.inner_rect.height()];
+    panel.rows_drawn = drawn;
+    panel.list_keys.seen = [shown.state.offset.y, shown.inner_rect.height()];
     // What is dropped below the last row belongs to nobody.
     let bottom = shown.inner_rect.min.y + rows.len() as f32 * ROW - shown.state.offset.y;
     let below = Rect::from_min_max(
@@ -109,7 +136,7 @@ pub(super) fn hierarchy_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) 
             deeds.push(Deed::Drop(dragged.0.clone(), None));
         }
     }
-    if panels.list_keys.focused {
+    if panel.list_keys.focused {
         let stroke = Stroke::new(1.0, accent(ui));
         ui.painter()
             .rect_stroke(shown.inner_rect, 3.0, stroke, StrokeKind::Inside);
@@ -117,22 +144,22 @@ pub(super) fn hierarchy_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) 
     // A click on another row ends a renaming: both count, the name first.
     deeds.sort_by_key(|deed| !matches!(deed, Deed::Rename(_)));
     for deed in deeds {
-        perform(ui, world, panels, &rows, deed);
+        perform(ui, world, panel, &rows, deed);
     }
-    keys::keys_ui(ui, shown.inner_rect, world, panels, &rows);
+    keys::keys_ui(ui, shown.inner_rect, world, panel, &rows);
 }
 
 /// The search, and which kinds are shown.
-fn filter_ui(ui: &mut Ui, panels: &mut Panels) {
+fn filter_ui(ui: &mut Ui, panel: &mut Hierarchy) {
     let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
     let right_to_left = egui::Layout::right_to_left(egui::Align::Center);
     ui.allocate_ui_with_layout(size, right_to_left, |ui| {
-        let clear = !panels.filter.is_off();
+        let clear = !panel.filter.is_off();
         let clear = ui.add_enabled(clear, egui::Button::new("✖").small());
         if clear.says("Shows all entities again").clicked() {
-            panels.filter = Default::default();
+            panel.filter = Default::default();
         }
-        let field = TextEdit::singleline(&mut panels.filter.text)
+        let field = TextEdit::singleline(&mut panel.filter.text)
             .hint_text("Search")
             .desired_width(f32::INFINITY);
         ui.add(field)
@@ -151,7 +178,7 @@ fn filter_ui(ui: &mut Ui, panels: &mut Panels) {
             ),
             (Shown::Groups, Kind::Group, "Shows groups alone"),
         ] {
-            let on = panels.filter.shown == shown;
+            let on = panel.filter.shown == shown;
             let response = ui.add(egui::Button::selectable(on, "").min_size(vec2(26.0, 20.0)));
             let ink = ui
                 .style()
@@ -161,32 +188,32 @@ fn filter_ui(ui: &mut Ui, panels: &mut Panels) {
             debug_assert!(response.rect.width() >= SIDE);
             draw_kind(ui.painter(), response.rect.center(), kind, ink);
             if response.says(&format!("{says}; again: all")).clicked() {
-                panels.filter.shown = if on { Shown::All } else { shown };
+                panel.filter.shown = if on { Shown::All } else { shown };
             }
         }
     });
 }
 
-fn perform(ui: &Ui, world: &mut World, panels: &mut Panels, rows: &[Row], deed: Deed) {
+fn perform(ui: &Ui, world: &mut World, panel: &mut Hierarchy, rows: &[Row], deed: Deed) {
     match deed {
         Deed::Click(at) => {
             let modifiers = ui.input(|input| input.modifiers);
-            click(world, panels, rows, at, modifiers.command, modifiers.shift);
+            click(world, panel, rows, at, modifiers.command, modifiers.shift);
         }
         Deed::Menu(at) => {
             let id = world.resource::<Outline>().items[at].id;
             if !world.resource::<Selection>().contains(id) {
-                click(world, panels, rows, at, false, false);
+                click(world, panel, rows, at, false, false);
             }
             let pointer = ui.input(|input| input.pointer.interact_pos());
             let at = pointer.unwrap_or_default() * ui.ctx().zoom_factor();
-            panels.right_click = Some(RightClicked {
+            world.trigger(RightClicked {
                 at: Vec2::new(at.x, at.y),
                 over: Over::Entity,
             });
         }
-        Deed::Fold(id) => panels.folded.toggle(id),
-        Deed::FoldMaterials => panels.folded.toggle_folder(),
+        Deed::Fold(id) => panel.folded.toggle(id),
+        Deed::FoldMaterials => panel.folded.toggle_folder(),
         Deed::Hide(at) => {
             let item = &world.resource::<Outline>().items[at];
             let (entity, hidden) = (item.entity, item.hidden);
@@ -203,7 +230,7 @@ fn perform(ui: &Ui, world: &mut World, panels: &mut Panels, rows: &[Row], deed: 
         }
         Deed::StartName(at) => {
             let item = &world.resource::<Outline>().items[at];
-            panels.renaming = Some(Renaming {
+            panel.renaming = Some(Renaming {
                 id: item.id,
                 text: item.name.clone(),
                 focused: false,
@@ -213,7 +240,7 @@ fn perform(ui: &Ui, world: &mut World, panels: &mut Panels, rows: &[Row], deed: 
             let item = &world.resource::<Outline>().items[at];
             let (id, old) = (item.id, item.name.clone());
             let cancelled = ui.input(|input| input.key_pressed(egui::Key::Escape));
-            if let Some(renaming) = panels.renaming.take() {
+            if let Some(renaming) = panel.renaming.take() {
                 let name = renaming.text.trim();
                 if !cancelled && !name.is_empty() && name != old {
                     world.write_message(Action::Rename(id, name.to_owned()));
@@ -228,14 +255,21 @@ fn perform(ui: &Ui, world: &mut World, panels: &mut Panels, rows: &[Row], deed: 
 }
 
 /// Selects a row; with Ctrl as well, with Shift everything from the last one clicked to it.
-fn click(world: &mut World, panels: &mut Panels, rows: &[Row], at: usize, ctrl: bool, shift: bool) {
+fn click(
+    world: &mut World,
+    panel: &mut Hierarchy,
+    rows: &[Row],
+    at: usize,
+    ctrl: bool,
+    shift: bool,
+) {
     let outline = world.resource::<Outline>();
     let id = outline.items[at].id;
     let row_of = |wanted: SceneId| {
         let place = outline.place(wanted)?;
         rows.iter().position(|row| row.item() == Some(place))
     };
-    let range = panels
+    let range = panel
         .anchor
         .filter(|_| shift)
         .and_then(|anchor| Some((row_of(anchor)?, row_of(id)?)));
@@ -258,6 +292,6 @@ fn click(world: &mut World, panels: &mut Panels, rows: &[Row], at: usize, ctrl: 
         (false, false) => selection.set([id]),
     }
     if !shift {
-        panels.anchor = Some(id);
+        panel.anchor = Some(id);
     }
 }

@@ -4,8 +4,8 @@ use super::super::kind_icons::{draw_eye, draw_fold, draw_kind};
 use super::super::outline::{Item, Kind, Outline};
 use super::super::outline_rows::{Row, is_in_folder};
 use super::super::says::Says;
-use super::super::state::{Panels, Renaming};
-use super::{Deed, EYE, INDENT, ROW, landing};
+use super::super::state::Renaming;
+use super::{Deed, EYE, Hierarchy, INDENT, ROW, landing};
 use crate::editor::selection::Selection;
 use bevy_egui::egui::{
     self, Color32, Pos2, Rect, Response, Sense, TextEdit, TextStyle, TextWrapMode, Ui, WidgetText,
@@ -20,10 +20,10 @@ pub(super) struct List<'a> {
 }
 
 impl List<'_> {
-    pub fn row_ui(&self, ui: &mut Ui, index: usize, panels: &mut Panels, deeds: &mut Vec<Deed>) {
+    pub fn row_ui(&self, ui: &mut Ui, index: usize, panel: &mut Hierarchy, deeds: &mut Vec<Deed>) {
         match self.rows[index] {
-            Row::Item(at) => self.item_ui(ui, index, at, panels, deeds),
-            Row::Materials(count) => folder_ui(ui, count, panels, deeds),
+            Row::Item(at) => self.item_ui(ui, index, at, panel, deeds),
+            Row::Materials(count) => folder_ui(ui, count, panel, deeds),
         }
     }
 
@@ -32,7 +32,7 @@ impl List<'_> {
         ui: &mut Ui,
         index: usize,
         at: usize,
-        panels: &mut Panels,
+        panel: &mut Hierarchy,
         deeds: &mut Vec<Deed>,
     ) {
         let item = &self.outline.items[at];
@@ -46,14 +46,14 @@ impl List<'_> {
         let x = rect.min.x + 2.0 + INDENT * depth as f32;
         let y = rect.center().y;
         if item.end > at + 1 {
-            let folded = panels.folded.contains(item.id) && panels.filter.is_off();
+            let folded = panel.folded.contains(item.id) && panel.filter.is_off();
             if fold_ui(ui, pos2(x, y), item.id.0, folded) {
                 deeds.push(Deed::Fold(item.id));
             }
         }
         draw_kind(ui.painter(), pos2(x + INDENT + 8.0, y), item.kind, icon_ink);
         let field = Rect::from_min_max(pos2(x + INDENT + 19.0, rect.min.y), body.max);
-        if let Some(renaming) = panels.renaming.as_mut().filter(|r| r.id == item.id) {
+        if let Some(renaming) = panel.renaming.as_mut().filter(|r| r.id == item.id) {
             if rename_ui(ui, field, renaming) {
                 deeds.push(Deed::Rename(at));
             }
@@ -117,12 +117,12 @@ fn name_ui(ui: &Ui, rect: Rect, name: &str, ink: Color32) {
 }
 
 /// The folder of shared materials: no entity, so that it can only be folded.
-fn folder_ui(ui: &mut Ui, count: usize, panels: &Panels, deeds: &mut Vec<Deed>) {
+fn folder_ui(ui: &mut Ui, count: usize, panel: &Hierarchy, deeds: &mut Vec<Deed>) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
     let response = response.says("Materials that several objects can use; a click folds them away");
     let (ink, icon_ink) = inks(ui, rect, &response, false, false);
     let (x, y) = (rect.min.x + 2.0, rect.center().y);
-    let folded = panels.folded.folder() && panels.filter.is_off();
+    let folded = panel.folded.folder() && panel.filter.is_off();
     draw_fold(ui.painter(), pos2(x + 5.0, y), folded, icon_ink);
     draw_kind(
         ui.painter(),

@@ -1,7 +1,6 @@
 //! The builders compared: each one's tree over the scene in numbers and histograms, side by side.
 
 use super::super::says::Says;
-use super::super::state::Panels;
 use super::figure_table::{Cell, Row, color, figure_table_ui, short};
 use super::measuring::{measure_ui, switch_builder};
 use super::save_text::{SaveText, save_text_ui};
@@ -11,17 +10,18 @@ use crate::editor::trees::measure::{BUILDERS, Measurements, compare};
 use crate::editor::trees::of_setting;
 use crate::inspect::{BuilderFigures, builder_name, csv, markdown};
 use crate::scene::RenderSettings;
+use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{Label, RichText, Ui};
 use egui_plot::{Line, PlotPoints};
 
 /// What the panel keeps of it.
-#[derive(Default)]
+#[derive(Resource, Default)]
 pub(in super::super) struct Builders {
     save: SaveText,
 }
 
-pub(super) fn builders_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
+pub(super) fn builders_ui(ui: &mut Ui, world: &mut World, form: &mut Builders) {
     let about = "The tree figures are of one tree over all triangles; the ray rates use the scene's own \
                  trees and this view's rays.";
     ui.add(Label::new(RichText::new(about).weak()).wrap());
@@ -61,7 +61,7 @@ pub(super) fn builders_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
     save_text_ui(
         ui,
         world,
-        &mut panels.builders.save,
+        &mut form.save,
         "builders.md",
         |is_csv| match is_csv {
             true => csv(&rows),

@@ -3,7 +3,7 @@
 
 use super::super::fields::{properties_ui, section};
 use super::super::says::Says;
-use super::super::state::Panels;
+use super::super::state::with;
 use super::super::status::memory_text;
 use super::super::theme::accent;
 use super::builders::builders_ui;
@@ -15,6 +15,7 @@ use crate::editor::texts::{counted, grouped};
 use crate::scene::{Property, RenderSettings, TreeSettings};
 use crate::sync::Traced;
 use crate::trace;
+use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy::platform::collections::HashSet;
 use bevy::reflect::Typed;
@@ -45,7 +46,7 @@ struct Tree {
 }
 
 /// The trees of a traced world, looked at once for each world, and those of meshes once at all.
-#[derive(Default)]
+#[derive(Resource, Default)]
 pub(in super::super) struct Trees {
     of: Option<Arc<trace::World>>,
     trees: Vec<Tree>,
@@ -115,7 +116,7 @@ impl Trees {
     }
 }
 
-pub(super) fn bvh_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
+pub(super) fn bvh_ui(ui: &mut Ui, world: &mut World) {
     let before = world.resource::<RenderSettings>().clone();
     let mut settings = before.clone();
     section(ui, "Building", true, |ui| {
@@ -136,19 +137,19 @@ pub(super) fn bvh_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
         *world.resource_mut::<RenderSettings>() = settings;
     }
     section(ui, "Builders compared", true, |ui| {
-        builders_ui(ui, world, panels);
+        with(world, |world, form| builders_ui(ui, world, form));
     });
     section(ui, "Two trees side by side", true, |ui| pair_ui(ui, world));
     section(ui, "Performance test", false, |ui| {
-        performance_ui(ui, world, panels);
+        with(world, |world, form| performance_ui(ui, world, form));
     });
     let traced = world.resource::<Traced>().world.clone();
-    let trees = &mut panels.trees;
+    let mut trees = world.resource_mut::<Trees>();
     let mut is_open = false;
     section(ui, "Trees that are traced", true, |ui| {
         is_open = true;
         trees.update(&traced);
-        trees_ui(ui, trees);
+        trees_ui(ui, &mut trees);
     });
     if !is_open {
         trees.forget();

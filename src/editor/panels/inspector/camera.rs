@@ -1,10 +1,10 @@
 //! Cameras with their lens.
 
-use super::super::fields::{chosen_ui, row, section};
+use super::super::fields::{row, section};
 use super::super::says::Says;
 use super::super::several::Several;
 use crate::editor::action::Action;
-use crate::scene::schema::{Property, about_type};
+use crate::scene::schema::about_type;
 use crate::scene::{Lens, Projection, SceneCamera, SceneId};
 use bevy::ecs::component::{Component, Mutable};
 use bevy::ecs::entity::Entity;
@@ -45,35 +45,17 @@ fn first_camera(world: &World, entities: &[Entity]) -> Option<SceneId> {
     world.get::<SceneId>(*camera).copied()
 }
 
-fn is_perspective(camera: &SceneCamera) -> bool {
-    matches!(camera.projection, Projection::Perspective { .. })
-}
-
 /// What is entered of one kind of projection reaches the cameras that have it, and no other becomes one of that kind.
 fn projection_ui(ui: &mut Ui, several: &mut Several<SceneCamera>) {
-    let perspective = is_perspective(several.first());
-    let mixed = several.any(|camera| is_perspective(camera) != perspective);
-    if let Some(property) = Property::of(SceneCamera::type_info(), "projection") {
-        let current = several.first().projection.variant_name().to_owned();
-        let choices = property.choices();
-        let chosen = chosen_ui(
-            ui,
-            &property.label,
-            &property.says,
-            &current,
-            &choices,
-            mixed,
-        );
-        if let Some(chosen) = chosen {
-            several.change(|camera| {
-                if camera.projection.variant_name() != chosen {
-                    camera.projection = match chosen {
-                        "Orthographic" => Projection::Orthographic { height: 2.0 },
-                        _ => Projection::default(),
-                    };
-                }
-            });
-        }
+    if let Some(chosen) = several.variant_ui(ui, "projection") {
+        several.change(|camera| {
+            if camera.projection.variant_name() != chosen {
+                camera.projection = match chosen {
+                    "Orthographic" => Projection::Orthographic { height: 2.0 },
+                    _ => Projection::default(),
+                };
+            }
+        });
     }
     several.properties(
         ui,

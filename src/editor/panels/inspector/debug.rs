@@ -1,7 +1,7 @@
 //! The tab Debug: what is drawn over the picture, and how the error of the render falls.
 
 use super::super::fields::section;
-use super::super::state::Panels;
+use super::super::state::with;
 use super::error_plot::error_plot_ui;
 use super::gizmos::gizmos_ui;
 use crate::editor::viewport::EditorCamera;
@@ -10,11 +10,11 @@ use bevy::ecs::query::With;
 use bevy::ecs::world::World;
 use bevy_egui::egui::Ui;
 
-pub(super) fn debug_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
+pub(super) fn debug_ui(ui: &mut Ui, world: &mut World) {
     let mut query = world.query_filtered::<&TracedRender, With<EditorCamera>>();
     let status = query.single(world).ok().and_then(TracedRender::status);
     section(ui, "Error against time", true, |ui| {
-        error_plot_ui(ui, status.as_ref(), &mut panels.error_curve);
+        with(world, |_, curve| error_plot_ui(ui, status.as_ref(), curve));
     });
     gizmos_ui(ui, world);
 }

@@ -1,15 +1,14 @@
 //! What a ray carries that meets nothing: a colour, or a picture around the scene.
 
 use super::super::fields::{properties_ui, section};
-use super::super::state::Panels;
-use super::maps::{Map, Owner, map_ui};
+use super::maps::{Map, Owner, Thumbnails, map_ui};
 use crate::scene::schema::Property;
 use crate::scene::{Environment, EnvironmentMap};
 use bevy::ecs::world::World;
 use bevy::reflect::Typed;
 use bevy_egui::egui::Ui;
 
-pub(super) fn environment_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
+pub(super) fn environment_ui(ui: &mut Ui, world: &mut World, thumbnails: &mut Thumbnails) {
     let before = world.resource::<Environment>().clone();
     let mut environment = before.clone();
     let loaded = world.resource::<EnvironmentMap>().0.clone();
@@ -24,7 +23,7 @@ pub(super) fn environment_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels
             loaded: loaded.as_ref(),
             owner: Owner::Environment,
         };
-        map_ui(ui, world, panels, &map, &mut environment.map, false);
+        map_ui(ui, world, thumbnails, &map, &mut environment.map, false);
         if environment.map.is_some() {
             properties_ui(ui, &mut environment, &["rotation", "intensity"]);
         }

@@ -6,12 +6,13 @@ use super::super::status::{error_text, percent};
 use super::super::theme::accent;
 use super::still_plot::still_plot;
 use crate::film::{Status, TrendPoint};
+use bevy::ecs::resource::Resource;
 use bevy_egui::egui::{Stroke, Ui};
 use egui_plot::{GridInput, GridMark, Line, LineStyle, PlotPoints, Points};
 use std::ops::RangeInclusive;
 
 /// A curve that is kept for comparison.
-#[derive(Default)]
+#[derive(Resource, Default)]
 pub(in super::super) struct ErrorCurve {
     kept: Vec<[f64; 2]>,
 }

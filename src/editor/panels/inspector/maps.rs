@@ -2,7 +2,6 @@
 
 use super::super::fields::row;
 use super::super::says::Says;
-use super::super::state::Panels;
 use crate::editor::document::{picture_at, typed_picture};
 use crate::editor::edits::scene_entity;
 use crate::io::PICTURE_EXTENSIONS;
@@ -138,12 +137,11 @@ fn in_place_of(before: Option<&TextureSource>, path: &str) -> TextureSource {
 pub(super) fn map_ui(
     ui: &mut Ui,
     world: &World,
-    panels: &mut Panels,
+    thumbnails: &mut Thumbnails,
     map: &Map,
     value: &mut Option<TextureSource>,
     mixed: bool,
 ) -> bool {
-    let thumbnails = &mut panels.thumbnails;
     let mut chosen: Option<Option<String>> = None;
     row(ui, map.label, map.says, |ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(36.0, 36.0), Sense::hover());

@@ -4,7 +4,7 @@ use super::super::fields::{row, section};
 use super::super::outline::{Kind, Outline};
 use super::super::says::Says;
 use super::super::several::Several;
-use super::super::state::Panels;
+use super::maps::Thumbnails;
 use super::material_maps::{alpha_ui, maps_ui};
 use super::presets::PRESETS;
 use crate::editor::texts::counted;
@@ -20,7 +20,7 @@ pub(super) fn material_ui(
     ui: &mut Ui,
     world: &mut World,
     entities: &[Entity],
-    panels: &mut Panels,
+    thumbnails: &mut Thumbnails,
 ) {
     let mut seen = HashSet::new();
     let owners: Vec<Entity> = entities
@@ -55,7 +55,7 @@ pub(super) fn material_ui(
             .iter()
             .filter_map(|&owner| world.get::<SceneId>(owner));
         let numbers: Arc<[SceneId]> = numbers.copied().collect();
-        maps_ui(ui, world, panels, &mut several, &maps, &numbers);
+        maps_ui(ui, world, thumbnails, &mut several, &maps, &numbers);
     });
     several.write(world);
 }

@@ -1,13 +1,11 @@
 //! The pictures of a material: which, how they wrap and are filtered, and what becomes of its opacity.
 
-use super::super::fields::{chosen_ui, section};
+use super::super::fields::section;
 use super::super::several::Several;
-use super::super::state::Panels;
-use super::maps::{Map, Owner, map_ui};
+use super::maps::{Map, Owner, Thumbnails, map_ui};
 use crate::scene::{Alpha, Phong, PhongMap, PhongMaps, Property, SceneId};
 use bevy::ecs::world::World;
 use bevy::reflect::Typed;
-use bevy::reflect::enums::Enum;
 use bevy_egui::egui::Ui;
 use std::sync::Arc;
 
@@ -18,7 +16,7 @@ const COMMON: [PhongMap; 2] = [PhongMap::Diffuse, PhongMap::Opacity];
 pub(super) fn maps_ui(
     ui: &mut Ui,
     world: &World,
-    panels: &mut Panels,
+    thumbnails: &mut Thumbnails,
     several: &mut Several<Phong>,
     loaded: &PhongMaps,
     numbers: &Arc<[SceneId]>,
@@ -35,7 +33,7 @@ pub(super) fn maps_ui(
         };
         several.field(
             |phong| map.source_mut(phong),
-            |value, mixed| map_ui(ui, world, panels, &field, value, mixed),
+            |value, mixed| map_ui(ui, world, thumbnails, &field, value, mixed),
         );
         if map.source(several.first()).is_some() {
             ui.push_id(&property.label, |ui| {
@@ -77,22 +75,7 @@ fn path_of(map: PhongMap) -> &'static str {
 /// What becomes of the opacity.
 pub(super) fn alpha_ui(ui: &mut Ui, several: &mut Several<Phong>) {
     const CUTOFF: f32 = 0.5;
-    let Some(property) = Property::of(Phong::type_info(), "alpha") else {
-        return;
-    };
-    let name = |phong: &Phong| phong.alpha.variant_name().to_owned();
-    let current = name(several.first());
-    let mixed = several.any(|phong| name(phong) != current);
-    let choices = property.choices();
-    let chosen = chosen_ui(
-        ui,
-        &property.label,
-        &property.says,
-        &current,
-        &choices,
-        mixed,
-    );
-    if let Some(chosen) = chosen {
+    if let Some(chosen) = several.variant_ui(ui, "alpha") {
         several.change(|phong| {
             phong.alpha = match chosen {
                 "Mask" => Alpha::Mask { cutoff: CUTOFF },

@@ -8,6 +8,7 @@ mod debug;
 mod environment;
 mod error_plot;
 mod figure_table;
+mod foreign;
 mod gizmos;
 mod lamps;
 mod maps;
@@ -27,26 +28,54 @@ mod transform;
 
 use super::number_field::set_owner;
 use super::says::Says;
-use super::state::{Panels, Tab};
+use super::state::Renaming;
+use crate::editor::document::SceneOpened;
 use crate::editor::selection::Selection;
+use bevy::ecs::observer::On;
+use bevy::ecs::resource::Resource;
+use bevy::ecs::system::ResMut;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{self, ScrollArea, Ui};
 
 pub(super) use builders::Builders;
 pub(super) use bvh::Trees;
 pub(super) use error_plot::ErrorCurve;
-pub(super) use maps::Thumbnails;
+use maps::Thumbnails;
 pub(super) use performance::PerformanceForm;
-pub(super) use transform::Turns;
+
+/// The inspector's tabs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Tab {
+    #[default]
+    Object,
+    Render,
+    Debug,
+    Bvh,
+}
+
+/// What the inspector remembers between two frames.
+#[derive(Resource, Default)]
+pub(super) struct Inspector {
+    pub tab: Tab,
+    /// A name that is being typed.
+    naming: Option<Renaming>,
+    thumbnails: Thumbnails,
+}
+
+/// Another scene was opened: the numbers of its entities are those of others.
+pub(super) fn forget_scene(_: On<SceneOpened>, mut panel: ResMut<Inspector>) {
+    panel.naming = None;
+    panel.thumbnails.forget_fields();
+}
 
 /// What was typed into a field that is drawn no more, and what was chosen in a file dialog, reaches
 /// those for whom it was meant: another object may be selected by now.
-pub(super) fn settle(context: &egui::Context, world: &mut World, panels: &mut Panels) {
-    object::settle_name(context, world, panels);
-    maps::settle_pictures(context, world, &mut panels.thumbnails);
+pub(super) fn settle(context: &egui::Context, world: &mut World, panel: &mut Inspector) {
+    object::settle_name(context, world, &mut panel.naming);
+    maps::settle_pictures(context, world, &mut panel.thumbnails);
 }
 
-pub(super) fn inspector_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
+pub(super) fn inspector_ui(ui: &mut Ui, world: &mut World, panel: &mut Inspector) {
     ui.horizontal(|ui| {
         for (tab, name, says) in [
             (Tab::Object, "Object", "What is selected"),
@@ -62,19 +91,19 @@ pub(super) fn inspector_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) 
             ),
             (Tab::Bvh, "BVH", "The trees that rays walk"),
         ] {
-            ui.selectable_value(&mut panels.tab, tab, name).says(says);
+            ui.selectable_value(&mut panel.tab, tab, name).says(says);
         }
     });
     ui.separator();
     let selected = world.resource::<Selection>().ids();
-    set_owner(ui.ctx(), (panels.tab as u8, selected));
+    set_owner(ui.ctx(), (panel.tab as u8, selected));
     ScrollArea::vertical()
-        .id_salt(panels.tab as u8)
+        .id_salt(panel.tab as u8)
         .auto_shrink([false, false])
-        .show(ui, |ui| match panels.tab {
-            Tab::Object => object::object_ui(ui, world, panels),
-            Tab::Render => render::render_ui(ui, world, panels),
-            Tab::Debug => debug::debug_ui(ui, world, panels),
-            Tab::Bvh => bvh::bvh_ui(ui, world, panels),
+        .show(ui, |ui| match panel.tab {
+            Tab::Object => object::object_ui(ui, world, panel),
+            Tab::Render => render::render_ui(ui, world, &mut panel.thumbnails),
+            Tab::Debug => debug::debug_ui(ui, world),
+            Tab::Bvh => bvh::bvh_ui(ui, world),
         });
 }

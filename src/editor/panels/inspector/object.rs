@@ -4,8 +4,8 @@ use super::super::fields::row;
 use super::super::kind_icons::kind_ui;
 use super::super::outline::{Kind, Outline};
 use super::super::says::Says;
-use super::super::state::{Panels, Renaming};
-use super::{camera, lamps, material, motion, shape, transform};
+use super::super::state::Renaming;
+use super::{Inspector, camera, foreign, lamps, material, motion, shape, transform};
 use crate::editor::action::Action;
 use crate::editor::selection::Selection;
 use crate::scene::SceneId;
@@ -13,7 +13,7 @@ use bevy::ecs::entity::Entity;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{self, Id, Key, TextEdit, Ui};
 
-pub(super) fn object_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
+pub(super) fn object_ui(ui: &mut Ui, world: &mut World, panel: &mut Inspector) {
     let outline = world.resource::<Outline>();
     let selection = world.resource::<Selection>();
     let Some(active) = selection.active().and_then(|id| outline.find(id)) else {
@@ -45,7 +45,7 @@ pub(super) fn object_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
         "Name",
         "What the list calls it; also kept in files",
         |ui| {
-            let mut text = panels
+            let mut text = panel
                 .naming
                 .as_ref()
                 .filter(|naming| naming.id == active.id)
@@ -58,26 +58,27 @@ pub(super) fn object_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
                 .add(field)
                 .says("What the list calls it; also kept in files");
             if response.changed() {
-                panels.naming = Some(Renaming {
+                panel.naming = Some(Renaming {
                     id: active.id,
                     text,
                     focused: true,
                 });
             }
             if response.lost_focus() {
-                settle_name(ui.ctx(), world, panels);
+                settle_name(ui.ctx(), world, &mut panel.naming);
             }
         },
     );
     ui.add_space(4.0);
     if active.kind != Kind::Material {
-        transform::transform_ui(ui, world, &entities, panels);
+        transform::transform_ui(ui, world, &entities);
     }
     lamps::lamps_ui(ui, world, &entities);
     camera::camera_ui(ui, world, &entities);
     shape::shape_ui(ui, world, &entities);
-    material::material_ui(ui, world, &entities, panels);
+    material::material_ui(ui, world, &entities, &mut panel.thumbnails);
     motion::motion_ui(ui, world, &entities);
+    foreign::foreign_ui(ui, world, &entities);
 }
 
 /// The field for an entity's name.
@@ -87,9 +88,13 @@ fn name_field(id: SceneId) -> Id {
 
 /// Gives the name that was typed, once its field has lost the keys, to whose field it was. Escape
 /// leaves the old one.
-pub(super) fn settle_name(context: &egui::Context, world: &mut World, panels: &mut Panels) {
+pub(super) fn settle_name(
+    context: &egui::Context,
+    world: &mut World,
+    typed: &mut Option<Renaming>,
+) {
     let has_keys = |id| context.memory(|memory| memory.has_focus(name_field(id)));
-    let Some(naming) = panels.naming.take_if(|naming| !has_keys(naming.id)) else {
+    let Some(naming) = typed.take_if(|naming| !has_keys(naming.id)) else {
         return;
     };
     let name = naming.text.trim();

@@ -2,7 +2,6 @@
 
 use super::super::fields::whole_row;
 use super::super::says::Says;
-use super::super::state::Panels;
 use super::figure_table::{Cell, Row, figure_table_ui, short};
 use super::measuring::{measure_ui, switch_builder};
 use super::save_text::{SaveText, save_text_ui};
@@ -11,10 +10,12 @@ use crate::editor::trees::measure::{Measurements, test_performance};
 use crate::editor::trees::of_setting;
 use crate::report::performance::{Performance, PerformanceColumn};
 use crate::scene::{Quantity, RenderSettings};
+use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{Label, RichText, Ui};
 
 /// What is entered.
+#[derive(Resource)]
 pub(in super::super) struct PerformanceForm {
     runs: u32,
     spp: u32,
@@ -31,8 +32,7 @@ impl Default for PerformanceForm {
     }
 }
 
-pub(super) fn performance_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
-    let form = &mut panels.performance;
+pub(super) fn performance_ui(ui: &mut Ui, world: &mut World, form: &mut PerformanceForm) {
     let about = "The view rendered several times with each builder, taking turns.";
     ui.add(Label::new(RichText::new(about).weak()).wrap());
     let says = "Renderings with each builder";
@@ -68,7 +68,7 @@ pub(super) fn performance_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels
     save_text_ui(
         ui,
         world,
-        &mut panels.performance.save,
+        &mut form.save,
         "performance.md",
         |is_csv| match is_csv {
             true => done.csv(),

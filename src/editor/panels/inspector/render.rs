@@ -2,8 +2,8 @@
 
 use super::super::fields::{properties_ui, row, section, switch};
 use super::super::says::Says;
-use super::super::state::Panels;
 use super::environment::environment_ui;
+use super::maps::Thumbnails;
 use crate::editor::preferences::Preferences;
 use crate::editor::viewport::EditorCamera;
 use crate::io::Size;
@@ -101,8 +101,8 @@ const SIZES: [(&str, UVec2, &str); 5] = [
     ),
 ];
 
-pub(super) fn render_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
-    environment_ui(ui, world, panels);
+pub(super) fn render_ui(ui: &mut Ui, world: &mut World, thumbnails: &mut Thumbnails) {
+    environment_ui(ui, world, thumbnails);
     let before = world.resource::<RenderSettings>().clone();
     let mut settings = before.clone();
     for &(title, open, paths) in GROUPS {

@@ -21,12 +21,12 @@ mod why;
 mod tests;
 
 use super::says::Says;
-use super::state::Panels;
 use crate::editor::inspection::choice::Side;
 use crate::editor::inspection::{DebugRay, Inspected, Names};
 use crate::editor::preferences::Preferences;
 use crate::inspect::InspectSettings;
 use crate::scene::RenderSettings;
+use bevy::ecs::resource::Resource;
 use bevy::ecs::world::{Mut, World};
 use bevy_egui::egui::{self, ScrollArea, Ui, vec2};
 
@@ -36,7 +36,7 @@ pub(super) const LEAST_HEIGHT: f32 = 150.0;
 const LEAST_PICTURE: f32 = 170.0;
 
 /// What the ray inspector remembers between two frames.
-#[derive(Default)]
+#[derive(Resource, Default)]
 pub(in crate::editor::panels) struct RaysPanel {
     /// The pixel in the fields.
     head: head::Head,
@@ -46,7 +46,7 @@ pub(in crate::editor::panels) struct RaysPanel {
 }
 
 /// As a panel below the picture; what it takes is remembered.
-pub(super) fn panel_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
+pub(super) fn panel_ui(ui: &mut Ui, world: &mut World, panel: &mut RaysPanel) {
     let preferences = world.resource::<Preferences>();
     if !preferences.show_rays || preferences.rays_float {
         return;
@@ -64,7 +64,7 @@ pub(super) fn panel_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
                 .inner_margin(egui::Margin::symmetric(6, 4)),
         )
         .show_inside(ui, |ui| {
-            super::contained(ui, |ui| rays_ui(ui, world, panels));
+            super::contained(ui, |ui| rays_ui(ui, world, panel));
         });
     // The height that a low window forces is not one that a person chose.
     let taken = shown.response.rect.height();
@@ -78,7 +78,7 @@ pub(super) fn window_ui(
     context: &egui::Context,
     free: egui::Rect,
     world: &mut World,
-    panels: &mut Panels,
+    panel: &mut RaysPanel,
 ) {
     let preferences = world.resource::<Preferences>();
     if !preferences.show_rays || !preferences.rays_float {
@@ -101,12 +101,11 @@ pub(super) fn window_ui(
         .max_size(screen - vec2(20.0, 20.0))
         .resizable(true)
         .show(context, |ui| {
-            super::contained(ui, |ui| rays_ui(ui, world, panels));
+            super::contained(ui, |ui| rays_ui(ui, world, panel));
         });
 }
 
-fn rays_ui(ui: &mut Ui, world: &mut World, panels: &mut Panels) {
-    let panel = &mut panels.rays;
+fn rays_ui(ui: &mut Ui, world: &mut World, panel: &mut RaysPanel) {
     head::head_ui(ui, world, &mut panel.head);
     let ray = world.resource::<DebugRay>();
     let (rays, number) = (ray.rays().cloned(), ray.number());

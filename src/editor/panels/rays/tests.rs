@@ -1,7 +1,7 @@
 //! The ray inspector as a person meets it.
 
-use super::super::state::Panels;
 use super::super::tests::{Desk, SMALL, USUAL};
+use super::RaysPanel;
 use crate::editor::action::Action;
 use crate::editor::inspection::choice::Side;
 use crate::editor::inspection::debug_ray::Shot;
@@ -72,7 +72,7 @@ fn the_chosen_sample_stays_when_another_pixel_is_picked() {
 }
 
 fn rows_drawn(desk: &mut Desk) -> usize {
-    desk.world().resource::<Panels>().rays.rows_drawn
+    desk.world().resource::<RaysPanel>().rows_drawn
 }
 
 #[test]

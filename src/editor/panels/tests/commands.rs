@@ -1,12 +1,13 @@
 //! The table of commands as a person meets it: in menus, on keys, in the palette, by a right click.
 
+use super::super::dialogs::{Dialog, Dialogs};
+use super::super::palette::OpenPalette;
 use super::Desk;
 use crate::editor::command::{AddCommands, Command, CommandTable, Over, State};
 use crate::editor::inspection::debug_ray::Shot;
 use crate::editor::inspection::{DebugRay, Names};
 use crate::editor::keys::Keys;
 use crate::editor::notice::Notices;
-use crate::editor::panels::state::{Dialog, Panels};
 use crate::editor::pointer::{PixelAsked, RightClicked};
 use crate::editor::preferences::Preferences;
 use crate::editor::selection::Selection;
@@ -65,7 +66,7 @@ fn a_row_that_an_app_adds_stands_in_its_menu_the_palette_the_keys_and_the_menu_o
     desk.place_of("Start the game");
     desk.key(Key::Enter);
     assert_eq!(runs(&mut desk), 2, "by the palette");
-    assert!(desk.world().resource::<Panels>().palette.is_none());
+    assert!(desk.world().resource::<OpenPalette>().0.is_none());
 
     let keys: Keys = "Ctrl+Shift+G".parse().unwrap();
     let table = desk.world().resource::<CommandTable>();
@@ -74,7 +75,7 @@ fn a_row_that_an_app_adds_stands_in_its_menu_the_palette_the_keys_and_the_menu_o
     assert_eq!(row.id, "game.start");
     desk.world().write_message(Action::run("help.keys"));
     desk.settle();
-    desk.world().resource_mut::<Panels>().bindings_search = "start the".into();
+    desk.world().resource_mut::<Dialogs>().bindings_search = "start the".into();
     desk.settle();
     desk.place_of("Ctrl+Shift+G");
     desk.key(Key::Escape);
@@ -95,12 +96,12 @@ fn what_cannot_be_run_says_why_and_does_nothing() {
     desk.place_of("The level is not built.");
     desk.key(Key::Enter);
     assert!(
-        desk.world().resource::<Panels>().palette.is_some(),
+        desk.world().resource::<OpenPalette>().0.is_some(),
         "it stays"
     );
     desk.key(Key::Escape);
     desk.settle();
-    assert!(desk.world().resource::<Panels>().palette.is_none());
+    assert!(desk.world().resource::<OpenPalette>().0.is_none());
     desk.world().write_message(Action::run("game.start"));
     desk.settle();
     assert_eq!(desk.world().resource::<Runs>().0, 0);
@@ -208,7 +209,7 @@ fn keys_that_were_chosen_are_shown_and_kept() {
     desk.key(Key::Escape);
     desk.world().write_message(Action::run("help.keys"));
     desk.settle();
-    assert_eq!(desk.world().resource::<Panels>().dialog, Some(Dialog::Keys));
+    assert_eq!(desk.world().resource::<Dialogs>().open, Some(Dialog::Keys));
     desk.click_on("Reset all");
     desk.settle();
     let keys = &desk.world().resource::<Preferences>().keys;

@@ -1,8 +1,7 @@
 //! An editor without a window, and a hand.
 
 use super::super::outline::{Outline, outline_scene};
-use super::super::state::Panels;
-use super::super::{add_commands, panels_ui};
+use super::super::{add_panels, panels_ui};
 use crate::editor::headless_editor;
 use crate::editor::inspection::RaysPlugin;
 use crate::editor::plugins::StatePlugin;
@@ -55,10 +54,9 @@ impl Desk {
             hint_seen: true,
             ..Preferences::default()
         })
-        .init_resource::<Panels>()
         .init_resource::<Outline>()
         .add_systems(Last, outline_scene);
-        add_commands(&mut app);
+        add_panels(&mut app);
         app.world_mut().spawn((EditorCamera, TracedView::default()));
         let context = egui::Context::default();
         context.options_mut(|options| options.max_passes = std::num::NonZero::new(1).unwrap());

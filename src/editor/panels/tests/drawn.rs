@@ -1,8 +1,10 @@
 //! What is drawn, and that it fits.
 
 use super::super::dialogs::frame_of;
+use super::super::dialogs::{Dialog, Dialogs};
+use super::super::hierarchy::Hierarchy;
+use super::super::inspector::{Inspector, Tab};
 use super::super::outline::Outline;
-use super::super::state::{Dialog, Panels, Tab};
 use super::desk::{Desk, LARGE, SMALL, USUAL};
 use crate::editor::notice::Notices;
 use crate::editor::selection::Selection;
@@ -23,7 +25,7 @@ fn every_scene_is_drawn_in_every_tab_at_every_size_and_nothing_of_it_counts_as_c
             desk.settle();
             desk.world().clear_trackers();
             for tab in [Tab::Object, Tab::Render, Tab::Debug, Tab::Bvh] {
-                desk.world().resource_mut::<Panels>().tab = tab;
+                desk.world().resource_mut::<Inspector>().tab = tab;
                 // One after the other, then all at once.
                 let choices = ids.iter().map(|&id| vec![id]).chain([ids.clone()]);
                 let choices = choices.take(if tab == Tab::Object { 60 } else { 1 });
@@ -51,7 +53,7 @@ fn no_panel_grows_by_itself_whatever_it_shows() {
         desk.settle();
         let rect = desk.world().resource::<Viewport>().rect;
         for tab in [Tab::Object, Tab::Render, Tab::Debug, Tab::Bvh] {
-            desk.world().resource_mut::<Panels>().tab = tab;
+            desk.world().resource_mut::<Inspector>().tab = tab;
             for &id in &ids {
                 desk.world().resource_mut::<Selection>().set([id]);
                 desk.draw(Vec::new());
@@ -74,7 +76,7 @@ fn of_four_thousand_entities_only_the_rows_that_are_seen_are_laid_out() {
     let outline = desk.world().resource::<Outline>();
     assert_eq!(outline.items.len(), 4000);
     let versions = outline.versions;
-    let drawn = desk.world().resource::<Panels>().rows_drawn;
+    let drawn = desk.world().resource::<Hierarchy>().rows_drawn;
     assert!((20..40).contains(&drawn), "{drawn} rows of 20 points each");
     assert!(desk.find("Thing 1").is_some() && desk.find("Thing 400").is_none());
     for _ in 0..5 {
@@ -95,9 +97,9 @@ fn every_dialog_is_drawn_at_every_size() {
             Dialog::History,
             Dialog::Render,
         ] {
-            desk.world().resource_mut::<Panels>().dialog = Some(dialog);
+            desk.world().resource_mut::<Dialogs>().open = Some(dialog);
             desk.settle();
-            assert_eq!(desk.world().resource::<Panels>().dialog, Some(dialog));
+            assert_eq!(desk.world().resource::<Dialogs>().open, Some(dialog));
             let (title, width) = frame_of(dialog);
             let area = desk
                 .context
@@ -157,7 +159,7 @@ fn texts(desk: &Desk) -> Vec<(String, Rect, Rect)> {
 #[test]
 fn no_text_of_the_settings_is_cut_off_at_the_side() {
     let mut desk = Desk::open("showcase");
-    desk.world().resource_mut::<Panels>().tab = Tab::Render;
+    desk.world().resource_mut::<Inspector>().tab = Tab::Render;
     for size in [SMALL, USUAL] {
         desk.size = size;
         desk.settle();

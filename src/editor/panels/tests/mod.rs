@@ -4,6 +4,7 @@
 mod commands;
 mod desk;
 mod drawn;
+mod foreign;
 mod operated;
 mod trees;
 mod typed;

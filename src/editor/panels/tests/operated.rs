@@ -1,7 +1,10 @@
 //! What pointer and keys do.
 
+use super::super::dialogs::{Dialog, Dialogs};
+use super::super::hierarchy::Hierarchy;
+use super::super::inspector::{Inspector, Tab};
 use super::super::outline::Outline;
-use super::super::state::{Dialog, Panels, Renaming, Tab};
+use super::super::state::Renaming;
 use super::desk::{Desk, USUAL};
 use crate::editor::action::Action;
 use crate::editor::document::{Document, Purpose, Question, adopt};
@@ -70,7 +73,7 @@ fn a_number_that_is_dragged_changes_its_component_and_no_other_as_one_step() {
 #[test]
 fn a_number_that_is_typed_out_of_range_is_brought_into_it_and_words_are_refused() {
     let mut desk = Desk::open("cornell-box");
-    desk.world().resource_mut::<Panels>().tab = Tab::Render;
+    desk.world().resource_mut::<Inspector>().tab = Tab::Render;
     desk.settle();
     let type_into = |desk: &mut Desk, text: &str| {
         let at = desk.place_of("Mirror depth");
@@ -160,7 +163,7 @@ fn a_dialog_takes_everything_until_escape() {
     let mut desk = Desk::open("triangle");
     desk.world().write_message(Action::run("help.keys"));
     desk.settle();
-    assert_eq!(desk.world().resource::<Panels>().dialog, Some(Dialog::Keys));
+    assert_eq!(desk.world().resource::<Dialogs>().open, Some(Dialog::Keys));
     assert!(desk.find("Keys and mouse").is_some());
     let viewport = desk.world().resource::<Viewport>().clone();
     assert!(!viewport.takes_keys);
@@ -169,7 +172,7 @@ fn a_dialog_takes_everything_until_escape() {
     assert!(!desk.world().resource::<Viewport>().hovered);
     desk.key(Key::Escape);
     desk.settle();
-    assert_eq!(desk.world().resource::<Panels>().dialog, None);
+    assert_eq!(desk.world().resource::<Dialogs>().open, None);
     assert!(desk.world().resource::<Viewport>().takes_keys);
 }
 
@@ -227,13 +230,13 @@ fn unsaved_changes_are_asked_about_and_cancel_leaves_everything() {
 #[test]
 fn searching_leaves_what_was_searched_for_and_its_keys_go_nowhere_else() {
     let mut desk = Desk::open("cornell-box");
-    let all = desk.world().resource::<Panels>().rows_drawn;
+    let all = desk.world().resource::<Hierarchy>().rows_drawn;
     let hint = desk.place_of("Search");
     desk.click(hint);
     desk.frame(vec![Event::Text("camera".into())]);
     desk.settle();
     assert!(!desk.world().resource::<Viewport>().takes_keys);
-    let found = desk.world().resource::<Panels>().rows_drawn;
+    let found = desk.world().resource::<Hierarchy>().rows_drawn;
     assert!(found >= 1 && found < all, "{found} of {all}");
 }
 
@@ -288,7 +291,7 @@ fn a_click_on_a_row_below_the_one_that_is_renamed_keeps_the_name_and_selects() {
     let names = first_names(&mut desk);
     let (entity, id) = desk.named(&names[1]);
     let (_, below) = desk.named(&names[3]);
-    desk.world().resource_mut::<Panels>().renaming = Some(Renaming {
+    desk.world().resource_mut::<Hierarchy>().renaming = Some(Renaming {
         id,
         text: "Renamed".into(),
         focused: false,
@@ -316,7 +319,7 @@ fn what_was_picked_and_folded_in_a_scene_is_forgotten_with_it() {
     let mut view = views.single_mut(desk.app.world_mut()).unwrap();
     view.region = Some(Rect::new(0.0, 0.0, 0.5, 0.5));
     view.range = Some([1.0, 2.0]);
-    let mut panels = desk.world().resource_mut::<Panels>();
+    let mut panels = desk.world().resource_mut::<Hierarchy>();
     panels.folded.toggle(id);
     panels.anchor = Some(id);
     adopt(desk.world(), "another", None);
@@ -327,7 +330,7 @@ fn what_was_picked_and_folded_in_a_scene_is_forgotten_with_it() {
     let mut views = desk.world().query::<&TracedView>();
     let view = views.single(desk.app.world()).unwrap();
     assert_eq!((view.region, view.range), (None, None));
-    let panels = desk.world().resource::<Panels>();
+    let panels = desk.world().resource::<Hierarchy>();
     assert!(!panels.folded.contains(id) && panels.anchor.is_none());
 }
 
@@ -382,7 +385,7 @@ fn of_ten_thousand_rows_only_those_that_are_seen_are_laid_out_and_the_last_is_re
         desk.world().spawn((id, name));
     }
     desk.settle();
-    let drawn = desk.world().resource::<Panels>().rows_drawn;
+    let drawn = desk.world().resource::<Hierarchy>().rows_drawn;
     assert!((10..60).contains(&drawn), "{drawn} rows");
     let top = desk.world().resource::<Outline>().items[0].name.clone();
     desk.click_on(&top);
@@ -392,6 +395,6 @@ fn of_ten_thousand_rows_only_those_that_are_seen_are_laid_out_and_the_last_is_re
     }
     desk.settle();
     desk.place_of("Thing 9999");
-    let drawn = desk.world().resource::<Panels>().rows_drawn;
+    let drawn = desk.world().resource::<Hierarchy>().rows_drawn;
     assert!((10..60).contains(&drawn), "{drawn} rows");
 }

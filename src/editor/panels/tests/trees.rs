@@ -1,6 +1,6 @@
 //! The tab BVH: builders compared and timed, and two trees at once.
 
-use super::super::state::{Panels, Tab};
+use super::super::inspector::{Inspector, Tab};
 use super::desk::{Desk, USUAL};
 use crate::bvh::Builder;
 use crate::editor::action::Action;
@@ -34,7 +34,7 @@ impl Desk {
 
     fn in_tab_bvh(scene: &str) -> Self {
         let mut desk = Self::with_trees(scene);
-        desk.world().resource_mut::<Panels>().tab = Tab::Bvh;
+        desk.world().resource_mut::<Inspector>().tab = Tab::Bvh;
         desk.settle();
         desk
     }
@@ -186,7 +186,7 @@ fn what_is_cancelled_leaves_what_was_measured_and_lets_the_view_go_on() {
 #[test]
 fn an_empty_scene_has_nothing_to_measure_and_says_so() {
     let mut desk = Desk::empty(USUAL);
-    desk.world().resource_mut::<Panels>().tab = Tab::Bvh;
+    desk.world().resource_mut::<Inspector>().tab = Tab::Bvh;
     desk.settle();
     desk.click_on(COMPARE);
     let no_view = "There is no view to measure: show the traced view, or add a camera.";

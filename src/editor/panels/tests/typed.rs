@@ -1,6 +1,6 @@
 //! What is typed into number fields.
 
-use super::super::state::{Panels, Tab};
+use super::super::inspector::{Inspector, Tab};
 use super::desk::Desk;
 use crate::editor::history::{History, undo};
 use crate::scene::{
@@ -192,7 +192,7 @@ fn nothing_wrong_that_is_typed_anywhere_applies_and_undo_restores_everything() {
         (Tab::Debug, Vec::new()),
     ]);
     for (tab, selected) in pages {
-        desk.world().resource_mut::<Panels>().tab = tab;
+        desk.world().resource_mut::<Inspector>().tab = tab;
         desk.select(selected.clone());
         let fields = desk.number_fields();
         fields_seen += fields.len();

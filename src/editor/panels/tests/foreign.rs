@@ -1,0 +1,384 @@
+//! Components of an app's own, as a person meets them: seen, edited, undone, copied, added, taken away, saved.
+
+use super::desk::{Desk, LARGE};
+use crate::editor::edits::{copy, duplicate, paste, scene_entity};
+use crate::editor::history::{History, redo, reset, undo};
+use crate::io::{KeepInSceneFiles, OpenOptions, SceneSource, builtin, open, save};
+use crate::scene::{Quantity, SceneId};
+use bevy::color::Color;
+use bevy::ecs::component::Component;
+use bevy::ecs::entity::Entity;
+use bevy::ecs::reflect::ReflectComponent;
+use bevy::math::{Quat, Vec3};
+use bevy::reflect::Reflect;
+use bevy::reflect::std_traits::ReflectDefault;
+use bevy_egui::egui::{Event, Key, Pos2, vec2};
+use std::collections::HashMap;
+
+/// One of everything.
+#[derive(Component, Reflect, Clone, Debug, PartialEq)]
+#[reflect(Component, Default)]
+#[type_path = "garden"]
+struct Growing {
+    #[reflect(@Quantity::within(0.0, 10.0, "m"))]
+    height: f32,
+    pruned: bool,
+    rings: u8,
+    debt: i64,
+    label: String,
+    sun: Vec3,
+    lean: Quat,
+    leaf: Color,
+    kind: Plant,
+    since: Option<f32>,
+    weights: Vec<f32>,
+    pot: Pot,
+    by_name: HashMap<String, f32>,
+}
+
+impl Default for Growing {
+    fn default() -> Self {
+        Self {
+            height: 1.0,
+            pruned: false,
+            rings: 7,
+            debt: -3,
+            label: "rose".into(),
+            sun: Vec3::Y,
+            lean: Quat::IDENTITY,
+            leaf: Color::srgb(0.0, 1.0, 0.0),
+            kind: Plant::Moss,
+            since: None,
+            weights: vec![0.5],
+            pot: Pot::default(),
+            by_name: HashMap::from([("a".into(), 1.0)]),
+        }
+    }
+}
+
+#[derive(Reflect, Clone, Debug, PartialEq, Default)]
+#[type_path = "garden"]
+enum Plant {
+    #[default]
+    Moss,
+    Tree {
+        crown: f32,
+    },
+    Vine(f32, u8),
+}
+
+#[derive(Reflect, Clone, Debug, PartialEq, Default)]
+#[type_path = "garden"]
+struct Pot {
+    width: f32,
+    inner: Vec<Pot>,
+}
+
+/// It has no value to begin with.
+#[derive(Component, Reflect, Clone, Debug, PartialEq)]
+#[reflect(Component)]
+#[type_path = "garden"]
+struct Fence {
+    posts: u32,
+}
+
+/// It is registered, and says nothing of being a component.
+#[derive(Component, Reflect, Clone, Debug, PartialEq, Default)]
+#[type_path = "garden"]
+struct Hidden {
+    depth: f32,
+}
+
+/// It can be neither cloned nor made.
+#[derive(Component, Reflect)]
+#[reflect(Component, from_reflect = false)]
+#[type_path = "garden"]
+struct Sealed {
+    secret: u32,
+}
+
+/// The mirror block of a box, with some of them.
+fn garden(carries: impl bevy::ecs::bundle::Bundle) -> (Desk, Entity, SceneId) {
+    let mut desk = Desk::empty(LARGE);
+    desk.app
+        .register_type::<Growing>()
+        .register_type::<Fence>()
+        .register_type::<Hidden>()
+        .register_type::<Sealed>();
+    let source = SceneSource::Builtin(builtin::find("cornell-box").unwrap());
+    open(desk.world(), &source, OpenOptions::default()).unwrap();
+    let (entity, id) = desk.named("Mirror block");
+    desk.world().entity_mut(entity).insert(carries);
+    desk.settle();
+    reset(desk.world());
+    desk.select([id]);
+    (desk, entity, id)
+}
+
+fn growing(desk: &mut Desk, entity: Entity) -> Growing {
+    desk.world().get::<Growing>(entity).unwrap().clone()
+}
+
+impl Desk {
+    fn right_of(&self, label: &str) -> Pos2 {
+        self.place_of(label) + vec2(150.0, 0.0)
+    }
+
+    fn enter(&mut self, label: &str, text: &str) {
+        let at = Pos2::new(self.size[0] - 230.0, self.place_of(label).y);
+        self.click(at);
+        assert!(self.context.text_edit_focused(), "a field beside {label}");
+        self.key(Key::Delete);
+        self.frame(vec![Event::Text(text.into())]);
+        self.key(Key::Enter);
+        self.settle();
+    }
+}
+
+#[test]
+fn an_app_s_component_is_seen_and_each_edit_is_a_step() {
+    let (mut desk, entity, _) = garden(Growing::default());
+    for label in [
+        "Growing",
+        "Height",
+        "Pruned",
+        "Rings",
+        "Debt",
+        "Label",
+        "Sun",
+        "Lean",
+        "Leaf",
+        "Kind",
+        "Since",
+        "Weights",
+        "Weights 1",
+        "Pot",
+        "By name",
+    ] {
+        desk.place_of(label);
+    }
+    desk.enter("Height", "2.5");
+    assert_eq!(growing(&mut desk, entity).height, 2.5);
+    desk.enter("Height", "99");
+    assert_eq!(
+        growing(&mut desk, entity).height,
+        10.0,
+        "its schema is heeded"
+    );
+    desk.enter("Rings", "300");
+    assert_eq!(growing(&mut desk, entity).rings, 255);
+    desk.enter("Debt", "-12");
+    assert_eq!(growing(&mut desk, entity).debt, -12);
+    let names: Vec<String> = desk
+        .world()
+        .resource::<History>()
+        .steps()
+        .map(Into::into)
+        .collect();
+    assert_eq!(names, vec!["Change Growing of Mirror block"; 4]);
+    for _ in 0..4 {
+        assert!(undo(desk.world()));
+    }
+    assert_eq!(growing(&mut desk, entity), Growing::default());
+    for _ in 0..4 {
+        assert!(redo(desk.world()));
+    }
+    assert_eq!(growing(&mut desk, entity).debt, -12);
+}
+
+#[test]
+fn variants_options_and_lists_are_entered_too() {
+    let (mut desk, entity, _) = garden(Growing::default());
+    let at = desk.right_of("Since");
+    let at = Pos2::new(desk.place_of("Pruned").x.max(at.x), at.y);
+    // The box of a switch stands where the values begin.
+    let values = desk.place_of("1 item").x - 12.0;
+    desk.click(Pos2::new(values, at.y));
+    desk.settle();
+    assert_eq!(growing(&mut desk, entity).since, Some(0.0));
+    desk.click_on("Moss");
+    desk.settle();
+    desk.click_on("Vine");
+    desk.settle();
+    assert_eq!(growing(&mut desk, entity).kind, Plant::Vine(0.0, 0));
+    desk.place_of("Kind 2");
+    desk.click_on("Add");
+    desk.settle();
+    assert_eq!(growing(&mut desk, entity).weights, [0.5, 0.5]);
+    desk.click_on("✖");
+    desk.settle();
+    assert_eq!(growing(&mut desk, entity).weights, [0.5]);
+    for _ in 0..4 {
+        assert!(undo(desk.world()));
+    }
+    assert_eq!(growing(&mut desk, entity), Growing::default());
+}
+
+#[test]
+fn it_is_added_from_a_menu_with_a_search_and_taken_away_as_steps() {
+    let (mut desk, entity, _) = garden(());
+    assert!(desk.find("Growing").is_none());
+    desk.click_on("Add component…");
+    desk.settle();
+    desk.place_of("Fence");
+    desk.frame(vec![Event::Text("grw".into())]);
+    desk.settle();
+    assert!(desk.find("Fence").is_none(), "the search leaves what fits");
+    desk.click_on("Growing");
+    desk.settle();
+    assert_eq!(growing(&mut desk, entity), Growing::default());
+    desk.click_on("Remove");
+    desk.settle();
+    assert!(desk.world().get::<Growing>(entity).is_none());
+    let steps: Vec<String> = desk
+        .world()
+        .resource::<History>()
+        .steps()
+        .map(Into::into)
+        .collect();
+    assert_eq!(
+        steps,
+        [
+            "Add Growing to Mirror block",
+            "Remove Growing from Mirror block"
+        ]
+    );
+    undo(desk.world());
+    assert_eq!(growing(&mut desk, entity), Growing::default());
+    undo(desk.world());
+    assert!(desk.world().get::<Growing>(entity).is_none());
+}
+
+#[test]
+fn what_has_no_value_to_begin_with_is_edited_and_copied_and_cannot_be_added() {
+    let (mut desk, entity, id) = garden(Fence { posts: 4 });
+    desk.enter("Posts", "9");
+    assert_eq!(desk.world().get(entity), Some(&Fence { posts: 9 }));
+    let twin = duplicate(desk.world(), &[id])[0];
+    let clipboard = copy(desk.world(), &[id]).unwrap();
+    let pasted = paste(desk.world(), &clipboard).unwrap()[0];
+    for id in [twin, pasted] {
+        let entity = scene_entity(desk.world(), id).unwrap();
+        assert_eq!(desk.world().get(entity), Some(&Fence { posts: 9 }));
+    }
+    let (other, id) = desk.named("Short block");
+    desk.select([id]);
+    desk.click_on("Add component…");
+    desk.settle();
+    desk.click_on("Fence");
+    desk.settle();
+    assert_eq!(
+        desk.world().get::<Fence>(other),
+        None,
+        "nothing was made up"
+    );
+}
+
+#[test]
+fn what_cannot_be_made_or_is_not_reflected_does_no_harm() {
+    let (mut desk, entity, id) = garden((Sealed { secret: 41 }, Hidden { depth: 2.0 }));
+    desk.click_on("Other components");
+    desk.settle();
+    desk.place_of("Sealed");
+    desk.place_of("Sealed { secret: 41 }");
+    let twin = duplicate(desk.world(), &[id])[0];
+    let twin = scene_entity(desk.world(), twin).unwrap();
+    assert!(desk.world().get::<Sealed>(twin).is_none());
+    desk.world().get_mut::<Sealed>(entity).unwrap().secret = 42;
+    desk.settle();
+    assert_eq!(desk.world().get::<Sealed>(entity).unwrap().secret, 42);
+}
+
+#[test]
+fn no_number_and_great_depth_make_no_steps_of_their_own() {
+    let mut deep = Pot::default();
+    for _ in 0..40 {
+        deep = Pot {
+            width: f32::NAN,
+            inner: vec![deep],
+        };
+    }
+    let odd = Growing {
+        height: f32::NAN,
+        sun: Vec3::splat(f32::INFINITY),
+        pot: deep,
+        weights: vec![f32::NAN; 300],
+        ..Growing::default()
+    };
+    let (mut desk, entity, _) = garden(odd);
+    let touch = |desk: &mut Desk| {
+        desk.world().get_mut::<Growing>(entity).unwrap().rings += 0;
+        desk.settle();
+    };
+    touch(&mut desk);
+    touch(&mut desk);
+    assert_eq!(desk.world().resource::<History>().steps().count(), 0);
+    desk.place_of("and 236 more");
+    desk.enter("Rings", "8");
+    assert!(undo(desk.world()));
+    let after = growing(&mut desk, entity);
+    assert_eq!((after.rings, after.weights.len()), (7, 300));
+    assert!(after.height.is_nan());
+}
+
+#[test]
+fn several_are_edited_at_once_and_keep_what_was_not_entered() {
+    let (mut desk, entity, id) = garden(Growing::default());
+    let (other, other_id) = desk.named("Short block");
+    let before = Growing {
+        label: "fern".into(),
+        weights: vec![1.0, 2.0, 3.0],
+        ..Growing::default()
+    };
+    desk.world().entity_mut(other).insert(before);
+    reset(desk.world());
+    desk.select([other_id, id]);
+    desk.enter("Height", "3");
+    let after = growing(&mut desk, other);
+    assert_eq!(
+        (after.height, &*after.label, after.weights.len()),
+        (3.0, "fern", 3)
+    );
+    desk.click_on("Add");
+    desk.settle();
+    assert_eq!(growing(&mut desk, entity).weights, [0.5, 0.5]);
+    assert_eq!(
+        growing(&mut desk, other).weights,
+        [0.5, 0.5],
+        "all get what was entered"
+    );
+}
+
+#[test]
+fn what_an_app_keeps_in_files_comes_back_from_them_and_nothing_else_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("garden.scn.ron");
+    let odd = Growing {
+        height: 3.5,
+        kind: Plant::Vine(2.0, 9),
+        since: Some(f32::INFINITY),
+        ..Growing::default()
+    };
+    let (mut desk, _, _) = garden((odd.clone(), Fence { posts: 4 }, Hidden { depth: 2.0 }));
+    desk.app
+        .keep_in_scene_files::<Growing>()
+        .keep_in_scene_files::<Hidden>();
+    save(desk.world(), &file).unwrap();
+    let source = SceneSource::File(file.clone());
+    open(desk.world(), &source, OpenOptions::default()).unwrap();
+    desk.settle();
+    let (entity, _) = desk.named("Mirror block");
+    assert_eq!(growing(&mut desk, entity), odd);
+    assert_eq!(desk.world().get(entity), Some(&Hidden { depth: 2.0 }));
+    assert!(desk.world().get::<Fence>(entity).is_none());
+    let again = folder.path().join("again.scn.ron");
+    save(desk.world(), &again).unwrap();
+    assert!(
+        std::fs::read(&file).unwrap() == std::fs::read(&again).unwrap(),
+        "the same scene gives the same bytes"
+    );
+    // An app that does not know it says so.
+    let mut other = Desk::empty(LARGE);
+    let error = open(other.world(), &source, OpenOptions::default()).unwrap_err();
+    assert!(error.to_string().contains("garden::Growing"), "{error}");
+}
