@@ -247,7 +247,7 @@ mod tests {
                 (corners[1] - within) + random.cube() * scale * random.between(0.0, 1e-4)
             };
             let (origin, direction) = (Vec3A::from(origin), Vec3A::from(direction));
-            if !(direction.abs().max_element() > 0.0) {
+            if direction == Vec3A::ZERO {
                 continue;
             }
             let shear = Shear::new(origin, direction);

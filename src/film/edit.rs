@@ -83,8 +83,9 @@ fn edited_first(old: &Subject, world: &World) -> Vec<u64> {
         let was = was.ok().map(|at| before[at]);
         let velocity = |lights: &Lights| lights.velocity(lamp.id());
         was.is_none_or(|(place, was)| {
-            !planes.is_of_one(planes.of_light(place))
-                && !(was.is_same(lamp) && velocity(&old.world.lights) == velocity(&world.lights))
+            let is_same =
+                was.is_same(lamp) && velocity(&old.world.lights) == velocity(&world.lights);
+            !is_same && !planes.is_of_one(planes.of_light(place))
         })
     };
     let edited = world.lights.all().filter(|lamp| is_edited(*lamp));

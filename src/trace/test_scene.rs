@@ -80,11 +80,10 @@ pub(super) fn world() -> World {
             material: (i % 3) as u32,
             motion_samples: 0,
             mesh: Arc::new(Mesh {
-                tree,
                 normals,
-                uvs: Vec::new(),
                 alphas: vec![0.5; colors.len()],
                 colors,
+                ..Mesh::of(tree)
             }),
         });
     }

@@ -140,6 +140,26 @@ fn a_picture_that_would_be_nearly_black_is_exposed_and_says_so() {
 }
 
 #[test]
+fn weak_lights_shine_more_where_exposure_would_wash_out_what_glows() {
+    let unlit = r#""materials": [{"extensions": {"KHR_materials_unlit": {}}}, {}], "meshes": ["#;
+    let text = under_a_sun(1.0).replace(r#""meshes": ["#, unlit);
+    let both = r#""primitives": [{"material": 0, "attributes": {"POSITION": 0}},
+        {"material": 1, "attributes": {"POSITION": 0}}]"#;
+    let text = text.replace(r#""primitives": [{"attributes": {"POSITION": 0}}]"#, both);
+    let (mut app, opened) = open("a.gltf", &text);
+    let world = app.world_mut();
+    assert_eq!(world.resource::<RenderSettings>().output.exposure, 0.0);
+    let sun = world
+        .query::<&DirectionalLamp>()
+        .single(world)
+        .unwrap()
+        .clone();
+    assert!((1.0..4.0).contains(&sun.intensity), "{}", sun.intensity);
+    let said = notes(&opened, "all but what glows");
+    assert_eq!(said, ["they shine by as much more"], "{:?}", opened.notes);
+}
+
+#[test]
 fn the_key_light_stands_over_the_left_shoulder_of_whoever_looks() {
     // Its front is where x is less.
     let plate = "v 0 0 0\nv 0 1 0\nv 0 1 1\nv 0 0 1\nf 4 3 2 1\n";

@@ -191,7 +191,7 @@ impl Game {
             let mut views = world.query::<(Entity, &TracedRender)>();
             let done = world.resource::<Done>();
             let is_done = |(view, render): (Entity, &TracedRender)| {
-                let number = render.render().map(Progressive::number);
+                let number = render.render().map(|render| render.number());
                 number.is_some() && done.0.get(&view).copied() == number
             };
             if built && views.iter(world).all(is_done) {

@@ -38,6 +38,20 @@ fn signed_zeros_and_tiny_components_are_ordinary_directions() {
 }
 
 #[test]
+fn a_hit_at_the_end_of_the_numbers_is_one_for_every_question() {
+    let aggregate = alone(boxed(), &BuildOptions::default());
+    let ray = Ray::new(Vec3::new(2.0, 0.0, 1.0), Vec3::new(-1e-38, 0.0, 1e-45));
+    let hit = aggregate.closest_hit(&ray);
+    let mut occluded = Vec::new();
+    aggregate.occlusions(&[ray], &mut occluded);
+    assert_eq!(
+        [aggregate.occluded(&ray), occluded[0]],
+        [hit.is_some(); 2],
+        "{hit:?}"
+    );
+}
+
+#[test]
 fn directions_of_any_length_find_the_same_triangles() {
     let turn = Affine3A::from_rotation_y(0.3) * Affine3A::from_scale(Vec3::splat(1e-4));
     let meshes = [

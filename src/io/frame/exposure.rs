@@ -1,4 +1,4 @@
-//! Whether a file's own lights are enough to see anything by.
+//! Whether a file's own lights are enough to see anything by, and what is done where they are not.
 
 use super::super::place::world_from;
 use super::surface::Surface;
@@ -22,8 +22,8 @@ const PLACES: usize = 1000;
 /// Lamps that are looked at: there may be thousands, and then it is not dark.
 const LAMPS: usize = 1000;
 
-/// Stops that are missing where all lamps together leave what is shown nearly black; `None` where they do not, where
-/// something glows, or where there is no light at all.
+/// Stops that are missing where all lamps together leave what is shown nearly black; `None` where they do not, or
+/// where there is no light at all.
 ///
 /// Shadows and materials are not looked into: in truth there is less light still.
 pub(super) fn missing(world: &mut World, surface: &Surface) -> Option<f32> {
@@ -34,11 +34,6 @@ pub(super) fn missing(world: &mut World, surface: &Surface) -> Option<f32> {
     // Of areas and lines nothing needs to be known: no model file has any.
     let mut others = world.query::<(Option<&SegmentLamp>, Option<&ParallelogramLamp>)>();
     if others.iter(world).any(|(a, b)| a.is_some() || b.is_some()) {
-        return None;
-    }
-    let mut glowing = world.query::<&Phong>();
-    let glow = glowing.iter(world).map(|phong| brightest(phong.emission));
-    if glow.fold(0.0, f32::max) > NEARLY_BLACK {
         return None;
     }
     let mut even = 0.0;
@@ -70,6 +65,26 @@ pub(super) fn missing(world: &mut World, surface: &Surface) -> Option<f32> {
         return None;
     }
     Some((WANTED / radiance).log2().clamp(0.0, 64.0).round())
+}
+
+/// Whether something can be seen without light: exposure would wash it out.
+pub(super) fn glows(world: &mut World) -> bool {
+    let mut materials = world.query::<&Phong>();
+    let mut glow = materials.iter(world).map(|phong| brightest(phong.emission));
+    glow.any(|glow| glow > NEARLY_BLACK)
+}
+
+/// Has all lamps of a model shine by so many stops more.
+pub(super) fn brighten(world: &mut World, stops: f32) {
+    let more = |intensity: &mut f32| *intensity = (*intensity * stops.exp2()).min(f32::MAX);
+    let mut suns = world.query::<&mut DirectionalLamp>();
+    for mut sun in suns.iter_mut(world) {
+        more(&mut sun.intensity);
+    }
+    let mut points = world.query::<&mut PointLamp>();
+    for mut point in points.iter_mut(world) {
+        more(&mut point.intensity);
+    }
 }
 
 /// What a surface gets that faces a lamp.

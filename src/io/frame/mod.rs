@@ -4,7 +4,7 @@
 //! |---|---|
 //! | a camera | one that sees as much as can be seen at once: [`viewpoint`] |
 //! | lights | a key, a soft fill and one from behind; grey behind what is dark: [`lights`] |
-//! | light enough | exposure, where the file's own lights leave nearly all of it black: [`exposure`] |
+//! | light enough | exposure, where the file's own lights leave nearly all of it black, or more of them, where something glows that exposure would wash out: [`exposure`] |
 //!
 //! All of it are ordinary entities and settings of the scene.
 
@@ -68,10 +68,16 @@ pub(crate) fn frame(world: &mut World, file: &Path, notes: &mut Notes) {
         }
         note("has no light", instead);
     } else if let Some(stops) = exposure::missing(world, &surface) {
-        world.resource_mut::<RenderSettings>().output.exposure = stops;
-        let what =
-            format!("lights so weak that the picture would be nearly black, by {stops} stops");
-        note(&what, "the picture is exposed by as much more");
+        let glows = exposure::glows(world);
+        let (all, instead) = if glows {
+            exposure::brighten(world, stops);
+            ("all but what glows", "they shine by as much more")
+        } else {
+            world.resource_mut::<RenderSettings>().output.exposure = stops;
+            ("the picture", "the picture is exposed by as much more")
+        };
+        let what = format!("lights so weak that {all} would be nearly black, by {stops} stops");
+        note(&what, instead);
     }
     assign_ids(world, &added);
 }

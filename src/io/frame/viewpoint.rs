@@ -101,6 +101,10 @@ fn shown(surface: &Surface, eye: &Transform, tangent: f32) -> f32 {
         };
         let least = a.min(b).min(c).max(Vec3::ZERO);
         let most = a.max(b).max(c).min(Vec3::splat(SIDE as f32 - 0.5));
+        // Beside the picture: of numbers so large or so close that rounding moves them out of it.
+        if (most - least).truncate().min_element() < 0.0 {
+            continue;
+        }
         // One that is smaller than a pixel covers that one.
         if (most - least).truncate().max_element() < 1.0 {
             let middle = (a + b + c) / 3.0;
@@ -138,6 +142,18 @@ mod tests {
         Surface {
             points: triangles.iter().flatten().copied().collect(),
             triangles,
+        }
+    }
+
+    #[test]
+    fn what_lies_beside_the_picture_is_not_seen_at_its_edge() {
+        for beside in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y] {
+            let at = |x: f32, y: f32| (10.0 * beside + Vec3::new(x, y, -1.0)).to_array();
+            for size in [0.01, 1.0] {
+                let triangle = [at(0.0, 0.0), at(size, 0.0), at(0.0, size)];
+                let seen = shown(&surface(&[triangle]), &Transform::IDENTITY, 1.0);
+                assert_eq!(seen, 0.0, "{beside}, {size} m");
+            }
         }
     }
 

@@ -43,7 +43,7 @@ impl LightLayers {
         let meta = meta.map_err(|_| malformed(NO_LAYERS))?;
         let header = meta.headers.first().ok_or_else(|| malformed(NO_LAYERS))?;
         let names = header.channels.list.iter().map(|channel| &channel.name);
-        if header.deep || !names.clone().any(|name| name.to_string() == OWN_RED) {
+        if header.deep || !names.clone().any(|name| *name == *OWN_RED) {
             return Err(malformed(NO_LAYERS));
         }
         let (width, height) = (header.layer_size.x() as u64, header.layer_size.y() as u64);

@@ -55,14 +55,14 @@ fn component_ui(
             return false;
         };
         let active = path.reflect_element(active.as_partial_reflect());
-        let differs = |other: &Box<dyn Reflect>| {
+        let differs = |other: &dyn Reflect| {
             let other = path.reflect_element(other.as_partial_reflect());
             match (&active, other) {
                 (Ok(active), Ok(other)) => !is_same(*active, other),
                 _ => false,
             }
         };
-        others.iter().any(differs)
+        others.iter().any(|other| differs(&**other))
     };
     let info = kind.type_info();
     let mut changed = None;
