@@ -164,7 +164,8 @@ fn what_cannot_be_traced_is_named_without_waiting_and_a_mesh_that_went_is_not_sh
     *meshes.get_mut(&small.meshes[1]).unwrap() =
         Mesh::new(PrimitiveTopology::LineList, RenderAssetUsages::MAIN_WORLD)
             .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, vec![[0.0; 3]; 2]);
-    small.app.update();
+    // At the latest when the small tree over the other objects is there.
+    until(&mut small.app, |app| !problems(app).is_empty());
     assert_eq!(problems(&small.app).len(), 1, "{:?}", problems(&small.app));
 
     edit_mesh(&mut small, 0, 7);
