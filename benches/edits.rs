@@ -15,11 +15,13 @@
 //! machine that is busy with other things they say little.
 //!
 //! `cargo bench --bench edits -- lines`: what a hundred thousand lines of gizmos that stand cost in a
-//! frame instead.
+//! frame instead. `cargo bench --bench edits -- planes`: what an edit of a light costs beside a frame from scratch.
 
 #[cfg(feature = "view")]
 #[path = "shared/lines.rs"]
 mod lines;
+#[path = "shared/planes.rs"]
+mod planes;
 
 use bevy::app::App;
 use bevy::asset::Assets;
@@ -69,6 +71,9 @@ fn main() {
     #[cfg(feature = "view")]
     if std::env::args().any(|argument| argument == "lines") {
         return lines::main();
+    }
+    if std::env::args().any(|argument| argument == "planes") {
+        return planes::main();
     }
     let mut arguments = std::env::args().skip_while(|argument| argument != "--csv");
     let file = arguments.nth(1);

@@ -271,3 +271,131 @@ fn with_lights_separately_an_exr_has_a_layer_for_each_light_and_they_add_up_to_t
     );
     assert_eq!(refused.status.code(), Some(2));
 }
+
+/// A picture's values.
+fn values(folder: &Path, name: &str) -> Vec<f32> {
+    let bits = bits(folder, name).into_iter();
+    bits.map(f32::from_bits).collect()
+}
+
+#[test]
+fn a_gain_makes_the_picture_that_a_render_with_the_light_so_bright_is_but_for_rounding() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    render(folder, "showcase", "a.exr", &["--lights-separately"]);
+    for (gain, property) in [
+        ("Spot=2.5", "Spot/PointLamp.intensity*=2.5"),
+        ("Sun=0", "Sun/DirectionalLamp.intensity=0"),
+        ("Neon tube=0.5", "Neon tube/SegmentLamp.intensity*=0.5"),
+    ] {
+        let said = succeeds(folder, &["merge", "a.exr", "--gain", gain, "-o", "b.exr"]);
+        assert!(said.contains(gain), "{said}");
+        render(folder, "showcase", "c.exr", &["--set", property]);
+        let [mixed, rendered] = ["b.exr", "c.exr"].map(|name| values(folder, name));
+        let brightest = rendered.iter().copied().fold(0.0, f32::max);
+        for (mixed, rendered) in mixed.iter().zip(&rendered) {
+            // Samples are rounded to f32 light by light, and so is each light's layer.
+            let difference = (mixed - rendered).abs();
+            assert!(
+                difference <= 2e-6 * rendered.max(1e-3 * brightest),
+                "{gain}: {mixed}, {rendered}"
+            );
+        }
+    }
+    // A mix of a mix is that of both; with a gain of 1 nothing changes, bit for bit.
+    let mix = |from: &str, gain: &str, to: &str| {
+        succeeds(folder, &["merge", from, "--gain", gain, "-o", to]);
+    };
+    mix("a.exr", "Spot=4,2,1", "b.exr");
+    mix("b.exr", "Spot=.25,.5,1", "c.exr");
+    let [whole, back] = ["a.exr", "c.exr"].map(|name| values(folder, name));
+    for (whole, back) in whole.iter().zip(&back) {
+        assert!((whole - back).abs() <= 1e-6 * whole, "{whole}, {back}");
+    }
+    mix("a.exr", "Sun=1", "b.exr");
+    assert!(bits(folder, "a.exr") == bits(folder, "b.exr"));
+    // A picture for a screen is developed as the file says that it was to be.
+    let dark = ["--lights-separately", "--set", "output.exposure=-3"];
+    render(folder, "showcase", "dark.exr", &dark);
+    let png = |name: &str| {
+        image::open(folder.join(name))
+            .unwrap()
+            .into_rgb8()
+            .into_raw()
+    };
+    let mean = |bytes: Vec<u8>| bytes.iter().map(|b| f64::from(*b)).sum::<f64>();
+    mix("a.exr", "Sun=1", "a.png");
+    mix("dark.exr", "Sun=1", "dark.png");
+    assert!(mean(png("dark.png")) < 0.6 * mean(png("a.png")));
+}
+
+#[test]
+fn a_gain_that_is_none_or_is_for_nobody_is_refused_and_says_what_there_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    render(folder, "showcase", "a.exr", &["--lights-separately"]);
+    render(folder, "showcase", "plain.exr", &[]);
+    let before = files(folder);
+    let cases: &[(&[&str], i32, &[&str])] = &[
+        (
+            &["a.exr", "--gain", "Lamp=2"][..],
+            2,
+            &["`Lamp`", "Spot", "Own"][..],
+        ),
+        (&["a.exr", "--gain", "Spot=NaN"], 2, &["NaN", "0 to"]),
+        (&["a.exr", "--gain", "Spot=-1"], 2, &["-1", "0 to"]),
+        (&["a.exr", "--gain", "Spot"], 2, &["LIGHT=FACTOR"]),
+        (
+            &["a.exr", "--gain", "Spot=1", "--gain", "Spot=2"],
+            2,
+            &["twice"],
+        ),
+        (&["a.exr", "a.exr", "--gain", "Spot=2"], 2, &["one picture"]),
+        (
+            &["plain.exr", "--gain", "Spot=2"],
+            1,
+            &["--lights-separately"],
+        ),
+        (&["none.exr", "--gain", "Spot=2"], 1, &["none.exr"]),
+        (
+            &["a.exr", "--gain", "Spot=2", "--memory", "0.1M"],
+            1,
+            &["a.exr"],
+        ),
+    ];
+    for &(more, code, words) in cases {
+        let arguments = [&["merge", "-o", "b.exr"][..], more].concat();
+        let output = glassbox(folder, &arguments);
+        let (_, said) = texts(&output);
+        assert_eq!(output.status.code(), Some(code), "{more:?}: {said}");
+        for word in words {
+            assert!(said.contains(word), "{more:?}: {said}");
+        }
+        assert_eq!(files(folder), before, "{more:?}");
+    }
+    let bright = ["merge", "a.exr", "--gain", "Sun=1e38", "-o", "b.exr"];
+    let (_, said) = texts(&glassbox(folder, &bright));
+    assert!(said.contains("brighter than a file can say"), "{said}");
+    assert!(
+        values(folder, "b.exr")
+            .iter()
+            .all(|value| value.is_finite())
+    );
+}
+
+#[test]
+fn lights_that_are_kept_apart_are_refused_where_the_picture_alone_has_room() {
+    let folder = tempfile::tempdir().unwrap();
+    let render = ["render", "showcase", "-o", "a.exr", "--spp", "1"];
+    let size = ["--size", "700x700", "--memory", "250M"];
+    let whole = glassbox(folder.path(), &[&render[..], &size].concat());
+    assert_eq!(whole.status.code(), Some(0), "{:?}", texts(&whole));
+    let apart = [&render[..], &size, &["--lights-separately"]].concat();
+    let refused = glassbox(folder.path(), &apart);
+    let (_, said) = texts(&refused);
+    assert_eq!(refused.status.code(), Some(1), "{said}");
+    assert!(
+        said.contains("--memory") || said.contains("memory"),
+        "{said}"
+    );
+}

@@ -2,6 +2,7 @@
 
 mod changed;
 mod files;
+mod light_edits;
 mod pasting;
 mod random;
 mod recovery;

@@ -1,0 +1,223 @@
+//! What an edit costs beside a frame from scratch: `cargo bench --bench edits -- planes`.
+//!
+//! Of a scene with one, three and twelve point lights more than it has, at 1280 × 720 and one sample a pixel, the median of
+//! some rounds, as a part of the time that a render from scratch takes to its only sample of every pixel:
+//!
+//! - colour: another colour of a light, until the picture of it is there; and the rays that it took;
+//! - move: a light moves, until its light is complete again;
+//! - material: another material, until every pixel has a sample;
+//!
+//! and in milliseconds another exposure, and the 95th percentile from any of these edits to its first picture. The frame from
+//! scratch is measured between them, so that what else the machine does weighs on all alike; a `*` marks edits that were
+//! renders of their own.
+
+use bevy::app::App;
+use bevy::color::LinearRgba;
+use bevy::ecs::component::{Component, Mutable};
+use bevy::ecs::entity::Entity;
+use bevy::ecs::query::With;
+use bevy::math::{UVec2, Vec3};
+use bevy::transform::components::Transform;
+use glassbox::app::headless_app;
+use glassbox::film::{Progressive, Snapshot, develop_rgba8};
+use glassbox::io::builtin;
+use glassbox::scene::{MeshSource, Phong, PointLamp, RenderSettings};
+use glassbox::sync::{Traced, TracedCameras};
+use glassbox::trace::{Gains, World};
+use std::thread;
+use std::time::{Duration, Instant};
+
+const SIZE: UVec2 = UVec2::new(1280, 720);
+const ROUNDS: usize = 9;
+
+pub fn main() {
+    println!(
+        "{:<14}{:>7}{:>12}{:>10}{:>8}{:>8}{:>10}{:>13}{:>18}",
+        "scene",
+        "lights",
+        "scratch ms",
+        "colour",
+        "rays",
+        "move",
+        "material",
+        "exposure ms",
+        "first p95 ms"
+    );
+    for scene in ["cornell-box", "knot"] {
+        for lights in [1, 3, 12] {
+            Bench::open(scene, lights).measure(scene);
+        }
+    }
+}
+
+struct Bench {
+    app: App,
+    lamp: Entity,
+    object: Entity,
+    render: Option<Progressive>,
+    snapshot: Snapshot,
+    /// Milliseconds from an edit to its first picture.
+    first: Vec<f64>,
+    /// Edits that were renders of their own.
+    replaced: usize,
+}
+
+impl Bench {
+    fn open(scene: &str, lights: usize) -> Self {
+        let mut app = headless_app();
+        (builtin::find(scene).expect("a built-in scene").spawn)(app.world_mut());
+        let world = app.world_mut();
+        let mut settings = world.resource_mut::<RenderSettings>();
+        (settings.size, settings.spp) = (SIZE, 1);
+        let mut lamp = None;
+        for i in 0..lights {
+            let place = Transform::from_xyz(0.06 * i as f32 - 0.3, 0.4, 0.2);
+            let bulb = PointLamp {
+                intensity: 0.1,
+                ..PointLamp::default()
+            };
+            lamp = Some(world.spawn((bulb, place)).id());
+        }
+        app.update();
+        let mut objects = app
+            .world_mut()
+            .query_filtered::<Entity, (With<MeshSource>, With<Phong>)>();
+        Self {
+            lamp: lamp.expect("a light"),
+            object: objects.iter(app.world()).next().expect("an object"),
+            app,
+            render: None,
+            snapshot: Snapshot::black(SIZE),
+            first: Vec::new(),
+            replaced: 0,
+        }
+    }
+
+    fn measure(&mut self, scene: &str) {
+        let mut scratch = Vec::new();
+        let [mut colour, mut movement, mut material] = [(); 3].map(|()| Vec::new());
+        let [mut rays, mut exposure] = [0_u64, 0].map(|_| Vec::new());
+        let (lamp, object) = (self.lamp, self.object);
+        for round in 0..=ROUNDS {
+            let step = if round % 2 == 0 { 0.05 } else { -0.05 };
+            self.render = None;
+            let from_scratch = self.until_done(|bench| bench.start());
+            let before = self.rays();
+            let time = self.until_done(|bench| {
+                bench.change::<PointLamp>(lamp, |lamp| {
+                    lamp.color = LinearRgba::rgb(0.5 + step, 1.0, 0.7)
+                });
+                bench.edit();
+            });
+            rays.push((self.rays() - before) as f64);
+            colour.push(time / from_scratch);
+            let time = self.until_done(|bench| {
+                bench.change::<Transform>(lamp, |place| place.translation += Vec3::splat(step));
+                bench.edit();
+            });
+            movement.push(time / from_scratch);
+            let output = self.app.world().resource::<RenderSettings>().output;
+            let start = Instant::now();
+            std::hint::black_box(develop_rgba8(&self.snapshot.picture, &output));
+            exposure.push(ms(start));
+            let replaced = self.replaced;
+            let time = self.until_done(|bench| {
+                bench.change::<Phong>(object, |phong| phong.shininess = 50.0 + 100.0 * step);
+                bench.edit();
+            });
+            self.replaced = replaced;
+            material.push(time / from_scratch);
+            scratch.push(from_scratch);
+        }
+        let mark = if self.replaced > 0 { "*" } else { "" };
+        let lights = self.world().lights.count();
+        println!(
+            "{scene:<14}{lights:>7}{:>12.1}{:>10.3}{:>8}{:>8}{:>10.3}{:>13.2}{:>18.1}",
+            half(&mut scratch),
+            half(&mut colour),
+            half(&mut rays),
+            format!("{:.3}{mark}", half(&mut movement)),
+            half(&mut material),
+            half(&mut exposure),
+            part(&mut self.first, 0.95),
+        );
+    }
+
+    /// Milliseconds from what `begin` does until the picture of it has all its samples and is drawn.
+    fn until_done(&mut self, begin: impl FnOnce(&mut Self)) -> f64 {
+        let start = Instant::now();
+        begin(self);
+        self.wait(|render| render.status().divider.is_some());
+        self.draw();
+        self.first.push(ms(start));
+        self.render.as_ref().expect("a render").wait();
+        self.draw();
+        ms(start)
+    }
+
+    fn wait(&self, there: impl Fn(&Progressive) -> bool) {
+        let render = self.render.as_ref().expect("a render");
+        while !there(render) {
+            thread::sleep(Duration::from_micros(100));
+        }
+    }
+
+    fn draw(&mut self) {
+        let render = self.render.as_ref().expect("a render");
+        render.refresh(&mut self.snapshot);
+    }
+
+    fn edit(&mut self) {
+        self.app.update();
+        let render = self.render.as_ref().expect("a render");
+        if !render.edit(self.world(), &Gains::default()) {
+            self.replaced += 1;
+            self.start();
+        }
+    }
+
+    fn start(&mut self) {
+        let camera = self.app.world().resource::<TracedCameras>().0[0]
+            .camera
+            .clone();
+        let settings = self.app.world().resource::<RenderSettings>().clone();
+        let render = Progressive::start(self.world(), camera, settings);
+        self.render = Some(render.expect("a thread"));
+    }
+
+    fn rays(&self) -> u64 {
+        self.render
+            .as_ref()
+            .map_or(0, |render| render.status().rays.total())
+    }
+
+    fn world(&self) -> World {
+        World::clone(&self.app.world().resource::<Traced>().world)
+    }
+
+    fn change<C: Component<Mutability = Mutable>>(
+        &mut self,
+        entity: Entity,
+        change: impl FnOnce(&mut C),
+    ) {
+        let mut component = self
+            .app
+            .world_mut()
+            .get_mut::<C>(entity)
+            .expect("the component");
+        change(&mut component);
+    }
+}
+
+fn ms(start: Instant) -> f64 {
+    1e3 * start.elapsed().as_secs_f64()
+}
+
+fn half(values: &mut [f64]) -> f64 {
+    part(values, 0.5)
+}
+
+fn part(values: &mut [f64], part: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[((values.len() - 1) as f64 * part).round() as usize]
+}
