@@ -113,16 +113,33 @@ pub(in crate::editor) fn put(
 /// would change in every frame; of what cannot be compared nothing is known, and it counts as the same.
 pub(in crate::editor) fn is_same(a: &dyn PartialReflect, b: &dyn PartialReflect) -> bool {
     match a.reflect_partial_eq(b) {
-        Some(true) => return true,
-        Some(false) if matches!(a.reflect_ref(), ReflectRef::Opaque(_)) => {
-            let is_nan = |value: &dyn PartialReflect| {
-                value.try_downcast_ref::<f32>().is_some_and(|x| x.is_nan())
-                    || value.try_downcast_ref::<f64>().is_some_and(|x| x.is_nan())
-            };
-            return is_nan(a) && is_nan(b);
-        }
-        _ => {}
+        Some(true) => true,
+        // What a type says of itself holds, but for such numbers: its parts may know less.
+        Some(false) => holds_nan(a) && are_parts_same(a, b),
+        None => are_parts_same(a, b),
     }
+}
+
+/// Whether a number in a value is none.
+fn holds_nan(value: &dyn PartialReflect) -> bool {
+    match value.reflect_ref() {
+        ReflectRef::Struct(fields) => fields.iter_fields().any(|(_, field)| holds_nan(field)),
+        ReflectRef::TupleStruct(fields) => fields.iter_fields().any(holds_nan),
+        ReflectRef::Tuple(fields) => fields.iter_fields().any(holds_nan),
+        ReflectRef::List(items) => items.iter().any(holds_nan),
+        ReflectRef::Array(items) => items.iter().any(holds_nan),
+        ReflectRef::Enum(variant) => variant.iter_fields().any(|field| holds_nan(field.value())),
+        ReflectRef::Map(map) => map.iter().any(|(_, value)| holds_nan(value)),
+        _ => is_nan(value),
+    }
+}
+
+fn is_nan(value: &dyn PartialReflect) -> bool {
+    let of_f32 = value.try_downcast_ref::<f32>().is_some_and(|x| x.is_nan());
+    of_f32 || value.try_downcast_ref::<f64>().is_some_and(|x| x.is_nan())
+}
+
+fn are_parts_same(a: &dyn PartialReflect, b: &dyn PartialReflect) -> bool {
     match (a.reflect_ref(), b.reflect_ref()) {
         (ReflectRef::Struct(a), ReflectRef::Struct(b)) => {
             let mut fields = a.iter_fields().zip(b.iter_fields());
@@ -156,7 +173,9 @@ pub(in crate::editor) fn is_same(a: &dyn PartialReflect, b: &dyn PartialReflect)
         (ReflectRef::Set(a), ReflectRef::Set(b)) => {
             a.len() == b.len() && a.iter().all(|item| b.contains(item))
         }
-        (ReflectRef::Opaque(_), ReflectRef::Opaque(_)) => true,
+        (ReflectRef::Opaque(_), ReflectRef::Opaque(_)) => {
+            a.reflect_partial_eq(b).is_none() || (is_nan(a) && is_nan(b))
+        }
         _ => false,
     }
 }
@@ -164,6 +183,7 @@ pub(in crate::editor) fn is_same(a: &dyn PartialReflect, b: &dyn PartialReflect)
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bevy::ecs::name::Name;
     use bevy::math::Vec3;
     use bevy::reflect::Reflect;
     use bevy::transform::components::Transform;
@@ -176,6 +196,12 @@ mod tests {
         words: Vec<String>,
         by_name: HashMap<String, f64>,
         either: Option<(u8, f32)>,
+    }
+
+    #[test]
+    fn other_names_differ_though_bevy_hides_their_letters() {
+        let [a, b] = ["Lamp", "Sun"].map(Name::new);
+        assert!(!is_same(&a, &b) && is_same(&a, &a.clone()));
     }
 
     #[test]
