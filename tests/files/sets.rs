@@ -104,6 +104,29 @@ fn an_export_that_is_killed_leaves_the_old_set_or_the_new_one() {
 }
 
 #[test]
+fn what_a_killed_export_left_goes_with_the_next_and_what_others_wrote_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    scene(folder, "a", 1.0, 0.25, "builtin:uv");
+    let export = || {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_glassbox"));
+        command
+            .args(["convert", "a.scn.ron", "out.obj", "--quiet"])
+            .current_dir(folder);
+        assert!(command.status().unwrap().success());
+    };
+    export();
+    let left = "# In place of out.mtl while that is replaced\nnewmtl a\n";
+    fs::write(folder.join("out-new7.mtl"), left).unwrap();
+    fs::write(folder.join("out-new8.mtl"), "newmtl mine\n").unwrap();
+    fs::write(folder.join("out-newer.mtl"), left).unwrap();
+    export();
+    let mut materials = files(folder);
+    materials.retain(|name| name.ends_with(".mtl"));
+    assert_eq!(materials, ["out-new8.mtl", "out-newer.mtl", "out.mtl"]);
+}
+
+#[test]
 fn an_export_that_finds_no_room_changes_no_file_of_the_set() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();

@@ -50,13 +50,14 @@ pub(crate) fn write_obj(world: &mut World, file: &Path) -> Result<Notes, FileErr
 
     let old = text_of(&mtl);
     let mut staged = Vec::new();
-    let mut between = None;
     if file.is_file() && old.as_ref().is_some_and(|old| *old != text.as_bytes()) {
         let name = free_name(&mtl);
         let place = folder_of(&mtl).join(&name);
-        staged.push(library(&place)?);
+        staged.push(Staged::new(&place, |out| {
+            writeln!(out, "{}", between_line(&mtl_name))?;
+            out.write_all(text.as_bytes())
+        })?);
         staged.push(obj(&name)?);
-        between = Some(place);
     }
     if old.is_none_or(|old| old != text.as_bytes()) {
         staged.push(library(&mtl)?);
@@ -65,7 +66,8 @@ pub(crate) fn write_obj(world: &mut World, file: &Path) -> Result<Notes, FileErr
     // From here on an OBJ may name them.
     pictures.keep();
     staged.into_iter().try_for_each(Staged::commit)?;
-    for file in replaced.iter().chain(&left).chain(&between) {
+    let all_between = files_between(&mtl, &mtl_name);
+    for file in replaced.iter().chain(&left).chain(&all_between) {
         // It is complete without them: what cannot be removed stays.
         let _ = fs::remove_file(file);
     }
@@ -94,6 +96,39 @@ fn free_name(mtl: &Path) -> String {
 /// What the names of such files have before their number.
 const BETWEEN: &str = "-new";
 
+/// The first line of such a file: only what says this of itself is taken away again.
+fn between_line(mtl_name: &str) -> String {
+    format!("# In place of {mtl_name} while that is replaced")
+}
+
+/// All such files, those included that others left because they were killed.
+fn files_between(mtl: &Path, mtl_name: &str) -> Vec<PathBuf> {
+    let is_one = |path: &PathBuf| {
+        let name = path.file_name().and_then(|name| name.to_str());
+        let line = between_line(mtl_name);
+        let mut start = Vec::new();
+        name.and_then(|name| number_between(name, mtl)).is_some()
+            && path.is_file()
+            && fs::File::open(path).is_ok_and(|file| {
+                let mut start_of = file.take(line.len() as u64);
+                start_of.read_to_end(&mut start).is_ok() && start == line.as_bytes()
+            })
+    };
+    let Ok(entries) = fs::read_dir(folder_of(mtl)) else {
+        return Vec::new();
+    };
+    let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
+    paths.filter(is_one).collect()
+}
+
+/// The number in the name of such a file.
+fn number_between<'a>(name: &'a str, mtl: &Path) -> Option<&'a str> {
+    let number = name.strip_prefix(&stem_of(mtl))?.strip_prefix(BETWEEN)?;
+    let number = number.strip_suffix(".mtl")?;
+    let is_own = !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit());
+    is_own.then_some(number)
+}
+
 /// Such a file that the OBJ names because whoever wrote it was killed before the end.
 fn left_between(file: &Path, mtl: &Path) -> Option<PathBuf> {
     const LINES: u64 = 1 << 12;
@@ -105,10 +140,7 @@ fn left_between(file: &Path, mtl: &Path) -> Option<PathBuf> {
     let name = start
         .lines()
         .find_map(|line| line.strip_prefix("mtllib "))?;
-    let number = name.strip_prefix(&stem_of(mtl))?.strip_prefix(BETWEEN)?;
-    let number = number.strip_suffix(".mtl")?;
-    let is_own = !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit());
-    is_own.then(|| folder_of(mtl).join(name))
+    number_between(name, mtl).map(|_| folder_of(mtl).join(name))
 }
 
 /// What the OBJ holds.
