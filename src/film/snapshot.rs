@@ -32,15 +32,21 @@ impl Snapshot {
 }
 
 impl Engine {
-    /// The means so far; black where a pixel has none.
+    /// The means so far; black where a pixel has none. On the current rayon pool.
     pub fn picture(&self) -> Picture {
         let mut picture = Picture::black(self.size());
         let width = picture.width as usize;
-        for tile in &self.rendered {
-            let state = self.tile(*tile as usize);
-            let above = state.tile.origin.y as usize * width;
-            draw_means(&state, &mut picture.pixels[above..], width);
-        }
+        let columns = self.grid.columns() as usize;
+        let row_of_tiles = (TILE as usize * width).max(1);
+        let rows = picture.pixels.par_chunks_mut(row_of_tiles).enumerate();
+        rows.for_each(|(row, pixels)| {
+            for column in 0..columns {
+                let state = self.tile(row * columns + column);
+                if self.renders(state.tile) {
+                    draw_means(&state, pixels, width);
+                }
+            }
+        });
         picture
     }
 
@@ -89,15 +95,17 @@ impl Engine {
             .reduce(|| false, |a, b| a | b)
     }
 
+    /// A copy of the sums. On the current rayon pool.
     pub fn film(&self) -> Film {
-        let mut pixels = Vec::with_capacity(self.tiles.len() * TILE_PIXELS);
-        for tile in 0..self.tiles.len() {
-            let end = pixels.len() + TILE_PIXELS;
-            let state = self.tile(tile);
-            pixels.extend_from_slice(&state.pixels);
+        let pixels_of = |tile: usize| {
             // A tile that no pass has reached has none.
-            pixels.resize(end, FilmPixel::default());
-        }
+            let mut pixels = [FilmPixel::default(); TILE_PIXELS];
+            let state = self.tile(tile);
+            pixels[..state.pixels.len()].copy_from_slice(&state.pixels);
+            pixels
+        };
+        let tiles = (0..self.tiles.len()).into_par_iter().map(pixels_of);
+        let pixels = tiles.collect::<Vec<_>>().into_flattened();
         Film::from_tiles(self.size(), pixels, self.hidden_in_a_pixel())
     }
 
