@@ -393,7 +393,7 @@ fn shown_ui(ui: &mut Ui, property: &Property, value: &dyn PartialReflect) {
     });
 }
 
-/// The beginning of a value as text.
+/// The beginning of a value as text, without the module that its type stands in: the room is for the value.
 pub(super) fn short_text(value: &dyn PartialReflect) -> String {
     /// Refuses more than it has room for, so that a long value is not written to its end.
     struct Short(String);
@@ -409,6 +409,14 @@ pub(super) fn short_text(value: &dyn PartialReflect) -> String {
     }
     let mut short = Short(String::new());
     let is_whole = write!(short, "{value:?}").is_ok();
-    let Short(text) = short;
+    let Short(mut text) = short;
+    let info = value.get_represented_type_info();
+    let module = info.and_then(|info| info.type_path_table().module_path());
+    if let Some(module) = module
+        && let Some(bare) = text.strip_prefix(module)
+        && let Some(bare) = bare.strip_prefix("::")
+    {
+        text = bare.to_owned();
+    }
     if is_whole { text } else { text + "…" }
 }

@@ -208,18 +208,19 @@ fn shown_ui(ui: &mut Ui, world: &World, active: Entity) {
                 .all(|other| other.type_id() != kind.type_id()),
             Origin::Glassbox => false,
         };
-        let mut shown: Vec<(&str, String)> = registry
+        let mut shown: Vec<(&str, &str, String)> = registry
             .iter()
             .filter(is_shown)
             .filter_map(|kind| {
                 let value = kind.data::<ReflectComponent>()?.reflect(entity)?;
                 let value = short_text(value.as_partial_reflect());
-                Some((name(kind.type_info()), value))
+                let info = kind.type_info();
+                Some((name(info), info.type_path(), value))
             })
             .collect();
         shown.sort_unstable();
-        for (name, value) in shown {
-            ui.add(Label::new(name).truncate()).says(&value);
+        for (name, path, value) in shown {
+            ui.add(Label::new(name).truncate()).says(path);
             ui.add(Label::new(RichText::new(&value).weak()).truncate());
         }
     });

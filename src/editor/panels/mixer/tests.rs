@@ -3,6 +3,7 @@
 use super::super::tests::Desk;
 use super::mix::{Mixer, Strip};
 use crate::editor::action::Action;
+use crate::editor::document::{Document, adopt};
 use crate::editor::history::{History, undo};
 use crate::editor::preferences::Preferences;
 use crate::editor::viewport::EditorCamera;
@@ -15,6 +16,7 @@ use bevy::ecs::name::Name;
 use bevy::ecs::query::With;
 use bevy::math::Vec3;
 use bevy::transform::components::Transform;
+use bevy_egui::egui::accesskit::Role;
 use bevy_egui::egui::{Modifiers, vec2};
 
 fn lamp(desk: &mut Desk) -> (Entity, SceneId, String) {
@@ -127,6 +129,7 @@ fn the_mix_is_baked_as_one_step_that_undo_takes_back() {
 #[test]
 fn with_lights_in_one_plane_the_view_hears_of_it_and_another_scene_of_no_mix() {
     let mut desk = open();
+    adopt(desk.world(), "cornell-box", None);
     let (_, id, _) = lamp(&mut desk);
     set(&mut desk, id, |strip| strip.kelvin = 3000.0);
     desk.world().resource_mut::<Preferences>().lights_apart = false;
@@ -135,6 +138,8 @@ fn with_lights_in_one_plane_the_view_hears_of_it_and_another_scene_of_no_mix() {
     assert!(!warm.apart && warm.gains.of(id.0).x > warm.gains.of(id.0).z);
     desk.world().write_message(Action::Open("triangle".into()));
     desk.settle();
+    let document = desk.world().resource::<Document>();
+    assert_eq!(document.name, "triangle", "a mix is no change of the scene");
     assert!(mix(&mut desk).gains.is_neutral());
     assert!(desk.world().resource::<Mixer>().is_neutral());
 }
@@ -143,7 +148,9 @@ fn with_lights_in_one_plane_the_view_hears_of_it_and_another_scene_of_no_mix() {
 fn a_light_that_is_deleted_while_its_gain_is_dragged_is_baked_into_nothing() {
     let mut desk = open();
     let (entity, id, _) = lamp(&mut desk);
-    let at = desk.place_of("Gain") + vec2(60.0, 0.0);
+    desk.context.enable_accesskit();
+    desk.settle();
+    let at = desk.control_beside("Gain", Role::Slider);
     desk.point(at);
     desk.button(at, true, Modifiers::NONE);
     desk.point(at + vec2(20.0, 0.0));

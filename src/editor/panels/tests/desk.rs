@@ -19,12 +19,18 @@ use bevy::ecs::entity::Entity;
 use bevy::ecs::name::Name;
 use bevy::ecs::query::With;
 use bevy::ecs::world::World;
+use bevy_egui::egui::accesskit::{self, Role};
 use bevy_egui::egui::{self, Event, FullOutput, Key, Modifiers, PointerButton, Pos2, Shape, vec2};
 
 /// Windows that must do: the smallest, the usual one, and 4K at twice the scale.
 pub const SMALL: [f32; 3] = [1024.0, 640.0, 1.0];
 pub const USUAL: [f32; 3] = [1280.0, 720.0, 1.0];
 pub const LARGE: [f32; 3] = [1920.0, 1080.0, 2.0];
+
+/// Whether something with this middle stands in the row of that height.
+fn is_in_row(at: Pos2, row: f32) -> bool {
+    (at.y - row).abs() < 6.0
+}
 
 /// An editor without a window.
 pub struct Desk {
@@ -105,6 +111,11 @@ impl Desk {
 
     /// The middle of a text on the screen.
     pub fn find(&self, text: &str) -> Option<Pos2> {
+        self.places(text).next()
+    }
+
+    /// The same of all texts that are equal.
+    fn places<'a>(&'a self, text: &'a str) -> impl Iterator<Item = Pos2> + 'a {
         fn search(shape: &Shape, text: &str) -> Option<Pos2> {
             match shape {
                 Shape::Text(shape) if shape.galley.text() == text => {
@@ -114,18 +125,43 @@ impl Desk {
                 _ => None,
             }
         }
-        let shapes = self.output.shapes.iter();
-        shapes
-            .filter_map(|clipped| {
-                let at = search(&clipped.shape, text)?;
-                clipped.clip_rect.contains(at).then_some(at)
-            })
-            .next()
+        self.output.shapes.iter().filter_map(move |clipped| {
+            let at = search(&clipped.shape, text)?;
+            clipped.clip_rect.contains(at).then_some(at)
+        })
     }
 
     pub fn place_of(&self, text: &str) -> Pos2 {
         let place = self.find(text);
         place.unwrap_or_else(|| panic!("`{text}` is nowhere on the screen"))
+    }
+
+    /// The text in the row of a label: others like it may stand elsewhere.
+    pub fn place_beside(&self, label: &str, text: &str) -> Pos2 {
+        let row = self.place_of(label).y;
+        let place = self.places(text).find(|at| is_in_row(*at, row));
+        place.unwrap_or_else(|| panic!("`{text}` is not beside `{label}`"))
+    }
+
+    /// The middles of all controls of a kind on the screen. The context has to speak to screen readers.
+    pub fn controls(&self, role: Role) -> Vec<Pos2> {
+        let update = self.output.platform_output.accesskit_update.as_ref();
+        let nodes = update.map_or(&[][..], |update| &update.nodes);
+        let controls = nodes.iter().filter(|(_, node)| node.role() == role);
+        let bounds = controls.filter_map(|(_, node)| node.bounds());
+        let middle = |bounds: accesskit::Rect| {
+            let middle = [bounds.x0 + bounds.x1, bounds.y0 + bounds.y1].map(|sum| 0.5 * sum as f32);
+            Pos2::new(middle[0], middle[1])
+        };
+        bounds.map(middle).collect()
+    }
+
+    /// The first control of a kind in the row of a label.
+    pub fn control_beside(&self, label: &str, role: Role) -> Pos2 {
+        let at = self.place_of(label);
+        let mut controls = self.controls(role).into_iter();
+        let control = controls.find(|control| is_in_row(*control, at.y) && control.x > at.x);
+        control.unwrap_or_else(|| panic!("there is no {role:?} beside `{label}`"))
     }
 
     pub fn point(&mut self, at: Pos2) {

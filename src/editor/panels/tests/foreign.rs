@@ -12,7 +12,8 @@ use bevy::ecs::reflect::ReflectComponent;
 use bevy::math::{Quat, Vec3};
 use bevy::reflect::Reflect;
 use bevy::reflect::std_traits::ReflectDefault;
-use bevy_egui::egui::{Event, Key, Pos2, vec2};
+use bevy_egui::egui::accesskit::Role;
+use bevy_egui::egui::{Event, Key};
 use std::collections::HashMap;
 
 /// One of everything.
@@ -99,7 +100,9 @@ struct Sealed {
 
 /// The mirror block of a box, with some of them.
 fn garden(carries: impl bevy::ecs::bundle::Bundle) -> (Desk, Entity, SceneId) {
-    let mut desk = Desk::empty(LARGE);
+    // High enough for all that the inspector shows of them.
+    let mut desk = Desk::empty([1280.0, 4000.0, 1.0]);
+    desk.context.enable_accesskit();
     desk.app
         .register_type::<Growing>()
         .register_type::<Fence>()
@@ -120,13 +123,8 @@ fn growing(desk: &mut Desk, entity: Entity) -> Growing {
 }
 
 impl Desk {
-    fn right_of(&self, label: &str) -> Pos2 {
-        self.place_of(label) + vec2(150.0, 0.0)
-    }
-
     fn enter(&mut self, label: &str, text: &str) {
-        let at = Pos2::new(self.size[0] - 230.0, self.place_of(label).y);
-        self.click(at);
+        self.click(self.control_beside(label, Role::SpinButton));
         assert!(self.context.text_edit_focused(), "a field beside {label}");
         self.key(Key::Delete);
         self.frame(vec![Event::Text(text.into())]);
@@ -189,11 +187,7 @@ fn an_app_s_component_is_seen_and_each_edit_is_a_step() {
 #[test]
 fn variants_options_and_lists_are_entered_too() {
     let (mut desk, entity, _) = garden(Growing::default());
-    let at = desk.right_of("Since");
-    let at = Pos2::new(desk.place_of("Pruned").x.max(at.x), at.y);
-    // The box of a switch stands where the values begin.
-    let values = desk.place_of("1 item").x - 12.0;
-    desk.click(Pos2::new(values, at.y));
+    desk.click(desk.control_beside("Since", Role::CheckBox));
     desk.settle();
     assert_eq!(growing(&mut desk, entity).since, Some(0.0));
     desk.click_on("Moss");
@@ -202,10 +196,10 @@ fn variants_options_and_lists_are_entered_too() {
     desk.settle();
     assert_eq!(growing(&mut desk, entity).kind, Plant::Vine(0.0, 0));
     desk.place_of("Kind 2");
-    desk.click_on("Add");
+    desk.click(desk.place_beside("Weights", "Add"));
     desk.settle();
     assert_eq!(growing(&mut desk, entity).weights, [0.5, 0.5]);
-    desk.click_on("✖");
+    desk.click(desk.place_beside("Weights 1", "✖"));
     desk.settle();
     assert_eq!(growing(&mut desk, entity).weights, [0.5]);
     for _ in 0..4 {
@@ -278,6 +272,8 @@ fn what_has_no_value_to_begin_with_is_edited_and_copied_and_cannot_be_added() {
 fn what_cannot_be_made_or_is_not_reflected_does_no_harm() {
     let (mut desk, entity, id) = garden((Sealed { secret: 41 }, Hidden { depth: 2.0 }));
     desk.click_on("Other components");
+    // It unfolds slowly.
+    desk.wait(1.0);
     desk.settle();
     desk.place_of("Sealed");
     desk.place_of("Sealed { secret: 41 }");
@@ -339,7 +335,7 @@ fn several_are_edited_at_once_and_keep_what_was_not_entered() {
         (after.height, &*after.label, after.weights.len()),
         (3.0, "fern", 3)
     );
-    desk.click_on("Add");
+    desk.click(desk.place_beside("Weights", "Add"));
     desk.settle();
     assert_eq!(growing(&mut desk, entity).weights, [0.5, 0.5]);
     assert_eq!(

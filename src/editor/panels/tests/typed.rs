@@ -46,20 +46,8 @@ const NONSENSE: [&str; 20] = [
 ];
 
 impl Desk {
-    /// The middles of all number fields on the screen.
     fn number_fields(&self) -> Vec<Pos2> {
-        let update = self.output.platform_output.accesskit_update.as_ref();
-        let nodes = update.map_or(&[][..], |update| &update.nodes);
-        let fields = nodes
-            .iter()
-            .filter(|(_, node)| node.role() == Role::SpinButton);
-        let middle = |bounds: bevy_egui::egui::accesskit::Rect| {
-            let middle = [bounds.x0 + bounds.x1, bounds.y0 + bounds.y1].map(|sum| 0.5 * sum as f32);
-            Pos2::new(middle[0], middle[1])
-        };
-        fields
-            .filter_map(|(_, node)| node.bounds().map(middle))
-            .collect()
+        self.controls(Role::SpinButton)
     }
 
     fn type_at(&mut self, at: Pos2, text: &str) {
@@ -218,12 +206,7 @@ fn nothing_wrong_that_is_typed_anywhere_applies_and_undo_restores_everything() {
 fn what_cannot_be_read_leaves_the_number_and_can_be_mended_where_it_was_typed() {
     let (mut desk, ids) = desk_of_everything();
     desk.select([ids[0]]);
-    let at = desk.place_of("Position");
-    let field = desk
-        .number_fields()
-        .into_iter()
-        .find(|field| (field.y - at.y).abs() < 6.0)
-        .unwrap();
+    let field = desk.control_beside("Position", Role::SpinButton);
     let place = |desk: &mut Desk| {
         let (entity, _) = desk.named("spot");
         desk.world().get::<Transform>(entity).unwrap().translation.x
@@ -256,12 +239,7 @@ fn what_cannot_be_read_leaves_the_number_and_can_be_mended_where_it_was_typed() 
 fn what_is_typed_for_one_object_does_not_reach_another_that_is_selected_meanwhile() {
     let (mut desk, ids) = desk_of_everything();
     desk.select([ids[0]]);
-    let at = desk.place_of("Position");
-    let fields = desk.number_fields().into_iter();
-    let field = fields
-        .into_iter()
-        .find(|field| (field.y - at.y).abs() < 6.0)
-        .unwrap();
+    let field = desk.control_beside("Position", Role::SpinButton);
     desk.click(field);
     desk.frame(vec![Event::Text("7".into())]);
     desk.select([ids[1]]);
@@ -279,14 +257,9 @@ fn what_is_entered_for_several_reaches_those_that_have_it_and_changes_nothing_el
     let (mut desk, ids) = desk_of_everything();
     // The active one is selected last.
     desk.select([ids[5], ids[4]]);
-    let field = |desk: &Desk, label: &str| {
-        let at = desk.place_of(label);
-        let mut fields = desk.number_fields().into_iter();
-        fields.find(|field| (field.y - at.y).abs() < 6.0).unwrap()
-    };
-    let at = field(&desk, "Field of view");
+    let at = desk.control_beside("Field of view", Role::SpinButton);
     desk.type_at(at, "30");
-    let at = field(&desk, "Shutter opens");
+    let at = desk.control_beside("Shutter opens", Role::SpinButton);
     desk.type_at(at, "0.25");
     let cameras = ["camera", "flat"].map(|name| {
         let (entity, _) = desk.named(name);
