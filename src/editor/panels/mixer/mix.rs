@@ -105,6 +105,15 @@ impl Mixer {
         }
     }
 
+    /// What is no longer there is not alone, or nobody would be heard; the rest of its strip waits for undo.
+    fn only_of(&mut self, lights: &[LightRow]) {
+        let is_there = |id: &SceneId| lights.iter().any(|light| light.id == *id);
+        for (id, strip) in &mut self.strips {
+            strip.is_solo &= is_there(id);
+        }
+        self.strips.retain(|_, strip| *strip != Strip::default());
+    }
+
     /// Nothing is set any more.
     pub fn reset(&mut self) {
         self.strips.clear();
@@ -155,6 +164,7 @@ pub(in crate::editor::panels) fn apply(world: &mut World) {
         Gains::default()
     } else {
         let rows = lights(world);
+        world.resource_mut::<Mixer>().only_of(&rows);
         let mixer = world.resource::<Mixer>();
         let gains = rows.iter().map(|row| (row.id.0, mixer.factor(row.id)));
         gains.collect()

@@ -165,6 +165,20 @@ fn a_light_that_is_deleted_while_its_gain_is_dragged_is_baked_into_nothing() {
 }
 
 #[test]
+fn a_light_that_was_alone_and_is_deleted_silences_nobody() {
+    let mut desk = open();
+    let (entity, id, _) = lamp(&mut desk);
+    let other = SceneId(10_000);
+    desk.world().spawn((other, PointLamp::default()));
+    set(&mut desk, id, |strip| strip.is_solo = true);
+    desk.settle();
+    assert_eq!(mix(&mut desk).gains.of(other.0), Vec3::ZERO);
+    desk.world().despawn(entity);
+    desk.settle();
+    assert!(mix(&mut desk).gains.is_neutral());
+}
+
+#[test]
 fn of_a_thousand_lights_only_those_rows_are_laid_out_that_are_seen() {
     let mut desk = open();
     for number in 0..1000 {

@@ -22,7 +22,7 @@ use std::collections::HashMap;
 #[type_path = "garden"]
 struct Growing {
     #[reflect(@Quantity::within(0.0, 10.0, "m"))]
-    height: f32,
+    girth: f32,
     pruned: bool,
     rings: u8,
     debt: i64,
@@ -40,7 +40,7 @@ struct Growing {
 impl Default for Growing {
     fn default() -> Self {
         Self {
-            height: 1.0,
+            girth: 1.0,
             pruned: false,
             rings: 7,
             debt: -3,
@@ -138,7 +138,7 @@ fn an_app_s_component_is_seen_and_each_edit_is_a_step() {
     let (mut desk, entity, _) = garden(Growing::default());
     for label in [
         "Growing",
-        "Height",
+        "Girth",
         "Pruned",
         "Rings",
         "Debt",
@@ -155,11 +155,11 @@ fn an_app_s_component_is_seen_and_each_edit_is_a_step() {
     ] {
         desk.place_of(label);
     }
-    desk.enter("Height", "2.5");
-    assert_eq!(growing(&mut desk, entity).height, 2.5);
-    desk.enter("Height", "99");
+    desk.enter("Girth", "2.5");
+    assert_eq!(growing(&mut desk, entity).girth, 2.5);
+    desk.enter("Girth", "99");
     assert_eq!(
-        growing(&mut desk, entity).height,
+        growing(&mut desk, entity).girth,
         10.0,
         "its schema is heeded"
     );
@@ -295,7 +295,7 @@ fn no_number_and_great_depth_make_no_steps_of_their_own() {
         };
     }
     let odd = Growing {
-        height: f32::NAN,
+        girth: f32::NAN,
         sun: Vec3::splat(f32::INFINITY),
         pot: deep,
         weights: vec![f32::NAN; 300],
@@ -314,7 +314,7 @@ fn no_number_and_great_depth_make_no_steps_of_their_own() {
     assert!(undo(desk.world()));
     let after = growing(&mut desk, entity);
     assert_eq!((after.rings, after.weights.len()), (7, 300));
-    assert!(after.height.is_nan());
+    assert!(after.girth.is_nan());
 }
 
 #[test]
@@ -329,10 +329,10 @@ fn several_are_edited_at_once_and_keep_what_was_not_entered() {
     desk.world().entity_mut(other).insert(before);
     reset(desk.world());
     desk.select([other_id, id]);
-    desk.enter("Height", "3");
+    desk.enter("Girth", "3");
     let after = growing(&mut desk, other);
     assert_eq!(
-        (after.height, &*after.label, after.weights.len()),
+        (after.girth, &*after.label, after.weights.len()),
         (3.0, "fern", 3)
     );
     desk.click(desk.place_beside("Weights", "Add"));
@@ -350,7 +350,7 @@ fn what_an_app_keeps_in_files_comes_back_from_them_and_nothing_else_does() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("garden.scn.ron");
     let odd = Growing {
-        height: 3.5,
+        girth: 3.5,
         kind: Plant::Vine(2.0, 9),
         since: Some(f32::INFINITY),
         ..Growing::default()
