@@ -13,9 +13,9 @@ use super::shading::reflected;
 use super::transmittance::through;
 use super::vectors::{Vectors, column_vector};
 use super::vertices::Vertices;
-use super::{DOME, Dome, SampleId, Surface, World};
+use super::{Dome, SampleId, Surface};
 use crate::bvh::{Aggregate, Hit, Order, Ray, Transmittances};
-use crate::scene::{Lighting, RenderSettings};
+use crate::scene::Lighting;
 use glam::Vec3;
 
 /// A shadow ray ends this much before its light, as a fraction of the distance: a light that lies
@@ -454,34 +454,5 @@ pub(super) fn shadow_ray(
         direction: to_light,
         t_max: SHORT_OF_THE_LIGHT,
         time,
-    }
-}
-
-impl World {
-    /// How many shadow rays the area light with this `SceneId`, or the [`DOME`], gets at a first hit; `None` where there
-    /// is no such light.
-    pub fn light_samples(&self, id: u64, settings: &RenderSettings) -> Option<u32> {
-        if id == DOME {
-            let dome = Dome::of(&self.environment, settings)?;
-            return Some(dome.sample_count(settings));
-        }
-        let lights = &self.lights;
-        let directional = (lights.directionals.iter())
-            .map(|light| (light.id, light.samples, light.solid_angle()));
-        let segments = lights.segments.iter().map(|light| {
-            let length = (light.ends[1] - light.ends[0]).length();
-            (light.id, light.samples, length)
-        });
-        let parallelograms = lights.parallelograms.iter().map(|light| {
-            let area = light.area_normal().length();
-            (light.id, light.samples, area)
-        });
-        let mut all = directional.chain(segments).chain(parallelograms);
-        let (_, samples, size) = all.find(|(of, ..)| *of == id)?;
-        Some(sample_count(
-            samples,
-            size,
-            settings.features.scale_light_samples,
-        ))
     }
 }

@@ -4,10 +4,11 @@ use super::glossy_places::ChosenPlace;
 use super::light_frames::Frame;
 use super::lights::{
     DirectionalLight, LightPoint, MIDDLE, ParallelogramLight, PointLight, SegmentLight,
+    sample_count,
 };
 use super::recorder::LightKind;
-use super::{DOME, Dome, Lights, Surface};
-use crate::scene::Lighting;
+use super::{DOME, Dome, Lights, Surface, World};
+use crate::scene::{Lighting, RenderSettings};
 use glam::Vec3;
 
 /// A light of any kind.
@@ -168,5 +169,34 @@ impl Lights {
     /// The place in [`Self::all`] of the first parallelogram.
     pub(super) fn first_parallelogram(&self) -> usize {
         self.count() - self.parallelograms.len()
+    }
+}
+
+impl World {
+    /// How many shadow rays the area light with this `SceneId`, or the [`DOME`], gets at a first hit; `None` where there
+    /// is no such light.
+    pub fn light_samples(&self, id: u64, settings: &RenderSettings) -> Option<u32> {
+        if id == DOME {
+            let dome = Dome::of(&self.environment, settings)?;
+            return Some(dome.sample_count(settings));
+        }
+        let lights = &self.lights;
+        let directional = (lights.directionals.iter())
+            .map(|light| (light.id, light.samples, light.solid_angle()));
+        let segments = lights.segments.iter().map(|light| {
+            let length = (light.ends[1] - light.ends[0]).length();
+            (light.id, light.samples, length)
+        });
+        let parallelograms = lights.parallelograms.iter().map(|light| {
+            let area = light.area_normal().length();
+            (light.id, light.samples, area)
+        });
+        let mut all = directional.chain(segments).chain(parallelograms);
+        let (_, samples, size) = all.find(|(of, ..)| *of == id)?;
+        Some(sample_count(
+            samples,
+            size,
+            settings.features.scale_light_samples,
+        ))
     }
 }
