@@ -24,8 +24,10 @@
 //!   has such a scene, a lamp 470 times as bright as the ceiling around it, and says what was measured.
 
 use super::TILE;
+use super::tile_state::TILE_PIXELS;
 use super::tiles::FilmPixel;
-use super::unmet::Reach;
+use super::unmet::{Reach, ReachColumns};
+use crate::instruction_sets::vectorized;
 use glam::UVec2;
 use std::fmt;
 
@@ -84,22 +86,36 @@ pub(super) struct Moves {
     pub reach: Reach,
 }
 
-/// A tile's pixels with their means.
+/// What is known of a tile's pixels, in columns.
 pub(super) struct Means<'a> {
     pixels: &'a [FilmPixel],
-    /// How much of the tile lies in the picture.
-    extent: UVec2,
-    /// Averaged over the channels.
-    means: Vec<f64>,
+    /// What each pixel's squared error is multiplied by for the relative one: 1 / (likely value² + [`RELATIVE_FLOOR`]).
+    weights: [f64; TILE_PIXELS],
+    /// How much each errs by light that no sample has met.
+    reach: ReachColumns,
 }
 
 impl<'a> Means<'a> {
+    /// Of the pixels of a tile's memory, of which `extent` lies in the picture.
     pub fn of(pixels: &'a [FilmPixel], extent: UVec2) -> Self {
-        let mean = |pixel: &FilmPixel| f64::from(pixel.sum.mean(pixel.count).element_sum()) / 3.0;
+        let mut means = [0.0; TILE_PIXELS];
+        let mut moved = [0.0; TILE_PIXELS];
+        for (at, pixel) in pixels.iter().enumerate() {
+            means[at] = f64::from(pixel.sum.mean(pixel.count).element_sum()) / 3.0;
+            moved[at] = f64::from(pixel.moved[0]);
+        }
+        let mut around = [f64::NAN; AROUND * AROUND];
+        for y in 0..extent.y.min(TILE) as usize {
+            let columns = extent.x.min(TILE) as usize;
+            let (from, to) = (y * TILE as usize, place_around(y * TILE as usize));
+            around[to..to + columns].copy_from_slice(&means[from..from + columns]);
+        }
+        let mut weights = [0.0; TILE_PIXELS];
+        relative_weights(&around, &moved, &mut weights);
         Self {
             pixels,
-            extent,
-            means: pixels.iter().map(mean).collect(),
+            weights,
+            reach: ReachColumns::of(&means),
         }
     }
 
@@ -108,48 +124,78 @@ impl<'a> Means<'a> {
         let mut moves = Moves::default();
         for at in places {
             let pixel = &self.pixels[at];
-            let value = self.likely_value(at);
-            let weight = 1.0 / (value * value + RELATIVE_FLOOR);
             for (i, moved) in pixel.moved.into_iter().enumerate() {
                 moves.absolute[i] += f64::from(moved);
-                moves.relative[i] += f64::from(moved) * weight;
+                moves.relative[i] += f64::from(moved) * self.weights[at];
             }
-            let reach = Reach::of(self.means[at]);
-            moves.reach.absolute += reach.absolute;
-            moves.reach.relative += reach.relative;
+            moves.reach.absolute += self.reach.absolute[at];
+            moves.reach.relative += self.reach.relative[at];
             moves.count = pixel.count;
             moves.pixels += 1;
         }
         moves
     }
+}
 
-    /// What a pixel's value is likely to be, by which its squared error is divided. Where one rare,
-    /// bright sample has moved a dark pixel far, its mean is far above its value, and dividing by the
-    /// mean would hide nearly all of the error. So a pixel counts as the mean of itself and of those two
-    /// opposite ones near it that are most alike: along an edge, not across it. (Neighbours across a
-    /// corner and the next but one of the row and the column: they are of the same half as it, and what a
-    /// half says must not depend on the other.) But it counts as no further from its own mean than that has
-    /// moved: a small highlight stands out and is there.
-    fn likely_value(&self, at: usize) -> f64 {
-        let (x, y) = (at as u32 % TILE, at as u32 / TILE);
-        let mean = |dx: i32, dy: i32| {
-            let (x, y) = x.checked_add_signed(dx).zip(y.checked_add_signed(dy))?;
-            let inside = x < self.extent.x && y < self.extent.y;
-            inside.then(|| self.means[(y * TILE + x) as usize])
-        };
-        let own = self.means[at];
-        let moved = f64::from(self.pixels[at].moved[0]).sqrt();
-        let pairs = [(2, 0), (0, 2), (1, 1), (1, -1)];
-        let most_alike = pairs
-            .into_iter()
-            .filter_map(|(dx, dy)| mean(dx, dy).zip(mean(-dx, -dy)))
-            .min_by(|a, b| (a.0 - a.1).abs().total_cmp(&(b.0 - b.1).abs()));
-        match most_alike {
-            Some((a, b)) if moved.is_finite() => {
-                ((own + a + b) / 3.0).clamp(own - moved, own + moved)
+/// Edge of a tile with a margin of two pixels, in which nothing is known.
+const AROUND: usize = TILE as usize + 2 * MARGIN;
+const MARGIN: usize = 2;
+
+/// Where a pixel of a tile's memory lies in the tile with its margin.
+#[inline(always)]
+const fn place_around(at: usize) -> usize {
+    let (x, y) = (at % TILE as usize, at / TILE as usize);
+    (y + MARGIN) * AROUND + x + MARGIN
+}
+
+vectorized! {
+    /// The [`Means::weights`] of pixels with these means, not a number outside of the picture, whose last moves squared
+    /// are `moved`.
+    fn relative_weights(
+        around: &[f64; AROUND * AROUND],
+        moved: &[f64; TILE_PIXELS],
+        weights: &mut [f64; TILE_PIXELS],
+    ) {
+        for y in 0..TILE as usize {
+            let row = y * TILE as usize;
+            for x in 0..TILE as usize {
+                let at = row + x;
+                let value = likely_value(around, place_around(row) + x, moved[at].sqrt());
+                weights[at] = 1.0 / (value * value + RELATIVE_FLOOR);
             }
-            _ => own,
         }
+    }
+}
+
+/// What a pixel's value is likely to be, by which its squared error is divided. Where one rare,
+/// bright sample has moved a dark pixel far, its mean is far above its value, and dividing by the
+/// mean would hide nearly all of the error. So a pixel counts as the mean of itself and of those two
+/// opposite ones near it that are most alike: along an edge, not across it. (Neighbours across a
+/// corner and the next but one of the row and the column: they are of the same half as it, and what a
+/// half says must not depend on the other.) But it counts as no further from its own mean than that has
+/// moved: a small highlight stands out and is there.
+#[inline(always)]
+fn likely_value(around: &[f64; AROUND * AROUND], at: usize, moved: f64) -> f64 {
+    const PAIRS: [usize; 4] = [2, 2 * AROUND, AROUND + 1, AROUND - 1];
+    let own = around[at];
+    let (mut least, mut a, mut b) = (f64::INFINITY, own, own);
+    for offset in PAIRS {
+        let (one, other) = (around[at + offset], around[at - offset]);
+        let apart = (one - other).abs();
+        // Never where one of them lies outside.
+        let is_less = apart < least;
+        least = if is_less { apart } else { least };
+        a = if is_less { one } else { a };
+        b = if is_less { other } else { b };
+    }
+    let mean = (own + a + b) / 3.0;
+    let (low, high) = (own - moved, own + moved);
+    let mean = if mean < low { low } else { mean };
+    let mean = if mean > high { high } else { mean };
+    if least < f64::INFINITY && moved < f64::INFINITY {
+        mean
+    } else {
+        own
     }
 }
 

@@ -57,9 +57,9 @@ pub fn render_lights(
         region: None,
     };
     let engine = Engine::new(subject, mode, None);
-    let rendered = finish(&engine, &|engine| progress(&engine.status()));
+    let ending = engine.run(&|engine| progress(&engine.status()));
     let pictures = engine.light_pictures();
-    (rendered, pictures)
+    (finish(engine, ending), pictures)
 }
 
 impl Engine {

@@ -89,18 +89,18 @@ fn run(
         },
         None,
     );
-    finish(&engine, told)
+    let ending = engine.run(told);
+    finish(engine, ending)
 }
 
-/// Renders to the end.
-pub(super) fn finish(engine: &Engine, told: &(dyn Fn(&Engine) + Sync)) -> Rendered {
-    let ending = engine.run(told);
+/// What a render has when it has ended.
+pub(super) fn finish(engine: Engine, ending: Ending) -> Rendered {
     let status = engine.status();
     Rendered {
         picture: engine.picture(),
         rays: status.rays,
         seconds: status.seconds,
-        film: engine.film(),
+        film: engine.into_film(),
         ending,
         status,
     }

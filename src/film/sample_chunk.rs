@@ -4,7 +4,7 @@ use super::sum_columns::SumColumns;
 use super::tile_planes::PLANE_BYTES;
 use super::tile_state::{Chunk, TILE_PIXELS};
 use super::tiles::{Tile, TileGrid};
-use super::unmet::{NO_OCTAVES, Octaves, octave};
+use super::unmet::{NO_OCTAVES, Octaves, count_octaves};
 use super::{LightMix, Sum};
 use crate::scene::RenderSettings;
 use crate::trace::lights::sample_count;
@@ -244,15 +244,13 @@ impl Scratch {
         self.sums.clear();
         self.octaves.fill(0);
         let mut places = std::mem::take(&mut self.places);
+        places.clear();
+        let pixels = tile.pixels_in_blocks();
+        places.extend(pixels.filter(|(_, at)| chunk.pixels.has(*at)));
         let complete = chunk.segments().all(|segment| {
             let first = self.sums.len();
             let sums = first + subject.planes() * TILE_PIXELS;
             self.sums.resize(sums, Sum::default());
-            places.clear();
-            places.extend(
-                tile.pixels_in_blocks()
-                    .filter(|(_, at)| chunk.pixels.has(*at)),
-            );
             let sampled = self.sum_segment(subject, &places, segment, chunk.planes, batch, stopped);
             rays += sampled.unwrap_or_default();
             sampled.is_some()
@@ -305,8 +303,7 @@ impl Scratch {
         for plane in 0..planes {
             let sums = &mut self.sums[first + plane * TILE_PIXELS..][..TILE_PIXELS];
             for (i, &(_, at)) in places.iter().enumerate() {
-                let sum = self.columns.get(plane * places.len() + i);
-                sums[at].merge(&sum);
+                sums[at] = self.columns.get(plane * places.len() + i);
             }
         }
         Some(rays)
@@ -328,17 +325,8 @@ impl Scratch {
                 (at, rest) = (0, others);
             }
         }
-        // Neighbours are often as bright as each other.
-        let (mut same, mut samples) = (0, 0);
-        for value in folded(&self.folded, &self.values, self.samples.len()) {
-            let octave = octave(*value);
-            if octave != same {
-                self.octaves[same] += std::mem::take(&mut samples);
-                same = octave;
-            }
-            samples += 1;
-        }
-        self.octaves[same] += samples;
+        let values = folded(&self.folded, &self.values, self.samples.len());
+        count_octaves(values, &mut self.octaves);
     }
 
     /// The radiance of samples, which stays in `self.values` until the next call.

@@ -2,8 +2,8 @@
 
 use super::engine::Engine;
 use super::preview::Preview;
-use super::tile_state::{TILE_PIXELS, TileState};
-use super::tiles::{FilmPixel, Tile};
+use super::tile_state::TileState;
+use super::tiles::{FilmPixel, Tile, empty_tile};
 use super::{Film, Picture, TILE};
 use glam::{UVec2, Vec3};
 use rayon::prelude::*;
@@ -97,16 +97,17 @@ impl Engine {
 
     /// A copy of the sums. On the current rayon pool.
     pub fn film(&self) -> Film {
-        let pixels_of = |tile: usize| {
-            // A tile that no pass has reached has none.
-            let mut pixels = [FilmPixel::default(); TILE_PIXELS];
-            let state = self.tile(tile);
-            pixels[..state.pixels.len()].copy_from_slice(&state.pixels);
-            pixels
-        };
-        let tiles = (0..self.tiles.len()).into_par_iter().map(pixels_of);
-        let pixels = tiles.collect::<Vec<_>>().into_flattened();
-        Film::from_tiles(self.size(), pixels, self.hidden_in_a_pixel())
+        let tiles = (0..self.tiles.len()).into_par_iter();
+        let tiles = tiles.map(|tile| film_tile(self.tile(tile).pixels.clone()));
+        Film::from_tiles(self.size(), tiles.collect(), self.hidden_in_a_pixel())
+    }
+
+    /// The sums of a render that nobody looks at any more.
+    pub fn into_film(self) -> Film {
+        let hidden = self.hidden_in_a_pixel();
+        let pixels_of = |tile: usize| std::mem::take(&mut self.tile(tile).pixels);
+        let tiles = (0..self.tiles.len()).map(|tile| film_tile(pixels_of(tile)));
+        Film::from_tiles(self.size(), tiles.collect(), hidden)
     }
 
     /// The film of the one tile that a pixel lies in, and the pixel's place there.
@@ -115,13 +116,20 @@ impl Engine {
             return None;
         }
         let state = self.tile(self.grid.tile_of(pixel));
-        let mut pixels = state.pixels.to_vec();
-        // A tile that no pass has reached has none.
-        pixels.resize(TILE_PIXELS, FilmPixel::default());
+        let pixels = film_tile(state.pixels.clone());
         let extent = state.tile.extent;
         drop(state);
-        let film = Film::from_tiles(extent, pixels, self.hidden_in_a_pixel());
+        let film = Film::from_tiles(extent, vec![pixels], self.hidden_in_a_pixel());
         Some((film, pixel % TILE))
+    }
+}
+
+/// The pixels of a film's tile: one that no pass has reached has none while it is rendered.
+fn film_tile(pixels: Box<[FilmPixel]>) -> Box<[FilmPixel]> {
+    if pixels.is_empty() {
+        empty_tile()
+    } else {
+        pixels
     }
 }
 

@@ -4,7 +4,7 @@
 use super::error::{Means, Moves};
 use super::sample_chunk::Subject;
 use super::tile_planes::TilePlanes;
-use super::tiles::{FilmPixel, NOT_KNOWN, Tile};
+use super::tiles::{FilmPixel, NOT_KNOWN, Tile, empty_tile};
 use super::{Sum, TILE};
 use crate::trace::PlaneSet;
 use crate::trace::planes::OWN;
@@ -172,7 +172,7 @@ impl TileState {
     /// Adds `count` samples to every pixel of the chunk, whose sums are given.
     fn commit(&mut self, subject: &Subject, chunk: &Chunk, sums: &[Sum], count: u64) {
         if self.pixels.is_empty() {
-            self.pixels = vec![FilmPixel::default(); TILE_PIXELS].into();
+            self.pixels = empty_tile();
         }
         if subject.stays_apart {
             self.commit_apart(subject, chunk, sums, count);

@@ -1,3 +1,4 @@
+use super::tile_state::TILE_PIXELS;
 use super::{Picture, Sum};
 use bevy::math::URect;
 use glam::{UVec2, Vec2, Vec3};
@@ -11,7 +12,8 @@ pub const TILE: u32 = 16;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
     size: UVec2,
-    pixels: Vec<FilmPixel>,
+    /// `TILE_PIXELS` each.
+    tiles: Vec<Box<[FilmPixel]>>,
     /// The squared error that unmet features may leave in a pixel, per [`Reach`](super::unmet::Reach) of a
     /// sample, if they lie in all alike.
     pub(super) hidden: f64,
@@ -34,12 +36,8 @@ pub(super) const NOT_KNOWN: [f32; 3] = [f32::INFINITY; 3];
 impl Film {
     /// An empty film of `size` pixels.
     pub fn new(size: UVec2) -> Self {
-        let pixels = TileGrid::new(size).count() as usize * (TILE * TILE) as usize;
-        Self {
-            size,
-            pixels: vec![FilmPixel::default(); pixels],
-            hidden: 0.0,
-        }
+        let tiles = TileGrid::new(size).tiles().map(|_| empty_tile());
+        Self::from_tiles(size, tiles.collect(), 0.0)
     }
 
     /// In pixels.
@@ -49,10 +47,10 @@ impl Film {
 
     /// The film whose tiles' pixels are given, in the grid's order. `hidden` is what unmet features may leave in a
     /// pixel, per reach of a sample.
-    pub(super) fn from_tiles(size: UVec2, pixels: Vec<FilmPixel>, hidden: f64) -> Self {
+    pub(super) fn from_tiles(size: UVec2, tiles: Vec<Box<[FilmPixel]>>, hidden: f64) -> Self {
         Self {
             size,
-            pixels,
+            tiles,
             hidden,
         }
     }
@@ -62,7 +60,7 @@ impl Film {
         let mut picture = Picture::black(self.size);
         for y in 0..self.size.y {
             for x in 0..self.size.x {
-                let pixel = &self.pixels[self.place(x, y)];
+                let pixel = self.pixel(x, y);
                 picture.pixels[y as usize * self.size.x as usize + x as usize] =
                     pixel.sum.mean(pixel.count);
             }
@@ -72,7 +70,7 @@ impl Film {
 
     /// The mean of one pixel's samples.
     pub fn mean(&self, x: u32, y: u32) -> Vec3 {
-        let pixel = &self.pixels[self.place(x, y)];
+        let pixel = self.pixel(x, y);
         pixel.sum.mean(pixel.count)
     }
 
@@ -85,17 +83,19 @@ impl Film {
         }
         let mut film = Self::new(size);
         for (i, sum) in sums.iter().enumerate() {
-            let place = film.place((i % columns) as u32, (i / columns) as u32);
-            film.pixels[place].sum = *sum;
-            film.pixels[place].count = count;
-            film.pixels[place].moved = NOT_KNOWN;
+            let (tile, at) = film.place((i % columns) as u32, (i / columns) as u32);
+            film.tiles[tile][at] = FilmPixel {
+                sum: *sum,
+                count,
+                moved: NOT_KNOWN,
+            };
         }
         Some(film)
     }
 
     /// The sum of a pixel's samples.
     pub fn sum(&self, x: u32, y: u32) -> &Sum {
-        &self.pixels[self.place(x, y)].sum
+        &self.pixel(x, y).sum
     }
 
     /// Adds the samples of another film of the same size. False, and nothing done, for another size.
@@ -104,7 +104,8 @@ impl Film {
         if self.size != other.size {
             return false;
         }
-        for (pixel, other) in self.pixels.iter_mut().zip(&other.pixels) {
+        let pixels = self.tiles.iter_mut().flatten();
+        for (pixel, other) in pixels.zip(other.tiles.iter().flatten()) {
             pixel.moved = match (pixel.count, other.count) {
                 (0, _) => other.moved,
                 (_, 0) => pixel.moved,
@@ -119,20 +120,29 @@ impl Film {
 
     /// How many samples a pixel has.
     pub fn count(&self, x: u32, y: u32) -> u32 {
-        self.pixels[self.place(x, y)].count
+        self.pixel(x, y).count
     }
 
     /// The memory of the tile with this number.
     pub(super) fn tile(&self, number: usize) -> &[FilmPixel] {
-        const PIXELS: usize = (TILE * TILE) as usize;
-        &self.pixels[number * PIXELS..(number + 1) * PIXELS]
+        &self.tiles[number]
     }
 
-    fn place(&self, x: u32, y: u32) -> usize {
-        let columns = self.size.x.div_ceil(TILE) as usize;
-        let tile = (y / TILE) as usize * columns + (x / TILE) as usize;
-        tile * (TILE * TILE) as usize + ((y % TILE) * TILE + x % TILE) as usize
+    fn pixel(&self, x: u32, y: u32) -> &FilmPixel {
+        let (tile, at) = self.place(x, y);
+        &self.tiles[tile][at]
     }
+
+    /// The tile that a pixel lies in, and where in its memory.
+    fn place(&self, x: u32, y: u32) -> (usize, usize) {
+        let tile = TileGrid::new(self.size).tile_of(UVec2::new(x, y));
+        (tile, ((y % TILE) * TILE + x % TILE) as usize)
+    }
+}
+
+/// The pixels of a tile that nothing has arrived in.
+pub(super) fn empty_tile() -> Box<[FilmPixel]> {
+    vec![FilmPixel::default(); TILE_PIXELS].into()
 }
 
 /// How a picture is cut into tiles: row by row from the top left.
@@ -243,18 +253,18 @@ mod tests {
     #[test]
     fn tiles_cover_every_pixel_once_whatever_the_size() {
         for size in [UVec2::new(1, 1), UVec2::new(16, 16), UVec2::new(37, 18)] {
-            let mut pixels = Vec::new();
+            let mut tiles = Vec::new();
             for tile in TileGrid::new(size).tiles() {
-                let start = pixels.len();
-                pixels.resize(start + (TILE * TILE) as usize, FilmPixel::default());
+                let mut pixels = empty_tile();
                 for (at, place) in tile.pixels() {
-                    let pixel = &mut pixels[start + place];
+                    let pixel = &mut pixels[place];
                     pixel.sum.add(Vec3::new(at.x as f32, at.y as f32, 1.0));
                     pixel.count += 1;
                 }
+                tiles.push(pixels);
             }
-            let film = Film::from_tiles(size, pixels, 0.0);
-            assert_eq!(film.pixels.len(), Film::new(size).pixels.len());
+            let film = Film::from_tiles(size, tiles, 0.0);
+            assert_eq!(film.tiles.len(), Film::new(size).tiles.len());
             let picture = film.picture();
             for y in 0..size.y {
                 for x in 0..size.x {

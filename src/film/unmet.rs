@@ -20,6 +20,8 @@
 
 use super::lock;
 use super::sample_chunk::Subject;
+use super::tile_state::TILE_PIXELS;
+use crate::instruction_sets::vectorized;
 use crate::trace::emitters;
 use glam::Vec3;
 use std::sync::Mutex;
@@ -40,9 +42,45 @@ const OCTAVES: usize = 64;
 
 /// The octave of the brightest channel: that of 1 is number 32, and what is darker or brighter than all
 /// counts as the first or the last.
-pub(super) fn octave(value: Vec3) -> usize {
+#[inline(always)]
+fn octave(value: Vec3) -> i32 {
     let exponent = (value.max_element().to_bits() >> 23) & 0xff;
-    (exponent as i32 - 127 + 32).clamp(0, OCTAVES as i32 - 1) as usize
+    (exponent as i32 - 127 + 32).clamp(0, OCTAVES as i32 - 1)
+}
+
+/// Values that are looked at together.
+const LANES: usize = 64;
+
+vectorized! {
+    fn find_octaves(values: &[Vec3; LANES], octaves: &mut [i32; LANES]) {
+        for i in 0..LANES {
+            octaves[i] = octave(values[i]);
+        }
+    }
+}
+
+/// Adds the octaves of samples of these values.
+pub(super) fn count_octaves(values: &[Vec3], counts: &mut Octaves) {
+    let mut octaves = [0; LANES];
+    let mut last = [Vec3::ZERO; LANES];
+    // Neighbours are often as bright as each other.
+    let (mut same, mut samples) = (0, 0);
+    for some in values.chunks(LANES) {
+        if let Ok(some) = some.try_into() {
+            find_octaves(some, &mut octaves);
+        } else {
+            last[..some.len()].copy_from_slice(some);
+            find_octaves(&last, &mut octaves);
+        }
+        for &octave in &octaves[..some.len()] {
+            if octave != same {
+                counts[same as usize] += std::mem::take(&mut samples);
+                same = octave;
+            }
+            samples += 1;
+        }
+    }
+    counts[same as usize] += samples;
 }
 
 /// How often a feature is met at least before a render may end by its error. It decides by the samples that
@@ -99,7 +137,12 @@ impl Unmet {
         let mut kept = lock(&self.emitters);
         let found = kept.get_or_insert_with(|| {
             let found = emitters(&subject.world, &subject.camera, &subject.settings);
-            let of = |radiance: Vec3| (octave(radiance), f64::from(radiance.element_sum()) / 3.0);
+            let of = |radiance: Vec3| {
+                (
+                    octave(radiance) as usize,
+                    f64::from(radiance.element_sum()) / 3.0,
+                )
+            };
             let mut found: Vec<_> = found.into_iter().map(of).collect();
             found.sort_by(|a, b| b.1.total_cmp(&a.1));
             found.dedup_by_key(|(octave, _)| *octave);
@@ -124,14 +167,31 @@ pub(super) struct Reach {
     pub relative: f64,
 }
 
-impl Reach {
-    /// Of a pixel with that value.
-    pub fn of(value: f64) -> Self {
-        let value = value.max(0.0);
-        let absolute = (value * value + super::RELATIVE_FLOOR).sqrt();
-        Self {
-            absolute,
-            relative: 0.5 / (value + absolute),
+/// The same of a tile's pixels, in columns.
+pub(super) struct ReachColumns {
+    pub absolute: [f64; TILE_PIXELS],
+    pub relative: [f64; TILE_PIXELS],
+}
+
+impl ReachColumns {
+    /// Of pixels with these values.
+    pub fn of(values: &[f64; TILE_PIXELS]) -> Self {
+        let mut columns = Self {
+            absolute: [0.0; TILE_PIXELS],
+            relative: [0.0; TILE_PIXELS],
+        };
+        reach(values, &mut columns);
+        columns
+    }
+}
+
+vectorized! {
+    fn reach(values: &[f64; TILE_PIXELS], columns: &mut ReachColumns) {
+        for at in 0..TILE_PIXELS {
+            let value = values[at].max(0.0);
+            let absolute = (value * value + super::RELATIVE_FLOOR).sqrt();
+            columns.absolute[at] = absolute;
+            columns.relative[at] = 0.5 / (value + absolute);
         }
     }
 }

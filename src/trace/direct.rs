@@ -103,10 +103,16 @@ impl<R: Recorder> Batch<'_, R> {
     /// What a light's reflected radiance is multiplied by: the path's throughput times the surface's opacity, shared by
     /// all lights where the lighting is Classic.
     fn weigh(&self, vertices: &Vertices, weights: &mut Vectors) {
-        let lights = self.world.lights.count().max(1) as f32;
         weights.resize(vertices.len());
-        for (i, path) in vertices.paths.iter().enumerate() {
-            let opaque = path.throughput * vertices.opacity[i];
+        if vertices.are_from_camera() && self.settings.lighting == Lighting::Physical {
+            for column in weights.slices() {
+                column.copy_from_slice(&vertices.opacity);
+            }
+            return;
+        }
+        let lights = self.world.lights.count().max(1) as f32;
+        for i in 0..vertices.len() {
+            let opaque = vertices.path(i).throughput * vertices.opacity[i];
             let weight = match self.settings.lighting {
                 Lighting::Physical => opaque,
                 Lighting::Classic => opaque / lights,
@@ -306,7 +312,7 @@ impl<R: Recorder> Batch<'_, R> {
             if value == Vec3::ZERO {
                 continue;
             }
-            let sample = vertices.paths[vertex].sample;
+            let sample = vertices.path(vertex).sample;
             if !self.settings.features.shadows {
                 self.add(sample, plane, Adding::Light(number), value);
                 continue;
@@ -411,7 +417,8 @@ impl ShadowRays {
         self.askers.clear();
         self.counts.clear();
         self.firsts.clear();
-        for (vertex, path) in vertices.paths.iter().enumerate() {
+        for vertex in 0..vertices.len() {
+            let path = vertices.path(vertex);
             let count = if self.weights.get(vertex) == Vec3::ZERO {
                 0
             } else if path.first {

@@ -324,7 +324,7 @@ impl<R: Recorder> Batch<'_, R> {
         hits: &[Option<Hit>],
         vertices: &mut Vertices,
     ) {
-        vertices.clear();
+        vertices.clear(cone);
         // Classic lights are nowhere to be seen, as in simple Phong ray tracers.
         let lights_are_visible =
             self.world.needs.visible_lights && self.settings.lighting == Lighting::Physical;
@@ -340,7 +340,6 @@ impl<R: Recorder> Batch<'_, R> {
                     self.add(number, OWN, Adding::Path(number), background);
                 }
             }
-            vertices.start_at_camera(cone);
         } else {
             self.sort_hits(paths, cone, hits, lights_are_visible, vertices);
         }
@@ -398,7 +397,8 @@ impl<R: Recorder> Batch<'_, R> {
             (true, Lighting::Physical) => &vertices.emission,
             (true, Lighting::Classic) => return,
         };
-        for (i, path) in vertices.paths.iter().enumerate() {
+        for i in 0..vertices.len() {
+            let path = vertices.path(i);
             let (opacity, radiance) = (vertices.opacity[i], shines.get(i));
             if opacity == 0.0 {
                 continue;

@@ -30,7 +30,11 @@ struct Departure {
 impl<R: Recorder> Batch<'_, R> {
     /// Adds the paths that leave the vertices: what each reflects and what it lets through.
     pub(super) fn continue_paths(&mut self, vertices: &Vertices, paths: &Paths, next: &mut Paths) {
-        for (i, path) in vertices.paths.iter().enumerate() {
+        if !vertices.may_go_on() {
+            return;
+        }
+        for i in 0..vertices.len() {
+            let path = vertices.path(i);
             let reflects = self.reflectance(vertices, i);
             let transmits = (path.throughput * (1.0 - vertices.opacity[i])).max_element();
             // Neither of most surfaces.
@@ -39,7 +43,7 @@ impl<R: Recorder> Batch<'_, R> {
             }
             let vertex = Departure {
                 number: vertices.numbers[i],
-                path: *path,
+                path,
                 ray: paths.rays[vertices.numbers[i] as usize],
                 hit: vertices.hits[i],
                 surface: vertices.surface(i),
@@ -50,7 +54,7 @@ impl<R: Recorder> Batch<'_, R> {
 
     /// The largest channel of what a path carries on from a mirror; 0 where none is looked into.
     fn reflectance(&self, vertices: &Vertices, i: usize) -> f32 {
-        let path = &vertices.paths[i];
+        let path = vertices.path(i);
         let features = &self.settings.features;
         let mirrors =
             features.shading && features.mirrors && path.bounces < self.settings.max_depth;

@@ -156,10 +156,10 @@ pub(super) fn vertices(
     cone: Cone,
 ) -> Vertices {
     let mut vertices = Vertices::default();
+    vertices.clear(cone);
     for (i, hit) in hits.iter().enumerate() {
         vertices.push_from_camera(i as u32, *hit);
     }
-    vertices.start_at_camera(cone);
     vertices.look_up(world, settings, rays);
     vertices
 }

@@ -34,9 +34,14 @@ impl Vectors {
     }
 
     /// Puts the first of other columns into a range.
-    pub fn copy_from(&mut self, range: Range<usize>, columns: &[impl AsRef<[f32]>; 3]) {
+    pub fn copy_from<const N: usize>(&mut self, range: Range<usize>, columns: &[[f32; N]; 3]) {
         for (to, from) in self.slices().into_iter().zip(columns) {
-            to[range.clone()].copy_from_slice(&from.as_ref()[..range.len()]);
+            let to = &mut to[range.clone()];
+            // Of a known length a copy is a move or two.
+            match <&mut [f32; N]>::try_from(&mut *to) {
+                Ok(to) => *to = *from,
+                Err(_) => to.copy_from_slice(&from[..range.len()]),
+            }
         }
     }
 

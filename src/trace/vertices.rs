@@ -23,7 +23,10 @@ const LANES: usize = 16;
 pub(super) struct Vertices {
     /// Of the path among those of the bounce.
     pub numbers: Vec<u32>,
-    pub paths: Vec<Path>,
+    /// None where all rays left the camera: then [`Path::from_camera`] says what there is to know.
+    paths: Vec<Path>,
+    /// Of the camera's rays.
+    cone: Cone,
     pub hits: Vec<Hit>,
     /// Of the ray.
     pub times: Vec<f32>,
@@ -70,9 +73,11 @@ struct Found<const N: usize> {
 }
 
 impl Vertices {
-    pub fn clear(&mut self) {
+    /// None of rays of which those from the camera have this cone.
+    pub fn clear(&mut self, cone: Cone) {
         self.numbers.clear();
         self.paths.clear();
+        self.cone = cone;
         self.hits.clear();
     }
 
@@ -133,21 +138,39 @@ impl Vertices {
         self.emission.set(i, surface.emission);
     }
 
-    /// A hit of a ray from the camera. Their paths are all alike: [`Self::start_at_camera`] puts them in.
+    /// A hit of a ray from the camera: either all are pushed so, or none.
     #[inline(always)]
     pub fn push_from_camera(&mut self, number: u32, hit: Hit) {
         self.numbers.push(number);
         self.hits.push(hit);
     }
 
-    /// The paths of hits that were all pushed by [`Self::push_from_camera`].
-    pub fn start_at_camera(&mut self, cone: Cone) {
-        self.paths.clear();
-        self.paths
-            .resize(self.numbers.len(), Path::from_camera(0, cone));
-        for (path, number) in self.paths.iter_mut().zip(&self.numbers) {
-            path.sample = *number;
+    /// The path that each hit ends.
+    #[inline(always)]
+    pub fn path(&self, i: usize) -> Path {
+        if self.paths.is_empty() {
+            Path::from_camera(self.numbers[i], self.cone)
+        } else {
+            self.paths[i]
         }
+    }
+
+    /// Whether all are hits of rays from the camera.
+    pub fn are_from_camera(&self) -> bool {
+        self.paths.is_empty()
+    }
+
+    /// Whether a path may go on behind some surface, or from it.
+    pub fn may_go_on(&self) -> bool {
+        let differs = |column: &[f32], from: f32| {
+            (column.iter()).fold(false, |differs, value| differs | (*value != from))
+        };
+        differs(&self.opacity, 1.0)
+            || self
+                .mirror
+                .columns()
+                .iter()
+                .any(|column| differs(column, 0.0))
     }
 
     /// Looks up everything about the hits that were pushed: `rays[number]` found each.
@@ -248,7 +271,7 @@ impl Vertices {
                     continue;
                 }
                 let ray = &rays[self.numbers[i] as usize];
-                let width = self.paths[i].cone.width_at(self.hits[i].t);
+                let width = self.path(i).cone.width_at(self.hits[i].t);
                 let surface = if found.is_rare[lane] == 0 {
                     let mut surface = self.surface(i);
                     let is_turned = found.is_turned[lane] != 0;
