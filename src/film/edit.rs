@@ -70,6 +70,15 @@ impl Edit {
     fn needs_rays(&self) -> bool {
         self.from.contains(&None)
     }
+
+    /// About which part of a whole sample the planes take that have to be rendered: every light as much as the way to where
+    /// it is asked for.
+    fn part_of_sample(&self) -> f64 {
+        let planes = &self.subject.light.planes;
+        let lights = self.subject.world.lights.count();
+        let stale = (0..lights).filter(|light| self.from[planes.of_light(*light)].is_none());
+        (1 + stale.count()) as f64 / (1 + lights) as f64
+    }
 }
 
 /// Who has a plane of its own before others after an edit that leads to this world: a light that is edited, and those that
@@ -187,7 +196,8 @@ impl Engine {
             self.set_subject(edit.subject);
             return true;
         }
-        if edit.needs_rays() && self.seconds_a_sample() > LONGEST_SAMPLE.as_secs_f64() {
+        let seconds = self.seconds_a_sample() * edit.part_of_sample();
+        if edit.needs_rays() && seconds > LONGEST_SAMPLE.as_secs_f64() {
             return false;
         }
         *waiting = Some(edit);
@@ -397,5 +407,26 @@ mod tests {
             lights.points.remove(19);
         });
         assert_eq!(super::edited_first(&subject, &moved), [40, 30]);
+    }
+
+    #[test]
+    fn a_light_that_moves_among_many_takes_a_part_of_a_sample() {
+        let world = lit();
+        let subject = Subject::new(world.clone(), camera(), settings(SIZE, 1), true);
+        let part = |edit: &dyn Fn(&mut Lights)| {
+            let world = edited(&world, |lights| edit(lights));
+            super::Edit::between(&subject, world, &Gains::default())
+                .unwrap()
+                .part_of_sample()
+        };
+        assert_eq!(
+            part(&|lights| lights.points[0].position.x += 0.1),
+            2.0 / 6.0
+        );
+        let two = |lights: &mut Lights| {
+            lights.points[0].position.x += 0.1;
+            lights.segments[0].ends[0].x += 0.1;
+        };
+        assert_eq!(part(&two), 3.0 / 6.0);
     }
 }

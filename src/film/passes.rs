@@ -15,6 +15,9 @@ use std::ops::Range;
 const CHUNK_RAYS: u64 = 1 << 17;
 /// Samples of each pixel with which a render begins that nobody watches.
 const UNWATCHED_START: u64 = LEAST_SAMPLES as u64;
+/// Samples of each pixel from which on they tell where more are wanted. A tile has a thousand by then; what they say of its
+/// error is nearly as good as what 16 say of it (`tests/film/calibration.rs`).
+const SCOUTS: u64 = 4;
 
 impl Engine {
     /// The chunks of the next pass; or why there is none. They follow from what the tiles have.
@@ -30,7 +33,14 @@ impl Engine {
             return Err(Ending::Samples);
         }
         let goal = f64::from(settings.sampling.error);
-        let judged = start == 0 && level >= u64::from(LEAST_SAMPLES);
+        let has_goal = goal > 0.0 || settings.sampling.time > 0.0;
+        let is_adaptive = settings.sampling.adaptive && has_goal && start == 0;
+        let least = if is_adaptive {
+            SCOUTS
+        } else {
+            u64::from(LEAST_SAMPLES)
+        };
+        let judged = start == 0 && level >= least;
         let mut hidden = 0.0;
         if goal > 0.0 && judged {
             let moves = self.moves();
@@ -45,8 +55,7 @@ impl Engine {
                 return Err(Ending::Error);
             }
         }
-        let has_goal = goal > 0.0 || settings.sampling.time > 0.0;
-        if settings.sampling.adaptive && has_goal && judged {
+        if is_adaptive && judged {
             let cells = self.cells();
             let goal = goal * goal * self.pixels();
             let chosen = adaptive::choose(&cells, end, goal, hidden);
@@ -59,10 +68,10 @@ impl Engine {
                 .collect());
         }
         let in_time = settings.sampling.time > 0.0;
-        let first = if self.mode.watched || in_time {
-            1
-        } else {
-            UNWATCHED_START
+        let first = match (self.mode.watched || in_time, is_adaptive) {
+            (true, _) => 1,
+            (_, true) => SCOUTS,
+            _ => UNWATCHED_START,
         };
         let next = match (start, level) {
             (0, 0) => first.min(end),

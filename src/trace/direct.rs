@@ -1,10 +1,9 @@
 //! Direct light, one light after another: points of it for all vertices of a batch, shadow rays there, and what arrives.
 
-use super::glossy_places::GlossyPlaces;
 use super::lamp::Lamp;
+use super::light_columns::{LANES, Questions, Replies, Source};
 use super::light_frames::Frame;
 use super::lights::{LightPoint, MIDDLE, sample_count};
-use super::matt_light::{LANES, Questions, Replies, Source};
 use super::numbers::{Asking, Pairs};
 use super::radiance::Batch;
 use super::recorder::{Adding, LitPoint, Recorder};
@@ -34,11 +33,11 @@ pub(super) struct ShadowRays {
     askers: Vec<u32>,
     asking: Asking,
     numbers: Pairs,
-    /// The vertices whose questions are answered in columns, and the questions that are answered one by one; what is chosen
-    /// for those of them with a highlight where points of the light are not all alike.
+    /// The vertices whose questions are answered in columns, matt ones and those with a highlight, and the questions that
+    /// are answered one by one.
     matt: Vec<u32>,
+    glossy: Vec<u32>,
     others: Vec<u32>,
-    glossy: GlossyPlaces,
     /// The answers to all.
     replies: Vec<Reply>,
     /// Points of lights so far at this bounce, those that nothing comes from included: what tells them apart.
@@ -161,94 +160,109 @@ impl<R: Recorder> Batch<'_, R> {
         let source = is_physical
             .then(|| Source::of(lamp, frame, self.settings.features.soft_shadows))
             .flatten();
+        shadow_rays.begin_replies();
+        match source {
+            Some(source) => {
+                shadow_rays.sort(vertices);
+                for is_glossy in [false, true] {
+                    self.answer_in_columns(asked, &source, is_glossy, vertices, shadow_rays);
+                }
+            }
+            None => {
+                let all = 0..shadow_rays.askers.len() as u32;
+                shadow_rays.others.extend(all);
+            }
+        }
+        self.answer_alone(asked, vertices, shadow_rays);
+    }
+
+    /// Answers the questions of matt or of glossy vertices, together. Those with an answer out of the ordinary go to the
+    /// others.
+    fn answer_in_columns(
+        &self,
+        asked: &Asked,
+        source: &Source,
+        is_glossy: bool,
+        vertices: &Vertices,
+        shadow_rays: &mut ShadowRays,
+    ) {
         let ShadowRays {
             weights,
             counts,
             firsts,
-            askers,
             numbers,
             matt,
-            others,
             glossy,
+            others,
             replies,
             ..
         } = shadow_rays;
-        replies.clear();
-        replies.resize(askers.len(), Reply::NOTHING);
-        matt.clear();
-        others.clear();
-        for (vertex, (&count, &first)) in counts.iter().zip(&*firsts).enumerate() {
-            let in_columns = source.is_some()
-                && !vertices.has_highlight(vertex)
-                && !vertices.is_near_edge[vertex];
-            if !in_columns {
-                others.extend(first..first + count);
-            } else if count > 0 {
-                matt.push(vertex as u32);
-            }
-        }
-        let from = |vertex: usize| self.seen_from(lamp, vertices, vertex);
-        if let Some(source) = source {
-            let t_max = if source.is_far() {
-                f32::INFINITY
-            } else {
-                SHORT_OF_THE_LIGHT
-            };
-            let mut questions = Questions::nothing();
-            for some in matt.chunks(LANES) {
-                questions.ask(some, counts, weights, vertices, from);
-                let prepared = source.prepare(&questions);
-                let most = some.iter().map(|&i| counts[i as usize]).max().unwrap_or(0);
-                for k in 0..most {
-                    // Those that ask for fewer points ask for their last one again.
-                    let question = |&vertex: &u32| {
-                        let vertex = vertex as usize;
-                        (firsts[vertex] + k.min(counts[vertex] - 1)) as usize
+        let t_max = if source.is_far() {
+            f32::INFINITY
+        } else {
+            SHORT_OF_THE_LIGHT
+        };
+        let from = |vertex: usize| self.seen_from(asked.lamp, vertices, vertex);
+        let mut questions = Questions::nothing(is_glossy);
+        for some in (if is_glossy { glossy } else { matt }).chunks(LANES) {
+            questions.ask(some, counts, weights, vertices, from);
+            let prepared = source.prepare(&questions);
+            let most = some.iter().map(|&i| counts[i as usize]).max().unwrap_or(0);
+            for k in 0..most {
+                // Those that ask for fewer points ask for their last one again.
+                let question = |&vertex: &u32| {
+                    let vertex = vertex as usize;
+                    (firsts[vertex] + k.min(counts[vertex] - 1)) as usize
+                };
+                if asked.has_extent {
+                    questions.draw(numbers, some.iter().map(question));
+                }
+                let Replies {
+                    value,
+                    origin,
+                    along,
+                    is_rare,
+                } = source.answer(&prepared, &questions);
+                for (lane, vertex) in some.iter().enumerate() {
+                    let (question, vertex) = (question(vertex), *vertex as usize);
+                    if is_rare[lane] != 0 {
+                        others.push(question as u32);
+                        continue;
+                    }
+                    replies[question] = Reply {
+                        value: column_vector(&value, lane),
+                        ray: Ray {
+                            origin: column_vector(&origin, lane),
+                            direction: column_vector(&along, lane),
+                            t_max,
+                            time: vertices.times[vertex],
+                        },
                     };
-                    if asked.has_extent {
-                        questions.draw(numbers, some.iter().map(question));
-                    }
-                    let Replies {
-                        value,
-                        origin,
-                        along,
-                        is_rare,
-                    } = source.answer(&prepared, &questions);
-                    for (lane, vertex) in some.iter().enumerate() {
-                        let (question, vertex) = (question(vertex), *vertex as usize);
-                        if is_rare[lane] != 0 {
-                            others.push(question as u32);
-                            continue;
-                        }
-                        replies[question] = Reply {
-                            value: column_vector(&value, lane),
-                            ray: Ray {
-                                origin: column_vector(&origin, lane),
-                                direction: column_vector(&along, lane),
-                                t_max,
-                                time: vertices.times[vertex],
-                            },
-                        };
-                    }
                 }
             }
         }
-        if let Some(frame) = frame {
-            glossy.choose(frame, vertices, askers, others, numbers, from);
-        }
-        for (i, &question) in others.iter().enumerate() {
+    }
+
+    /// Answers the other questions, one by one.
+    fn answer_alone(&self, asked: &Asked, vertices: &Vertices, shadow_rays: &mut ShadowRays) {
+        let ShadowRays {
+            weights,
+            counts,
+            askers,
+            numbers,
+            others,
+            replies,
+            ..
+        } = shadow_rays;
+        let lighting = self.settings.lighting;
+        for &question in &*others {
             let question = question as usize;
             let vertex = askers[question] as usize;
             let surface = vertices.surface(vertex);
+            let from = self.seen_from(asked.lamp, vertices, vertex);
             let numbers = numbers_of(asked, numbers, question);
-            let from = from(vertex);
-            let point = if frame.is_some() && vertices.has_highlight(vertex) {
-                lamp.chosen(from, glossy.get(i))
-            } else {
-                asked.point(&surface, from, numbers, self.settings.lighting)
-            };
-            if let Some(point) = point {
-                let reflected = reflected(&surface, &point, self.settings.lighting);
+            if let Some(point) = asked.point(&surface, from, numbers, lighting) {
+                let reflected = reflected(&surface, &point, lighting);
                 let time = vertices.times[vertex];
                 replies[question] = Reply {
                     value: weights.get(vertex) / counts[vertex] as f32 * reflected,
@@ -404,6 +418,31 @@ fn numbers_of(asked: &Asked, numbers: &Pairs, question: usize) -> [f32; 2] {
 }
 
 impl ShadowRays {
+    /// No question has an answer yet.
+    fn begin_replies(&mut self) {
+        self.replies.clear();
+        self.replies.resize(self.askers.len(), Reply::NOTHING);
+        self.matt.clear();
+        self.glossy.clear();
+        self.others.clear();
+    }
+
+    /// Which vertices are answered in columns, and which questions one by one.
+    fn sort(&mut self, vertices: &Vertices) {
+        for (vertex, (&count, &first)) in self.counts.iter().zip(&self.firsts).enumerate() {
+            if count == 0 {
+                continue;
+            }
+            if vertices.is_near_edge[vertex] {
+                self.others.extend(first..first + count);
+            } else if vertices.has_highlight(vertex) {
+                self.glossy.push(vertex as u32);
+            } else {
+                self.matt.push(vertex as u32);
+            }
+        }
+    }
+
     /// Every vertex that light can add something to asks for so many points at a first hit, and for one later: their numbers
     /// go on from sample to sample of the pixel.
     fn ask(

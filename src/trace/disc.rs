@@ -1,21 +1,25 @@
 //! Uniform points of a disc, or of the part of a disc on one side of a line.
 
+use super::polynomials::sin_cos;
 use glam::{Vec2, Vec3};
-use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+use std::f32::consts::{FRAC_PI_4, PI};
 
 /// The square [0, 1)² onto the unit disc, keeping areas and neighbourhoods (Shirley, Chiu 1997,
-/// "A Low Distortion Map Between Disk and Square").
+/// "A Low Distortion Map Between Disk and Square"). Without a branch.
+#[inline(always)]
 pub(super) fn concentric(u: [f32; 2]) -> Vec2 {
-    let p = Vec2::new(2.0 * u[0] - 1.0, 2.0 * u[1] - 1.0);
-    if p == Vec2::ZERO {
-        return Vec2::ZERO;
-    }
-    let (radius, angle) = if p.x.abs() > p.y.abs() {
-        (p.x, FRAC_PI_4 * (p.y / p.x))
-    } else {
-        (p.y, FRAC_PI_2 - FRAC_PI_4 * (p.x / p.y))
-    };
-    radius * Vec2::new(angle.cos(), angle.sin())
+    let p = [2.0 * u[0] - 1.0, 2.0 * u[1] - 1.0];
+    let is_wide = p[0].abs() > p[1].abs();
+    let radius = if is_wide { p[0] } else { p[1] };
+    let other = if is_wide { p[1] } else { p[0] };
+    // From the nearer of the two axes; at the middle there is none.
+    let angle = FRAC_PI_4 * (other / radius);
+    let (sine, cosine) = sin_cos(if radius == 0.0 { 0.0 } else { angle });
+    let (along, aside) = (radius * cosine, radius * sine);
+    Vec2::new(
+        if is_wide { along } else { aside },
+        if is_wide { aside } else { along },
+    )
 }
 
 /// `axis` moved by a uniform point of the disc of `radius` perpendicular to it, where the disc is
@@ -85,6 +89,7 @@ fn beyond(border: f32, u: [f32; 2]) -> Vec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f32::consts::FRAC_PI_2;
 
     fn grid(n: usize) -> impl Iterator<Item = [f32; 2]> {
         (0..n * n).map(move |i| {

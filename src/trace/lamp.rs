@@ -1,6 +1,5 @@
 //! Lights of all kinds as one list: what a stage that goes from light to light wants to know of each.
 
-use super::glossy_places::ChosenPlace;
 use super::light_frames::Frame;
 use super::lights::{
     DirectionalLight, LightPoint, MIDDLE, ParallelogramLight, PointLight, SegmentLight,
@@ -69,17 +68,7 @@ impl Lamp<'_> {
         }
     }
 
-    /// The point that was chosen for a surface at `from`, in the frame that moves with the light.
-    pub(super) fn chosen(self, from: Vec3, chosen: ChosenPlace) -> Option<LightPoint> {
-        let ChosenPlace { place, arriving } = chosen;
-        match self {
-            Self::Point(_) | Self::Directional(_) | Self::Dome(_) => None,
-            Self::Segment(light) => light.chosen(from, place[0], arriving),
-            Self::Parallelogram(light) => light.chosen(from, place, arriving),
-        }
-    }
-
-    /// The same, chosen for one surface by itself.
+    /// The point that the numbers choose for a surface at `from`, in the frame that moves with the light.
     pub(super) fn point_for(
         self,
         frame: &Frame,

@@ -1,7 +1,6 @@
 use super::Surface;
 use super::piecewise::larger;
-use super::vectors::set_column;
-use super::vertices::Vertices;
+use super::vectors::{column_vector, set_column};
 use glam::Vec3;
 
 /// What points of a light are chosen for: places that see it, and how they reflect, in columns. What a place
@@ -42,31 +41,23 @@ impl<const N: usize> Receivers<N> {
         shininess: [1.0; N],
     };
 
-    /// Vertices with a highlight, each with where it is.
+    /// How the surface in a lane reflects, whose normal is there: kd, ks and the direction to the viewer.
     #[inline(always)]
-    pub(super) fn glossy(
-        vertices: &Vertices,
-        vertex: impl Fn(usize) -> usize,
-        from: impl Fn(usize) -> Vec3,
-    ) -> Self {
-        let mut receivers = Self::NOWHERE;
-        for i in 0..N {
-            let vertex = vertex(i);
-            receivers.set(i, &vertices.surface(vertex), from(vertex));
-        }
-        receivers
-    }
-
-    #[inline(always)]
-    fn set(&mut self, i: usize, surface: &Surface, from: Vec3) {
-        let n = surface.normal;
-        let mirrored = 2.0 * n.dot(surface.to_viewer) * n - surface.to_viewer;
-        set_column(&mut self.from, i, from);
-        set_column(&mut self.normal, i, n);
-        set_column(&mut self.mirrored, i, mirrored);
-        self.diffuse[i] = surface.diffuse.element_sum() / 3.0;
-        self.specular[i] = surface.specular.element_sum() / 3.0;
-        self.shininess[i] = surface.shininess;
+    pub(super) fn reflect_like(
+        &mut self,
+        i: usize,
+        diffuse: Vec3,
+        specular: Vec3,
+        to_viewer: Vec3,
+    ) {
+        let n = column_vector(&self.normal, i);
+        set_column(
+            &mut self.mirrored,
+            i,
+            2.0 * n.dot(to_viewer) * n - to_viewer,
+        );
+        self.diffuse[i] = diffuse.element_sum() / 3.0;
+        self.specular[i] = specular.element_sum() / 3.0;
     }
 }
 
@@ -75,7 +66,10 @@ impl Receivers<1> {
     #[inline(always)]
     pub fn of(surface: &Surface, from: Vec3) -> Self {
         let mut receivers = Self::NOWHERE;
-        receivers.set(0, surface, from);
+        set_column(&mut receivers.from, 0, from);
+        set_column(&mut receivers.normal, 0, surface.normal);
+        receivers.reflect_like(0, surface.diffuse, surface.specular, surface.to_viewer);
+        receivers.shininess[0] = surface.shininess;
         receivers
     }
 }

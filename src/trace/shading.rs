@@ -4,6 +4,7 @@
 //! (Lafortune, Willems 1994, "Using the modified Phong reflectance model", eq. 7).
 //! Classic: `kd·max(n·l,0) + ks·max(r·v,0)^s`, as simple Phong ray tracers have it.
 
+use super::polynomials::power;
 use super::{LightPoint, Surface};
 use crate::scene::Lighting;
 use glam::Vec3;
@@ -14,7 +15,6 @@ use std::f32::consts::{FRAC_1_PI, PI};
 /// Zero in all channels where the light stands behind the surface: no shadow ray is needed then.
 pub fn reflected(surface: &Surface, light: &LightPoint, lighting: Lighting) -> Vec3 {
     let l = light.direction;
-    let cosine = surface.normal.dot(l);
     match lighting {
         Lighting::Physical if surface.specular == Vec3::ZERO => lambert(
             surface.diffuse,
@@ -23,18 +23,11 @@ pub fn reflected(surface: &Surface, light: &LightPoint, lighting: Lighting) -> V
             l,
             light.arriving,
         ),
-        Lighting::Physical => {
-            if !faces(surface.geometric_normal, cosine, l) {
-                return Vec3::ZERO;
-            }
-            let s = surface.shininess;
-            let highlight = surface.specular * ((s + 2.0) / (2.0 * PI) * lobe(surface, l));
-            light.arriving * (surface.diffuse * FRAC_1_PI + highlight) * cosine
-        }
+        Lighting::Physical => phong(&Reflector::of(surface), l, light.arriving),
         Lighting::Classic => {
-            let mut value = surface.diffuse * cosine.max(0.0);
+            let mut value = surface.diffuse * surface.normal.dot(l).max(0.0);
             if surface.specular != Vec3::ZERO {
-                value += surface.specular * lobe(surface, l);
+                value += surface.specular * lobe(&Reflector::of(surface), l);
             }
             light.arriving * value
         }
@@ -66,18 +59,62 @@ fn faces(geometric_normal: Vec3, cosine: f32, l: Vec3) -> bool {
     !is_behind
 }
 
+/// How a surface reflects: names as in [`Surface`].
+pub(super) struct Reflector {
+    pub diffuse: Vec3,
+    pub specular: Vec3,
+    pub shininess: f32,
+    pub normal: Vec3,
+    pub geometric_normal: Vec3,
+    pub to_viewer: Vec3,
+}
+
+impl Reflector {
+    #[inline(always)]
+    fn of(surface: &Surface) -> Self {
+        Self {
+            diffuse: surface.diffuse,
+            specular: surface.specular,
+            shininess: surface.shininess,
+            normal: surface.normal,
+            geometric_normal: surface.geometric_normal,
+            to_viewer: surface.to_viewer,
+        }
+    }
+}
+
+/// The same of a surface with a highlight, Physical. Without a branch.
+#[inline(always)]
+pub(super) fn phong(reflector: &Reflector, l: Vec3, arriving: Vec3) -> Vec3 {
+    let s = reflector.shininess;
+    let cosine = reflector.normal.dot(l);
+    let highlight = reflector.specular * ((s + 2.0) / (2.0 * PI) * lobe(reflector, l));
+    let value = arriving * (reflector.diffuse * FRAC_1_PI + highlight) * cosine;
+    if faces(reflector.geometric_normal, cosine, l) {
+        value
+    } else {
+        Vec3::ZERO
+    }
+}
+
 /// `n·l` and `r·v`, as [`reflected`] takes them for a light along the unit vector `l`.
 pub fn cosines(surface: &Surface, l: Vec3) -> [f32; 2] {
-    let n_dot_l = surface.normal.dot(l);
-    let r = 2.0 * n_dot_l * surface.normal - l;
-    [n_dot_l, r.dot(surface.to_viewer)]
+    cosines_of(surface.normal, surface.to_viewer, l)
+}
+
+#[inline(always)]
+fn cosines_of(normal: Vec3, to_viewer: Vec3, l: Vec3) -> [f32; 2] {
+    let n_dot_l = normal.dot(l);
+    let r = 2.0 * n_dot_l * normal - l;
+    [n_dot_l, r.dot(to_viewer)]
 }
 
 /// `max(r·v, 0)^s`.
-fn lobe(surface: &Surface, l: Vec3) -> f32 {
-    let [_, r_dot_v] = cosines(surface, l);
+#[inline(always)]
+fn lobe(reflector: &Reflector, l: Vec3) -> f32 {
+    let [_, r_dot_v] = cosines_of(reflector.normal, reflector.to_viewer, l);
     // Rounding leaves it above 1, by so little that only an exponent of millions shows it.
-    r_dot_v.clamp(0.0, 1.0).powf(surface.shininess)
+    power(r_dot_v.clamp(0.0, 1.0), reflector.shininess)
 }
 
 #[cfg(test)]
@@ -110,7 +147,7 @@ mod tests {
             let (sine, cosine) = angle.sin_cos();
             let [l, v] = [1.0, -1.0].map(|side| Vec3::new(side * sine, cosine, 0.0).normalize());
             for shininess in [1.0, 1e4, 1e8, f32::MAX] {
-                let lobe = lobe(&surface(1.0, shininess, v), l);
+                let lobe = lobe(&Reflector::of(&surface(1.0, shininess, v)), l);
                 assert!((0.0..=1.0).contains(&lobe), "{angle}, {shininess}: {lobe}");
             }
         }

@@ -47,29 +47,62 @@ impl SunDisc {
     /// a sample in it counts, as a multiple of E: radiance over density. Classic takes uniform points of the flat
     /// disc, each for 1.
     pub(super) fn direction(&self, middle: Vec3, u: [f32; 2], lighting: Lighting) -> (Vec3, f32) {
+        self.frame(middle, lighting).direction(u)
+    }
+
+    /// What all its directions share.
+    #[inline(always)]
+    pub(super) fn frame(&self, middle: Vec3, lighting: Lighting) -> SunFrame {
         let (sine, cosine) = (self.sin_half_angle, self.cos_half_angle);
-        let k = match lighting {
-            Lighting::Physical => (LEAST_DENSITY - cosine).max(0.0),
-            Lighting::Classic => 0.0,
+        let (k, is_even) = match lighting {
+            Lighting::Physical => ((LEAST_DENSITY - cosine).max(0.0), false),
+            Lighting::Classic => (0.0, true),
         };
+        let (x, y) = middle.any_orthonormal_pair();
+        SunFrame {
+            axes: [x, y, middle],
+            k,
+            twice_s: sine * sine + 2.0 * k * (1.0 - cosine),
+            radiance: 1.0 + 2.0 * k / (1.0 + cosine),
+            is_even,
+        }
+    }
+}
+
+/// A disc about its middle.
+pub(super) struct SunFrame {
+    /// The last one to the middle.
+    axes: [Vec3; 3],
+    k: f32,
+    twice_s: f32,
+    radiance: f32,
+    /// Whether all samples count the same.
+    is_even: bool,
+}
+
+impl SunFrame {
+    /// As [`SunDisc::direction`] says. Without a branch.
+    #[inline(always)]
+    pub fn direction(&self, u: [f32; 2]) -> (Vec3, f32) {
+        let Self {
+            axes: [x, y, middle],
+            k,
+            twice_s,
+            ..
+        } = *self;
         // The share v of the disc's density lies within the angle whose versine s solves
         // s (1 + k) - s²/2 = v S.
         let p = concentric(u);
         let v = p.length_squared();
-        let twice_s = sine * sine + 2.0 * k * (1.0 - cosine);
         let root = ((1.0 + k) * (1.0 + k) - v * twice_s).max(0.0).sqrt();
         let divisor = 1.0 + k + root;
         let versine = v * twice_s / divisor;
         // sin φ per unit of |p|; with k = 0 it is sin θ.
         let lateral = (twice_s * (2.0 - versine) / divisor).sqrt();
         let height = 1.0 - versine;
-        let (x, y) = middle.any_orthonormal_pair();
         let direction = height * middle + lateral * (p.x * x + p.y * y);
-        let counts = match lighting {
-            Lighting::Physical => (1.0 + 2.0 * k / (1.0 + cosine)) / (height + k),
-            Lighting::Classic => 1.0,
-        };
-        (direction, counts)
+        let counts = self.radiance / (height + k);
+        (direction, if self.is_even { 1.0 } else { counts })
     }
 }
 

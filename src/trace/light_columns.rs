@@ -1,47 +1,57 @@
-//! What one light gives matt surfaces, and the shadow rays to its points: a stage over columns.
+//! What one light gives surfaces, and the shadow rays to its points: two stages over columns. The first chooses points of
+//! the light, the second says what surfaces reflect of it.
 //!
-//! Lights that are the same for all (a point, a direction) and those whose places are chosen for the surface (segments,
-//! parallelograms) go through here. Whatever takes a branch, a highlight, a cone, a disc of directions or a hit beside an edge,
-//! is asked question by question in [`direct`](super::direct), by the same formulas.
+//! Whatever takes a branch, a cone, a dome or a hit beside an edge, is asked question by question in
+//! [`direct`](super::direct), by the same formulas.
 
 use super::lamp::Lamp;
 use super::light_frames::Frame;
-use super::lights::{ParallelogramLight, SegmentLight, inverse_square, is_near_or_far};
+use super::lights::{
+    DirectionalLight, ParallelogramLight, SegmentLight, inverse_square, is_near_or_far,
+};
 use super::numbers::Pairs;
 use super::parallelogram_frame::ParallelogramFrame;
-use super::parallelogram_warp::MattPrepared;
+use super::parallelogram_warp::{MattPrepared, Places};
 use super::receiver::Receivers;
-use super::segment_warp::SegmentFrame;
-use super::shading::lambert;
+use super::segment_warp::{SegmentFrame, SegmentPlaces};
+use super::shading::{Reflector, lambert, phong};
+use super::sun_disc::SunDisc;
 use super::vectors::{Vectors, column_vector, set_column};
 use super::vertices::Vertices;
 use crate::bvh::beyond_error;
 use crate::instruction_sets::vectorized;
+use crate::scene::Lighting;
 use glam::Vec3;
 
 /// Questions that are answered together: what fills the widest vectors.
 pub(super) const LANES: usize = 32;
 
-/// Points of one light that matt vertices ask for.
+/// Points of one light that vertices ask for: matt ones, or ones with a highlight.
 pub(super) struct Questions<const N: usize> {
-    /// Where they are in the frame in which the light stands still, and their normals.
-    pub receivers: Receivers<N>,
+    is_glossy: bool,
+    /// Where they are in the frame in which the light stands still, and how they reflect: of matt ones only the normal.
+    receivers: Receivers<N>,
     /// Two in [0, 1) for each.
-    pub numbers: [[f32; N]; 2],
+    numbers: [[f32; N]; 2],
     /// As in [`Vertices`](super::vertices::Vertices).
-    pub position: [[f32; N]; 3],
-    pub error: [[f32; N]; 3],
-    pub triangle_normal: [[f32; N]; 3],
-    pub geometric_normal: [[f32; N]; 3],
-    pub diffuse: [[f32; N]; 3],
+    position: [[f32; N]; 3],
+    error: [[f32; N]; 3],
+    triangle_normal: [[f32; N]; 3],
+    geometric_normal: [[f32; N]; 3],
+    diffuse: [[f32; N]; 3],
+    /// Of those with a highlight.
+    specular: [[f32; N]; 3],
+    to_viewer: [[f32; N]; 3],
     /// What the reflected radiance is multiplied by, and how many points share it.
-    pub weight: [[f32; N]; 3],
-    pub count: [f32; N],
+    weight: [[f32; N]; 3],
+    count: [f32; N],
 }
 
 impl Questions<LANES> {
-    pub fn nothing() -> Self {
+    /// Of vertices that all have a highlight, or that all have none.
+    pub fn nothing(is_glossy: bool) -> Self {
         Self {
+            is_glossy,
             receivers: Receivers::NOWHERE,
             numbers: [[0.5; LANES]; 2],
             position: [[0.0; LANES]; 3],
@@ -49,6 +59,8 @@ impl Questions<LANES> {
             triangle_normal: [[0.0; LANES]; 3],
             geometric_normal: [[0.0; LANES]; 3],
             diffuse: [[0.0; LANES]; 3],
+            specular: [[0.0; LANES]; 3],
+            to_viewer: [[0.0; LANES]; 3],
             weight: [[0.0; LANES]; 3],
             count: [1.0; LANES],
         }
@@ -76,6 +88,21 @@ impl Questions<LANES> {
             let vertex = vertex as usize;
             self.count[lane] = counts[vertex] as f32;
             set_column(&mut self.receivers.from, lane, from(vertex));
+        }
+        if self.is_glossy {
+            gather(&vertices.specular, some, &mut self.specular);
+            gather(&vertices.to_viewer, some, &mut self.to_viewer);
+            for (lane, &vertex) in some.iter().enumerate() {
+                self.receivers.shininess[lane] = vertices.shininess[vertex as usize];
+            }
+            let Self {
+                receivers,
+                diffuse,
+                specular,
+                to_viewer,
+                ..
+            } = self;
+            reflect_like(receivers, diffuse, specular, to_viewer);
         }
     }
 
@@ -114,12 +141,30 @@ pub(super) struct Replies<const N: usize> {
     pub is_rare: [u32; N],
 }
 
+/// Points of a light as their askers see them: the columns of [`LightPoint`](super::LightPoint).
+struct Points<const N: usize> {
+    direction: [[f32; N]; 3],
+    /// Infinite where the light is.
+    distance: [f32; N],
+    /// Nothing where no point was chosen.
+    arriving: [[f32; N]; 3],
+    /// As in [`Replies`].
+    is_rare: [u32; N],
+}
+
+/// What all points that the same vertices ask for share.
+pub(super) enum Prepared {
+    Nothing,
+    Parallelogram(MattPrepared<LANES>),
+}
+
 /// A light that gives columns of questions their answers.
 pub(super) enum Source<'a> {
     /// A point, and its W/sr.
     Point(Vec3, Vec3),
     /// A unit vector there, and W/m² that arrive.
     Direction(Vec3, Vec3),
+    Sun(&'a DirectionalLight, &'a SunDisc),
     Segment(&'a SegmentLight, &'a SegmentFrame),
     Parallelogram(&'a ParallelogramLight, &'a ParallelogramFrame),
 }
@@ -131,9 +176,10 @@ impl<'a> Source<'a> {
             (Lamp::Point(light), _) if light.cone.is_none() => {
                 Some(Self::Point(light.position, light.color))
             }
-            (Lamp::Directional(light), _) if light.disc.is_none() || !soft_shadows => {
-                Some(Self::Direction(light.to_light, light.color))
-            }
+            (Lamp::Directional(light), _) => Some(match &light.disc {
+                Some(disc) if soft_shadows => Self::Sun(light, disc),
+                _ => Self::Direction(light.to_light, light.color),
+            }),
             (Lamp::Segment(light), Some(Frame::Segment(frame))) => {
                 Some(Self::Segment(light, frame))
             }
@@ -146,70 +192,109 @@ impl<'a> Source<'a> {
 
     /// Whether the light is infinitely far.
     pub fn is_far(&self) -> bool {
-        matches!(self, Self::Direction(..))
+        matches!(self, Self::Direction(..) | Self::Sun(..))
     }
 
     /// What is the same for all points that the same vertices ask for.
-    pub fn prepare(&self, questions: &Questions<LANES>) -> Option<MattPrepared<LANES>> {
+    pub fn prepare(&self, questions: &Questions<LANES>) -> Prepared {
         match *self {
-            Self::Parallelogram(_, frame) => Some(prepare(frame, &questions.receivers)),
-            _ => None,
+            Self::Parallelogram(_, frame) if !questions.is_glossy => {
+                Prepared::Parallelogram(prepare(frame, &questions.receivers))
+            }
+            _ => Prepared::Nothing,
         }
     }
 
     /// What was [prepared](Self::prepare) for these vertices, and their numbers.
-    pub fn answer(
-        &self,
-        prepared: &Option<MattPrepared<LANES>>,
-        questions: &Questions<LANES>,
-    ) -> Replies<LANES> {
-        match *self {
+    pub fn answer(&self, prepared: &Prepared, questions: &Questions<LANES>) -> Replies<LANES> {
+        let points = match *self {
             Self::Point(position, color) => of_point(position, color, questions),
-            Self::Direction(to_light, color) => of_direction(to_light, color, questions),
-            Self::Segment(light, frame) => of_segment(light, frame, questions),
-            Self::Parallelogram(light, frame) => match prepared {
-                Some(prepared) => of_parallelogram(light, frame, prepared, questions),
-                None => Replies::nothing(),
-            },
+            Self::Direction(to_light, color) => of_direction(to_light, color),
+            Self::Sun(light, disc) => of_sun(light, disc, questions),
+            Self::Segment(light, frame) => {
+                let places = if questions.is_glossy {
+                    on_segment_for_glossy(frame, questions)
+                } else {
+                    on_segment(frame, questions)
+                };
+                of_segment(light, &places, questions)
+            }
+            Self::Parallelogram(light, frame) => {
+                let places = match prepared {
+                    Prepared::Parallelogram(prepared) => {
+                        on_parallelogram(frame, prepared, questions)
+                    }
+                    Prepared::Nothing => on_parallelogram_for_glossy(frame, questions),
+                };
+                of_parallelogram(light, &places, questions)
+            }
+        };
+        if questions.is_glossy {
+            reflect_glossy(&points, questions)
+        } else {
+            reflect_matt(&points, questions)
         }
     }
 }
 
 vectorized! {
-    fn of_point(position: Vec3, color: Vec3, questions: &Questions<LANES>) -> Replies<LANES> {
-        let mut replies = Replies::nothing();
+    fn of_point(position: Vec3, color: Vec3, questions: &Questions<LANES>) -> Points<LANES> {
+        let mut points = Points::nothing();
         for i in 0..LANES {
             let offset = position - column_vector(&questions.receivers.from, i);
             let distance = offset.length();
-            let arriving = color * inverse_square(distance);
-            replies.set_near(questions, i, offset, distance, arriving);
+            points.set_near(i, offset, distance, color * inverse_square(distance));
         }
-        replies
+        points
     }
 
-    fn of_direction(to_light: Vec3, color: Vec3, questions: &Questions<LANES>) -> Replies<LANES> {
-        let mut replies = Replies::nothing();
+    fn of_direction(to_light: Vec3, color: Vec3) -> Points<LANES> {
+        let mut points = Points::nothing();
         for i in 0..LANES {
-            replies.set(questions, i, to_light, color);
-            set_column(&mut replies.along, i, to_light);
+            points.set_far(i, to_light, color);
         }
-        replies
+        points
+    }
+
+    fn of_sun(
+        light: &DirectionalLight,
+        disc: &SunDisc,
+        questions: &Questions<LANES>,
+    ) -> Points<LANES> {
+        let [u, v] = &questions.numbers;
+        let frame = disc.frame(light.to_light, Lighting::Physical);
+        let mut points = Points::nothing();
+        for i in 0..LANES {
+            let (direction, counts) = frame.direction([u[i], v[i]]);
+            points.set_far(i, direction, light.color * counts);
+        }
+        points
+    }
+
+    fn on_segment(frame: &SegmentFrame, questions: &Questions<LANES>) -> SegmentPlaces<LANES> {
+        frame.matt_places(&questions.receivers, &questions.numbers[0])
+    }
+
+    fn on_segment_for_glossy(
+        frame: &SegmentFrame,
+        questions: &Questions<LANES>,
+    ) -> SegmentPlaces<LANES> {
+        frame.glossy_places(&questions.receivers, &questions.numbers[0])
     }
 
     fn of_segment(
         light: &SegmentLight,
-        frame: &SegmentFrame,
+        places: &SegmentPlaces<LANES>,
         questions: &Questions<LANES>,
-    ) -> Replies<LANES> {
-        let places = frame.matt_places(&questions.receivers, &questions.numbers[0]);
-        let mut replies = Replies::nothing();
+    ) -> Points<LANES> {
+        let mut points = Points::nothing();
         for i in 0..LANES {
             let from = column_vector(&questions.receivers.from, i);
             let offset = light.offset(from, places.u[i]);
             let arriving = light.color(places.u[i]) * arriving_part(places.arriving[i]);
-            replies.set_near(questions, i, offset, offset.length(), arriving);
+            points.set_near(i, offset, offset.length(), arriving);
         }
-        replies
+        points
     }
 
     fn prepare(
@@ -219,20 +304,80 @@ vectorized! {
         frame.matt_prepared(receivers)
     }
 
-    fn of_parallelogram(
-        light: &ParallelogramLight,
+    fn on_parallelogram(
         frame: &ParallelogramFrame,
         prepared: &MattPrepared<LANES>,
         questions: &Questions<LANES>,
-    ) -> Replies<LANES> {
-        let places = frame.matt_places_of(prepared, &questions.numbers);
-        let mut replies = Replies::nothing();
+    ) -> Places<LANES> {
+        frame.matt_places_of(prepared, &questions.numbers)
+    }
+
+    fn on_parallelogram_for_glossy(
+        frame: &ParallelogramFrame,
+        questions: &Questions<LANES>,
+    ) -> Places<LANES> {
+        frame.glossy_places(&questions.receivers, &questions.numbers)
+    }
+
+    fn of_parallelogram(
+        light: &ParallelogramLight,
+        places: &Places<LANES>,
+        questions: &Questions<LANES>,
+    ) -> Points<LANES> {
+        let mut points = Points::nothing();
         for i in 0..LANES {
             let from = column_vector(&questions.receivers.from, i);
             let [u, v] = [places.uv[0][i], places.uv[1][i]];
             let offset = light.offset(from, [u, v]);
             let arriving = light.color(u, v) * arriving_part(places.solid_angle[i]);
-            replies.set_near(questions, i, offset, offset.length(), arriving);
+            points.set_near(i, offset, offset.length(), arriving);
+        }
+        points
+    }
+
+    /// How surfaces with a highlight reflect, as choosing points for them takes it.
+    fn reflect_like(
+        receivers: &mut Receivers<LANES>,
+        diffuse: &[[f32; LANES]; 3],
+        specular: &[[f32; LANES]; 3],
+        to_viewer: &[[f32; LANES]; 3],
+    ) {
+        for i in 0..LANES {
+            let [diffuse, specular, to_viewer] =
+                [diffuse, specular, to_viewer].map(|columns| column_vector(columns, i));
+            receivers.reflect_like(i, diffuse, specular, to_viewer);
+        }
+    }
+
+    fn reflect_matt(points: &Points<LANES>, questions: &Questions<LANES>) -> Replies<LANES> {
+        let mut replies = Replies::nothing(&points.is_rare);
+        for i in 0..LANES {
+            let reflected = lambert(
+                column_vector(&questions.diffuse, i),
+                column_vector(&questions.receivers.normal, i),
+                column_vector(&questions.geometric_normal, i),
+                column_vector(&points.direction, i),
+                column_vector(&points.arriving, i),
+            );
+            replies.set(points, questions, i, reflected);
+        }
+        replies
+    }
+
+    fn reflect_glossy(points: &Points<LANES>, questions: &Questions<LANES>) -> Replies<LANES> {
+        let mut replies = Replies::nothing(&points.is_rare);
+        for i in 0..LANES {
+            let reflector = Reflector {
+                diffuse: column_vector(&questions.diffuse, i),
+                specular: column_vector(&questions.specular, i),
+                shininess: questions.receivers.shininess[i],
+                normal: column_vector(&questions.receivers.normal, i),
+                geometric_normal: column_vector(&questions.geometric_normal, i),
+                to_viewer: column_vector(&questions.to_viewer, i),
+            };
+            let direction = column_vector(&points.direction, i);
+            let reflected = phong(&reflector, direction, column_vector(&points.arriving, i));
+            replies.set(points, questions, i, reflected);
         }
         replies
     }
@@ -245,55 +390,68 @@ fn arriving_part(per_density: f32) -> f32 {
     if counts { per_density } else { 0.0 }
 }
 
-impl<const N: usize> Replies<N> {
+impl<const N: usize> Points<N> {
     #[inline(always)]
     fn nothing() -> Self {
         Self {
-            value: [[0.0; N]; 3],
-            origin: [[0.0; N]; 3],
-            along: [[0.0; N]; 3],
+            direction: [[0.0; N]; 3],
+            distance: [0.0; N],
+            arriving: [[0.0; N]; 3],
             is_rare: [0; N],
         }
     }
 
-    /// The reply to one question about a point `offset` away.
+    /// A point `offset` away.
     #[inline(always)]
-    fn set_near(
-        &mut self,
-        questions: &Questions<N>,
-        i: usize,
-        offset: Vec3,
-        distance: f32,
-        arriving: Vec3,
-    ) {
-        let direction = offset * (1.0 / distance);
-        let origin = self.set(questions, i, direction, arriving);
-        // From the moved origin to the light itself, so that the ray still ends there.
-        let moved = origin - column_vector(&questions.position, i);
-        set_column(&mut self.along, i, distance * direction - moved);
+    fn set_near(&mut self, i: usize, offset: Vec3, distance: f32, arriving: Vec3) {
+        set_column(&mut self.direction, i, offset * (1.0 / distance));
+        self.distance[i] = distance;
+        set_column(&mut self.arriving, i, arriving);
         self.is_rare[i] = is_near_or_far(offset.length_squared()) as u32;
     }
 
-    /// What arrives from a direction, and where a ray there starts.
     #[inline(always)]
-    fn set(&mut self, questions: &Questions<N>, i: usize, direction: Vec3, arriving: Vec3) -> Vec3 {
-        let reflected = lambert(
-            column_vector(&questions.diffuse, i),
-            column_vector(&questions.receivers.normal, i),
-            column_vector(&questions.geometric_normal, i),
-            direction,
-            arriving,
-        );
+    fn set_far(&mut self, i: usize, direction: Vec3, arriving: Vec3) {
+        set_column(&mut self.direction, i, direction);
+        self.distance[i] = f32::INFINITY;
+        set_column(&mut self.arriving, i, arriving);
+    }
+}
+
+impl<const N: usize> Replies<N> {
+    #[inline(always)]
+    fn nothing(is_rare: &[u32; N]) -> Self {
+        Self {
+            value: [[0.0; N]; 3],
+            origin: [[0.0; N]; 3],
+            along: [[0.0; N]; 3],
+            is_rare: *is_rare,
+        }
+    }
+
+    /// The reply to one question, of which the surface reflects so much.
+    #[inline(always)]
+    fn set(&mut self, points: &Points<N>, questions: &Questions<N>, i: usize, reflected: Vec3) {
         let weight = column_vector(&questions.weight, i) / questions.count[i];
         set_column(&mut self.value, i, weight * reflected);
+        let direction = column_vector(&points.direction, i);
+        let position = column_vector(&questions.position, i);
         let origin = beyond_error(
-            column_vector(&questions.position, i),
+            position,
             column_vector(&questions.error, i),
             column_vector(&questions.triangle_normal, i),
             direction,
         );
         set_column(&mut self.origin, i, origin);
-        origin
+        // From the moved origin to the light itself, so that the ray still ends there.
+        let distance = points.distance[i];
+        let to_light = distance * direction - (origin - position);
+        let is_far = distance == f32::INFINITY;
+        set_column(
+            &mut self.along,
+            i,
+            if is_far { direction } else { to_light },
+        );
     }
 }
 
@@ -318,12 +476,12 @@ mod tests {
         let from = surface.point.position;
         match frame {
             Some(frame) => lamp.point_for(frame, surface, from, numbers),
-            None => lamp.middle(surface, from, Lighting::Physical),
+            None => lamp.point(surface, from, numbers, Lighting::Physical),
         }
     }
 
     #[test]
-    fn columns_give_a_matt_surface_what_it_is_given_alone_to_the_bit() {
+    fn columns_give_a_surface_what_it_is_given_alone_to_the_bit() {
         let world = test_scene::world();
         let (rays, hits) = test_scene::rays(&world);
         let settings = RenderSettings::default();
@@ -346,13 +504,13 @@ mod tests {
                 color: Vec3::new(3.0, 2.0, 1.0),
                 cone: None,
             });
-        let direction = DirectionalLight {
+        let directions = [0.0, 0.1, 3.0].map(|diameter| DirectionalLight {
             id: 2,
             to_light: Vec3::new(0.6, 0.8, 0.0),
             color: Vec3::ONE,
-            disc: None,
+            disc: SunDisc::of_diameter(diameter),
             samples: 1,
-        };
+        });
         let segments = [Vec3::ONE, Vec3::X].map(|color| SegmentLight {
             id: 3,
             ends: [Vec3::new(-1.0, 1.5, 0.0), Vec3::new(2.0, 1.0, 0.5)],
@@ -370,22 +528,25 @@ mod tests {
                 samples: 1,
             });
         let lamps = (points.iter().map(Lamp::Point))
-            .chain([Lamp::Directional(&direction)])
+            .chain(directions.iter().map(Lamp::Directional))
             .chain(segments.iter().map(Lamp::Segment))
             .chain(parallelograms.iter().map(Lamp::Parallelogram));
         for lamp in lamps {
             let frame = lamp.frame();
             let source = Source::of(lamp, frame.as_ref(), true).unwrap();
-            let matt: Vec<u32> = (0..vertices.len() as u32)
-                .filter(|&i| {
-                    !vertices.has_highlight(i as usize) && !vertices.is_near_edge[i as usize]
-                })
-                .collect();
-            let mut lit = 0;
-            let mut questions = Questions::nothing();
-            for some in matt.chunks(LANES) {
+            let ordinary = (0..vertices.len()).filter(|&i| !vertices.is_near_edge[i]);
+            let (glossy, matt): (Vec<_>, Vec<_>) = ordinary
+                .map(|i| i as u32)
+                .partition(|&i| vertices.has_highlight(i as usize));
+            let mut lit = [0, 0];
+            let some_of = |all: &[u32], is_glossy| {
+                let some = all.chunks(LANES).map(<[u32]>::to_vec);
+                some.map(|some| (some, is_glossy)).collect::<Vec<_>>()
+            };
+            for (some, is_glossy) in [some_of(&matt, false), some_of(&glossy, true)].concat() {
+                let mut questions = Questions::nothing(is_glossy);
                 let from = |i: usize| vertices.position.get(i);
-                questions.ask(some, &counts, &weights, &vertices, from);
+                questions.ask(&some, &counts, &weights, &vertices, from);
                 questions.draw(&drawn, some.iter().map(|&i| i as usize));
                 let replies = source.answer(&source.prepare(&questions), &questions);
                 for (lane, &question) in some.iter().enumerate() {
@@ -405,7 +566,7 @@ mod tests {
                     if let Some(point) = point
                         && value != Vec3::ZERO
                     {
-                        lit += 1;
+                        lit[usize::from(is_glossy)] += 1;
                         let ray = shadow_ray(&world.aggregate, &surface, &point, 0.0);
                         let found = [&replies.origin, &replies.along]
                             .map(|columns| column_vector(columns, lane));
@@ -414,7 +575,10 @@ mod tests {
                     }
                 }
             }
-            assert!(lit > 1000, "{lamp:?} lights only {lit}");
+            assert!(
+                lit[0] > 1000 && lit[1] > 1000,
+                "{lamp:?} lights only {lit:?}"
+            );
         }
     }
 }
