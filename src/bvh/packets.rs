@@ -125,18 +125,21 @@ impl<S: InstructionSet, G: Goal> PacketLeaves<S> for PacketOfInstances<'_, S, G>
         &mut self,
         leaf: u32,
         lanes: u32,
-        _: &mut View<S>,
+        view: &mut View<S>,
         found: &mut Found<S::Packet>,
         stack: &mut [u64],
     ) {
         let packet = self.packet;
         for &number in &self.places[self.scene.wide_leaves[leaf as usize].clone()] {
             let instance = &self.scene.instances()[number as usize];
-            let (rays, in_range) = if instance.is_identity() {
-                (packet.world, lanes)
-            } else {
-                instance.to_object_packet(&packet.world, packet.time)
-            };
+            if instance.is_identity() {
+                // Its space is the world's, and what is padded for all instances is padded enough for its tree.
+                let mut leaves = PacketOfMesh::<S, G>::new(&instance.mesh, &packet.world, number);
+                let tree = &instance.mesh.wide;
+                walk_packet::<S, G>(tree, stack, view, lanes, found, &mut leaves);
+                continue;
+            }
+            let (rays, in_range) = instance.to_object_packet(&packet.world, packet.time);
             let ways = Ways::of(&rays);
             let mut left = lanes & in_range;
             while let Some(group) = ways.next_group(&mut left) {

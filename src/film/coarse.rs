@@ -1,4 +1,5 @@
-//! How a render begins that someone looks at: with coarse pictures, each finer than the one before.
+//! How a render begins that someone looks at, and goes on after an edit that takes a while: with coarse pictures, each finer
+//! than the one before.
 
 use super::engine::Engine;
 use super::preview::{Preview, first_divider, lattice, lattice_squares, time_samples};
@@ -8,6 +9,7 @@ use crate::trace::{PlaneSet, SampleId};
 use glam::UVec2;
 use rayon::prelude::*;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 impl Engine {
     /// The coarse pictures, as far as they come before the one of full resolution.
@@ -37,6 +39,10 @@ impl Engine {
                 });
                 if let Some(ending) = self.interrupted() {
                     return Some(ending);
+                }
+                if self.edit_waits.load(Ordering::Relaxed) {
+                    // What comes next is another picture.
+                    return None;
                 }
             }
             self.set_divider(divider);

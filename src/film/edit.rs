@@ -15,14 +15,18 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-/// A light's plane is rendered again where its first sample takes no longer than this; else a coarse picture of
-/// everything is there sooner.
+/// Where the first sample of the planes that are rendered again takes no longer than this, what is seen waits for it; else a
+/// coarse picture of everything comes first.
 const LONGEST_SAMPLE: Duration = Duration::from_millis(100);
+/// Planes are kept where those that are rendered again take no more than this part of a sample of everything.
+const LARGEST_PART: f64 = 0.8;
 
 /// What a render shall be of, and of each of its planes the number of the one that has the same light now.
 pub(super) struct Edit {
     subject: Subject,
     from: Vec<Option<usize>>,
+    /// A coarse picture comes first.
+    is_long: bool,
 }
 
 impl Edit {
@@ -45,7 +49,11 @@ impl Edit {
         let first = edited_first(old, &gains.applied(&world));
         let subject = old.edited(world, first, gains.clone());
         let from = same_planes(old, &subject)?;
-        Some(Self { subject, from })
+        Some(Self {
+            subject,
+            from,
+            is_long: false,
+        })
     }
 
     /// This edit after another one, from where that began.
@@ -176,7 +184,7 @@ fn same_planes(old: &Subject, new: &Subject) -> Option<Vec<Option<usize>>> {
 
 impl Engine {
     /// Renders another world from now on, its lights with these gains, and keeps what stays true of the picture. False, and nothing done, where that is
-    /// nothing, or where another render has its first picture sooner.
+    /// nothing, or hardly anything.
     pub fn edit(&self, world: World, gains: &Gains) -> bool {
         if !self.has_begun() {
             return false;
@@ -196,9 +204,13 @@ impl Engine {
             self.set_subject(edit.subject);
             return true;
         }
-        let seconds = self.seconds_a_sample() * edit.part_of_sample();
-        if edit.needs_rays() && seconds > LONGEST_SAMPLE.as_secs_f64() {
-            return false;
+        if edit.needs_rays() {
+            let part = edit.part_of_sample();
+            let seconds = self.seconds_a_sample() * part;
+            edit.is_long = seconds > LONGEST_SAMPLE.as_secs_f64();
+            if edit.is_long && part > LARGEST_PART {
+                return false;
+            }
         }
         *waiting = Some(edit);
         self.edit_waits.store(true, Ordering::Relaxed);
@@ -220,8 +232,10 @@ impl Engine {
             lock(tile).rearrange(&edit.from, arrangement);
         }
         if needs_rays {
-            // Until it has light everywhere again, what is seen stays.
+            // Until it has light everywhere again, what is seen stays, or is coarse.
             self.set_divider(0);
+            *lock(&self.preview) = None;
+            self.begins_coarse.store(edit.is_long, Ordering::Relaxed);
             self.start_over();
         }
     }
@@ -229,6 +243,7 @@ impl Engine {
 
 #[cfg(test)]
 mod tests {
+    use super::super::engine::{Engine, Mode};
     use super::super::sample_chunk::Subject;
     use super::super::test_scene::{camera, edited, lit, many, settings};
     use super::super::{Ending, Progressive};
@@ -407,6 +422,41 @@ mod tests {
             lights.points.remove(19);
         });
         assert_eq!(super::edited_first(&subject, &moved), [40, 30]);
+    }
+
+    #[test]
+    fn an_edit_that_takes_long_keeps_what_it_can_and_is_refused_where_that_is_hardly_anything() {
+        let started = |world: &World| {
+            let mode = Mode {
+                watched: true,
+                samples: 0..4,
+                region: None,
+            };
+            let subject = Subject::new(world.clone(), camera(), settings(SIZE, 4), true);
+            let engine = Engine::new(subject, mode, None);
+            engine.run(&|_| {});
+            engine
+        };
+        let world = lit();
+        let engine = started(&world);
+        let all = engine.status().rays.total();
+        // As if it took ten seconds a sample.
+        engine.pace.set(10.0).unwrap();
+        let other = edited(&world, |lights| {
+            lights.points[0].position.x += 0.1;
+            lights.directionals[0].to_light = Vec3::Y;
+            lights.segments[0].ends[0].x += 0.1;
+            for light in &mut lights.parallelograms {
+                light.corner.x += 0.1;
+            }
+        });
+        assert!(!engine.edit(other, &Gains::default()));
+        let moved = edited(&world, |lights| lights.points[0].position.x += 0.1);
+        assert!(engine.edit(moved.clone(), &Gains::default()));
+        assert_eq!(engine.run(&|_| {}), Ending::Samples);
+        let more = engine.status().rays.total() - all;
+        assert!(more < all / 2, "{more} rays for one light, {all} for all");
+        assert_eq!(engine.picture(), started(&moved).picture());
     }
 
     #[test]

@@ -60,9 +60,12 @@ pub(super) struct Engine {
     /// What it shall render from now on, as soon as nothing is traced.
     pub(super) edits: Mutex<Option<Edit>>,
     pub(super) edit_waits: AtomicBool,
-    /// Its coarse pictures are behind it.
+    /// Its first coarse pictures are behind it.
     begun: AtomicBool,
-    pace: OnceLock<f64>,
+    /// Others come before its next pass.
+    pub(super) begins_coarse: AtomicBool,
+    /// Seconds of a sample of every pixel, as they were before edits.
+    pub(super) pace: OnceLock<f64>,
 }
 
 /// Why threads stop before the queue is empty.
@@ -110,6 +113,7 @@ impl Engine {
             edits: Mutex::default(),
             edit_waits: AtomicBool::new(false),
             begun: AtomicBool::new(false),
+            begins_coarse: AtomicBool::new(mode.watched),
             pace: OnceLock::new(),
             mode,
             pool,
@@ -212,14 +216,13 @@ impl Engine {
     }
 
     fn run_passes(&self, told: &(dyn Fn(&Self) + Sync)) -> Ending {
-        if self.mode.watched
-            && !self.has_begun()
-            && let Some(ending) = self.start_coarse()
-        {
-            return ending;
-        }
-        self.begun.store(true, Ordering::Release);
         loop {
+            if self.begins_coarse.swap(false, Ordering::Relaxed)
+                && let Some(ending) = self.start_coarse()
+            {
+                return ending;
+            }
+            self.begun.store(true, Ordering::Release);
             let chunks = match self.next_pass() {
                 Ok(chunks) => chunks,
                 Err(ending) => return ending,

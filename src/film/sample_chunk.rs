@@ -7,11 +7,9 @@ use super::tiles::{Tile, TileGrid};
 use super::unmet::{NO_OCTAVES, Octaves, count_octaves};
 use super::{LightMix, Sum};
 use crate::scene::RenderSettings;
-use crate::trace::lights::sample_count;
 use crate::trace::planes::OWN;
 use crate::trace::{
-    Camera, Dome, Gains, PlaneSet, RayCounts, SampleId, Untinted, Workspace, World,
-    radiance_in_planes,
+    Camera, Gains, PlaneSet, RayCounts, SampleId, Untinted, Workspace, World, radiance_in_planes,
 };
 use glam::{UVec2, Vec3};
 use std::cell::RefCell;
@@ -156,24 +154,10 @@ fn rays_of_first_hit(subject: &Subject) -> u64 {
         world, settings, ..
     } = subject;
     let features = &settings.features;
-    let lights = &world.lights;
-    let count =
-        |samples, size| u64::from(sample_count(samples, size, features.scale_light_samples));
-    let mut rays = 1 + lights.points.len() as u64;
-    if features.soft_shadows {
-        for light in &lights.directionals {
-            rays += count(light.samples, light.solid_angle());
-        }
-        for light in &lights.segments {
-            rays += count(light.samples, (light.ends[1] - light.ends[0]).length());
-        }
-        for light in &lights.parallelograms {
-            rays += count(light.samples, light.area_normal().length());
-        }
-    }
-    if let Some(dome) = Dome::of(&world.environment, settings) {
-        rays += u64::from(dome.sample_count(settings));
-    }
+    let lamps = world.lamps(settings);
+    let mut rays = 1 + lamps
+        .map(|lamp| u64::from(lamp.samples(settings).unwrap_or(1)))
+        .sum::<u64>();
     if features.glossy {
         rays += u64::from(settings.gloss_samples);
     }

@@ -77,16 +77,18 @@ impl Engine {
                 let mut changed = false;
                 for (column, version) in versions.iter_mut().enumerate() {
                     let state = self.tile(row * columns + column);
-                    if state.lacks_light() {
-                        // What stood there before stays.
-                    } else if *version != state.version {
+                    let is_whole = !state.lacks_light();
+                    let is_coarse = !is_whole || state.version == 0;
+                    if is_whole && *version != state.version {
                         *version = state.version;
                         draw_means(&state, pixels, width);
                         changed = true;
-                    } else if state.version == 0 && preview_changed && self.renders(state.tile) {
-                        if let Some(preview) = &preview {
-                            draw_preview(&state, preview, pixels, width);
-                        }
+                    } else if is_coarse
+                        && preview_changed
+                        && self.renders(state.tile)
+                        && let Some(preview) = &preview
+                    {
+                        draw_preview(&state, preview, pixels, width);
                         changed = true;
                     }
                 }
@@ -169,6 +171,7 @@ mod tests {
     use super::super::sample_chunk::Subject;
     use super::super::{lock, test_scene};
     use super::*;
+    use crate::trace::Gains;
     use std::sync::Arc;
 
     const SIZE: UVec2 = UVec2::new(70, 45);
@@ -211,6 +214,34 @@ mod tests {
         assert!(engine.redraw(&mut snapshot) && !engine.redraw(&mut snapshot));
         assert_eq!(snapshot.picture, engine.picture());
         assert_eq!(engine.film().picture(), engine.picture());
+    }
+
+    #[test]
+    fn a_picture_that_lacks_light_is_coarse_where_a_preview_is_and_else_what_it_was() {
+        let lit = test_scene::lit();
+        let settings = test_scene::settings(SIZE, 2);
+        let subject = Subject::new(lit.clone(), test_scene::camera(), settings, true);
+        let mode = engine().mode;
+        let engine = Engine::new(subject, mode, None);
+        engine.run(&|_| {});
+        let mut snapshot = Snapshot::black(SIZE);
+        assert!(engine.redraw(&mut snapshot));
+        let before = snapshot.picture.clone();
+        let moved = test_scene::edited(&lit, |lights| lights.points[0].position.x += 0.2);
+        assert!(engine.edit(moved, &Gains::default()));
+        engine.take_edit();
+        assert!(!engine.redraw(&mut snapshot));
+        assert_eq!(snapshot.picture, before);
+        let preview = Preview::new(engine.area);
+        preview.begin(32);
+        preview.take(&[UVec2::new(32, 0)], &[Vec3::ONE]);
+        *lock(&engine.preview) = Some(Arc::new(preview));
+        assert!(engine.redraw(&mut snapshot));
+        assert_eq!(snapshot.picture.pixel(20, 3), Vec3::ONE);
+        assert_eq!(snapshot.picture.pixel(2, 3), before.pixel(2, 3));
+        engine.run(&|_| {});
+        assert!(engine.redraw(&mut snapshot));
+        assert_eq!(snapshot.picture, engine.picture());
     }
 
     #[test]

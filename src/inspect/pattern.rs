@@ -67,7 +67,11 @@ fn kind(dimension: Dimension) -> u32 {
 /// How many numbers of a kind a sample uses at its first hit.
 fn rays_of(world: &World, settings: &RenderSettings, light: u64, dimension: Dimension) -> u64 {
     match kind(dimension) {
-        2 => u64::from(world.light_samples(light, settings).unwrap_or(1)),
+        2 => {
+            let lamp = world.lamps(settings).find(|lamp| lamp.id() == light);
+            let samples = lamp.and_then(|lamp| lamp.samples(settings));
+            u64::from(samples.unwrap_or(1))
+        }
         3 if settings.features.glossy => u64::from(settings.gloss_samples.clamp(1, 1000)),
         _ => 1,
     }

@@ -1,71 +1,24 @@
 //! Direct light, one light after another: points of it for all vertices of a batch, shadow rays there, and what arrives.
 
+use super::Surface;
 use super::lamp::Lamp;
-use super::light_columns::{LANES, Questions, Replies, Source};
+use super::light_columns::Source;
 use super::light_frames::Frame;
-use super::lights::{LightPoint, MIDDLE, sample_count};
-use super::numbers::{Asking, Pairs};
+use super::lights::{LightPoint, MIDDLE};
+use super::numbers::Pairs;
+use super::questions::{LANES, Questions};
 use super::radiance::Batch;
 use super::recorder::{Adding, LitPoint, Recorder};
+use super::replies::Replies;
 use super::sampler::Purpose;
 use super::shading::reflected;
+use super::shadow_rays::{Reply, SHORT_OF_THE_LIGHT, Shadow, ShadowRays, shadow_ray};
 use super::transmittance::through;
 use super::vectors::{Vectors, column_vector};
 use super::vertices::Vertices;
-use super::{Dome, SampleId, Surface};
-use crate::bvh::{Aggregate, Hit, Order, Ray, Transmittances};
+use crate::bvh::{Hit, Order, Ray};
 use crate::scene::Lighting;
 use glam::Vec3;
-
-/// A shadow ray ends this much before its light, as a fraction of the distance: a light that lies
-/// in a surface is not hidden by it. 64 units of rounding; t itself is good to a few.
-const SHORT_OF_THE_LIGHT: f32 = 1.0 - 64.0 * f32::EPSILON;
-
-/// The arrays of one light's points, and of the shadow rays to them.
-#[derive(Default)]
-pub(super) struct ShadowRays {
-    /// What each vertex's reflected radiance is multiplied by.
-    weights: Vectors,
-    /// How many points of the light each vertex asks for, which share what it reflects, and the first of its questions.
-    counts: Vec<u32>,
-    firsts: Vec<u32>,
-    /// The vertex of each question, which numbers choose its point, and those numbers.
-    askers: Vec<u32>,
-    asking: Asking,
-    numbers: Pairs,
-    /// The vertices whose questions are answered in columns, matt ones and those with a highlight, and the questions that
-    /// are answered one by one.
-    matt: Vec<u32>,
-    glossy: Vec<u32>,
-    others: Vec<u32>,
-    /// The answers to all.
-    replies: Vec<Reply>,
-    /// Points of lights so far at this bounce, those that nothing comes from included: what tells them apart.
-    points: u32,
-    rays: Vec<Ray>,
-    /// What each ray adds to which sample, if the light arrives, and the number of its point.
-    shadows: Vec<Shadow>,
-    occluded: Vec<bool>,
-    /// How much of the light passes what lies on each ray, where anything lets light through.
-    passing: Transmittances,
-}
-
-/// What a point of a light adds if nothing is in the way, and the ray that finds out.
-#[derive(Clone, Copy)]
-struct Reply {
-    /// Zero where nothing comes from there.
-    value: Vec3,
-    ray: Ray,
-}
-
-/// What a shadow ray adds to which sample, if the light arrives.
-#[derive(Clone, Copy)]
-struct Shadow {
-    sample: u32,
-    value: Vec3,
-    /// The number of the light's point.
-    point: u32,
-}
 
 /// A light as it is asked for points.
 struct Asked<'a> {
@@ -85,10 +38,8 @@ impl<R: Recorder> Batch<'_, R> {
         }
         let is_even =
             self.settings.lighting == Lighting::Classic || !self.settings.features.soft_shadows;
-        let lights = &*self.world.lights;
-        let dome = Dome::of(&self.world.environment, self.settings).map(Lamp::Dome);
         self.weigh(vertices, &mut shadow_rays.weights);
-        for (i, lamp) in lights.all().chain(dome).enumerate() {
+        for (i, lamp) in self.world.lamps(self.settings).enumerate() {
             let plane = self.planes.of_light(i);
             if !self.wanted.has(plane) {
                 continue;
@@ -131,12 +82,8 @@ impl<R: Recorder> Batch<'_, R> {
         vertices: &Vertices,
         shadow_rays: &mut ShadowRays,
     ) {
-        let features = &self.settings.features;
-        let samples = lamp.samples(features.soft_shadows);
-        let at_first_hits = samples.map_or(1, |(samples, size)| {
-            sample_count(samples, size, features.scale_light_samples)
-        });
-        let has_extent = samples.is_some();
+        let samples = lamp.samples(self.settings);
+        let (at_first_hits, has_extent) = (samples.unwrap_or(1), samples.is_some());
         let asked = Asked {
             lamp,
             frame,
@@ -379,18 +326,6 @@ impl<R: Recorder> Batch<'_, R> {
     }
 }
 
-impl Reply {
-    const NOTHING: Self = Self {
-        value: Vec3::ZERO,
-        ray: Ray {
-            origin: Vec3::ZERO,
-            direction: Vec3::ZERO,
-            t_max: 0.0,
-            time: 0.0,
-        },
-    };
-}
-
 impl Asked<'_> {
     /// The point that numbers choose for a surface at `from`, by itself.
     fn point(
@@ -414,91 +349,5 @@ fn numbers_of(asked: &Asked, numbers: &Pairs, question: usize) -> [f32; 2] {
         numbers.get(question)
     } else {
         MIDDLE
-    }
-}
-
-impl ShadowRays {
-    /// No question has an answer yet.
-    fn begin_replies(&mut self) {
-        self.replies.clear();
-        self.replies.resize(self.askers.len(), Reply::NOTHING);
-        self.matt.clear();
-        self.glossy.clear();
-        self.others.clear();
-    }
-
-    /// Which vertices are answered in columns, and which questions one by one.
-    fn sort(&mut self, vertices: &Vertices) {
-        for (vertex, (&count, &first)) in self.counts.iter().zip(&self.firsts).enumerate() {
-            if count == 0 {
-                continue;
-            }
-            if vertices.is_near_edge[vertex] {
-                self.others.extend(first..first + count);
-            } else if vertices.has_highlight(vertex) {
-                self.glossy.push(vertex as u32);
-            } else {
-                self.matt.push(vertex as u32);
-            }
-        }
-    }
-
-    /// Every vertex that light can add something to asks for so many points at a first hit, and for one later: their numbers
-    /// go on from sample to sample of the pixel.
-    fn ask(
-        &mut self,
-        vertices: &Vertices,
-        at_first_hits: u32,
-        samples: &[SampleId],
-        pixels: &[u32],
-    ) {
-        self.asking.clear();
-        self.askers.clear();
-        self.counts.clear();
-        self.firsts.clear();
-        for vertex in 0..vertices.len() {
-            let path = vertices.path(vertex);
-            let count = if self.weights.get(vertex) == Vec3::ZERO {
-                0
-            } else if path.first {
-                at_first_hits
-            } else {
-                1
-            };
-            self.counts.push(count);
-            self.firsts.push(self.askers.len() as u32);
-            let sample = path.sample as usize;
-            let first = samples[sample].index * u64::from(count);
-            for index in first..first + u64::from(count) {
-                self.askers.push(vertex as u32);
-                self.asking.push(pixels[sample], path.name, index);
-            }
-        }
-    }
-}
-
-/// From a surface to a light point, ending just before it.
-pub(super) fn shadow_ray(
-    aggregate: &Aggregate,
-    surface: &Surface,
-    point: &LightPoint,
-    time: f32,
-) -> Ray {
-    let origin = aggregate.leave(&surface.point, point.direction);
-    if point.distance == f32::INFINITY {
-        return Ray {
-            origin,
-            direction: point.direction,
-            t_max: f32::INFINITY,
-            time,
-        };
-    }
-    // From the moved origin to the light itself, so that the ray still ends there.
-    let to_light = point.distance * point.direction - (origin - surface.point.position);
-    Ray {
-        origin,
-        direction: to_light,
-        t_max: SHORT_OF_THE_LIGHT,
-        time,
     }
 }

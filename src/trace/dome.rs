@@ -15,7 +15,6 @@
 use super::disc::concentric;
 use super::dome_table::DomeTable;
 use super::environment::{direction_at, equirectangular};
-use super::lights::sample_count;
 use super::shading::cosines;
 use super::{Environment, LightPoint, Surface, Texture};
 use crate::scene::{Lighting, RenderSettings};
@@ -60,12 +59,6 @@ impl<'a> Dome<'a> {
     /// That of the whole sphere.
     pub fn solid_angle(&self) -> f32 {
         SPHERE
-    }
-
-    /// Shadow rays at a first hit.
-    pub fn sample_count(&self, settings: &RenderSettings) -> u32 {
-        let scale = settings.features.scale_light_samples;
-        sample_count(self.samples(), self.solid_angle(), scale)
     }
 
     /// What arrives from a direction, of any length.

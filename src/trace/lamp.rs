@@ -44,19 +44,22 @@ impl Lamp<'_> {
         }
     }
 
-    /// Shadow rays at a first hit, and what they are counted per (m, m² or sr); `None` of a light without extent, and of
-    /// one that is taken for its middle. A dome has none that could stand for it.
-    pub(super) fn samples(self, soft_shadows: bool) -> Option<(u32, f32)> {
-        match self {
-            Self::Dome(dome) => Some((dome.samples(), dome.solid_angle())),
-            Self::Point(_) => None,
-            _ if !soft_shadows => None,
+    /// Shadow rays at a first hit; `None` of a light without extent, and of one that is taken for its middle, which gets
+    /// one. A dome has no middle that could stand for it.
+    pub fn samples(self, settings: &RenderSettings) -> Option<u32> {
+        let features = &settings.features;
+        let (samples, size) = match self {
+            Self::Dome(dome) => (dome.samples(), dome.solid_angle()),
+            Self::Point(_) => return None,
+            _ if !features.soft_shadows => return None,
             Self::Directional(light) => {
-                (light.disc.is_some()).then(|| (light.samples, light.solid_angle()))
+                light.disc.as_ref()?;
+                (light.samples, light.solid_angle())
             }
-            Self::Segment(light) => Some((light.samples, (light.ends[1] - light.ends[0]).length())),
-            Self::Parallelogram(light) => Some((light.samples, light.area_normal().length())),
-        }
+            Self::Segment(light) => (light.samples, (light.ends[1] - light.ends[0]).length()),
+            Self::Parallelogram(light) => (light.samples, light.area_normal().length()),
+        };
+        Some(sample_count(samples, size, features.scale_light_samples))
     }
 
     /// What choosing its points for a surface needs to know of it; nothing where all points are alike.
@@ -162,30 +165,9 @@ impl Lights {
 }
 
 impl World {
-    /// How many shadow rays the area light with this `SceneId`, or the [`DOME`], gets at a first hit; `None` where there
-    /// is no such light.
-    pub fn light_samples(&self, id: u64, settings: &RenderSettings) -> Option<u32> {
-        if id == DOME {
-            let dome = Dome::of(&self.environment, settings)?;
-            return Some(dome.sample_count(settings));
-        }
-        let lights = &self.lights;
-        let directional = (lights.directionals.iter())
-            .map(|light| (light.id, light.samples, light.solid_angle()));
-        let segments = lights.segments.iter().map(|light| {
-            let length = (light.ends[1] - light.ends[0]).length();
-            (light.id, light.samples, length)
-        });
-        let parallelograms = lights.parallelograms.iter().map(|light| {
-            let area = light.area_normal().length();
-            (light.id, light.samples, area)
-        });
-        let mut all = directional.chain(segments).chain(parallelograms);
-        let (_, samples, size) = all.find(|(of, ..)| *of == id)?;
-        Some(sample_count(
-            samples,
-            size,
-            settings.features.scale_light_samples,
-        ))
+    /// All lights, and the dome where the environment lights.
+    pub fn lamps(&self, settings: &RenderSettings) -> impl Iterator<Item = Lamp<'_>> {
+        let dome = Dome::of(&self.environment, settings).map(Lamp::Dome);
+        self.lights.all().chain(dome)
     }
 }

@@ -1,5 +1,4 @@
-//! What one light gives surfaces, and the shadow rays to its points: two stages over columns. The first chooses points of
-//! the light, the second says what surfaces reflect of it.
+//! Which points of one light surfaces are given: a stage over columns.
 //!
 //! Whatever takes a branch, a cone, a dome or a hit beside an edge, is asked question by question in
 //! [`direct`](super::direct), by the same formulas.
@@ -9,147 +8,26 @@ use super::light_frames::Frame;
 use super::lights::{
     DirectionalLight, ParallelogramLight, SegmentLight, inverse_square, is_near_or_far,
 };
-use super::numbers::Pairs;
 use super::parallelogram_frame::ParallelogramFrame;
 use super::parallelogram_warp::{MattPrepared, Places};
+use super::questions::{LANES, Questions};
 use super::receiver::Receivers;
+use super::replies::Replies;
 use super::segment_warp::{SegmentFrame, SegmentPlaces};
-use super::shading::{Reflector, lambert, phong};
 use super::sun_disc::SunDisc;
-use super::vectors::{Vectors, column_vector, set_column};
-use super::vertices::Vertices;
-use crate::bvh::beyond_error;
+use super::vectors::{column_vector, set_column};
 use crate::instruction_sets::vectorized;
 use crate::scene::Lighting;
 use glam::Vec3;
-
-/// Questions that are answered together: what fills the widest vectors.
-pub(super) const LANES: usize = 32;
-
-/// Points of one light that vertices ask for: matt ones, or ones with a highlight.
-pub(super) struct Questions<const N: usize> {
-    is_glossy: bool,
-    /// Where they are in the frame in which the light stands still, and how they reflect: of matt ones only the normal.
-    receivers: Receivers<N>,
-    /// Two in [0, 1) for each.
-    numbers: [[f32; N]; 2],
-    /// As in [`Vertices`](super::vertices::Vertices).
-    position: [[f32; N]; 3],
-    error: [[f32; N]; 3],
-    triangle_normal: [[f32; N]; 3],
-    geometric_normal: [[f32; N]; 3],
-    diffuse: [[f32; N]; 3],
-    /// Of those with a highlight.
-    specular: [[f32; N]; 3],
-    to_viewer: [[f32; N]; 3],
-    /// What the reflected radiance is multiplied by, and how many points share it.
-    weight: [[f32; N]; 3],
-    count: [f32; N],
-}
-
-impl Questions<LANES> {
-    /// Of vertices that all have a highlight, or that all have none.
-    pub fn nothing(is_glossy: bool) -> Self {
-        Self {
-            is_glossy,
-            receivers: Receivers::NOWHERE,
-            numbers: [[0.5; LANES]; 2],
-            position: [[0.0; LANES]; 3],
-            error: [[0.0; LANES]; 3],
-            triangle_normal: [[0.0; LANES]; 3],
-            geometric_normal: [[0.0; LANES]; 3],
-            diffuse: [[0.0; LANES]; 3],
-            specular: [[0.0; LANES]; 3],
-            to_viewer: [[0.0; LANES]; 3],
-            weight: [[0.0; LANES]; 3],
-            count: [1.0; LANES],
-        }
-    }
-
-    /// Puts vertices into the first lanes, each with how many points share what it reflects: `from` says where a vertex is
-    /// in the frame that moves with the light. The other lanes keep what they had.
-    #[inline(always)]
-    pub fn ask(
-        &mut self,
-        some: &[u32],
-        counts: &[u32],
-        weights: &Vectors,
-        vertices: &Vertices,
-        from: impl Fn(usize) -> Vec3,
-    ) {
-        gather(&vertices.normal, some, &mut self.receivers.normal);
-        gather(&vertices.position, some, &mut self.position);
-        gather(&vertices.error, some, &mut self.error);
-        gather(&vertices.triangle_normal, some, &mut self.triangle_normal);
-        gather(&vertices.geometric_normal, some, &mut self.geometric_normal);
-        gather(&vertices.diffuse, some, &mut self.diffuse);
-        gather(weights, some, &mut self.weight);
-        for (lane, &vertex) in some.iter().enumerate() {
-            let vertex = vertex as usize;
-            self.count[lane] = counts[vertex] as f32;
-            set_column(&mut self.receivers.from, lane, from(vertex));
-        }
-        if self.is_glossy {
-            gather(&vertices.specular, some, &mut self.specular);
-            gather(&vertices.to_viewer, some, &mut self.to_viewer);
-            for (lane, &vertex) in some.iter().enumerate() {
-                self.receivers.shininess[lane] = vertices.shininess[vertex as usize];
-            }
-            let Self {
-                receivers,
-                diffuse,
-                specular,
-                to_viewer,
-                ..
-            } = self;
-            reflect_like(receivers, diffuse, specular, to_viewer);
-        }
-    }
-
-    /// The numbers that choose the places of those vertices' next questions.
-    #[inline(always)]
-    pub fn draw(&mut self, numbers: &Pairs, questions: impl Iterator<Item = usize>) {
-        for (lane, question) in questions.enumerate() {
-            [self.numbers[0][lane], self.numbers[1][lane]] = numbers.get(question);
-        }
-    }
-}
-
-/// Vectors into the first lanes. Most vertices come in turn: those are copied at once.
-#[inline(always)]
-fn gather(vectors: &Vectors, of: &[u32], lanes: &mut [[f32; LANES]; 3]) {
-    let first = of[0];
-    let in_turn = (first..).zip(of).all(|(turn, &vertex)| turn == vertex);
-    for (lanes, column) in lanes.iter_mut().zip(vectors.columns()) {
-        if in_turn {
-            lanes[..of.len()].copy_from_slice(&column[first as usize..][..of.len()]);
-        } else {
-            for (lane, &vertex) in lanes.iter_mut().zip(of) {
-                *lane = column[vertex as usize];
-            }
-        }
-    }
-}
-
-/// What the light adds if nothing is in the way, and the ray that finds out.
-pub(super) struct Replies<const N: usize> {
-    pub value: [[f32; N]; 3],
-    pub origin: [[f32; N]; 3],
-    /// All the way to the point of the light; a unit vector where that is infinitely far.
-    pub along: [[f32; N]; 3],
-    /// Not zero where lengths leave f32's range: to be asked by themselves.
-    pub is_rare: [u32; N],
-}
-
 /// Points of a light as their askers see them: the columns of [`LightPoint`](super::LightPoint).
-struct Points<const N: usize> {
-    direction: [[f32; N]; 3],
+pub(super) struct Points<const N: usize> {
+    pub direction: [[f32; N]; 3],
     /// Infinite where the light is.
-    distance: [f32; N],
+    pub distance: [f32; N],
     /// Nothing where no point was chosen.
-    arriving: [[f32; N]; 3],
+    pub arriving: [[f32; N]; 3],
     /// As in [`Replies`].
-    is_rare: [u32; N],
+    pub is_rare: [u32; N],
 }
 
 /// What all points that the same vertices ask for share.
@@ -207,7 +85,12 @@ impl<'a> Source<'a> {
 
     /// What was [prepared](Self::prepare) for these vertices, and their numbers.
     pub fn answer(&self, prepared: &Prepared, questions: &Questions<LANES>) -> Replies<LANES> {
-        let points = match *self {
+        let points = self.points(prepared, questions);
+        Replies::of(&points, questions)
+    }
+
+    fn points(&self, prepared: &Prepared, questions: &Questions<LANES>) -> Points<LANES> {
+        match *self {
             Self::Point(position, color) => of_point(position, color, questions),
             Self::Direction(to_light, color) => of_direction(to_light, color),
             Self::Sun(light, disc) => of_sun(light, disc, questions),
@@ -228,11 +111,6 @@ impl<'a> Source<'a> {
                 };
                 of_parallelogram(light, &places, questions)
             }
-        };
-        if questions.is_glossy {
-            reflect_glossy(&points, questions)
-        } else {
-            reflect_matt(&points, questions)
         }
     }
 }
@@ -334,53 +212,6 @@ vectorized! {
         }
         points
     }
-
-    /// How surfaces with a highlight reflect, as choosing points for them takes it.
-    fn reflect_like(
-        receivers: &mut Receivers<LANES>,
-        diffuse: &[[f32; LANES]; 3],
-        specular: &[[f32; LANES]; 3],
-        to_viewer: &[[f32; LANES]; 3],
-    ) {
-        for i in 0..LANES {
-            let [diffuse, specular, to_viewer] =
-                [diffuse, specular, to_viewer].map(|columns| column_vector(columns, i));
-            receivers.reflect_like(i, diffuse, specular, to_viewer);
-        }
-    }
-
-    fn reflect_matt(points: &Points<LANES>, questions: &Questions<LANES>) -> Replies<LANES> {
-        let mut replies = Replies::nothing(&points.is_rare);
-        for i in 0..LANES {
-            let reflected = lambert(
-                column_vector(&questions.diffuse, i),
-                column_vector(&questions.receivers.normal, i),
-                column_vector(&questions.geometric_normal, i),
-                column_vector(&points.direction, i),
-                column_vector(&points.arriving, i),
-            );
-            replies.set(points, questions, i, reflected);
-        }
-        replies
-    }
-
-    fn reflect_glossy(points: &Points<LANES>, questions: &Questions<LANES>) -> Replies<LANES> {
-        let mut replies = Replies::nothing(&points.is_rare);
-        for i in 0..LANES {
-            let reflector = Reflector {
-                diffuse: column_vector(&questions.diffuse, i),
-                specular: column_vector(&questions.specular, i),
-                shininess: questions.receivers.shininess[i],
-                normal: column_vector(&questions.receivers.normal, i),
-                geometric_normal: column_vector(&questions.geometric_normal, i),
-                to_viewer: column_vector(&questions.to_viewer, i),
-            };
-            let direction = column_vector(&points.direction, i);
-            let reflected = phong(&reflector, direction, column_vector(&points.arriving, i));
-            replies.set(points, questions, i, reflected);
-        }
-        replies
-    }
 }
 
 /// What arrives for a density of which the reciprocal is a number; else nothing.
@@ -417,50 +248,14 @@ impl<const N: usize> Points<N> {
         set_column(&mut self.arriving, i, arriving);
     }
 }
-
-impl<const N: usize> Replies<N> {
-    #[inline(always)]
-    fn nothing(is_rare: &[u32; N]) -> Self {
-        Self {
-            value: [[0.0; N]; 3],
-            origin: [[0.0; N]; 3],
-            along: [[0.0; N]; 3],
-            is_rare: *is_rare,
-        }
-    }
-
-    /// The reply to one question, of which the surface reflects so much.
-    #[inline(always)]
-    fn set(&mut self, points: &Points<N>, questions: &Questions<N>, i: usize, reflected: Vec3) {
-        let weight = column_vector(&questions.weight, i) / questions.count[i];
-        set_column(&mut self.value, i, weight * reflected);
-        let direction = column_vector(&points.direction, i);
-        let position = column_vector(&questions.position, i);
-        let origin = beyond_error(
-            position,
-            column_vector(&questions.error, i),
-            column_vector(&questions.triangle_normal, i),
-            direction,
-        );
-        set_column(&mut self.origin, i, origin);
-        // From the moved origin to the light itself, so that the ray still ends there.
-        let distance = points.distance[i];
-        let to_light = distance * direction - (origin - position);
-        let is_far = distance == f32::INFINITY;
-        set_column(
-            &mut self.along,
-            i,
-            if is_far { direction } else { to_light },
-        );
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::direct::shadow_ray;
     use super::super::lights::{DirectionalLight, PointLight};
+    use super::super::numbers::Pairs;
     use super::super::shading::reflected;
+    use super::super::shadow_rays::shadow_ray;
     use super::super::test_scene::{self, Numbers};
+    use super::super::vectors::Vectors;
     use super::super::{Cone, LightPoint, Surface};
     use super::*;
     use crate::bvh::{Hit, Ray};

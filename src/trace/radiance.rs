@@ -11,10 +11,10 @@
 //! ```
 
 use super::camera_rays::CameraRays;
-use super::direct::ShadowRays;
 use super::planes::{OWN, PlaneSet, Planes};
 use super::recorder::{Adding, Recorder};
 use super::sampler::Sampler;
+use super::shadow_rays::ShadowRays;
 use super::vertices::Vertices;
 use super::{Camera, Cone, ParallelogramLight, RayCounts, World};
 use crate::bvh::{Hit, Order, Ray};

@@ -78,7 +78,9 @@ fn one_texel_is_a_dome_of_one_colour() {
     assert_eq!(from_above(&app), Some(0.25));
     assert!(problems(&app).is_empty());
     let settings = RenderSettings::default();
-    assert_eq!(world(&app).light_samples(DOME, &settings), Some(3));
+    let world = world(&app);
+    let dome = world.lamps(&settings).find(|lamp| lamp.id() == DOME);
+    assert_eq!(dome.and_then(|dome| dome.samples(&settings)), Some(3));
 }
 
 #[test]

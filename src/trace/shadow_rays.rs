@@ -1,0 +1,157 @@
+//! What is on its way from vertices to points of one light.
+
+use super::lights::LightPoint;
+use super::numbers::{Asking, Pairs};
+use super::vectors::Vectors;
+use super::vertices::Vertices;
+use super::{SampleId, Surface};
+use crate::bvh::{Aggregate, Ray, Transmittances};
+use glam::Vec3;
+
+/// A shadow ray ends this much before its light, as a fraction of the distance: a light that lies
+/// in a surface is not hidden by it. 64 units of rounding; t itself is good to a few.
+pub(super) const SHORT_OF_THE_LIGHT: f32 = 1.0 - 64.0 * f32::EPSILON;
+
+/// The arrays of one light's points, and of the shadow rays to them.
+#[derive(Default)]
+pub(super) struct ShadowRays {
+    /// What each vertex's reflected radiance is multiplied by.
+    pub weights: Vectors,
+    /// How many points of the light each vertex asks for, which share what it reflects, and the first of its questions.
+    pub counts: Vec<u32>,
+    pub firsts: Vec<u32>,
+    /// The vertex of each question, which numbers choose its point, and those numbers.
+    pub askers: Vec<u32>,
+    pub asking: Asking,
+    pub numbers: Pairs,
+    /// The vertices whose questions are answered in columns, matt ones and those with a highlight, and the questions that
+    /// are answered one by one.
+    pub matt: Vec<u32>,
+    pub glossy: Vec<u32>,
+    pub others: Vec<u32>,
+    /// The answers to all.
+    pub replies: Vec<Reply>,
+    /// Points of lights so far at this bounce, those that nothing comes from included: what tells them apart.
+    pub points: u32,
+    pub rays: Vec<Ray>,
+    /// What each ray adds to which sample, if the light arrives, and the number of its point.
+    pub shadows: Vec<Shadow>,
+    pub occluded: Vec<bool>,
+    /// How much of the light passes what lies on each ray, where anything lets light through.
+    pub passing: Transmittances,
+}
+
+/// What a point of a light adds if nothing is in the way, and the ray that finds out.
+#[derive(Clone, Copy)]
+pub(super) struct Reply {
+    /// Zero where nothing comes from there.
+    pub value: Vec3,
+    pub ray: Ray,
+}
+
+/// What a shadow ray adds to which sample, if the light arrives.
+#[derive(Clone, Copy)]
+pub(super) struct Shadow {
+    pub sample: u32,
+    pub value: Vec3,
+    /// The number of the light's point.
+    pub point: u32,
+}
+
+impl Reply {
+    pub const NOTHING: Self = Self {
+        value: Vec3::ZERO,
+        ray: Ray {
+            origin: Vec3::ZERO,
+            direction: Vec3::ZERO,
+            t_max: 0.0,
+            time: 0.0,
+        },
+    };
+}
+
+impl ShadowRays {
+    /// No question has an answer yet.
+    pub fn begin_replies(&mut self) {
+        self.replies.clear();
+        self.replies.resize(self.askers.len(), Reply::NOTHING);
+        self.matt.clear();
+        self.glossy.clear();
+        self.others.clear();
+    }
+
+    /// Which vertices are answered in columns, and which questions one by one.
+    pub fn sort(&mut self, vertices: &Vertices) {
+        for (vertex, (&count, &first)) in self.counts.iter().zip(&self.firsts).enumerate() {
+            if count == 0 {
+                continue;
+            }
+            if vertices.is_near_edge[vertex] {
+                self.others.extend(first..first + count);
+            } else if vertices.has_highlight(vertex) {
+                self.glossy.push(vertex as u32);
+            } else {
+                self.matt.push(vertex as u32);
+            }
+        }
+    }
+
+    /// Every vertex that light can add something to asks for so many points at a first hit, and for one later: their numbers
+    /// go on from sample to sample of the pixel.
+    pub fn ask(
+        &mut self,
+        vertices: &Vertices,
+        at_first_hits: u32,
+        samples: &[SampleId],
+        pixels: &[u32],
+    ) {
+        self.asking.clear();
+        self.askers.clear();
+        self.counts.clear();
+        self.firsts.clear();
+        for vertex in 0..vertices.len() {
+            let path = vertices.path(vertex);
+            let count = if self.weights.get(vertex) == Vec3::ZERO {
+                0
+            } else if path.first {
+                at_first_hits
+            } else {
+                1
+            };
+            self.counts.push(count);
+            self.firsts.push(self.askers.len() as u32);
+            let sample = path.sample as usize;
+            let first = samples[sample].index * u64::from(count);
+            for index in first..first + u64::from(count) {
+                self.askers.push(vertex as u32);
+                self.asking.push(pixels[sample], path.name, index);
+            }
+        }
+    }
+}
+
+/// From a surface to a light point, ending just before it.
+pub(super) fn shadow_ray(
+    aggregate: &Aggregate,
+    surface: &Surface,
+    point: &LightPoint,
+    time: f32,
+) -> Ray {
+    let origin = aggregate.leave(&surface.point, point.direction);
+    if point.distance == f32::INFINITY {
+        return Ray {
+            origin,
+            direction: point.direction,
+            t_max: f32::INFINITY,
+            time,
+        };
+    }
+    // From the moved origin to the light itself, so that the ray still ends there.
+    let to_light = point.distance * point.direction - (origin - surface.point.position);
+    Ray {
+        origin,
+        direction: to_light,
+        t_max: SHORT_OF_THE_LIGHT,
+        time,
+    }
+}
