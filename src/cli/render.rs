@@ -1,7 +1,7 @@
 //! `glassbox render`: a scene to picture files.
 
 use super::Failure;
-use super::output::say;
+use super::output::{say, tell};
 use super::progress::Progress;
 use super::settings::{BuilderArg, SettingArgs, builder_name, check_scene, list};
 use super::shown::output_text;
@@ -13,8 +13,8 @@ use crate::film::views::View;
 use crate::film::{FirstHits, Status, render_lights, render_samples};
 use crate::inspect::build_time;
 use crate::io::{
-    FileError, Part, PictureFormat, check_outputs, check_picture, check_writable, picture_notes,
-    replace_file, write_lights, write_part, write_rendered,
+    FileError, Part, PictureFormat, check_outputs, check_picture, check_room, check_writable,
+    part_bytes, picture_notes, replace_file, write_lights, write_part, write_rendered,
 };
 use crate::sync::TracedCamera;
 use crate::trace::{RayCounts, digest, samples_per_pixel};
@@ -102,7 +102,8 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
     let settings = settings.clone();
     check_scene(&stage.name, &settings)?;
     let size = settings.size;
-    check_picture(&args.output, size.x.into(), size.y.into()).map_err(Failure::of_output)?;
+    let [width, height] = size.to_array().map(u64::from);
+    let format = check_picture(&args.output, width, height).map_err(Failure::of_output)?;
     stage.check_film(size)?;
     let world = stage.sync().world.clone();
     if args.lights_separately {
@@ -113,6 +114,21 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
     stage.check_outputs(files.iter().chain(&args.stats).map(PathBuf::as_path))?;
     for file in &files {
         check_writable(file)?;
+    }
+    let bytes = if args.stop.samples.is_some() {
+        part_bytes(width, height)
+    } else {
+        // Those that each light adds, and what shines by itself.
+        let layers = if args.lights_separately {
+            world.lights.count() as u64 + 1
+        } else {
+            0
+        };
+        format.picture_bytes(width, height) * (1 + layers)
+    };
+    let doubt = check_room(&args.output, bytes.saturating_mul(files.len() as u64))?;
+    if let Some(doubt) = doubt.filter(|_| !args.quiet) {
+        tell("warning", doubt);
     }
 
     let mut stats = Stats {

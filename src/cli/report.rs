@@ -6,7 +6,9 @@ use super::output::say;
 use super::progress::Progress;
 use super::settings::check_scene;
 use super::stage::{SceneArgs, Stage, with_threads};
-use crate::io::{FileError, SceneSource, TEXT_BYTES, check_outputs, check_writable, read_text};
+use crate::io::{
+    FileError, SceneSource, TEXT_BYTES, check_outputs, check_room, check_writable, read_text,
+};
 use crate::report::{self, Options, Part, Subject, Table, is_report_file, write_report};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -185,6 +187,8 @@ fn places(args: &Report) -> (PathBuf, PathBuf) {
 /// Where nothing can be written nothing needs to be measured. Folders that do not exist are made in the end,
 /// so until then the nearest one that does exist stands for them.
 fn check_places(file: &Path, folder: &Path) -> Result<(), Failure> {
+    /// What a report of five scenes takes, and half of that again.
+    const BYTES: u64 = 4 << 20;
     let home = file.parent().unwrap_or(Path::new(""));
     for folder in [home, folder] {
         let exists = |part: &&Path| part.as_os_str().is_empty() || part.exists();
@@ -195,6 +199,7 @@ fn check_places(file: &Path, folder: &Path) -> Result<(), Failure> {
             check_writable(&there.join("report"))
                 .map_err(|error| FileError::new(folder, error.problem))?;
         }
+        check_room(&there.join("report"), BYTES)?;
     }
     Ok(())
 }

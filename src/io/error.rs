@@ -125,6 +125,10 @@ pub enum Problem {
         "needs {needs}, and {free} are free on its disk; make room there, or choose another place"
     )]
     NoSpace { needs: Size, free: Size },
+    #[error(
+        "may take up to {most}, and {free} are free on its disk; make room there, or choose another place"
+    )]
+    LittleSpace { most: Size, free: Size },
     #[error("the folder does not exist; create it first")]
     NoFolder,
     #[error("is the same file as `{input}`, which is read here; write under another name")]

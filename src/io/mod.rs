@@ -73,11 +73,12 @@ pub use notes::{FileNote, Notes};
 #[cfg(feature = "editor")]
 pub(crate) use on_disk::{OnDisk, has_changed};
 pub use open::{OpenOptions, Opened, SceneSource, open, open_empty};
-pub use part::{Merge, MergeError, Part, read_part, write_part};
+pub use part::{Merge, MergeError, Part, part_bytes, read_part, write_part};
 pub(crate) use picture::stage_picture;
 pub use picture::{
-    LightLayers, Note, PICTURE_EXTENSIONS, PictureFormat, check_picture, check_size, layer_name,
-    picture_notes, write_lights, write_picture, write_picture_with_notes, write_rendered,
+    LightLayers, Note, PICTURE_EXTENSIONS, PictureFormat, check_picture, check_room, check_size,
+    layer_name, picture_notes, write_lights, write_picture, write_picture_with_notes,
+    write_rendered,
 };
 pub use problems::{LoadProblem, LoadProblems};
 pub(crate) use regular::{TEXT_BYTES, open_regular, read_text};

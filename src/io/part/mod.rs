@@ -44,6 +44,12 @@ pub struct Part {
 /// Samples that a sum surely holds.
 const MOST_SAMPLES: u64 = 1 << 22;
 
+/// Bytes of a part, uncompressed: each pixel's mean and sums.
+pub fn part_bytes(width: u64, height: u64) -> u64 {
+    const PIXEL: u64 = 4 * (3 + 3 * 4);
+    width.saturating_mul(height).saturating_mul(PIXEL)
+}
+
 fn channel_name(component: usize, word: usize) -> String {
     format!("sum.{}.{word}", ["R", "G", "B"][component])
 }

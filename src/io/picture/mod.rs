@@ -11,6 +11,7 @@ mod open_exr;
 mod radiance;
 mod read;
 mod rendered;
+mod room;
 mod write;
 
 pub(crate) use exr_blocks::block_bytes;
@@ -18,6 +19,7 @@ pub(crate) use jpeg::cut_short;
 pub use light_layers::{LightLayers, layer_name};
 pub(crate) use read::{PictureUse, decode_picture, read_picture};
 pub use rendered::{Note, picture_notes, write_lights, write_rendered};
+pub use room::check_room;
 pub(crate) use write::{encode_png, stage_picture};
 pub use write::{write_picture, write_picture_with_notes};
 
@@ -83,11 +85,12 @@ impl PictureFormat {
 }
 
 /// Refuses a picture that could not be written, before the work whose result it shall hold is done: by its
-/// format, its size, and the place where it shall lie. How full a disk will be then nobody knows.
+/// format, its size, the place where it shall lie, and a disk that is as good as full ([`check_room`]).
 pub fn check_picture(file: &Path, width: u64, height: u64) -> Result<PictureFormat, FileError> {
     let format = PictureFormat::of(file)?;
     check_format_size(file, format, width, height)?;
     check_writable(file)?;
+    check_room(file, format.picture_bytes(width, height))?;
     Ok(format)
 }
 

@@ -16,7 +16,7 @@ mod space;
 mod target;
 
 pub(crate) use output::Output;
-pub(crate) use space::check_space;
+pub(crate) use space::{check_space, free_bytes};
 
 use super::error::FileError;
 use super::identity::folder_of;

@@ -23,6 +23,9 @@ struct Room {
     towards: Vec3,
     /// How far apart its walls are around the eye.
     height: f32,
+    /// Whether its pictures are the large ones, where they are by its mesh; those of a quarter of the pixels show the
+    /// variants of these.
+    is_fine: bool,
 }
 
 impl Room {
@@ -33,7 +36,7 @@ impl Room {
 }
 
 /// A prism 2 m wide and 2 m deep: its floor and its ceiling meet at this angle.
-fn wedge(name: &'static str, degrees: f32) -> Room {
+fn wedge(name: &'static str, degrees: f32, is_fine: bool) -> Room {
     let height = 2.0 * degrees.to_radians().tan();
     let profile = [[0.0, 0.0], [2.0, 0.0], [2.0, height]];
     let positions = (0..6).map(|i| {
@@ -56,6 +59,7 @@ fn wedge(name: &'static str, degrees: f32) -> Room {
         eye: Vec3::new(0.95, 0.4 * height, 0.1),
         towards: Vec3::new(-1.0, 0.0, -0.3),
         height,
+        is_fine,
     }
 }
 
@@ -70,6 +74,7 @@ fn spike() -> Room {
         eye: Vec3::new(0.0, 0.1, 0.0),
         towards: Vec3::new(0.02, 2.0, 0.01),
         height: 0.04,
+        is_fine: false,
     }
 }
 
@@ -81,10 +86,11 @@ fn rooms() -> [Room; 5] {
             eye: Vec3::new(0.3, 0.2, 0.6),
             towards: Vec3::new(-0.5, -0.4, -1.0),
             height: 2.0,
+            is_fine: true,
         },
-        wedge("wedge of 10°", 10.0),
-        wedge("wedge of 1°", 1.0),
-        wedge("wedge of 0.1°", 0.1),
+        wedge("wedge of 10°", 10.0, false),
+        wedge("wedge of 1°", 1.0, true),
+        wedge("wedge of 0.1°", 0.1, false),
         spike(),
     ]
 }
@@ -179,8 +185,12 @@ fn kinds() -> [Kind; 2] {
     ]
 }
 
-fn settings(effort: &Effort) -> RenderSettings {
-    let edge = if effort.rays > 1_000_000 { 200 } else { 24 };
+fn settings(effort: &Effort, is_fine: bool) -> RenderSettings {
+    let edge = match effort.rays > 1_000_000 {
+        true if is_fine => 200,
+        true => 100,
+        false => 24,
+    };
     RenderSettings {
         size: UVec2::splat(edge),
         spp: 16,
@@ -203,7 +213,6 @@ fn turned() -> Quat {
 /// Every room of every kind, at every distance, upright and turned, by its mesh and by its transform: how many pixels see
 /// something of the outside.
 pub(super) fn closed(effort: &Effort) -> Outcome {
-    let settings = settings(effort);
     let (mut counted, mut rooms_seen, mut faults) = (0, 0, Vec::new());
     for room in rooms() {
         for (kind, material, outside) in kinds() {
@@ -224,6 +233,7 @@ pub(super) fn closed(effort: &Effort) -> Outcome {
                         levels: [Levels::Two, Levels::One][index % 2],
                     };
                     let (world, camera) = room.placed(standing, &material);
+                    let settings = settings(effort, room.is_fine && in_the_mesh);
                     let (leaks, pixels) = seen(&outside(world), &camera, &settings);
                     counted += pixels;
                     rooms_seen += 1;
@@ -272,7 +282,7 @@ fn six_walls(turn: Quat, at: Vec3, wider: f32) -> Vec<(Instance, Object)> {
 /// Rooms whose walls are objects of their own. Nothing is promised of them: where two objects touch, each is rounded by
 /// its own transform, so there are cracks, and a start beside the edge of one knows nothing of the other.
 pub(super) fn of_objects(effort: &Effort) -> Outcome {
-    let settings = settings(effort);
+    let settings = settings(effort, true);
     let (mut counted, mut figures) = (0, Vec::new());
     for (name, wider) in [
         ("edge to edge", 0.0),
