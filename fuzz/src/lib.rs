@@ -3,6 +3,7 @@
 use bevy::app::App;
 use glassbox::app::headless_app;
 use glassbox::io::{Limits, OpenOptions, SceneSource, open};
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::cell::RefCell;
 use std::fs;
 use std::path::Path;
@@ -11,6 +12,13 @@ thread_local! {
     /// One for all files, as in the editor: what is opened takes the place of what was open. Making an app
     /// takes longer than reading any file.
     static APP: RefCell<App> = RefCell::new(headless_app());
+    /// This thread alone: handing such small work to another takes longer than doing it, where other programs want the
+    /// same cores some hundred times as long.
+    static POOL: ThreadPool = ThreadPoolBuilder::new()
+        .num_threads(1)
+        .use_current_thread()
+        .build()
+        .expect("a pool without threads of its own");
 }
 
 /// The kinds of files that are read, by the names of their targets: the file that is opened, and the one that gets the
@@ -57,7 +65,11 @@ pub fn read(kind: &str, bytes: &[u8], folder: &Path) -> bool {
         ..OpenOptions::default()
     };
     let source = SceneSource::File(folder.join(opened));
-    APP.with_borrow_mut(|app| match open(app.world_mut(), &source, options) {
+    POOL.with(|pool| pool.install(|| open_in_the_app(&source, options)))
+}
+
+fn open_in_the_app(source: &SceneSource, options: OpenOptions) -> bool {
+    APP.with_borrow_mut(|app| match open(app.world_mut(), source, options) {
         Ok(_) => {
             app.update();
             true
