@@ -4,12 +4,13 @@ use crate::bvh::REACH;
 use crate::scene::{
     DirectionalLamp, ParallelogramLamp, PointLamp, SceneCamera, SceneId, SegmentLamp,
 };
-use bevy::camera::primitives::Aabb;
+use bevy::asset::Assets;
+use bevy::camera::primitives::{Aabb, MeshAabb};
 use bevy::ecs::entity::Entity;
-use bevy::ecs::hierarchy::ChildOf;
+use bevy::ecs::hierarchy::{ChildOf, Children};
 use bevy::ecs::world::{EntityRef, World};
 use bevy::math::Vec3;
-use bevy::mesh::Mesh3d;
+use bevy::mesh::{Mesh, Mesh3d};
 use bevy::transform::components::{GlobalTransform, Transform};
 use std::collections::HashSet;
 
@@ -45,6 +46,11 @@ impl Extent {
         }
     }
 
+    /// Whether a point is in the box.
+    pub fn contains(self, point: Vec3) -> bool {
+        point.cmpge(self.least).all() && point.cmple(self.most).all()
+    }
+
     /// The middle of the box.
     pub fn centre(self) -> Vec3 {
         0.5 * (self.least + self.most)
@@ -70,17 +76,45 @@ pub(super) fn lamp_points(entity: EntityRef) -> Vec<Vec3> {
         .to_vec()
 }
 
+fn corners(aabb: &Aabb) -> [Vec3; 8] {
+    std::array::from_fn(|corner| {
+        let side = |axis: usize| if corner >> axis & 1 == 1 { 1.0 } else { -1.0 };
+        let sides = Vec3::new(side(0), side(1), side(2));
+        Vec3::from(aabb.center) + sides * Vec3::from(aabb.half_extents)
+    })
+}
+
+/// The room that the objects at and below an entity take, as places and meshes are now: what was added in this frame is
+/// neither propagated nor measured. `None` where there are none.
+pub(super) fn extent_now(world: &World, root: Entity) -> Option<Extent> {
+    let meshes = world.resource::<Assets<Mesh>>();
+    let extent_of_one = |entity| {
+        let mesh = meshes.get(&world.get::<Mesh3d>(entity)?.0)?;
+        let world_from_own = world_from_entity(world, entity)?.affine();
+        let corners = corners(&mesh.compute_aabb()?);
+        Extent::of_points(corners.map(|corner| world_from_own.transform_point3(corner)))
+    };
+    let mut extent = None;
+    let mut all = vec![root];
+    while let Some(entity) = all.pop() {
+        if let Some(children) = world.get::<Children>(entity) {
+            all.extend(children.iter());
+        }
+        extent = extent
+            .into_iter()
+            .chain(extent_of_one(entity))
+            .reduce(Extent::and);
+    }
+    extent
+}
+
 /// The room that an entity itself takes, without its children. `None` for what stands nowhere, and
 /// for an object whose mesh is not there yet.
 pub(super) fn own_extent(entity: EntityRef) -> Option<Extent> {
     let world_from_own = entity.get::<GlobalTransform>()?.affine();
     if let Some(aabb) = entity.get::<Aabb>().filter(|_| entity.contains::<Mesh3d>()) {
-        let corners = (0..8).map(|corner: u32| {
-            let side = |axis: u32| if corner >> axis & 1 == 1 { 1.0 } else { -1.0 };
-            let sides = Vec3::new(side(0), side(1), side(2));
-            Vec3::from(aabb.center) + sides * Vec3::from(aabb.half_extents)
-        });
-        return Extent::of_points(corners.map(|corner| world_from_own.transform_point3(corner)));
+        let corners = corners(aabb).map(|corner| world_from_own.transform_point3(corner));
+        return Extent::of_points(corners);
     }
     let points = lamp_points(entity);
     if points.is_empty() {

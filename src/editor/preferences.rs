@@ -38,6 +38,18 @@ pub enum ThemeChoice {
     Light,
 }
 
+/// How large a model becomes that is imported into a scene, and where it stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum ImportPlace {
+    /// As large as the view asks for, on what is dropped on or looked at.
+    #[default]
+    Fitted,
+    /// As large as the file has it, on what is dropped on or looked at.
+    FileScale,
+    /// As large as the file has it, and where.
+    FilePlace,
+}
+
 /// What a person chose about the editor itself.
 #[derive(Resource, Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -64,6 +76,10 @@ pub struct Preferences {
     pub pixel_size: u32,
     /// The traced view keeps what each light adds apart, which takes memory and makes edits of lights quick.
     pub lights_apart: bool,
+    /// What becomes of models that are imported into a scene.
+    pub import_place: ImportPlace,
+    /// Lights and cameras of models that are imported are added too.
+    pub import_lights: bool,
     /// The first-run hint was read.
     pub hint_seen: bool,
     /// Keys that were given to commands.
@@ -86,6 +102,8 @@ impl Default for Preferences {
             rays_height: 240.0,
             pixel_size: 1,
             lights_apart: true,
+            import_place: ImportPlace::default(),
+            import_lights: true,
             hint_seen: false,
             keys: Bindings::default(),
             recent: Vec::new(),

@@ -13,11 +13,11 @@ use crate::trace;
 use bevy::camera::Camera;
 use bevy::camera::primitives::Aabb;
 use bevy::camera::visibility::InheritedVisibility;
-use bevy::math::{Vec2, Vec3};
+use bevy::math::{Affine3A, Vec2, Vec3, Vec3A};
 use bevy::platform::collections::{HashMap, HashSet};
 use bevy::prelude::{
-    App, Changed, Commands, Component, DetectChanges, Entity, IntoScheduleConfigs, Or, Plugin,
-    PostUpdate, Query, RemovedComponents, Res, ResMut, Resource, With,
+    App, Changed, Children, Commands, Component, DetectChanges, Entity, IntoScheduleConfigs, Or,
+    Plugin, PostUpdate, Query, RemovedComponents, Res, ResMut, Resource, With, Without,
 };
 use bevy::transform::TransformSystems;
 use bevy::transform::components::GlobalTransform;
@@ -192,6 +192,25 @@ type Edited = Or<(
     Changed<Aabb>,
 )>;
 
+type Groups<'w, 's> = Query<'w, 's, (Entity, &'static SceneId), (With<Children>, Without<Aabb>)>;
+type Below<'w, 's> = Query<'w, 's, &'static Children>;
+type Measured<'w, 's> = Query<'w, 's, (&'static GlobalTransform, &'static Aabb)>;
+
+/// The box in the world around what hangs below an entity; `None` where that has no size.
+fn bounds_below(entity: Entity, below: &Below, measured: &Measured) -> Option<Aabb> {
+    let mut bounds: Option<[Vec3A; 2]> = None;
+    for (place, aabb) in measured.iter_many(below.iter_descendants(entity)) {
+        let place = place.affine();
+        let center = place.transform_point3a(aabb.center);
+        let axes = place.matrix3;
+        let [x, y, z] = aabb.half_extents.to_array();
+        let half = axes.x_axis.abs() * x + axes.y_axis.abs() * y + axes.z_axis.abs() * z;
+        let [least, most] = bounds.unwrap_or([center - half, center + half]);
+        bounds = Some([least.min(center - half), most.max(center + half)]);
+    }
+    bounds.map(|[least, most]| Aabb::from_min_max(least.into(), most.into()))
+}
+
 fn draw_symbols(
     mut commands: Commands,
     switches: Res<Symbols>,
@@ -202,6 +221,7 @@ fn draw_symbols(
     lasting: Query<Entity, HasSymbol>,
     edited: Query<Entity, (With<SceneId>, Edited)>,
     selected: Query<(Entity, &SceneId)>,
+    (groups, below, measured): (Groups, Below, Measured),
     mut gone: RemovedComponents<SceneId>,
     mut drawn: Query<&mut DrawnLines, With<SymbolOf>>,
 ) {
@@ -224,6 +244,11 @@ fn draw_symbols(
         if symbols.lines.contains_key(&entity) || lasting.contains(entity) {
             redo.insert(entity);
         }
+    }
+    // Around what has changed there may be a group with an outline.
+    if !outlined.0.is_empty() && !edited.is_empty() {
+        let chosen = groups.iter().filter(|(_, id)| outlined.0.contains(id));
+        redo.extend(chosen.map(|(entity, _)| entity));
     }
     if !other && redo.is_empty() {
         return;
@@ -280,7 +305,10 @@ fn draw_symbols(
         if let Some(tint) = sketch.tint {
             match aabb {
                 Some(aabb) => sketch.bounds(&place, aabb, tint),
-                None if sketch.lines.is_empty() => sketch.axes(&place, tint),
+                None if sketch.lines.is_empty() => match bounds_below(entity, &below, &measured) {
+                    Some(bounds) => sketch.bounds(&Affine3A::IDENTITY, &bounds, tint),
+                    None => sketch.axes(&place, tint),
+                },
                 None => {}
             }
         }
@@ -329,5 +357,31 @@ mod tests {
         }
         let point = [Vec2::ONE; 2];
         assert_eq!(distance_to_segment(Vec2::new(1.0, 3.0), point), 2.0);
+    }
+
+    #[test]
+    fn a_group_has_an_outline_around_all_that_hangs_below_it() {
+        use bevy::ecs::system::RunSystemOnce;
+        use bevy::prelude::{ChildOf, Transform, World};
+        let mut world = World::new();
+        let root = world.spawn(GlobalTransform::IDENTITY).id();
+        let unit = Aabb::from_min_max(Vec3::splat(-1.0), Vec3::splat(1.0));
+        let place = Transform::from_xyz(3.0, 0.0, 0.0).with_scale(Vec3::splat(2.0));
+        let inner = world.spawn((ChildOf(root), GlobalTransform::IDENTITY)).id();
+        world.spawn((ChildOf(inner), GlobalTransform::from(place), unit));
+        world.spawn((ChildOf(root), GlobalTransform::IDENTITY, unit));
+        let bounds = move |below: Below, measured: Measured| bounds_below(root, &below, &measured);
+        let bounds = world.run_system_once(bounds).unwrap().unwrap();
+        let found = [bounds.min(), bounds.max()].map(Vec3::from);
+        assert_eq!(
+            found,
+            [Vec3::new(-1.0, -2.0, -2.0), Vec3::new(5.0, 2.0, 2.0)]
+        );
+        let alone = move |below: Below, measured: Measured| bounds_below(inner, &below, &measured);
+        assert!(world.run_system_once(alone).unwrap().is_some());
+        world.despawn(inner);
+        let none = world.spawn_empty().id();
+        let none = move |below: Below, measured: Measured| bounds_below(none, &below, &measured);
+        assert!(world.run_system_once(none).unwrap().is_none());
     }
 }

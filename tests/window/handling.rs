@@ -120,6 +120,70 @@ fn things_are_selected_by_clicks_and_boxes_and_moved_together() {
 }
 
 #[test]
+fn a_press_takes_the_handle_under_it_even_where_the_pointer_came_there_in_the_same_frame() {
+    let script = r#"[
+        Wait(Frames(10)),
+        Click(On("Short block")),
+        // The pointer rests over one handle, jumps to another and presses before a frame is drawn.
+        Move(Handle(X)),
+        PressAt(Left, Handle(Y)),
+        Move(By(Handle(Y), 0, -40)),
+        Release(Left),
+        Undoes("Move Short block"),
+        Assert(of: Some("Short block"), path: "Transform.translation.x", is: 0, within: 1e-5),
+        AssertNot(of: Some("Short block"), path: "Transform.translation.y", is: 0, within: 0.01),
+        Key("Ctrl+Z"),
+
+        // It rests beside all of them.
+        Move(View(0.9, 0.1)),
+        PressAt(Left, Handle(X)),
+        Move(By(Handle(X), 40, 0)),
+        Release(Left),
+        Undoes("Move Short block"),
+        AssertNot(of: Some("Short block"), path: "Transform.translation.x", is: 0, within: 0.01),
+        Key("Ctrl+Z"),
+
+        // It rests over a handle, and is gone when the button goes down.
+        Move(Handle(X)),
+        PressAt(Left, On("Green wall")),
+        Release(Left),
+        Selected(["Green wall"]),
+        Assert(of: Some("Short block"), path: "Transform.translation", is: [0, 0, 0]),
+        Quit,
+    ]"#;
+    plays("cornell-box", script);
+}
+
+#[test]
+fn a_number_that_is_typed_while_a_handle_is_dragged_says_how_far_it_goes() {
+    let script = r#"[
+        Wait(Frames(10)),
+        Click(On("Short block")),
+        PressAt(Left, Handle(Y)),
+        Move(By(Handle(Y), 0, -15)),
+        Type("10cm"),
+        Shows("Move along y: 10cm"),
+        Assert(of: Some("Short block"), path: "Transform.translation.y", is: 0.1, within: 1e-6),
+        // The pointer says no more now.
+        Move(By(Handle(Y), 0, -30)),
+        Release(Left),
+        Assert(of: Some("Short block"), path: "Transform.translation", is: [0, 0.1, 0], within: 1e-6),
+        Undoes("Move Short block"),
+        Key("Ctrl+Z"),
+        Key("E"),
+        PressAt(Left, Handle(Y)),
+        Move(By(Handle(Y), 10, 0)),
+        Type("90"),
+        Key("Enter"),
+        Release(Left),
+        Assert(of: Some("Short block"), path: "Transform.rotation", is: [0, 0.70710677, 0, 0.70710677], within: 1e-5),
+        Undoes("Turn Short block"),
+        Quit,
+    ]"#;
+    plays("cornell-box", script);
+}
+
+#[test]
 fn keys_that_are_typed_into_a_field_are_not_meant_for_the_scene() {
     let script = r#"[
         Wait(Frames(10)),

@@ -2,7 +2,7 @@
 
 use super::Document;
 use crate::editor::action::Action;
-use crate::editor::edits::scene_entity;
+use crate::editor::edits::{DroppedAt, scene_entity};
 use crate::editor::history::History;
 use crate::editor::notice::Notices;
 use crate::editor::schedule::EditorUpdate;
@@ -70,6 +70,11 @@ fn drop_file(world: &mut World, file: &Path) {
             world.write_message(Action::Open(file.to_path_buf()));
         }
         model if MODEL_EXTENSIONS.contains(&model) => {
+            let mut windows = world.query_filtered::<&Window, With<PrimaryWindow>>();
+            let at = windows.single(world).ok().and_then(Window::cursor_position);
+            if let Some(mut dropped) = world.get_resource_mut::<DroppedAt>() {
+                dropped.0 = at;
+            }
             world.write_message(Action::Import(file.to_path_buf()));
         }
         picture if PICTURE_EXTENSIONS.contains(&picture) => {

@@ -3,6 +3,7 @@
 
 mod add;
 mod copy;
+mod import;
 mod index;
 mod names;
 mod parents;
@@ -11,9 +12,10 @@ mod remove;
 
 pub use add::{AddAt, add, add_model};
 pub use copy::{Clipboard, copy, duplicate, paste};
+pub(in crate::editor) use import::{DroppedAt, ModelAdded, import};
 pub use index::{SceneIndex, scene_entity};
 pub use names::{name_of, rename, unique_name};
 pub use parents::{reparent, roots_of};
 pub use plugin::EditsPlugin;
-pub(in crate::editor) use plugin::{import, select, step, step_add, step_rename, step_reparent};
+pub(in crate::editor) use plugin::{select, step, step_add, step_rename, step_reparent};
 pub use remove::{delete, set_visible};

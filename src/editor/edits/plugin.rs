@@ -1,7 +1,7 @@
 //! The commands that edit and select, each a step of its own.
 
 use super::{
-    AddAt, Clipboard, SceneIndex, add, add_model, copy, delete, duplicate, name_of, paste, rename,
+    AddAt, Clipboard, SceneIndex, add, copy, delete, duplicate, import, name_of, paste, rename,
     reparent, scene_entity, set_visible,
 };
 use crate::editor::action::{Addition, shapes};
@@ -9,12 +9,10 @@ use crate::editor::command::{AddCommands, Command, Over, State, commands};
 use crate::editor::history::{Gesture, History, commit, redo, undo};
 use crate::editor::notice::Notices;
 use crate::editor::selection::{Escaped, Selection};
-use crate::io::FileError;
 use crate::scene::SceneId;
 use bevy::app::{App, Plugin};
 use bevy::camera::visibility::Visibility;
 use bevy::ecs::world::World;
-use std::path::Path;
 
 /// Does what [`Action`](crate::editor::Action)s ask for that edit the scene or select in it. Needs
 /// [`HistoryPlugin`](crate::editor::history::HistoryPlugin).
@@ -27,7 +25,9 @@ impl Plugin for EditsPlugin {
             .init_resource::<Selection>()
             .init_resource::<Notices>()
             .init_resource::<SceneIndex>()
+            .init_resource::<import::DroppedAt>()
             .add_commands(commands())
+            .add_commands(import::commands())
             .add_commands(shape_commands());
     }
 }
@@ -247,31 +247,6 @@ fn step_hide(world: &mut World) -> Option<String> {
     let name = format!("{verb} {}", call(world, &ids));
     set_visible(world, &ids, show);
     Some(name)
-}
-
-/// Adds a model's content to the scene, as a step, and selects it.
-pub(in crate::editor) fn import(world: &mut World, file: &Path) -> Result<(), FileError> {
-    let mut result = Ok(());
-    step(world, |world| match add_file(world, file) {
-        Ok(name) => Some(name),
-        Err(error) => {
-            result = Err(error);
-            None
-        }
-    });
-    result
-}
-
-fn add_file(world: &mut World, file: &Path) -> Result<String, FileError> {
-    let (root, imported) = add_model(world, file)?;
-    let name = file
-        .file_name()
-        .unwrap_or(file.as_os_str())
-        .to_string_lossy();
-    let mut notices = world.resource_mut::<Notices>();
-    notices.notes(&name, imported.notes.lines());
-    select(world, root.into_iter().collect());
-    Ok(format!("Import {name}"))
 }
 
 /// Selects these, as far as they are entities of the scene, and no others.

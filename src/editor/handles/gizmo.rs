@@ -4,11 +4,13 @@ use super::super::edits::{roots_of, scene_entity};
 use super::super::extent::{own_extent, world_from_entity, world_from_parent};
 use super::super::history::Gesture;
 use super::super::navigation::{Eye, LookThrough};
+use super::super::pick;
 use super::super::pointer::PointerUse;
 use super::super::selection::Selection;
 use super::super::viewport::Viewport;
 use super::bodies::{Body, Change};
 use super::grips::{self, Grip};
+use super::typed::{TypedDrag, typed_place};
 use super::{ActiveGrip, Tool, Tools};
 use crate::scene::SceneId;
 use bevy::ecs::component::Component;
@@ -19,13 +21,13 @@ use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Commands, Res, ResMut};
 use bevy::ecs::world::World;
 use bevy::gizmos::transform_gizmo::{
-    TransformGizmoFocus, TransformGizmoMode, TransformGizmoSettings, TransformGizmoSpace,
-    TransformGizmoState,
+    TransformGizmoAxis, TransformGizmoFocus, TransformGizmoMode, TransformGizmoSettings,
+    TransformGizmoSpace, TransformGizmoState, axis_direction, effective_space, gizmo_rotation,
 };
 use bevy::input::ButtonInput;
 use bevy::input::keyboard::KeyCode;
 use bevy::math::{Quat, Vec3};
-use bevy::transform::components::Transform;
+use bevy::transform::components::{GlobalTransform, Transform};
 
 /// Length of an arrow in logical pixels.
 const ARROW: f32 = 90.0;
@@ -40,9 +42,18 @@ pub(super) struct StandIn;
 #[derive(Resource, Default)]
 pub(super) struct GizmoDrag(Option<Drag>);
 
+impl GizmoDrag {
+    /// What is being done.
+    pub fn tool(&self) -> Option<Tool> {
+        self.0.as_ref().map(|drag| drag.tool)
+    }
+}
+
 #[derive(Clone)]
 struct Drag {
     start: Transform,
+    /// The handle, and where it points to in the world.
+    handle: Option<(TransformGizmoAxis, Vec3)>,
     /// The stand-in's transform that was carried over last.
     carried: Transform,
     tool: Tool,
@@ -221,7 +232,12 @@ pub(super) fn carry(world: &mut World) {
         (_, Some(drag)) => drag,
     };
     let mut stand_ins = world.query_filtered::<&Transform, With<StandIn>>();
-    let now = stand_ins.single(world).copied().unwrap_or(drag.carried);
+    let pointed = stand_ins.single(world).copied().unwrap_or(drag.carried);
+    let typed = drag.handle.and_then(|(axis, direction)| {
+        let typed = world.resource::<TypedDrag>();
+        typed_place(typed, drag.tool, axis, &drag.start, direction)
+    });
+    let now = typed.unwrap_or(pointed);
     if now != drag.carried {
         apply(world, &drag, &now);
         if let Some(drag) = &mut world.resource_mut::<GizmoDrag>().0 {
@@ -230,12 +246,24 @@ pub(super) fn carry(world: &mut World) {
     }
     if !active {
         world.resource_mut::<GizmoDrag>().0 = None;
+        world.resource_mut::<TypedDrag>().clear();
         world.resource_mut::<Gesture>().end();
     }
 }
 
+/// The handle that is dragged, and its direction in the world.
+fn handle(world: &mut World, start: &Transform) -> Option<(TransformGizmoAxis, Vec3)> {
+    let (_, eye) = pick::camera(world)?;
+    let axis = world.resource::<TransformGizmoState>().axis?;
+    let space = effective_space(world.resource::<TransformGizmoSettings>());
+    let rotation = gizmo_rotation(&GlobalTransform::from(*start), space);
+    Some((axis, axis_direction(axis, rotation, &eye).normalize()))
+}
+
 fn begin(world: &mut World) -> Drag {
     let start = world.resource::<TransformGizmoState>().start_transform;
+    let handle = handle(world, &start);
+    world.resource_mut::<TypedDrag>().clear();
     let tools = world.resource::<Tools>().clone();
     let verb = match tools.tool {
         Tool::Move => "Move",
@@ -267,6 +295,7 @@ fn begin(world: &mut World) -> Drag {
     world.resource_mut::<Gesture>().begin(name);
     Drag {
         start,
+        handle,
         carried: start,
         tool: tools.tool,
         moved,
@@ -276,7 +305,8 @@ fn begin(world: &mut World) -> Drag {
 fn apply(world: &mut World, drag: &Drag, now: &Transform) {
     let start = &drag.start;
     let keys = world.resource::<ButtonInput<KeyCode>>();
-    let evenly = keys.any_pressed([KeyCode::ShiftLeft, KeyCode::ShiftRight]);
+    let evenly = keys.any_pressed([KeyCode::ShiftLeft, KeyCode::ShiftRight])
+        || world.resource::<Tools>().scale_linked;
     let change = match drag.tool {
         Tool::Move => Change::Move(now.translation - start.translation),
         Tool::Turn => Change::Turn((now.rotation * start.rotation.inverse()).normalize()),
@@ -341,6 +371,7 @@ pub(in super::super) fn cancel(world: &mut World) -> bool {
     state.active = false;
     state.axis = None;
     state.entity = None;
+    world.resource_mut::<TypedDrag>().clear();
     world.resource_mut::<Gesture>().end();
     true
 }

@@ -5,14 +5,21 @@
 //! stand-in. What the stand-in does, the selection does.
 
 mod aim;
+mod arrange;
 mod bodies;
+mod focus;
 mod gizmo;
 mod grips;
+mod hold;
 mod surface;
+mod typed;
 
 pub(super) use aim::aim;
+pub(super) use focus::{focus, new_lens};
 pub(super) use gizmo::cancel;
 pub(super) use grips::{Grip, GripDrag, grip_at, grips_of_selection};
+pub(super) use hold::take_hold;
+pub(super) use typed::{TypedDrag, type_into_drag};
 
 use super::command::{AddCommands, Command, Over, State, commands};
 use super::schedule::{Dispatch, EditorUpdate};
@@ -52,6 +59,8 @@ pub struct Tools {
     pub turn_step: f32,
     /// A step of the factor.
     pub scale_step: f32,
+    /// Scaling along one axis scales the others as much.
+    pub scale_linked: bool,
     /// The selection turns and scales around the middle of its places, instead of the active one's.
     pub around_middle: bool,
 }
@@ -65,6 +74,7 @@ impl Default for Tools {
             move_step: 0.1,
             turn_step: PI / 12.0,
             scale_step: 0.1,
+            scale_linked: false,
             around_middle: true,
         }
     }
@@ -82,8 +92,10 @@ impl Plugin for HandlesPlugin {
         app.add_plugins(HandleCameraPlugin)
             .init_resource::<Tools>()
             .add_commands(commands())
+            .add_commands(arrange::commands())
             .init_resource::<ActiveGrip>()
             .init_resource::<gizmo::GizmoDrag>()
+            .init_resource::<TypedDrag>()
             .add_systems(Startup, gizmo::spawn_stand_in)
             .add_systems(
                 EditorUpdate,
@@ -110,11 +122,11 @@ impl Plugin for HandlesPlugin {
 
 fn commands() -> Vec<Command> {
     commands! {
-        "tool.move" "Move" ["W"] "Drag the arrows to move the selection"
+        "tool.move" "Move" ["W"] "Drag the arrows to move the selection; a number that is typed meanwhile says how far"
             => |world| world.resource_mut::<Tools>().tool = Tool::Move; button("tools", "Move"); state(|world| has(world, Tool::Move)),
-        "tool.turn" "Turn" ["E"] "Drag the rings to turn the selection"
+        "tool.turn" "Turn" ["E"] "Drag the rings to turn the selection; a number that is typed meanwhile says by how many degrees"
             => |world| world.resource_mut::<Tools>().tool = Tool::Turn; button("tools", "Turn"); state(|world| has(world, Tool::Turn)),
-        "tool.scale" "Scale" ["T"] "Drag the cubes to scale the selection"
+        "tool.scale" "Scale" ["T"] "Drag the cubes to scale the selection; a number that is typed meanwhile says how many times"
             => |world| world.resource_mut::<Tools>().tool = Tool::Scale; button("tools", "Scale"); state(|world| has(world, Tool::Scale)),
         "tool.local" "World or local axes" ["L"] "Whether handles follow the world's axes or the object's own"
             => |world| flip(&mut world.resource_mut::<Tools>().local); button("tools", "Local"); state(|world| State::switch(world.resource::<Tools>().local)),
@@ -122,6 +134,8 @@ fn commands() -> Vec<Command> {
             => |world| flip(&mut world.resource_mut::<Tools>().snap); button("tools", "Snap"); state(|world| State::switch(world.resource::<Tools>().snap)),
         "tool.aim" "Aim at…" [] "The next click in the view turns the selected lights and cameras to what is there"
             => aim::arm; menu("Edit", 2); over(&[Over::Entity]); state(aim::may_aim),
+        "tool.focus" "Focus on…" [] "The next click in the view is what the selected cameras see sharp"
+            => focus::arm; menu("Edit", 2); over(&[Over::Entity]); state(focus::may_focus),
     }
 }
 

@@ -14,6 +14,7 @@ pub(super) use name::{letter_key, named_key};
 
 use super::action::Action;
 use super::command::CommandTable;
+use super::handles::type_into_drag;
 use super::notice::Notices;
 use super::pointer::{self, PointerUse};
 use super::preferences::Preferences;
@@ -122,7 +123,7 @@ fn press_keys(
             shift: modifiers.shift,
             key: meant_key(&input),
         };
-        if record(world, keys) {
+        if record(world, keys) || !keys.ctrl && type_into_drag(world, &input) {
             continue;
         }
         let viewport = world.resource::<Viewport>();

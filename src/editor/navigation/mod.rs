@@ -20,7 +20,7 @@ pub(super) use lens::{field_of_view, set_field_of_view, widen};
 
 use super::command::AddCommands;
 use super::document::SceneOpened;
-use super::edits::AddAt;
+use super::edits::{AddAt, ModelAdded};
 use super::extent::scene_extent;
 use super::schedule::{Dispatch, EditorUpdate};
 use super::viewport::Viewport;
@@ -52,6 +52,7 @@ impl Plugin for NavigationPlugin {
             .init_resource::<drag::FlySpeed>()
             .init_resource::<framing::Framings>()
             .add_observer(start)
+            .add_observer(show_model)
             .add_commands(commands::commands())
             .add_systems(
                 EditorUpdate,
@@ -60,6 +61,7 @@ impl Plugin for NavigationPlugin {
                     drag::fly,
                     through::see_through,
                     settle,
+                    settle_model,
                     aim_additions,
                 )
                     .chain()
@@ -89,6 +91,8 @@ pub struct LookThrough {
     drags: bool,
     /// Frames until the scene that was opened last has its places and sizes.
     settles: u32,
+    /// Frames until a model that was imported has them, and is framed.
+    frames_model: u32,
 }
 
 /// For a scene that was just opened: looks through its first camera, or at all of it where it has
@@ -133,6 +137,24 @@ fn settle(world: &mut World) {
         let ahead = ahead.min(eye::DISTANCE[1]);
         eye.pivot = eye.position() + forward * ahead;
         eye.distance = ahead;
+    }
+}
+
+/// A model that was imported is to be seen: where it stands somewhere else, and where the view is inside of it.
+fn show_model(added: On<ModelAdded>, eye: Res<Eye>, mut through: ResMut<LookThrough>) {
+    if !added.is_fitted || added.extent.contains(eye.position()) {
+        through.frames_model = SETTLE;
+    }
+}
+
+fn settle_model(world: &mut World) {
+    let frames = world.resource::<LookThrough>().frames_model;
+    if frames == 0 {
+        return;
+    }
+    world.resource_mut::<LookThrough>().frames_model = frames - 1;
+    if frames == 1 {
+        framing::frame(world, false);
     }
 }
 

@@ -66,6 +66,7 @@ pub(super) fn armed_ui(context: &egui::Context, world: &World) {
         None | Some(Armed::No) => return,
         Some(Armed::Why) => "Click a pixel: why has it its value? (Esc: none)",
         Some(Armed::Aim) => "Click what shall be aimed at (Esc: nothing)",
+        Some(Armed::Focus) => "Click what shall be sharp (Esc: nothing)",
     };
     let pointer = context.pointer_latest_pos();
     let Some(at) = pointer.filter(|_| world.resource::<Viewport>().hovered) else {

@@ -13,11 +13,13 @@
 //! | [`reflected`] | rows of what the schema does not know: parts of an app's own components |
 //! | [`inspector`] | the tabs Object, Render, Debug and BVH |
 //! | [`status`] | the line below |
-//! | [`overlays`], [`compare`], [`notices`] | divider, legend, region, a kept picture, messages over the picture |
+//! | [`overlays`], [`notices`] | divider, legend, region, messages over the picture |
+//! | [`compare`] | pictures that were kept, in place of the new one and beside it |
 //! | [`line_legend`], [`pattern`] | what the tracer's lines mean, and where a pixel's samples lie |
 //! | [`tree_pair`] | which builder's trees are on which side |
 //! | [`rays`] | the ray inspector, below the picture or over it |
 //! | [`answer`], [`first_steps`] | why a pixel is as it is; three things to try |
+//! | [`typed_drag`] | the number that is typed while a handle is dragged |
 //! | [`told`], [`readout`] | what is under the pointer: a line of the gizmos, a pixel |
 //! | [`context_menu`], [`palette`] | the table of commands: what fits a right click, and all of it |
 //! | [`mixer`] | what each light adds, and a mix of them, in a window over the picture |
@@ -54,11 +56,13 @@ mod says;
 mod several;
 mod state;
 mod status;
+mod temperature;
 mod theme;
 mod told;
 mod toolbar;
 mod tree_pair;
 mod turn;
+mod typed_drag;
 
 #[cfg(test)]
 mod tests;
@@ -121,7 +125,7 @@ fn order_pass(app: &mut App) {
 fn add_panels(app: &mut App) {
     app.init_resource::<OnlyPicture>()
         .init_resource::<answer::Answer>()
-        .init_resource::<compare::KeptPicture>()
+        .init_resource::<compare::KeptPictures>()
         .init_resource::<context_menu::ContextMenu>()
         .init_resource::<dialogs::Dialogs>()
         .init_resource::<first_steps::FirstSteps>()
@@ -149,6 +153,7 @@ fn add_panels(app: &mut App) {
         .add_observer(mixer::forget_scene)
         .add_commands(commands::commands())
         .add_commands(mixer::commands())
+        .add_commands(compare::commands())
         .add_observer(commands::let_go)
         .add_observer(answer::note_question)
         .add_observer(answer::forget_question)
@@ -188,6 +193,7 @@ fn panels_ui(context: &egui::Context, world: &mut World) {
     };
     compare::compare_ui(&mut ui, free, world);
     let over_overlay = overlays::overlays_ui(&mut ui, free, world, only_picture);
+    typed_drag::typed_drag_ui(&ui, free, world);
     with(world, |world, under| {
         readout::readout_ui(&ui, free, world, under)
     });
@@ -198,6 +204,7 @@ fn panels_ui(context: &egui::Context, world: &mut World) {
         rays::window_ui(context, free, world, panel)
     });
     mixer::mixer_ui(context, free, world);
+    compare::window_ui(context, free, world);
     with(world, |world, menu| {
         context_menu::context_menu_ui(context, world, menu)
     });
@@ -287,10 +294,28 @@ fn around_ui(ui: &mut egui::Ui, world: &mut World, preferences: &Preferences) ->
 /// frame by frame, and the picture would start over with each.
 fn contained(ui: &mut egui::Ui, body: impl FnOnce(&mut egui::Ui)) {
     let room = ui.available_rect_before_wrap();
+    within_room(ui, room, body);
+    ui.advance_cursor_after_rect(room);
+}
+
+/// The same of the width alone: a window is as high as what is in it.
+fn contained_in_width(ui: &mut egui::Ui, body: impl FnOnce(&mut egui::Ui)) {
+    let mut room = ui.available_rect_before_wrap();
+    room.max.y = f32::INFINITY;
+    let bottom = within_room(ui, room, body).bottom();
+    ui.advance_cursor_after_rect(room.with_max_y(bottom));
+}
+
+/// Draws in a part of it, and returns what was drawn in.
+fn within_room(
+    ui: &mut egui::Ui,
+    room: egui::Rect,
+    body: impl FnOnce(&mut egui::Ui),
+) -> egui::Rect {
     let mut inner = ui.new_child(egui::UiBuilder::new().max_rect(room));
     inner.shrink_clip_rect(room);
     body(&mut inner);
-    ui.advance_cursor_after_rect(room);
+    inner.min_rect()
 }
 
 /// Tells the rest of the editor where the picture is, and whether pointer and keys are meant for it.

@@ -1,6 +1,5 @@
 //! Below the menu: handles, what the view shows, and how the traced picture is developed.
 
-use super::compare::keep_ui;
 use super::fields::number_row;
 use super::menu_bar::menu_ui;
 use super::number_field::NumberField;
@@ -119,7 +118,7 @@ fn traced_ui(ui: &mut Ui, world: &mut World) {
         };
         view.region = None;
     }
-    keep_ui(ui, world);
+    group_ui(ui, world, "kept");
     if view != before {
         let mut query = world.query_filtered::<&mut TracedView, With<EditorCamera>>();
         if let Ok(mut traced) = query.single_mut(world) {

@@ -59,6 +59,7 @@ pub(super) fn answer_target(world: &mut World, at: Vec2) {
             }
         }
         Armed::Aim => handles::aim(world, at),
+        Armed::Focus => handles::focus(world, at),
     }
 }
 

@@ -23,7 +23,6 @@ use bevy::ecs::resource::Resource;
 use bevy::ecs::schedule::IntoScheduleConfigs;
 use bevy::ecs::system::{Local, Res, ResMut};
 use bevy::ecs::world::World;
-use bevy::gizmos::transform_gizmo::TransformGizmoState;
 use bevy::input::ButtonState;
 use bevy::input::mouse::{MouseButton, MouseScrollUnit};
 use bevy::math::{Rect, Vec2};
@@ -88,6 +87,8 @@ pub(super) enum Armed {
     Why,
     /// What the selected lights and cameras shall look at.
     Aim,
+    /// What the selected cameras shall see sharp.
+    Focus,
 }
 
 /// It was asked why the pixel there has its value; its rays are being traced.
@@ -222,8 +223,7 @@ fn take_hold(world: &mut World, at: Vec2) -> PointerUse {
     {
         return PointerUse::Grip(drag);
     }
-    let gizmo = world.resource::<TransformGizmoState>();
-    if gizmo.active || gizmo.hovered_axis.is_some() {
+    if handles::take_hold(world, at) {
         return PointerUse::Gizmo;
     }
     PointerUse::Click { at }

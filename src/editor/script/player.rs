@@ -71,6 +71,7 @@ pub(super) struct Player {
 enum Move {
     To(Vec2),
     Button(Button, ButtonState),
+    PressAt(Button, Vec2),
     Key(KeyCode, ButtonState),
     Letter(char, ButtonState),
     Wheel(f32),
@@ -188,6 +189,11 @@ fn begin(world: &mut World, player: &mut Player, step: Step) -> Result<(), Strin
             player
                 .moves
                 .push_back(Move::Button(button, ButtonState::Pressed));
+        }
+        Step::PressAt(button, spot) => {
+            let at = place(world, &spot)?;
+            player.moves.push_back(Move::PressAt(button, at));
+            player.settle();
         }
         Step::Release(button) => {
             player
@@ -337,6 +343,11 @@ fn make(
             player.at = at;
         }
         Move::Button(button, state) => press(world, window, button, state),
+        Move::PressAt(button, at) => {
+            move_pointer(world, window, player.at, at);
+            player.at = at;
+            press(world, window, button, ButtonState::Pressed);
+        }
         Move::Key(key, state) => {
             if key == KeyCode::ShiftLeft {
                 player.shift = state == ButtonState::Pressed;

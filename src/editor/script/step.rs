@@ -16,6 +16,8 @@ pub(super) enum Step {
     DoubleClick(Spot),
     /// Presses a button where the pointer is.
     Press(Button),
+    /// Moves it and presses within one frame, as a person does where frames are slow.
+    PressAt(Button, Spot),
     Release(Button),
     /// Presses at the first, moves to the second, releases.
     Drag(Spot, Spot),

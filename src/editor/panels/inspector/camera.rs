@@ -3,7 +3,10 @@
 use super::super::fields::{row, section};
 use super::super::says::Says;
 use super::super::several::Several;
+use super::command_button;
+use super::switches::switches_ui;
 use crate::editor::action::Action;
+use crate::editor::handles::new_lens;
 use crate::scene::schema::about_type;
 use crate::scene::{Lens, Projection, SceneCamera, SceneId};
 use bevy::ecs::component::{Component, Mutable};
@@ -18,12 +21,16 @@ pub(super) fn camera_ui(ui: &mut Ui, world: &mut World, entities: &[Entity]) {
         return;
     };
     section(ui, "Camera", true, |ui| {
-        let says = "Shows the scene as this camera sees it";
-        if ui.button("Look through").says(says).clicked()
-            && let Some(id) = first_camera(world, entities)
-        {
-            world.write_message(Action::LookThrough(Some(id)));
-        }
+        ui.horizontal_wrapped(|ui| {
+            let says = "Shows the scene as this camera sees it";
+            if ui.button("Look through").says(says).clicked()
+                && let Some(id) = first_camera(world, entities)
+            {
+                world.write_message(Action::LookThrough(Some(id)));
+            }
+            command_button(ui, world, "tool.aim");
+            command_button(ui, world, "tool.focus");
+        });
         projection_ui(ui, &mut several);
         several.properties(ui, &["shutter_open", "shutter_close"]);
     });
@@ -33,9 +40,17 @@ pub(super) fn camera_ui(ui: &mut Ui, world: &mut World, entities: &[Entity]) {
         .copied()
         .filter(|&entity| world.get::<SceneCamera>(entity).is_some())
         .collect();
-    optional_ui::<Lens>(ui, world, &cameras, "Lens", |ui, several| {
-        several.properties(ui, &["aperture_radius", "focus_distance", "samples"]);
-    });
+    optional_ui::<Lens>(
+        ui,
+        world,
+        &cameras,
+        "Lens",
+        new_lens,
+        |ui, world, several| {
+            switches_ui(ui, world, "Its blur", &["features.lens"]);
+            several.properties(ui, &["aperture_radius", "focus_distance", "samples"]);
+        },
+    );
 }
 
 /// Of what is selected, the active one first, the first that is a camera.
@@ -66,15 +81,16 @@ fn projection_ui(ui: &mut Ui, several: &mut Several<SceneCamera>) {
     );
 }
 
-/// A component that some have and others do not: buttons add and remove it.
+/// A component that some have and others do not: buttons add it, as `new` makes it, and remove it.
 pub(super) fn optional_ui<C>(
     ui: &mut Ui,
     world: &mut World,
     entities: &[Entity],
     name: &str,
-    body: impl FnOnce(&mut Ui, &mut Several<C>),
+    new: impl Fn(&mut World, Entity) -> C,
+    body: impl FnOnce(&mut Ui, &mut World, &mut Several<C>),
 ) where
-    C: Component<Mutability = Mutable> + Clone + PartialEq + Default + Typed,
+    C: Component<Mutability = Mutable> + Clone + PartialEq + Typed,
 {
     if entities.is_empty() {
         return;
@@ -85,7 +101,8 @@ pub(super) fn optional_ui<C>(
         row(ui, name, says, |ui| {
             if ui.button("Add").says(says).clicked() {
                 for &entity in entities {
-                    world.entity_mut(entity).insert(C::default());
+                    let added = new(world, entity);
+                    world.entity_mut(entity).insert(added);
                 }
             }
         });
@@ -94,7 +111,7 @@ pub(super) fn optional_ui<C>(
     let mut remove = false;
     let mut complete = false;
     section(ui, name, true, |ui| {
-        body(ui, &mut several);
+        body(ui, world, &mut several);
         ui.horizontal(|ui| {
             remove = ui.small_button("Remove").says("Takes it away").clicked();
             if several.count() < entities.len() {
@@ -108,7 +125,8 @@ pub(super) fn optional_ui<C>(
         if remove {
             world.entity_mut(entity).remove::<C>();
         } else if complete && world.get::<C>(entity).is_none() {
-            world.entity_mut(entity).insert(C::default());
+            let added = new(world, entity);
+            world.entity_mut(entity).insert(added);
         }
     }
 }

@@ -1,32 +1,118 @@
-//! The four kinds of light.
+//! The four kinds of light, with what can be said of them in other words than their own: a temperature, a size.
 
-use super::super::fields::{color_ui, row, section, switch};
+use super::super::fields::{color_ui, number, number_row, row, section, switch};
 use super::super::several::Several;
+use super::super::temperature::{self, OF_LIGHTS, luminance};
+use super::command_button;
 use crate::scene::schema::Property;
-use crate::scene::{DirectionalLamp, ParallelogramLamp, PointLamp, SegmentLamp};
-use bevy::color::LinearRgba;
+use crate::scene::{DirectionalLamp, ParallelogramLamp, PointLamp, Quantity, SegmentLamp};
+use bevy::color::{ColorToComponents, LinearRgba};
 use bevy::ecs::component::{Component, Mutable};
 use bevy::ecs::entity::Entity;
 use bevy::ecs::world::World;
+use bevy::math::Vec3;
 use bevy::reflect::{Reflect, Typed};
 use bevy_egui::egui::Ui;
 
 pub(super) fn lamps_ui(ui: &mut Ui, world: &mut World, entities: &[Entity]) {
     lamp_ui::<PointLamp>(ui, world, entities, "Point light", |ui, several| {
-        several.properties(ui, &["color", "intensity"]);
+        several.properties(ui, &["color"]);
+        temperature_ui(ui, several, |lamp| std::slice::from_mut(&mut lamp.color));
+        several.properties(ui, &["intensity"]);
         cone_ui(ui, several);
     });
     lamp_ui::<DirectionalLamp>(ui, world, entities, "Directional light", |ui, several| {
-        several.properties(ui, &["color", "intensity", "angular_diameter", "samples"]);
+        several.properties(ui, &["color"]);
+        temperature_ui(ui, several, |lamp| std::slice::from_mut(&mut lamp.color));
+        several.properties(ui, &["intensity", "angular_diameter", "samples"]);
     });
     lamp_ui::<SegmentLamp>(ui, world, entities, "Segment light", |ui, several| {
-        several.properties(ui, &["colors", "intensity", "ends", "samples"]);
+        several.properties(ui, &["colors"]);
+        temperature_ui(ui, several, |lamp| &mut lamp.colors);
+        several.properties(ui, &["intensity"]);
+        length_ui(ui, several);
+        several.properties(ui, &["ends", "samples"]);
     });
     lamp_ui::<ParallelogramLamp>(ui, world, entities, "Parallelogram light", |ui, several| {
         colors_ui(ui, several);
-        let shape = ["intensity", "corner", "edges"];
-        several.properties(ui, &shape);
-        several.properties(ui, &["two_sided", "visible", "samples"]);
+        temperature_ui(ui, several, |lamp| &mut lamp.colors);
+        several.properties(ui, &["intensity"]);
+        size_ui(ui, several);
+        let rest = ["corner", "edges", "two_sided", "visible", "samples"];
+        several.properties(ui, &rest);
+    });
+    let is_lamp = |&entity: &Entity| {
+        let entity = world.entity(entity);
+        let shines_to_a_side =
+            entity.contains::<DirectionalLamp>() || entity.contains::<ParallelogramLamp>();
+        let lamp = entity.get::<PointLamp>();
+        shines_to_a_side || lamp.is_some_and(|lamp| lamp.cone.is_some())
+    };
+    if entities.iter().any(is_lamp) {
+        command_button(ui, world, "tool.aim");
+    }
+}
+
+/// How hot a body is that glows so: what is entered colours the whole light, and leaves it as bright.
+fn temperature_ui<L>(
+    ui: &mut Ui,
+    several: &mut Several<L>,
+    colors: impl Fn(&mut L) -> &mut [LinearRgba],
+) where
+    L: Component<Mutability = Mutable> + Clone + PartialEq,
+{
+    let linear = |color: &LinearRgba| Vec3::from_array(color.to_f32_array_no_alpha());
+    let mut active = several.first().clone();
+    let mut kelvin = temperature::nearest(linear(&colors(&mut active)[0]));
+    let says = "Colours the light as a body of this temperature glows, as bright as it was: a candle has 1900 K, a bulb 2800, noon 5500, a blue sky 12000";
+    if number_row(ui, "Temperature", says, &mut kelvin, OF_LIGHTS) {
+        let glow = temperature::color(kelvin);
+        several.change(|lamp| {
+            for color in colors(lamp) {
+                let [red, green, blue] = (glow * luminance(linear(color))).to_array();
+                *color = LinearRgba::new(red, green, blue, color.alpha);
+            }
+        });
+    }
+}
+
+/// How long a segment is: its middle stays.
+fn length_ui(ui: &mut Ui, several: &mut Several<SegmentLamp>) {
+    let [a, b] = several.first().ends;
+    let mut length = a.distance(b);
+    let says = "From end to end, in the light's own space; its middle stays where it is";
+    if number_row(ui, "Length", says, &mut length, Quantity::EXTENT) {
+        several.change(|lamp| {
+            let [a, b] = lamp.ends;
+            if let Some(along) = (b - a).try_normalize() {
+                let (middle, half) = (0.5 * (a + b), 0.5 * length * along);
+                lamp.ends = [middle - half, middle + half];
+            }
+        });
+    }
+}
+
+/// How long the edges of a parallelogram are: its middle and their directions stay.
+fn size_ui(ui: &mut Ui, several: &mut Several<ParallelogramLamp>) {
+    let says =
+        "Lengths of edge A and of edge B, in the light's own space; the middle stays where it is";
+    let mut sides = several.first().edges.map(Vec3::length);
+    let changed = row(ui, "Size", says, |ui| {
+        let [a, b] = &mut sides;
+        let a = number(ui, "Length of edge A", a, Quantity::EXTENT).then_some(0);
+        ui.weak("×");
+        let b = number(ui, "Length of edge B", b, Quantity::EXTENT).then_some(1);
+        a.or(b)
+    });
+    let Some(changed) = changed else {
+        return;
+    };
+    several.change(|lamp| {
+        let before = lamp.edges[changed];
+        if let Some(along) = before.try_normalize() {
+            lamp.edges[changed] = along * sides[changed];
+            lamp.corner += 0.5 * (before - lamp.edges[changed]);
+        }
     });
 }
 

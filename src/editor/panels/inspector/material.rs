@@ -6,7 +6,8 @@ use super::super::says::Says;
 use super::super::several::Several;
 use super::maps::Thumbnails;
 use super::material_maps::{alpha_ui, maps_ui};
-use super::presets::PRESETS;
+use super::presets::{PRESETS, Preset};
+use super::switches::switches_ui;
 use crate::editor::texts::counted;
 use crate::scene::{MeshSource, Phong, PhongMaps, SceneId, UsesMaterial};
 use bevy::ecs::entity::Entity;
@@ -16,11 +17,18 @@ use bevy::platform::collections::HashSet;
 use bevy_egui::egui::{ComboBox, Ui};
 use std::sync::Arc;
 
+/// The preset that a material was given last.
+pub(super) struct ChosenPreset {
+    owner: Entity,
+    preset: &'static Preset,
+}
+
 pub(super) fn material_ui(
     ui: &mut Ui,
     world: &mut World,
     entities: &[Entity],
     thumbnails: &mut Thumbnails,
+    chosen: &mut Option<ChosenPreset>,
 ) {
     let mut seen = HashSet::new();
     let owners: Vec<Entity> = entities
@@ -39,6 +47,10 @@ pub(super) fn material_ui(
                 for preset in PRESETS {
                     if ui.button(preset.name).says(preset.says).clicked() {
                         several.change(|phong| preset.apply(phong));
+                        *chosen = Some(ChosenPreset {
+                            owner: owners[0],
+                            preset,
+                        });
                         ui.close();
                     }
                 }
@@ -46,6 +58,9 @@ pub(super) fn material_ui(
             .response
             .says(says);
         });
+        if let Some(chosen) = chosen.as_ref().filter(|chosen| chosen.owner == owners[0]) {
+            switches_ui(ui, world, chosen.preset.name, chosen.preset.needs);
+        }
         fields_ui(ui, &mut several);
         let maps = world
             .get::<PhongMaps>(owners[0])

@@ -24,11 +24,14 @@ mod render;
 mod save_text;
 mod shape;
 mod still_plot;
+mod switches;
 mod transform;
 
 use super::number_field::set_owner;
 use super::says::Says;
 use super::state::Renaming;
+use crate::editor::action::Action;
+use crate::editor::command::{find, tooltip};
 use crate::editor::document::SceneOpened;
 use crate::editor::selection::Selection;
 use bevy::ecs::observer::On;
@@ -59,12 +62,14 @@ pub(super) struct Inspector {
     pub tab: Tab,
     /// A name that is being typed.
     naming: Option<Renaming>,
+    preset: Option<material::ChosenPreset>,
     thumbnails: Thumbnails,
 }
 
 /// Another scene was opened: the numbers of its entities are those of others.
 pub(super) fn forget_scene(_: On<SceneOpened>, mut panel: ResMut<Inspector>) {
     panel.naming = None;
+    panel.preset = None;
     panel.thumbnails.forget_fields();
 }
 
@@ -106,4 +111,16 @@ pub(super) fn inspector_ui(ui: &mut Ui, world: &mut World, panel: &mut Inspector
             Tab::Debug => debug::debug_ui(ui, world),
             Tab::Bvh => bvh::bvh_ui(ui, world),
         });
+}
+
+/// A button that runs a command; faint where that cannot be run.
+fn command_button(ui: &mut Ui, world: &mut World, id: &'static str) {
+    let Some(command) = find(world, id) else {
+        return;
+    };
+    let ready = command.state_in(world).why_not.is_none();
+    let button = ui.add_enabled(ready, egui::Button::new(&*command.name));
+    if button.says(&tooltip(world, id)).clicked() {
+        world.write_message(Action::run(id));
+    }
 }

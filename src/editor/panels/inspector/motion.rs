@@ -3,9 +3,11 @@
 use super::super::fields::row;
 use super::super::says::Says;
 use super::camera::optional_ui;
+use super::switches::switches_ui;
+use crate::editor::extent::{extent_of, scene_extent, world_from_parent};
 use crate::editor::inspection::column::vector_text;
 use crate::scene::{
-    DirectionalLamp, MeshSource, Motion, ParallelogramLamp, Phong, PointLamp, SceneCamera,
+    DirectionalLamp, MeshSource, Motion, ParallelogramLamp, Phong, PointLamp, SceneCamera, SceneId,
     SegmentLamp,
 };
 use crate::sync::WorldMotions;
@@ -27,9 +29,38 @@ pub(super) fn motion_ui(ui: &mut Ui, world: &mut World, entities: &[Entity]) {
             ui.weak(vector_text(velocity)).says(says)
         });
     }
-    optional_ui::<Motion>(ui, world, &movable, "Motion", |ui, several| {
-        several.properties(ui, &["velocity", "samples"]);
-    });
+    optional_ui::<Motion>(
+        ui,
+        world,
+        &movable,
+        "Motion",
+        new_motion,
+        |ui, world, several| {
+            switches_ui(ui, world, "Its smear", &["features.motion"]);
+            several.properties(ui, &["velocity", "samples"]);
+        },
+    );
+}
+
+/// A motion that is seen: along the world's x by half of the room that it takes with what hangs below, or, where that is a
+/// point, by a twentieth of the scene's.
+fn new_motion(world: &mut World, entity: Entity) -> Motion {
+    let id = world.get::<SceneId>(entity).copied();
+    let own = id.and_then(|id| extent_of(world, &[id]));
+    let own = own.map(|own| own.radius()).filter(|radius| *radius > 0.0);
+    let way = own.or_else(|| Some(0.1 * scene_extent(world)?.radius()));
+    let way = way.filter(|way| *way > 0.0).unwrap_or(0.1);
+    let parent_from_world = world_from_parent(world, entity).affine().inverse();
+    let velocity = parent_from_world.transform_vector3(way * Vec3::X);
+    Motion {
+        // What hangs below something without size moves nowhere.
+        velocity: if velocity.is_finite() {
+            velocity
+        } else {
+            Vec3::ZERO
+        },
+        ..Motion::default()
+    }
 }
 
 /// Whether a motion of it can be seen: of itself, or of what hangs below it. A material stands nowhere, and a
@@ -83,5 +114,27 @@ mod tests {
         assert!(is_movable(&world, sun), "it carries a lamp");
         world.despawn(lamps[1]);
         assert!(!is_movable(&world, lamps[1]), "it is gone");
+    }
+
+    #[test]
+    fn a_new_motion_moves_by_as_much_as_is_seen_in_the_world_whatever_it_hangs_on() {
+        use bevy::transform::components::{GlobalTransform, Transform};
+        let mut world = World::new();
+        let half = Transform::from_scale(Vec3::splat(0.5));
+        let parent = world.spawn((SceneId(1), half)).id();
+        let ends = [Vec3::ZERO, Vec3::Y * 4.0];
+        let lamp = SegmentLamp {
+            ends,
+            ..SegmentLamp::default()
+        };
+        let place = (Transform::default(), GlobalTransform::from(half));
+        let lamp = world.spawn((SceneId(2), lamp, place, ChildOf(parent))).id();
+        // Two metres in the world, of which its half is one: two of its parent's.
+        assert_eq!(new_motion(&mut world, lamp).velocity, 2.0 * Vec3::X);
+        // A point moves by a part of the scene.
+        let at = (Transform::default(), GlobalTransform::default());
+        let point = world.spawn((SceneId(3), PointLamp::default(), at)).id();
+        let way = new_motion(&mut world, point).velocity.x;
+        assert!((0.05..1.0).contains(&way), "{way} m");
     }
 }

@@ -76,7 +76,13 @@ pub(super) fn object_ui(ui: &mut Ui, world: &mut World, panel: &mut Inspector) {
     lamps::lamps_ui(ui, world, &entities);
     camera::camera_ui(ui, world, &entities);
     shape::shape_ui(ui, world, &entities);
-    material::material_ui(ui, world, &entities, &mut panel.thumbnails);
+    material::material_ui(
+        ui,
+        world,
+        &entities,
+        &mut panel.thumbnails,
+        &mut panel.preset,
+    );
     motion::motion_ui(ui, world, &entities);
     foreign::foreign_ui(ui, world, &entities);
 }

@@ -13,7 +13,14 @@ pub(super) struct Preset {
     shininess: f32,
     opacity: f32,
     emission: [f32; 3],
+    /// The switches of the render without which it does not look so.
+    pub needs: &'static [&'static str],
 }
+
+const MIRRORS: &str = "features.mirrors";
+const GLOSSY: &str = "features.glossy";
+const TRANSPARENCY: &str = "features.transparency";
+const TRANSLUCENCY: &str = "features.translucency";
 
 /// What has neither highlight nor glow, and is opaque.
 const PLAIN: Preset = Preset {
@@ -25,6 +32,7 @@ const PLAIN: Preset = Preset {
     shininess: 10.0,
     opacity: 1.0,
     emission: [0.0; 3],
+    needs: &[],
 };
 
 /// In the order of the menu.
@@ -49,15 +57,17 @@ pub(super) const PRESETS: &[Preset] = &[
         specular: [0.12; 3],
         mirror: [0.12; 3],
         shininess: 400.0,
+        needs: &[MIRRORS],
         ..PLAIN
     },
     Preset {
         name: "Mirror",
-        says: "Reflects nearly everything; needs the switch Mirrors",
+        says: "Reflects nearly everything",
         diffuse: [0.0; 3],
         specular: [0.95; 3],
         mirror: [0.95; 3],
         shininess: 10_000.0,
+        needs: &[MIRRORS],
         ..PLAIN
     },
     Preset {
@@ -67,15 +77,17 @@ pub(super) const PRESETS: &[Preset] = &[
         specular: [0.85, 0.60, 0.22],
         mirror: [0.85, 0.60, 0.22],
         shininess: 300.0,
+        needs: &[MIRRORS],
         ..PLAIN
     },
     Preset {
         name: "Brushed metal",
-        says: "A grey mirror that blurs, with the switch Glossy",
+        says: "A grey mirror that blurs",
         diffuse: [0.08; 3],
         specular: [0.6, 0.6, 0.62],
         mirror: [0.6, 0.6, 0.62],
         shininess: 25.0,
+        needs: &[MIRRORS, GLOSSY],
         ..PLAIN
     },
     Preset {
@@ -86,15 +98,17 @@ pub(super) const PRESETS: &[Preset] = &[
         mirror: [0.12; 3],
         shininess: 1000.0,
         opacity: 0.15,
+        needs: &[MIRRORS, TRANSPARENCY],
         ..PLAIN
     },
     Preset {
         name: "Frosted",
-        says: "Lets light through, blurred with the switch Translucency",
+        says: "Lets light through, and blurs what is behind it",
         diffuse: [0.85, 0.9, 0.92],
         specular: [0.04; 3],
         shininess: 12.0,
         opacity: 0.3,
+        needs: &[TRANSPARENCY, TRANSLUCENCY],
         ..PLAIN
     },
     Preset {
@@ -125,8 +139,9 @@ impl Preset {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::TextureSource;
+    use crate::scene::{RenderSettings, TextureSource};
     use bevy::color::ColorToComponents;
+    use bevy::reflect::GetPath;
 
     #[test]
     fn every_preset_is_within_the_ranges_of_a_material_and_keeps_the_maps() {
@@ -149,6 +164,14 @@ mod tests {
             );
             assert!(phong.shininess >= 1.0, "{}", preset.name);
             assert!((0.0..=1.0).contains(&phong.opacity), "{}", preset.name);
+            for switch in preset.needs {
+                let settings = RenderSettings::default();
+                assert!(
+                    settings.path::<bool>(*switch).is_ok(),
+                    "{}: {switch}",
+                    preset.name
+                );
+            }
         }
     }
 }

@@ -1,7 +1,7 @@
 //! What the mixer sets: factors of lights that the scene does not have until they are baked into it.
 
+use super::super::temperature::{self, WHITE};
 use super::sketches::Sketches;
-use super::temperature::{self, WHITE};
 use crate::editor::edits::scene_entity;
 use crate::editor::history::History;
 use crate::editor::notice::Notices;

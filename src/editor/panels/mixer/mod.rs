@@ -8,7 +8,6 @@
 //! | [`sketches`] | the lights' own pictures |
 //! | [`strip`] | the row of a light |
 //! | [`groups`] | which lights stand together, by their names |
-//! | [`temperature`] | the colour of a glowing body |
 //! | [`commands`] | its rows in the table of commands |
 
 mod commands;
@@ -16,12 +15,12 @@ mod groups;
 mod mix;
 mod sketches;
 mod strip;
-mod temperature;
 
 #[cfg(test)]
 mod tests;
 
 use super::says::Says;
+use super::temperature::luminance;
 use crate::editor::action::Action;
 use crate::editor::document::SceneOpened;
 use crate::editor::preferences::Preferences;
@@ -33,13 +32,15 @@ use bevy::ecs::observer::On;
 use bevy::ecs::query::With;
 use bevy::ecs::system::ResMut;
 use bevy::ecs::world::{Mut, World};
-use bevy::math::Vec3;
 use bevy_egui::egui::{self, Button, RichText, ScrollArea, Ui, UiBuilder, vec2};
 use groups::{Row, rows_of};
 use mix::{LightRow, lights};
 
 pub(super) use commands::commands;
 pub(super) use mix::{Mixer, apply};
+
+/// Of the picture's height, what the rows take at most.
+const PART: f32 = 0.6;
 
 /// The mix of another scene says nothing about this one.
 pub(super) fn forget_scene(_: On<SceneOpened>, mixer: Option<ResMut<Mixer>>) {
@@ -56,17 +57,19 @@ pub(super) fn mixer_ui(context: &egui::Context, free: egui::Rect, world: &mut Wo
     world.resource_scope(|world, mut mixer: Mut<Mixer>| {
         let mut is_open = true;
         let most = (free.size() - vec2(20.0, 60.0)).max(vec2(300.0, 160.0));
+        // As high as its rows, and where they are many most of the picture stays to be seen.
+        let rows = (PART * free.height()).clamp(100.0, most.y - 60.0);
         egui::Window::new("Light mixer")
             .id(egui::Id::new("light mixer"))
             .open(&mut is_open)
             .collapsible(true)
-            .default_size(vec2(420.0, 440.0).min(most))
+            .default_width(420_f32.min(most.x))
             .default_pos(free.min + vec2(12.0, 12.0))
-            .min_size(vec2(300.0, 140.0))
-            .max_size(most)
-            .resizable(true)
+            .min_width(300.0)
+            .max_width(most.x)
+            .resizable([true, false])
             .show(context, |ui| {
-                super::contained(ui, |ui| inner_ui(ui, world, &mut mixer));
+                super::contained_in_width(ui, |ui| inner_ui(ui, rows, world, &mut mixer));
             });
         mixer.is_open = is_open;
     });
@@ -78,7 +81,8 @@ fn film_of(world: &mut World) -> Option<FilmMemory> {
     Some(renders.single(world).ok()?.render()?.memory())
 }
 
-fn inner_ui(ui: &mut Ui, world: &mut World, mixer: &mut Mixer) {
+/// `most` is the height that the rows take at most: the others are scrolled to.
+fn inner_ui(ui: &mut Ui, most: f32, world: &mut World, mixer: &mut Mixer) {
     let lights = lights(world);
     update_sketches(ui.ctx(), world, mixer, &lights);
     let film = film_of(world);
@@ -96,20 +100,23 @@ fn inner_ui(ui: &mut Ui, world: &mut World, mixer: &mut Mixer) {
         let color = ui.visuals().warn_fg_color;
         ui.add(egui::Label::new(RichText::new(why).color(color)).wrap());
     }
-    let bar = egui::Frame::new().inner_margin(egui::Margin::symmetric(0, 3));
-    egui::Panel::bottom("foot of the light mixer")
-        .frame(bar)
-        .show_inside(ui, |ui| foot_ui(ui, world, mixer));
     if lights.is_empty() {
         ui.weak("The scene has no lights.");
-        return;
+    } else {
+        rows_ui(ui, most, world, mixer, &lights);
     }
+    ui.separator();
+    foot_ui(ui, world, mixer);
+}
+
+fn rows_ui(ui: &mut Ui, most: f32, world: &mut World, mixer: &mut Mixer, lights: &[LightRow]) {
     let shares = Shares::of(mixer);
-    let rows = rows_of(&lights, &mixer.folded);
+    let rows = rows_of(lights, &mixer.folded);
     let heights: f32 = rows.iter().map(Row::height).sum();
     ScrollArea::vertical()
         .id_salt("rows of the light mixer")
-        .auto_shrink([false, false])
+        .auto_shrink([false, true])
+        .max_height(most)
         .show_viewport(ui, |ui, seen| {
             let (width, corner) = (ui.available_width(), ui.max_rect().min);
             ui.set_height(heights);
@@ -158,11 +165,6 @@ fn update_sketches(
 struct Shares {
     own: Option<f32>,
     lights: Vec<(SceneId, f32)>,
-}
-
-/// How bright a colour is (Rec. 709).
-fn luminance(color: Vec3) -> f32 {
-    color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
 impl Shares {

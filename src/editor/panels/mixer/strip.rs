@@ -3,9 +3,9 @@
 use super::super::fields::{color_ui, number, number_row, row};
 use super::super::number_field::set_owner;
 use super::super::says::Says;
+use super::super::temperature::{RANGE, WHITE};
 use super::mix::{LightRow, Mixer};
 use super::sketches::Sketch;
-use super::temperature::{RANGE, WHITE};
 use super::{Shares, share_text};
 use crate::editor::action::Action;
 use crate::scene::Quantity;

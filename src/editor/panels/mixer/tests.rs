@@ -199,3 +199,29 @@ fn of_a_thousand_lights_only_those_rows_are_laid_out_that_are_seen() {
     desk.click_on("⏷ Bulb (1000)");
     assert!(desk.find("Bulb 0").is_none(), "folded");
 }
+
+#[test]
+fn the_window_is_as_high_as_its_rows_and_leaves_most_of_the_picture_where_they_are_many() {
+    let mut desk = open();
+    let (_, _, name) = lamp(&mut desk);
+    let height = |desk: &Desk| {
+        let foot = desk.place_of("Bake into the lights").y;
+        foot - desk.place_of("Light mixer").y
+    };
+    let below = desk.place_of("Bake into the lights").y - desk.place_of("Colour").y;
+    // A row ends some points below its last line.
+    assert!((0.0..80.0).contains(&below), "{below} points below {name}");
+    let low = height(&desk);
+    for number in 0..30 {
+        desk.world().spawn((
+            SceneId(10_000 + number),
+            Name::new(format!("Light {}", char::from(b'a' + number as u8))),
+            PointLamp::default(),
+            Transform::default(),
+        ));
+    }
+    desk.settle();
+    let high = height(&desk);
+    assert!(high > low + 100.0, "{low} points, and {high}");
+    assert!(high < 0.75 * desk.size[1], "{high} points");
+}

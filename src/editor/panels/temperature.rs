@@ -1,11 +1,14 @@
 //! The colour of a glowing body.
 
+use crate::scene::Quantity;
 use bevy::math::Vec3;
 
 /// The temperature whose light counts as white, in kelvin: another one multiplies a light by what differs from it.
 pub(super) const WHITE: f32 = 6500.0;
 /// What [`factor`] is known of.
 pub(super) const RANGE: [f32; 2] = [1667.0, 25_000.0];
+/// What a light's own temperature may be: a screen shows no redder white.
+pub(super) const OF_LIGHTS: Quantity = Quantity::within(2000.0, RANGE[1] as f64, "K").step(20.0);
 
 /// What a light is multiplied by, linear RGB, so that what was as a body of 6500 K shines as one of this temperature does, of
 /// the same luminance. Kelvin, brought into [`RANGE`].
@@ -19,7 +22,7 @@ pub(super) fn factor(kelvin: f32) -> Vec3 {
 
 /// Linear sRGB of luminance 1. The chromaticity is that of Kim et al., "Design of Advanced Color Temperature Control System
 /// for HDTV Applications" (2002): cubics that follow Planck's law to about 0.001 in x and y.
-fn color(kelvin: f32) -> Vec3 {
+pub(super) fn color(kelvin: f32) -> Vec3 {
     let t = 1e3 / kelvin;
     let x = if kelvin < 4000.0 {
         ((-0.266_123_9 * t - 0.234_358_9) * t + 0.877_695_6) * t + 0.179_910
@@ -42,6 +45,34 @@ fn color(kelvin: f32) -> Vec3 {
     Vec3::new(red, green, blue).max(Vec3::ZERO)
 }
 
+/// How bright a colour is (Rec. 709).
+pub(super) fn luminance(color: Vec3) -> f32 {
+    color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
+}
+
+/// The temperature whose light has the same ratio of red to blue, within [`OF_LIGHTS`]; [`WHITE`] of what is black. A colour
+/// that no body has by glowing, green for example, is taken for the nearest in that.
+pub(super) fn nearest(linear: Vec3) -> f32 {
+    if linear.x <= 0.0 && linear.z <= 0.0 {
+        return WHITE;
+    }
+    let is_redder = |kelvin: f32| {
+        let body = color(kelvin);
+        body.x * linear.z > linear.x * body.z
+    };
+    let [mut cool, mut hot] = [OF_LIGHTS.least as f32, OF_LIGHTS.most as f32];
+    // Halved so often, the two are neighbours in f32.
+    for _ in 0..40 {
+        let middle = 0.5 * (cool + hot);
+        if is_redder(middle) {
+            cool = middle;
+        } else {
+            hot = middle;
+        }
+    }
+    0.5 * (cool + hot)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -56,7 +87,7 @@ mod tests {
             let ratio = light.x / light.z.max(1e-6);
             assert!(ratio < before, "{kelvin} K: {light}");
             before = ratio;
-            let luminance = color(kelvin).dot(Vec3::new(0.2126, 0.7152, 0.0722));
+            let luminance = luminance(color(kelvin));
             assert!((luminance - 1.0).abs() < 0.02, "{kelvin} K: {luminance}");
         }
         assert_eq!(factor(WHITE), Vec3::ONE);
@@ -65,5 +96,22 @@ mod tests {
         let lamp = color(2856.0);
         let expected = Vec3::new(1.845, 0.826, 0.233);
         assert!((lamp - expected).abs().max_element() < 0.01, "{lamp}");
+    }
+
+    #[test]
+    fn the_temperature_of_a_glowing_bodys_colour_is_found_again_however_bright_it_is() {
+        for kelvin in [2000.0, 2856.0, 4000.0, 6500.0, 12_000.0, 25_000.0] {
+            for brightness in [0.01, 1.0, 300.0] {
+                let found = nearest(brightness * color(kelvin));
+                let error = (found / kelvin - 1.0).abs();
+                assert!(error < 1e-3, "{kelvin} K at {brightness}: {found} K");
+            }
+        }
+        assert_eq!(nearest(Vec3::ZERO), WHITE);
+        let [red, blue] = [Vec3::X, Vec3::Z].map(nearest);
+        assert!(
+            (red - 2000.0).abs() < 1.0 && (blue - 25_000.0).abs() < 1.0,
+            "{red} {blue}"
+        );
     }
 }

@@ -1,0 +1,276 @@
+//! Several objects in one line, at equal distances, or on what is below them.
+
+use super::super::command::{Command, State};
+use super::super::edits::{name_of, roots_of, scene_entity, step};
+use super::super::extent::{Extent, extent_of, world_from_parent};
+use super::super::notice::Notices;
+use super::super::selection::Selection;
+use super::bodies::{Body, Change};
+use crate::bvh::Ray;
+use crate::scene::SceneId;
+use crate::sync::Traced;
+use crate::view;
+use bevy::ecs::entity::Entity;
+use bevy::ecs::hierarchy::ChildOf;
+use bevy::ecs::world::World;
+use bevy::math::Vec3;
+use bevy::transform::components::Transform;
+
+/// Surfaces of its own that an object may have between its middle and what is below it.
+const MOST_OWN: usize = 256;
+
+const AXES: [(&str, Vec3); 3] = [("x", Vec3::X), ("y", Vec3::Y), ("z", Vec3::Z)];
+
+/// Commands for each axis, and one for the floor.
+pub(super) fn commands() -> Vec<Command> {
+    let mut all = vec![
+        Command::new(
+            "arrange.put-down",
+            "Put on what is below",
+            "The selected objects go down, or up, until they stand on what is below their middle",
+            put_down,
+        )
+        .keys(&["End"])
+        .menu("Edit/Arrange", 0)
+        .state(|world| ready(world, 1)),
+    ];
+    for (name, axis) in AXES {
+        let id = format!("arrange.align-{name}");
+        let title = format!("Align in {name}");
+        let help = format!("The middles of the selected objects get the active one's {name}");
+        let run = move |world: &mut World| align(world, name, axis);
+        let row = Command::new(id, title, help, run).menu("Edit/Arrange", 1);
+        all.push(row.state(|world| ready(world, 2)));
+    }
+    for (name, axis) in AXES {
+        let id = format!("arrange.distribute-{name}");
+        let title = format!("Distribute in {name}");
+        let help = format!(
+            "The middles of the selected objects get equal distances in {name}; the first and the last stay"
+        );
+        let run = move |world: &mut World| distribute(world, name, axis);
+        let row = Command::new(id, title, help, run).menu("Edit/Arrange", 2);
+        all.push(row.state(|world| ready(world, 3)));
+    }
+    all
+}
+
+fn ready(world: &World, least: usize) -> State {
+    let enough = world.resource::<Selection>().ids().len() >= least;
+    let why_not = match least {
+        1 => "Nothing is selected.",
+        2 => "Two objects have to be selected.",
+        _ => "Three objects have to be selected.",
+    };
+    State::when(enough, why_not)
+}
+
+/// The selected objects that do not hang on others of them, and the room that each takes; the active one is the last.
+fn selected(world: &mut World) -> Vec<(SceneId, Extent)> {
+    let roots = roots_of(world, world.resource::<Selection>().ids());
+    let places = roots.into_iter().filter(|id| {
+        let entity = scene_entity(world, *id);
+        entity.is_some_and(|entity| world.get::<Transform>(entity).is_some())
+    });
+    let places: Vec<SceneId> = places.collect();
+    let with_extent = |id| Some((id, extent_of(world, &[id])?));
+    places.into_iter().filter_map(with_extent).collect()
+}
+
+/// Moves it in the world; `false` where it stays.
+fn shift(world: &mut World, id: SceneId, by: Vec3) -> bool {
+    let Some(entity) = scene_entity(world, id) else {
+        return false;
+    };
+    let Some(&own) = world.get::<Transform>(entity) else {
+        return false;
+    };
+    let world_from_parent = world_from_parent(world, entity);
+    let body = Body {
+        own,
+        world_from_parent,
+    };
+    let moved = body.changed(Change::Move(by), Vec3::ZERO);
+    let Some(moved) = moved.filter(|moved| *moved != own) else {
+        return false;
+    };
+    if let Some(mut own) = world.get_mut::<Transform>(entity) {
+        *own = moved;
+    }
+    true
+}
+
+/// Moves all, as one step.
+fn shift_all(world: &mut World, verb: &str, moves: Vec<(SceneId, Vec3)>) {
+    step(world, |world| {
+        let moved = moves.into_iter().filter(|(id, by)| shift(world, *id, *by));
+        let moved: Vec<(SceneId, Vec3)> = moved.collect();
+        match moved.as_slice() {
+            [] => None,
+            [(one, _)] => Some(format!("{verb}: {}", name_of(world, *one))),
+            several => Some(format!("{verb}: {} objects", several.len())),
+        }
+    });
+}
+
+fn align(world: &mut World, name: &str, axis: Vec3) {
+    let all = selected(world);
+    let Some((_, active)) = all.last() else {
+        return;
+    };
+    let wanted = active.centre();
+    let moves = all
+        .iter()
+        .map(|(id, own)| (*id, axis * (wanted - own.centre())));
+    let moves = moves.collect();
+    shift_all(world, &format!("Align in {name}"), moves);
+}
+
+fn distribute(world: &mut World, name: &str, axis: Vec3) {
+    let mut all = selected(world);
+    let at = |extent: &Extent| extent.centre().dot(axis);
+    all.sort_by(|(_, a), (_, b)| at(a).total_cmp(&at(b)));
+    let ([(_, first), .., (_, last)], count) = (all.as_slice(), all.len()) else {
+        return;
+    };
+    let (from, to) = (at(first), at(last));
+    let moves = all.iter().enumerate().map(|(i, (id, own))| {
+        let wanted = from + (to - from) * i as f32 / (count - 1) as f32;
+        (*id, axis * (wanted - at(own)))
+    });
+    // The first and the last stay, bit for bit.
+    let moves = moves.skip(1).take(count - 2).collect();
+    shift_all(world, &format!("Distribute in {name}"), moves);
+}
+
+/// What hangs on an entity, and itself.
+fn is_below(world: &World, mut entity: Entity, root: Entity) -> bool {
+    loop {
+        if entity == root {
+            return true;
+        }
+        match world.get::<ChildOf>(entity) {
+            Some(parent) => entity = parent.parent(),
+            None => return false,
+        }
+    }
+}
+
+/// The height of what is below a point and is not of these.
+fn below(world: &World, from: Vec3, own: Entity) -> Option<f32> {
+    let traced = &world.resource::<Traced>().world;
+    let mut from = from;
+    // Instances may share a surface's height: none of them is met twice.
+    for _ in 0..MOST_OWN {
+        let met = view::pick(traced, &Ray::new(from, Vec3::NEG_Y))?;
+        let is_own = scene_entity(world, met.id).is_some_and(|entity| is_below(world, entity, own));
+        if !is_own {
+            return Some(met.point.y);
+        }
+        let step = 1e-6 * (1.0 + met.point.y.abs().max(from.y.abs()));
+        from.y = (met.point.y - step).min(from.y - step);
+    }
+    None
+}
+
+fn put_down(world: &mut World) {
+    let all = selected(world);
+    let moves = all.iter().filter_map(|(id, own)| {
+        let entity = scene_entity(world, *id)?;
+        let floor = below(world, own.centre(), entity)?;
+        Some((*id, Vec3::Y * (floor - own.least.y)))
+    });
+    let moves: Vec<(SceneId, Vec3)> = moves.collect();
+    if moves.is_empty() && !all.is_empty() {
+        let text = "There is nothing below what is selected.";
+        world.resource_mut::<Notices>().tell(text);
+        return;
+    }
+    shift_all(world, "Put down", moves);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::headless_editor;
+    use crate::editor::history::undo;
+    use crate::io::{OpenOptions, SceneSource, builtin, open};
+    use crate::scene::PointLamp;
+    use bevy::app::App;
+    use bevy::ecs::name::Name;
+
+    fn lamps(places: &[Vec3]) -> App {
+        let mut app = headless_editor();
+        for (i, place) in places.iter().enumerate() {
+            let lamp = (SceneId(1 + i as u64), PointLamp::default());
+            app.world_mut()
+                .spawn((lamp, Transform::from_translation(*place)));
+        }
+        app.update();
+        let ids = (1..=places.len() as u64).map(SceneId);
+        app.world_mut().resource_mut::<Selection>().set(ids);
+        app
+    }
+
+    fn places(app: &App, count: u64) -> Vec<Vec3> {
+        let place = |id| {
+            let entity = scene_entity(app.world(), SceneId(id)).unwrap();
+            app.world().get::<Transform>(entity).unwrap().translation
+        };
+        (1..=count).map(place).collect()
+    }
+
+    #[test]
+    fn objects_get_the_active_ones_coordinate_and_undo_gives_it_back() {
+        let before = [Vec3::new(1.0, 2.0, 3.0), Vec3::new(-4.0, 5.0, 6.0)];
+        let mut app = lamps(&before);
+        align(app.world_mut(), "y", Vec3::Y);
+        let expected = [Vec3::new(1.0, 5.0, 3.0), before[1]];
+        assert_eq!(places(&app, 2), expected);
+        assert!(undo(app.world_mut()));
+        assert_eq!(places(&app, 2), before);
+    }
+
+    #[test]
+    fn those_between_the_first_and_the_last_get_equal_distances() {
+        let before = [9.0, 0.0, 1.0, 8.0].map(|x| Vec3::new(x, x, 0.0));
+        let mut app = lamps(&before);
+        distribute(app.world_mut(), "x", Vec3::X);
+        let after = places(&app, 4);
+        let xs: Vec<f32> = after.iter().map(|place| place.x).collect();
+        assert_eq!(xs, [9.0, 0.0, 3.0, 6.0]);
+        assert!(
+            after
+                .iter()
+                .zip(before)
+                .all(|(now, before)| now.y == before.y)
+        );
+    }
+
+    #[test]
+    fn a_block_in_the_air_and_one_sunk_into_the_floor_are_put_onto_it() {
+        let mut app = headless_editor();
+        let source = SceneSource::Builtin(builtin::find("cornell-box").unwrap());
+        open(app.world_mut(), &source, OpenOptions::default()).unwrap();
+        app.update();
+        let mut named = app.world_mut().query::<(Entity, &SceneId, &Name)>();
+        let found = named
+            .iter(app.world())
+            .find(|(_, _, name)| name.as_str() == "Short block");
+        let (block, id, _) = found.unwrap();
+        let id = *id;
+        app.world_mut().resource_mut::<Selection>().set([id]);
+        for height in [0.2, -0.05] {
+            app.world_mut()
+                .get_mut::<Transform>(block)
+                .unwrap()
+                .translation
+                .y = height;
+            app.update();
+            app.update();
+            put_down(app.world_mut());
+            let now = app.world().get::<Transform>(block).unwrap().translation.y;
+            assert!(now.abs() < 1e-4, "from {height} m to {now} m");
+        }
+    }
+}

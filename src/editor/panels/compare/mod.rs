@@ -1,0 +1,194 @@
+//! Pictures of the traced view that are kept: one is shown in place of the view while a key is held, so that whether an edit
+//! changed anything is seen at once, and a window compares any two by numbers.
+//!
+//! | module | has |
+//! |---|---|
+//! | [`difference`] | two pictures as one, and in figures |
+//! | [`histogram`] | how often each brightness is there |
+//! | [`zoom`] | a picture to look into, down to the numbers of a pixel |
+//! | [`window`] | all of them together |
+
+mod difference;
+mod histogram;
+mod window;
+mod zoom;
+
+use crate::editor::command::{Command, State, commands};
+use crate::editor::document::SceneOpened;
+use crate::editor::notice::Notices;
+use crate::editor::viewport::{EditorCamera, Viewport};
+use crate::view::{TracedPicture, TracedRender, TracedView};
+use bevy::ecs::observer::On;
+use bevy::ecs::query::With;
+use bevy::ecs::resource::Resource;
+use bevy::ecs::system::ResMut;
+use bevy::ecs::world::World;
+use bevy_egui::egui::{
+    self, Align2, Color32, ColorImage, FontId, Rect, TextureHandle, TextureOptions, Ui, pos2, vec2,
+};
+use window::Comparison;
+
+pub(super) use window::window_ui;
+
+/// How many are kept; the oldest goes then. One of two megapixels takes 32 MB.
+const MOST: usize = 8;
+
+/// The pictures that were kept, the oldest first.
+#[derive(Resource, Default)]
+pub(super) struct KeptPictures {
+    all: Vec<Kept>,
+    /// How many were kept so far.
+    count: u32,
+    comparison: Option<Comparison>,
+}
+
+/// A picture of one moment.
+struct Kept {
+    /// The first one that was kept has 1.
+    number: u32,
+    name: String,
+    picture: TracedPicture,
+    /// As egui knows it, once it was shown.
+    texture: Option<TextureHandle>,
+}
+
+impl Kept {
+    fn texture(&mut self, context: &egui::Context) -> TextureHandle {
+        let picture = &self.picture;
+        let texture = self.texture.get_or_insert_with(|| {
+            let image = color_image(picture);
+            context.load_texture(&self.name, image, PIXELS)
+        });
+        texture.clone()
+    }
+}
+
+/// Smooth where it is small, and pixels where it is large.
+const PIXELS: TextureOptions = TextureOptions {
+    magnification: egui::TextureFilter::Nearest,
+    minification: egui::TextureFilter::Linear,
+    wrap_mode: egui::TextureWrapMode::ClampToEdge,
+    mipmap_mode: None,
+};
+
+fn color_image(picture: &TracedPicture) -> ColorImage {
+    let size = picture.size();
+    ColorImage::from_rgba_unmultiplied([size.x as usize, size.y as usize], &picture.shown)
+}
+
+impl KeptPictures {
+    fn add(&mut self, picture: TracedPicture, samples: f64) {
+        self.count += 1;
+        if self.all.len() == MOST {
+            self.all.remove(0);
+        }
+        self.all.push(Kept {
+            number: self.count,
+            name: format!("{}: {} spp", self.count, samples.floor()),
+            picture,
+            texture: None,
+        });
+    }
+
+    fn find(&self, number: u32) -> Option<&Kept> {
+        self.all.iter().find(|kept| kept.number == number)
+    }
+}
+
+pub(super) fn commands() -> Vec<Command> {
+    commands! {
+        "compare.keep" "Keep this picture" [] "Keeps the traced picture as it is now: hold C to see it in place of the new one, or compare the two"
+            => keep; menu("View", 4); button("kept", "Keep"); state(has_a_picture),
+        "compare.open" "Compare pictures" ["Shift+C"] "Shows two pictures and where they differ: by how much, in which pixels, in which brightness"
+            => flip_window; menu("View", 4); button("kept", "Compare"); state(is_comparing),
+        "compare.forget" "Forget the kept pictures" [] "Takes all pictures away that were kept"
+            => |world| *world.resource_mut::<KeptPictures>() = KeptPictures::default(); menu("View", 4); state(has_kept),
+    }
+}
+
+fn has_a_picture(world: &World) -> State {
+    let renders = world.try_query_filtered::<&TracedRender, With<EditorCamera>>();
+    let any = renders.is_some_and(|mut all| all.iter(world).any(|one| one.status().is_some()));
+    State::when(any, "The view shows no traced picture.")
+}
+
+fn has_kept(world: &World) -> State {
+    let any = !world.resource::<KeptPictures>().all.is_empty();
+    State::when(any, "No picture was kept.")
+}
+
+fn is_comparing(world: &World) -> State {
+    let kept = world.resource::<KeptPictures>();
+    let ready = !kept.all.is_empty() || kept.comparison.is_some();
+    State {
+        on: Some(kept.comparison.is_some()),
+        ..State::when(ready, "No picture was kept: Keep does.")
+    }
+}
+
+fn keep(world: &mut World) {
+    let Some((picture, samples)) = picture_now(world) else {
+        return;
+    };
+    let mut kept = world.resource_mut::<KeptPictures>();
+    kept.add(picture, samples);
+    let text = format!("Kept picture {}: hold C to see it.", kept.count);
+    world.resource_mut::<Notices>().tell(text);
+}
+
+/// The view's picture, and how many samples each pixel has.
+fn picture_now(world: &mut World) -> Option<(TracedPicture, f64)> {
+    let mut renders = world.query_filtered::<&TracedRender, With<EditorCamera>>();
+    let render = renders.single(world).ok()?;
+    Some((render.picture()?, render.status()?.samples))
+}
+
+fn flip_window(world: &mut World) {
+    let mut kept = world.resource_mut::<KeptPictures>();
+    kept.comparison = match kept.comparison {
+        Some(_) => None,
+        None => kept.all.last().map(|last| Comparison::new(last.number)),
+    };
+}
+
+/// They show another scene.
+pub(super) fn forget_scene(_: On<SceneOpened>, mut kept: ResMut<KeptPictures>) {
+    if kept.count > 0 {
+        *kept = KeptPictures::default();
+    }
+}
+
+/// Shows the picture that was kept last while C is held.
+pub(super) fn compare_ui(ui: &mut Ui, free: Rect, world: &mut World) {
+    if world.resource::<KeptPictures>().all.is_empty() {
+        return;
+    }
+    let held = ui.input(|input| input.key_down(egui::Key::C) && input.modifiers.is_none());
+    if !held || !world.resource::<Viewport>().takes_keys {
+        return;
+    }
+    let mut query = world.query_filtered::<&TracedView, With<EditorCamera>>();
+    let divider = query.single(world).map_or(0.0, |view| view.divider);
+    if divider >= 1.0 {
+        return;
+    }
+    let mut kept = world.resource_mut::<KeptPictures>();
+    let Some(last) = kept.all.last_mut() else {
+        return;
+    };
+    let texture = last.texture(ui.ctx()).id();
+    let name = format!("kept picture {}", last.name);
+    // Its own part of the picture, where the view is split.
+    let part = Rect::from_min_max(pos2(divider, 0.0), pos2(1.0, 1.0));
+    let place = Rect::from_min_max(
+        pos2(free.min.x + divider * free.width(), free.min.y),
+        free.max,
+    );
+    let painter = ui.painter();
+    painter.image(texture, place, part, Color32::WHITE);
+    let at = pos2(place.center().x, place.max.y - 14.0);
+    let back = Rect::from_center_size(at, vec2(170.0, 20.0));
+    painter.rect_filled(back, 4.0, Color32::from_black_alpha(170));
+    let font = FontId::proportional(13.0);
+    painter.text(at, Align2::CENTER_CENTER, name, font, Color32::WHITE);
+}
