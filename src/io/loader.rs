@@ -1,5 +1,5 @@
 use super::budget::mesh_bytes;
-use super::error::{FileError, Problem};
+use super::error::{FileError, Place, Problem};
 use super::file_name::{BUILTIN, split_fragment};
 use super::folder::Folder;
 use super::model::Model;
@@ -10,8 +10,8 @@ use bevy::image::Image;
 use bevy::mesh::Mesh;
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
-use std::io::BufReader;
-use std::path::PathBuf;
+use std::io::{BufReader, Read};
+use std::path::{Path, PathBuf};
 
 /// Loads what sources name, and parses each model file once however many of its meshes are asked
 /// for, and once more for its pictures. Lives as long as one pass over the changed sources.
@@ -126,24 +126,47 @@ fn shape_error(error: shapes::ShapeError) -> FileError {
 /// How the files end that hold models, and not scenes.
 pub(crate) const MODEL_EXTENSIONS: [&str; 5] = ["obj", "gltf", "glb", "stl", "ply"];
 
-/// Reads a model file of any kind, by its extension.
+/// Reads a model file of any kind, by its extension, unless it begins like one of another kind.
 pub(crate) fn read_model(
-    file: &std::path::Path,
+    file: &Path,
     folder: &Folder,
     limits: &Limits,
 ) -> Result<Model, FileError> {
     let extension = extension(file);
-    match extension.as_str() {
+    let held = held_kind(file, &extension);
+    let mut model = match held.unwrap_or(&extension) {
         "obj" => obj::read_obj(file, folder, limits),
         "gltf" | "glb" => gltf::read_gltf(file, folder, limits),
         "stl" => stl::read_stl(file, limits),
         "ply" => ply::read_ply(file, folder, limits),
-        _ => Err(FileError::new(
-            file,
-            Problem::UnknownExtension {
-                extension,
-                wanted: "models; .obj, .gltf, .glb, .stl and .ply are",
-            },
-        )),
+        _ => {
+            let wanted = "models; .obj, .gltf, .glb, .stl and .ply are";
+            let problem = Problem::UnknownExtension { extension, wanted };
+            return Err(FileError::new(file, problem));
+        }
+    }?;
+    if let Some(kind) = held {
+        let what = format!("a name that ends in .{extension}, and the content of a .{kind}");
+        (model.notes).add(file, Place::Whole, what, "read as what it holds");
     }
+    Ok(model)
+}
+
+/// The kind of a model whose name says another, by how it begins; `None` where it does not say.
+fn held_kind(file: &Path, extension: &str) -> Option<&'static str> {
+    const KINDS: [(&[u8], &str, &[&str]); 5] = [
+        // What files begin with that are no text may be anything.
+        (b"glTF\x02\0\0\0", "glb", &["obj", "stl", "ply"]),
+        (b"ply\n", "ply", &["obj", "gltf", "glb", "stl"]),
+        (b"ply\r", "ply", &["obj", "gltf", "glb", "stl"]),
+        (b"solid ", "stl", &["obj", "gltf", "glb", "ply"]),
+        (b"{", "gltf", &["obj", "ply"]),
+    ];
+    let mut start = [0; 8];
+    let mut reader = open_regular(file).ok()?;
+    let length = reader.read(&mut start).ok()?;
+    let begins = |kind: &&(&[u8], _, &[&str])| {
+        kind.2.contains(&extension) && start[..length].starts_with(kind.0)
+    };
+    KINDS.iter().find(begins).map(|&(_, kind, _)| kind)
 }

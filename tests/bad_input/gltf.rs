@@ -75,6 +75,34 @@ fn a_buffer_that_is_shorter_than_it_claims() {
     let (folder, file) = changed(|_| {});
     write(folder.path(), "a.bin", [0_u8; 41]);
     says(&refused(&file), &["a.gltf", "buffer 0", "41 of 42 bytes"]);
+    let (_folder, file) = changed(|document| document["buffers"][0]["byteLength"] = json!(60));
+    let note = ["a.gltf: buffer 0", "fewer bytes than it says"];
+    assert_eq!(opens_and_says(&file, &note), 1, "all that is used is there");
+}
+
+#[test]
+fn a_buffer_whose_data_is_not_in_base64() {
+    let escaped: String = bytes([0, 1, 2])
+        .iter()
+        .map(|b| format!("%{b:02x}"))
+        .collect();
+    let uri = format!("data:application/octet-stream,{escaped}");
+    let (_folder, file) = changed(|document| document["buffers"][0]["uri"] = json!(uri));
+    let (mut app, opened) = opened(&file);
+    assert_eq!(crate::files::models::objects(app.world_mut())[0].2.len(), 1);
+    let told = opened.notes.lines();
+    assert!(told.iter().all(|note| note.contains("added")), "{told:?}");
+}
+
+#[test]
+fn a_primitive_of_a_mode_that_there_is_not_is_left_out() {
+    let (_folder, file) = changed(|document| {
+        let primitive = json!({ "attributes": { "POSITION": 0 }, "mode": 7 });
+        let primitives = &mut document["meshes"][0]["primitives"];
+        primitives.as_array_mut().unwrap().push(primitive);
+    });
+    let note = ["Mesh0/Primitive1", "`mode` that glTF does not have"];
+    assert_eq!(opens_and_says(&file, &note), 1);
 }
 
 #[test]
@@ -382,6 +410,53 @@ fn a_glb_that_ends_too_early() {
     for length in [3, 11, 19, 40, whole.len() / 2, whole.len() - 1] {
         std::fs::write(&glb, &whole[..length]).unwrap();
         says(&refused(&glb), &["a.glb"]);
+    }
+}
+
+#[test]
+fn a_glb_whose_lengths_are_not_the_files_is_read_as_far_as_it_is_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut text = serde_json::to_vec(&triangle()).unwrap();
+    let uri = br#","uri":"a.bin""#;
+    let at = text.windows(uri.len()).position(|part| part == uri);
+    let at = at.expect("the buffer's file");
+    text.splice(at..at + uri.len(), []);
+    text.resize(text.len().next_multiple_of(4), b' ');
+    let mut blob = bytes([0, 1, 2]);
+    blob.resize(44, 0);
+    let glb = |total: i64, blob_size: usize, tail: &[u8]| {
+        let whole = 28 + text.len() + blob.len() + tail.len();
+        let total = (whole as i64 + total) as u32;
+        let mut out = [*b"glTF", 2_u32.to_le_bytes(), total.to_le_bytes()].concat();
+        out.extend((text.len() as u32).to_le_bytes());
+        out.extend(b"JSON");
+        out.extend(&text);
+        out.extend((blob_size as u32).to_le_bytes());
+        out.extend(b"BIN\0");
+        out.extend(&blob);
+        out.extend(tail);
+        write(folder.path(), "a.glb", out)
+    };
+    let whole = glb(0, 44, &[]);
+    let (_, opened) = opened(&whole);
+    let told = opened.notes.lines();
+    assert!(told.iter().all(|note| note.contains("added")), "{told:?}");
+    let past_the_json = -8 - blob.len() as i64;
+    for (total, blob_size, tail) in [
+        (4, 44, &[][..]),
+        (i64::from(u32::MAX >> 1), 44, &[]),
+        (past_the_json, 44, &[]),
+        (-4, 44, &[]),
+        (0, 48, &[]),
+        (0, 44, &[0, 0]),
+    ] {
+        let file = glb(total, blob_size, tail);
+        let note = ["a.glb", "lengths of its parts", "what is there is read"];
+        assert_eq!(
+            opens_and_says(&file, &note),
+            1,
+            "{total} {blob_size} {tail:?}"
+        );
     }
 }
 

@@ -230,6 +230,8 @@ fn an_mtl_number_that_is_missing_or_none() {
         ("Ns shiny", "`Ns` without a number"),
         ("d", "`d` without a number"),
         ("map_Kd", "`map_Kd` without a picture"),
+        ("illum 99", "an `illum` that is none of 0 to 10"),
+        ("illum -1", "an `illum` that is none of 0 to 10"),
     ] {
         let (_folder, file) = mtl(&format!("newmtl a\n{line}\n"));
         assert_eq!(opens_and_says(&file, &["model.mtl:2", what, "left out"]), 1);

@@ -45,6 +45,44 @@ fn textured_model(folder: &Path) -> std::path::PathBuf {
 }
 
 #[test]
+fn a_model_whose_name_says_another_kind_is_read_as_what_it_holds() {
+    let folder = tempfile::tempdir().unwrap();
+    let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    let (mut source, _) = opened(&write(folder.path(), "a.obj", obj));
+    let glb = folder.path().join("a.glb");
+    save(source.world_mut(), &glb).unwrap_or_else(|error| panic!("{error}"));
+    let glb = std::fs::read(glb).unwrap();
+    let gltf = br#"{"asset":{"version":"2.0"},"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+        "nodes":[{"mesh":0}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":"data:,"#;
+    let corners = [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    let bytes = corners.iter().flat_map(|number| number.to_le_bytes());
+    let escaped: String = bytes.map(|byte| format!("%{byte:02x}")).collect();
+    let gltf = [&gltf[..], escaped.as_bytes(), b"\"}]}"].concat();
+    let ply = b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+        property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
+        0 0 0 1 0 0 0 1 0 3 0 1 2\n";
+    let stl =
+        b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n\
+        endloop\nendfacet\nendsolid a\n";
+    for (content, kind, names) in [
+        (&glb[..], "glb", &["b.obj", "b.stl", "b.ply"][..]),
+        (&gltf, "gltf", &["b.obj", "b.ply"]),
+        (ply, "ply", &["b.obj", "b.stl", "b.gltf", "b.glb"]),
+        (stl, "stl", &["b.obj", "b.ply", "b.gltf", "b.glb"]),
+    ] {
+        for name in names {
+            let (mut app, opened) = opened(&write(folder.path(), name, content));
+            assert_eq!(objects(app.world_mut())[0].2.len(), 1, "{kind} as {name}");
+            let told = opened.notes.lines();
+            let held = format!("the content of a .{kind}");
+            let count = told.iter().filter(|note| note.contains(&held)).count();
+            assert_eq!(count, 1, "{kind} as {name}: {told:?}");
+        }
+    }
+}
+
+#[test]
 fn an_obj_that_goes_through_a_scene_file_and_back_keeps_its_objects() {
     let folder = tempfile::tempdir().unwrap();
     let (mut first, _) = opened(&textured_model(folder.path()));

@@ -123,6 +123,8 @@ fn materials_are_found_wherever_their_library_is_named_and_however_it_is_spelt()
         ("mtllib .\\two.mtl\nusemtl Red Paint#1 # of the wall", ""),
         ("mtllib TWO.mtl\nusemtl red paint#1", ""),
         ("mtllib my lib.mtl\nusemtl Red Paint#1", ""),
+        ("mtllib one.mtl my lib.mtl\nusemtl Red Paint#1", ""),
+        ("mtllib my lib.mtl  one.mtl\nusemtl Red Paint#1", ""),
     ] {
         let text = format!("{head}\n{square}{tail}\n");
         let red: &[u8] = b"newmtl Red Paint#1\nkd 1 0 0\n";

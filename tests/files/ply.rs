@@ -47,6 +47,57 @@ fn corpus(name: &str) -> Vec<u8> {
 }
 
 #[test]
+fn faces_in_front_of_their_vertices_are_the_same_faces() {
+    let face = format!("element face 1\n{FACES}");
+    let vertex = format!("element vertex 4\n{XYZ}");
+    let edge = "element edge 1\nproperty int vertex1\n";
+    let corners = "0 0 0 1 0 0 1 1 0 0 1 0";
+    let (mut behind, _) = open(ascii(
+        &format!("{vertex}{face}"),
+        &format!("{corners} 4 0 1 2 3"),
+    ));
+    let wanted = objects(behind.world_mut())[0].2.clone();
+    assert_eq!(wanted.len(), 2);
+    let text = ascii(&format!("{face}{vertex}"), &format!("4 0 1 2 3 {corners}"));
+    let mut binary = text.replace("ascii", "binary_big_endian").into_bytes();
+    binary.truncate(binary.len() - "4 0 1 2 3 ".len() - corners.len());
+    binary.push(4);
+    binary.extend(
+        [0_i32, 1, 2, 3]
+            .iter()
+            .flat_map(|index| index.to_be_bytes()),
+    );
+    let numbers = corners.split(' ').map(|n| n.parse::<f32>().unwrap());
+    binary.extend(numbers.flat_map(f32::to_be_bytes));
+    for content in [text.into_bytes(), binary] {
+        let (mut app, told) = open(&content);
+        assert_eq!(objects(app.world_mut())[0].2, wanted);
+        assert!(told.is_empty(), "{told:?}");
+    }
+    let text = ascii(
+        &format!("{face}{edge}{vertex}"),
+        &format!("4 0 1 2 3 7 {corners} 9"),
+    );
+    let (mut app, told) = open(text);
+    assert_eq!(objects(app.world_mut())[0].2, wanted);
+    assert_eq!(
+        told.len(),
+        2,
+        "edges, and what is behind, once each: {told:?}"
+    );
+    let cut = ascii(
+        &format!("element face 2\n{FACES}{vertex}"),
+        "3 0 1 2 3 0 2 3 0 0 0 1 0 0 1 1 0",
+    );
+    let (mut app, told) = open(cut);
+    assert_eq!(objects(app.world_mut())[0].2.len(), 1, "{told:?}");
+    assert!(
+        told.iter().any(|note| note.contains("ends too early")),
+        "{told:?}"
+    );
+}
+
+#[test]
 fn binary_of_both_orders_of_bytes_says_the_same_as_text() {
     let text = "element vertex 4\nproperty double x\nproperty double y\nproperty double z\nproperty float nx\n\
         property float ny\nproperty float nz\nelement face 1\nproperty list uchar ushort vertex_index\n\

@@ -60,7 +60,13 @@ impl Document {
     /// Reads a `.gltf` or `.glb` file.
     pub fn read(file: &Path, folder: &Folder, limits: &Limits) -> Result<Self, FileError> {
         let bytes = super::super::read_bytes(file, limits.file_bytes, &limits.memory)?;
-        let (text, blob) = glb::parts(&bytes).map_err(|problem| FileError::new(file, problem))?;
+        let parts = glb::parts(&bytes).map_err(|problem| FileError::new(file, problem))?;
+        let mut notes = Notes::default();
+        if !parts.fits {
+            let what = "lengths of its parts that are not those of the file";
+            notes.add(file, Place::Whole, what, "what is there is read");
+        }
+        let text = parts.json;
         let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
         // Some programs end it as they end a text in memory, or fill it up with zeros.
         let end = text.iter().rposition(|&byte| byte != 0);
@@ -77,8 +83,8 @@ impl Document {
             root,
             marks: Marks::default(),
             buffers: Vec::new(),
-            blob: blob.map(<[u8]>::to_vec),
-            notes: RefCell::default(),
+            blob: parts.blob.map(<[u8]>::to_vec),
+            notes: RefCell::new(notes),
         };
         drop(bytes);
         document.check_version()?;
@@ -197,14 +203,17 @@ impl Document {
             .json()
             .element("bufferViews", index)
             .ok_or_else(missing)?;
-        let buffer = self.buffer(json.index("buffer").ok_or_else(missing)?)?;
+        let number = json.index("buffer").ok_or_else(missing)?;
+        let buffer = self.buffer(number)?;
         let offset = json.index("byteOffset").unwrap_or(0);
         let length = json.index("byteLength").ok_or_else(missing)?;
         let bytes = offset
             .checked_add(length)
             .and_then(|end| buffer.get(offset..end));
-        let bytes = bytes
-            .ok_or_else(|| Problem::Malformed(format!("buffer view {index} leaves its buffer")))?;
+        let bytes = bytes.ok_or_else(|| match self.missing_bytes(number, buffer.len()) {
+            Some(problem) => Problem::Malformed(format!("buffer {number}: {problem}")),
+            None => Problem::Malformed(format!("buffer view {index} leaves its buffer")),
+        })?;
         Ok(View {
             bytes,
             stride: json.index("byteStride").filter(|&stride| stride > 0),
@@ -228,18 +237,14 @@ impl Document {
     fn read_buffer(&self, index: usize) -> Result<Bytes, Problem> {
         let missing = || Problem::Malformed("it is none".to_owned());
         let json = self.json().element("buffers", index).ok_or_else(missing)?;
-        let claimed = json.index("byteLength").unwrap_or(0);
         let bytes = match json.text("uri") {
             None => {
-                let blob = self.blob.as_ref();
-                let there = blob.map_or(0, Vec::len);
-                let is_whole = there >= claimed;
-                return is_whole.then_some(Bytes::OfTheFile).ok_or_else(|| {
-                    Problem::Truncated(format!("{there} of {claimed} bytes are there"))
-                });
+                let there = self.blob.as_ref().map_or(0, Vec::len);
+                self.note_missing_bytes(index, there);
+                return Ok(Bytes::OfTheFile);
             }
             Some(uri) if is_data(uri) => data_of(uri)
-                .ok_or_else(|| Problem::Malformed("its data is not base64".to_owned()))?,
+                .ok_or_else(|| Problem::Malformed("its data cannot be decoded".to_owned()))?,
             Some(uri) => {
                 let path =
                     self.path(uri, &format!("buffer {index}"))
@@ -252,12 +257,25 @@ impl Document {
                     .map_err(|error| error.problem)?
             }
         };
-        if bytes.len() < claimed {
-            let there = bytes.len();
-            let text = format!("{there} of {claimed} bytes are there");
-            return Err(Problem::Truncated(text));
-        }
+        self.note_missing_bytes(index, bytes.len());
         Ok(Bytes::Own(bytes))
+    }
+
+    /// What is wrong with a buffer that has fewer bytes than it says.
+    fn missing_bytes(&self, buffer: usize, there: usize) -> Option<Problem> {
+        let json = self.json().element("buffers", buffer)?;
+        let claimed = json.index("byteLength")?;
+        let text = || format!("{there} of {claimed} bytes are there");
+        (there < claimed).then(|| Problem::Truncated(text()))
+    }
+
+    /// That matters only where what is missing is used.
+    fn note_missing_bytes(&self, buffer: usize, there: usize) {
+        if self.missing_bytes(buffer, there).is_some() {
+            let what = "fewer bytes than it says";
+            let instead = "what is there is read";
+            self.note(&format!("buffer {buffer}"), what, instead);
+        }
     }
 
     /// The path of the file that a URI means, from this file's folder.
@@ -313,7 +331,7 @@ impl Document {
         match image.text("uri") {
             Some(uri) if is_data(uri) => match data_of(uri) {
                 Some(bytes) => Ok(Picture::Inside(Cow::Owned(bytes))),
-                None => malformed(part, "its data is not base64"),
+                None => malformed(part, "its data cannot be decoded"),
             },
             Some(uri) => match self.path(uri, &part) {
                 Ok(path) => Ok(Picture::Beside(path)),

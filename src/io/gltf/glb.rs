@@ -104,11 +104,24 @@ impl Bytes {
     }
 }
 
-/// The JSON of a file and the bytes behind it. A file that is no container is JSON as a whole.
-pub(super) fn parts(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Problem> {
+/// What a file holds.
+pub(super) struct Parts<'a> {
+    pub json: &'a [u8],
+    pub blob: Option<&'a [u8]>,
+    /// Whether the lengths that it gives are those of what is there.
+    pub fits: bool,
+}
+
+/// The JSON of a file and the bytes behind it. A file that is no container is JSON as a whole. Where lengths do not fit
+/// the file, what is there is taken: whether that is enough is seen where it is used.
+pub(super) fn parts(bytes: &[u8]) -> Result<Parts<'_>, Problem> {
     const HEADER: usize = 12;
     let Some((b"glTF", rest)) = bytes.split_at_checked(4) else {
-        return Ok((bytes, None));
+        return Ok(Parts {
+            json: bytes,
+            blob: None,
+            fits: true,
+        });
     };
     let number = |bytes: &[u8], at: usize| {
         let bytes = bytes.get(at..)?.first_chunk()?;
@@ -126,23 +139,34 @@ pub(super) fn parts(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Problem> {
         let text = format!("its header says that the file is {length} bytes long");
         return Err(Problem::Malformed(text));
     }
-    if length > bytes.len() {
-        let text = format!("{} of {length} bytes are there", bytes.len());
-        return Err(Problem::Truncated(text));
-    }
+    let mut fits = length <= bytes.len();
     let (mut json, mut blob) = (None, None);
-    let mut rest = &bytes[HEADER..length];
+    let mut rest = &bytes[HEADER..];
     while !rest.is_empty() {
+        let is_behind = bytes.len() - rest.len() >= length;
+        // Behind its end a file may hold anything; its bytes are looked for there where it has none before.
+        if is_behind && (json.is_none() || blob.is_some()) {
+            break;
+        }
         let (Some(size), Some(kind)) = (number(rest, 0), rest.get(4..8)) else {
-            return Err(Problem::Truncated(
-                "the header of a part is incomplete".into(),
-            ));
+            if json.is_none() {
+                let text = "the header of a part is incomplete";
+                return Err(Problem::Truncated(text.into()));
+            }
+            fits &= is_behind;
+            break;
         };
-        let Some((part, after)) = rest[8..].split_at_checked(size as usize) else {
-            let there = rest.len() - 8;
+        if is_behind && kind != b"BIN\0" {
+            break;
+        }
+        let there = rest.len() - 8;
+        let is_cut = there < size as usize;
+        if is_cut && kind == b"JSON" {
             let text = format!("{there} of a part's {size} bytes are there");
             return Err(Problem::Truncated(text));
-        };
+        }
+        let (part, after) = rest[8..].split_at(there.min(size as usize));
+        fits &= !is_cut && bytes.len() - after.len() <= length;
         match kind {
             b"JSON" if json.is_none() => json = Some(part),
             b"BIN\0" if blob.is_none() => blob = Some(part),
@@ -152,7 +176,7 @@ pub(super) fn parts(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Problem> {
         rest = after;
     }
     let json = json.ok_or_else(|| Problem::Malformed("it has no JSON part".into()))?;
-    Ok((json, blob))
+    Ok(Parts { json, blob, fits })
 }
 
 fn pad(bytes: &mut Vec<u8>, with: u8) {

@@ -32,6 +32,10 @@ pub(super) fn read_primitive(
         document.note(name, "points and lines", "left out");
         return Ok(None);
     }
+    if mode > TRIANGLE_FAN {
+        document.note(name, "a `mode` that glTF does not have", "left out");
+        return Ok(None);
+    }
     let is_compressed = primitive.has_extension(DRACO);
     let attributes = primitive.get("attributes");
     let Some(attributes) = attributes.filter(|attributes| attributes.index("POSITION").is_some())

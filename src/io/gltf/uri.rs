@@ -1,15 +1,15 @@
-//! The two kinds of URI that glTF uses: a relative path with `%` escapes, and data in base64.
+//! The two kinds of URI that glTF uses: a relative path with `%` escapes, and data (RFC 2397), nearly always in base64.
 
 use crate::io::file_name::unescaped;
 
-/// The bytes of a `data:` URI in base64; `None` where it is not one, or is damaged.
+/// The bytes of a `data:` URI; `None` where it is not one, or is damaged.
 pub(super) fn data_of(uri: &str) -> Option<Vec<u8>> {
     if !is_data(uri) {
         return None;
     }
     let (head, text) = uri.split_once(',')?;
     if !head.to_ascii_lowercase().ends_with(";base64") {
-        return None;
+        return Some(unescaped(text));
     }
     // As in any URI, what is no letter or digit may be escaped.
     let unescaped = text.contains('%').then(|| unescaped(text));
@@ -81,7 +81,14 @@ mod tests {
         }
         assert_eq!(data_of("data:a;base64,-_-_"), data_of("data:a;base64,+/+/"));
         assert_eq!(data_of("data:a;base64,Zm9*"), None);
-        assert_eq!(data_of("data:a,Zm9v"), None);
+        assert_eq!(data_of("a;base64,Zm9v"), None);
+    }
+
+    #[test]
+    fn data_without_base64_is_what_stands_there_and_its_escapes() {
+        for uri in ["data:a,fo%89%00%2co", "DATA:,fo%89%00,o"] {
+            assert_eq!(data_of(uri).as_deref(), Some(&b"fo\x89\0,o"[..]), "{uri}");
+        }
     }
 
     #[test]

@@ -132,8 +132,11 @@ impl Reader<'_, '_> {
             b"illum" => {
                 let mut value = None;
                 self.value("illum", rest, &mut value);
-                // Negative numbers become 0, as their models are not known.
-                material.illum = value.map(|value| value as u32).or(material.illum);
+                let known = (0..=10_u32).find(|&model| Some(model as f32) == value);
+                if known.is_none() && value.is_some() {
+                    self.note("an `illum` that is none of 0 to 10", LEFT_OUT);
+                }
+                material.illum = known.or(material.illum);
             }
             b"map_kd" => material.diffuse_map = self.map("map_Kd", rest),
             b"map_d" | b"map_opacity" => material.opacity_map = self.map("map_d", rest),

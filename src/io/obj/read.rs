@@ -102,7 +102,36 @@ pub(crate) fn read_obj(file: &Path, folder: &Folder, limits: &Limits) -> Result<
     Ok(model)
 }
 
-/// The materials of what stands after `mtllib`: one name with spaces in it, or several.
+/// The names in what stands after `mtllib`, of which each may have spaces in it: as many words as are the name of a file
+/// that is there, or one.
+fn library_names<'t>(library: &'t str, names: &mut Names) -> Vec<&'t str> {
+    /// Each is looked for on the disk, so that of a line without an end only the first words are joined.
+    const MOST_WORDS: usize = 8;
+    const MOST_NAMES: usize = 64;
+    let mut found = Vec::new();
+    let mut rest = library.trim();
+    while !rest.is_empty() {
+        let words = match found.len() < MOST_NAMES {
+            true => MOST_WORDS,
+            false => 1,
+        };
+        let is_end = |&(at, c): &(usize, char)| {
+            let mut behind = rest[at + c.len_utf8()..].chars();
+            !c.is_whitespace() && behind.next().is_none_or(char::is_whitespace)
+        };
+        let ends = rest.char_indices().filter(is_end).take(words);
+        let ends: Vec<usize> = ends.map(|(at, c)| at + c.len_utf8()).collect();
+        let mut longest = ends.iter().rev();
+        let there = longest.find(|&&end| names.find("", unquoted(&rest[..end])).is_ok());
+        let end = there.or(ends.first()).copied().unwrap_or(rest.len());
+        let (name, behind) = rest.split_at(end);
+        found.push(unquoted(name));
+        rest = behind.trim_start();
+    }
+    found
+}
+
+/// The materials of what stands after `mtllib`.
 fn read_libraries(
     file: &Path,
     library: &str,
@@ -114,10 +143,7 @@ fn read_libraries(
     const WITHOUT: &str = "materials are the default one";
     let mut materials = Vec::new();
     let place = || Place::Line(line);
-    let whole = [unquoted(library)];
-    let several: Vec<&str> = library.split_whitespace().map(unquoted).collect();
-    let is_one = several.len() < 2 || names.find("", whole[0]).is_ok();
-    for name in if is_one { &whole[..] } else { &several[..] } {
+    for name in library_names(library, names) {
         let found = match names.find("", name) {
             Ok(found) => found,
             Err(missing) => {

@@ -87,6 +87,28 @@ pub(super) struct Header {
     textures: Vec<String>,
 }
 
+/// What is taken in while a file's numbers are gone through.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Pass {
+    All,
+    Vertices,
+    Faces,
+}
+
+impl Header {
+    /// How often the numbers are gone through: faces name vertices, and stand behind them in nearly all files. Where
+    /// they stand in front, the file is read twice.
+    pub fn passes(&self) -> &'static [Pass] {
+        let place = |is: fn(&str) -> bool| self.elements.iter().position(|e| is(&e.name));
+        let faces = place(|name| matches!(name, "face" | "tristrips"));
+        let vertices = place(|name| name == "vertex");
+        match faces < vertices && faces.is_some() {
+            true => &[Pass::Vertices, Pass::Faces],
+            false => &[Pass::All],
+        }
+    }
+}
+
 /// Reads up to and with `end_header`.
 pub(super) fn read_header(reader: &mut impl BufRead, work: &mut Work) -> Result<Header, FileError> {
     let file = work.file;

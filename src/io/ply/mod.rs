@@ -17,8 +17,8 @@ use super::{Limits, open_to_read};
 use bevy::mesh::Mesh;
 use body::{Body, Fault};
 use content::{Content, Work};
-use header::{Element, read_header};
-use std::io::BufRead;
+use header::{Element, Pass, read_header};
+use std::io::{BufRead, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 /// The name of the only mesh.
@@ -29,8 +29,8 @@ const MESH: &str = "mesh";
 pub(crate) fn read_ply(file: &Path, folder: &Folder, limits: &Limits) -> Result<Model, FileError> {
     let mut reader = open_to_read(file, limits.file_bytes)?;
     let mut work = Work::of(file, limits);
-    let start = reader.fill_buf();
-    let start = start.map_err(|error| FileError::reading(file, &error))?;
+    let reading = |error: std::io::Error| FileError::reading(file, &error);
+    let start = reader.fill_buf().map_err(reading)?;
     // Editors of text put one in front.
     let mark: &[u8] = b"\xef\xbb\xbf";
     let mark = if start.starts_with(mark) {
@@ -40,30 +40,16 @@ pub(crate) fn read_ply(file: &Path, folder: &Folder, limits: &Limits) -> Result<
     };
     reader.consume(mark);
     let header = read_header(&mut reader, &mut work)?;
-    let mut body = Body::of(reader, header.format, header.lines);
+    let start = reader.stream_position().map_err(reading)?;
     let mut content = Content::default();
-    let mut is_whole = true;
-    for element in &header.elements {
-        if let Err(error) = read_element(element, &mut body, &mut content, &mut work) {
-            let (problem, is_final) = match error {
-                Fault::Of(problem) => (problem, false),
-                Fault::Final(problem) => (problem, true),
-            };
-            let error = FileError::at(file, body.place(&element.name), problem);
-            if is_final || content.indices.is_empty() {
-                return Err(error);
-            }
-            let FileError { place, problem, .. } = error;
-            let instead = "what comes before is shown";
-            work.notes.add(file, place, problem.to_string(), instead);
-            is_whole = false;
-            break;
+    for &pass in header.passes() {
+        reader.seek(SeekFrom::Start(start)).map_err(reading)?;
+        let mut body = Body::of(&mut reader, header.format, header.lines);
+        let is_whole = read_elements(&header.elements, pass, &mut body, &mut content, &mut work)?;
+        if is_whole && pass != Pass::Faces && !body.is_at_end().map_err(reading)? {
+            let what = "something behind its last element";
+            work.notes.add(file, Place::Whole, what, "left out");
         }
-    }
-    let reading = |error: std::io::Error| FileError::reading(file, &error);
-    if is_whole && !body.is_at_end().map_err(reading)? {
-        let what = "something behind its last element";
-        work.notes.add(file, Place::Whole, what, "left out");
     }
     if content.indices.is_empty() {
         let problem = match (work.fault.take(), content.positions.len()) {
@@ -97,8 +83,40 @@ pub(crate) fn read_ply(file: &Path, folder: &Folder, limits: &Limits) -> Result<
     Ok(model)
 }
 
+/// Reads what a pass takes in. False where an element could not be read to its end, which is noted.
+fn read_elements(
+    elements: &[Element],
+    pass: Pass,
+    body: &mut Body<impl BufRead>,
+    content: &mut Content,
+    work: &mut Work,
+) -> Result<bool, FileError> {
+    for element in elements {
+        if let Err(error) = read_element(element, pass, body, content, work) {
+            let (problem, is_final) = match error {
+                Fault::Of(problem) => (problem, false),
+                Fault::Final(problem) => (problem, true),
+            };
+            let error = FileError::at(work.file, body.place(&element.name), problem);
+            let is_nothing_read = match pass {
+                Pass::Vertices => content.positions.is_empty(),
+                Pass::All | Pass::Faces => content.indices.is_empty(),
+            };
+            if is_final || is_nothing_read {
+                return Err(error);
+            }
+            let FileError { place, problem, .. } = error;
+            let instead = "what comes before is shown";
+            (work.notes).add(work.file, place, problem.to_string(), instead);
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
 fn read_element(
     element: &Element,
+    pass: Pass,
     body: &mut Body<impl BufRead>,
     content: &mut Content,
     work: &mut Work,
@@ -108,12 +126,14 @@ fn read_element(
         return Ok(());
     }
     match element.name.as_str() {
-        "vertex" => vertices::read_vertices(element, body, content, work),
-        "face" => faces::read_faces(element, body, content, work),
-        "tristrips" => faces::read_strips(element, body, content, work),
+        "vertex" if pass != Pass::Faces => vertices::read_vertices(element, body, content, work),
+        "face" if pass != Pass::Vertices => faces::read_faces(element, body, content, work),
+        "tristrips" if pass != Pass::Vertices => faces::read_strips(element, body, content, work),
         name => {
-            let what = "elements that are no faces:";
-            (work.notes).add_named(work.file, Place::Whole, what, name, "left out");
+            if pass != Pass::Faces && !["vertex", "face", "tristrips"].contains(&name) {
+                let what = "elements that are no faces:";
+                (work.notes).add_named(work.file, Place::Whole, what, name, "left out");
+            }
             for _ in 0..element.count {
                 for property in &element.properties {
                     body.skip(property)?;
