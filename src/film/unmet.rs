@@ -187,11 +187,12 @@ impl ReachColumns {
 
 vectorized! {
     fn reach(values: &[f64; TILE_PIXELS], columns: &mut ReachColumns) {
-        for at in 0..TILE_PIXELS {
-            let value = values[at].max(0.0);
-            let absolute = (value * value + super::RELATIVE_FLOOR).sqrt();
-            columns.absolute[at] = absolute;
-            columns.relative[at] = 0.5 / (value + absolute);
+        let ReachColumns { absolute, relative } = columns;
+        let errors = absolute.iter_mut().zip(relative);
+        for (value, (absolute, relative)) in values.iter().zip(errors) {
+            let value = value.max(0.0);
+            *absolute = (value * value + super::RELATIVE_FLOOR).sqrt();
+            *relative = 0.5 / (value + *absolute);
         }
     }
 }

@@ -30,12 +30,6 @@ pub(super) struct Points<const N: usize> {
     pub is_rare: [u32; N],
 }
 
-/// What all points that the same vertices ask for share.
-pub(super) enum Prepared {
-    Nothing,
-    Parallelogram(MattPrepared<LANES>),
-}
-
 /// A light that gives columns of questions their answers.
 pub(super) enum Source<'a> {
     /// A point, and its W/sr.
@@ -74,22 +68,30 @@ impl<'a> Source<'a> {
     }
 
     /// What is the same for all points that the same vertices ask for.
-    pub fn prepare(&self, questions: &Questions<LANES>) -> Prepared {
+    pub fn prepare(&self, questions: &Questions<LANES>) -> Option<MattPrepared<LANES>> {
         match *self {
             Self::Parallelogram(_, frame) if !questions.is_glossy => {
-                Prepared::Parallelogram(prepare(frame, &questions.receivers))
+                Some(prepare(frame, &questions.receivers))
             }
-            _ => Prepared::Nothing,
+            _ => None,
         }
     }
 
     /// What was [prepared](Self::prepare) for these vertices, and their numbers.
-    pub fn answer(&self, prepared: &Prepared, questions: &Questions<LANES>) -> Replies<LANES> {
+    pub fn answer(
+        &self,
+        prepared: &Option<MattPrepared<LANES>>,
+        questions: &Questions<LANES>,
+    ) -> Replies<LANES> {
         let points = self.points(prepared, questions);
         Replies::of(&points, questions)
     }
 
-    fn points(&self, prepared: &Prepared, questions: &Questions<LANES>) -> Points<LANES> {
+    fn points(
+        &self,
+        prepared: &Option<MattPrepared<LANES>>,
+        questions: &Questions<LANES>,
+    ) -> Points<LANES> {
         match *self {
             Self::Point(position, color) => of_point(position, color, questions),
             Self::Direction(to_light, color) => of_direction(to_light, color),
@@ -104,10 +106,8 @@ impl<'a> Source<'a> {
             }
             Self::Parallelogram(light, frame) => {
                 let places = match prepared {
-                    Prepared::Parallelogram(prepared) => {
-                        on_parallelogram(frame, prepared, questions)
-                    }
-                    Prepared::Nothing => on_parallelogram_for_glossy(frame, questions),
+                    Some(prepared) => on_parallelogram(frame, prepared, questions),
+                    None => on_parallelogram_for_glossy(frame, questions),
                 };
                 of_parallelogram(light, &places, questions)
             }

@@ -51,8 +51,7 @@ pub(super) fn power(x: f32, s: f32) -> f32 {
     let shifted = y.max(-127.0) + ROUNDS;
     let f = y.max(-127.0) - (shifted - ROUNDS);
     let p = 0.001_333_355_8 + f * (0.000_154_035_3 + f * 0.000_015_252_73);
-    let p =
-        1.0 + f * (LN_2 + f * (0.240_226_51 + f * (0.055_504_11 + f * (0.009_618_129 + f * p))));
+    let p = 1.0 + f * (LN_2 + f * (0.240_226_5 + f * (0.055_504_11 + f * (0.009_618_129 + f * p))));
     let power = f32::from_bits(p.to_bits().wrapping_add(shifted.to_bits() << 23));
     let is_nothing = (x < f32::MIN_POSITIVE) | (y < -126.0);
     if is_nothing { 0.0 } else { power }

@@ -146,7 +146,7 @@ fn a_picture_outside_the_folder_missing_or_nowhere_leaves_the_material_without()
         (json!({}), ["image 0", "neither a file nor data"]),
         (
             json!({ "uri": "data:image/png;base64,*" }),
-            ["image 0", "not base64"],
+            ["image 0", "cannot be decoded"],
         ),
         (
             json!({ "bufferView": 1 }),

@@ -343,6 +343,7 @@ fn pixel_ui(ui: &mut Ui, pixel: Option<UVec2>, pair: [&Picture; 2]) {
 mod tests {
     use super::*;
     use crate::editor::action::Action;
+    use crate::editor::document::adopt;
     use crate::editor::panels::tests::Desk;
 
     fn picture(level: f32) -> TracedPicture {
@@ -355,6 +356,7 @@ mod tests {
     #[test]
     fn two_kept_pictures_are_compared_in_figures_and_another_scene_forgets_them() {
         let mut desk = Desk::open("cornell-box");
+        adopt(desk.world(), "cornell-box", None);
         desk.world().write_message(Action::run("compare.open"));
         desk.settle();
         assert!(desk.find("Difference").is_none(), "nothing was kept");
