@@ -103,6 +103,23 @@ impl Preview {
         (self.divider.load(Ordering::Acquire) / 2).clamp(1, TILE)
     }
 
+    /// Pixels from one of the finest lattice to the next.
+    pub fn step(&self) -> u32 {
+        self.divider.load(Ordering::Acquire)
+    }
+
+    /// The pixel of the finest lattice, left of a pixel and above it, and what is shown there, one to the right, one below,
+    /// and at both. `None` where not all of them are known.
+    pub fn corners(&self, pixel: UVec2) -> Option<(UVec2, [Vec3; 4])> {
+        let step = self.step();
+        let within = (pixel - self.area.origin) & UVec2::splat(step - 1);
+        let corner = pixel - within;
+        let [right, below] = [UVec2::new(step, 0), UVec2::new(0, step)];
+        let at = |offset| self.shown(corner + offset);
+        let all = [at(UVec2::ZERO)?, at(right)?, at(below)?, at(right + below)?];
+        Some((corner, all))
+    }
+
     /// What the pixel shows: the nearest on the finest lattice that has one there.
     pub fn shown(&self, pixel: UVec2) -> Option<Vec3> {
         let place = pixel - self.area.origin;

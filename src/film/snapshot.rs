@@ -5,7 +5,7 @@ use super::preview::Preview;
 use super::tile_state::TileState;
 use super::tiles::{FilmPixel, Tile, empty_tile};
 use super::{Film, Picture, TILE};
-use glam::{UVec2, Vec3};
+use glam::{UVec2, Vec2, Vec3};
 use rayon::prelude::*;
 
 /// A picture that is kept up to date: only what changed is drawn again.
@@ -147,9 +147,59 @@ fn draw_means(state: &TileState, rows: &mut [Vec3], width: usize) {
     }
 }
 
-/// The same for a tile that has no means yet.
+/// The same for a tile that has no means yet: from pixel to pixel of the finest lattice even, as far as its pixels are known.
 fn draw_preview(state: &TileState, preview: &Preview, rows: &mut [Vec3], width: usize) {
     let Tile { origin, extent } = state.tile;
+    let step = preview.step();
+    let side = step.min(TILE);
+    for y in (0..extent.y).step_by(side as usize) {
+        for x in (0..extent.x).step_by(side as usize) {
+            let square = Tile {
+                origin: origin + UVec2::new(x, y),
+                extent: (extent - UVec2::new(x, y)).min(UVec2::splat(side)),
+            };
+            let rows = &mut rows[y as usize * width..];
+            match preview.corners(square.origin) {
+                Some((corner, values)) => {
+                    let start = (square.origin - corner).as_vec2();
+                    draw_between(values, (start, step as f32), square, rows, width);
+                }
+                None => draw_nearest(preview, square, rows, width),
+            }
+        }
+    }
+}
+
+/// A square between four pixels of a lattice, of which it starts so far from the first one.
+fn draw_between(
+    corners: [Vec3; 4],
+    (start, step): (Vec2, f32),
+    square: Tile,
+    rows: &mut [Vec3],
+    width: usize,
+) {
+    // Even on a screen: between a lamp and a wall in linear light all would be lamp.
+    let [a, b, c, d] = corners.map(|value| {
+        let value = value.max(Vec3::ZERO).min(Vec3::splat(BRIGHTEST));
+        value / (1.0 + value)
+    });
+    let columns = square.origin.x as usize..(square.origin.x + square.extent.x) as usize;
+    for (y, row) in (0..square.extent.y).zip(rows.chunks_mut(width)) {
+        let down = (start.y + y as f32) / step;
+        let (left, right) = (a.lerp(c, down), b.lerp(d, down));
+        for (x, pixel) in row[columns.clone()].iter_mut().enumerate() {
+            let value = left.lerp(right, (start.x + x as f32) / step);
+            *pixel = value / (1.0 - value);
+        }
+    }
+}
+
+/// What a preview tells from another at the most: 1 - x/(1 + x) has digits for it.
+const BRIGHTEST: f32 = 1e4;
+
+/// A square in which each pixel shows the nearest that is known.
+fn draw_nearest(preview: &Preview, square: Tile, rows: &mut [Vec3], width: usize) {
+    let Tile { origin, extent } = square;
     let side = preview.side();
     for y in (0..extent.y).step_by(side as usize) {
         for x in (0..extent.x).step_by(side as usize) {
@@ -242,6 +292,37 @@ mod tests {
         engine.run(&|_| {});
         assert!(engine.redraw(&mut snapshot));
         assert_eq!(snapshot.picture, engine.picture());
+    }
+
+    #[test]
+    fn between_pixels_of_a_coarse_picture_it_goes_evenly_from_one_to_the_next() {
+        let engine = engine();
+        let preview = Preview::new(engine.area);
+        preview.begin(8);
+        for y in (0..SIZE.y).step_by(8) {
+            for x in (0..SIZE.x).step_by(8) {
+                let value = Vec3::splat(x as f32 / 100.0);
+                preview.take(&[UVec2::new(x, y)], &[value]);
+            }
+        }
+        *lock(&engine.preview) = Some(Arc::new(preview));
+        let mut snapshot = Snapshot::black(SIZE);
+        assert!(engine.redraw(&mut snapshot));
+        for y in 0..SIZE.y {
+            let row: Vec<f32> = (0..SIZE.x)
+                .map(|x| snapshot.picture.pixel(x, y).x)
+                .collect();
+            for x in (0..SIZE.x as usize).step_by(8) {
+                assert!((row[x] - x as f32 / 100.0).abs() < 1e-5, "{row:?}");
+            }
+            let steps = row.windows(2).map(|pair| pair[1] - pair[0]);
+            assert!(
+                steps.clone().all(|step| (0.0..0.015).contains(&step)),
+                "{row:?}"
+            );
+            // From the last pixel of the lattice on there is none to go to.
+            assert_eq!(row[64..], [row[64]; 6]);
+        }
     }
 
     #[test]
