@@ -13,8 +13,9 @@ pub(super) struct TilePlanes(Vec<Plane>);
 /// What one plane has.
 #[derive(Clone)]
 struct Plane {
+    /// None before its first samples, so that its memory is written before it is read.
     sums: Box<[Sum]>,
-    /// How far each pixel's mean moved when its samples doubled last.
+    /// How far each pixel's mean moved when its samples doubled last; none before they did.
     moved: Box<[[f32; 3]]>,
     /// Samples of each pixel of each half.
     counts: [u32; 2],
@@ -26,9 +27,42 @@ pub(super) const PLANE_BYTES: usize = size_of::<Sum>() + size_of::<[f32; 3]>();
 impl Plane {
     fn empty() -> Self {
         Self {
-            sums: vec![Sum::default(); TILE_PIXELS].into(),
-            moved: vec![[0.0; 3]; TILE_PIXELS].into(),
+            sums: Box::default(),
+            moved: Box::default(),
             counts: [0; 2],
+        }
+    }
+
+    fn sum(&self, at: usize) -> Sum {
+        self.sums.get(at).copied().unwrap_or_default()
+    }
+
+    /// Adds `count` samples to these pixels.
+    fn add(&mut self, pixels: Pixels, sums: &[Sum], count: u32) {
+        let doubles = |half: usize| self.counts[half] == count;
+        if doubles(0) || doubles(1) {
+            if self.moved.is_empty() {
+                self.moved = vec![[0.0; 3]; TILE_PIXELS].into();
+            }
+            let places = (0..TILE_PIXELS).filter(|at| pixels.has(*at) && doubles(half_of(*at)));
+            for at in places {
+                let moved = self.sums[at].half_difference(&sums[at], count);
+                self.moved[at] = moved.map(|moved| moved as f32);
+            }
+        }
+        if self.sums.is_empty() {
+            let each = sums.iter().enumerate();
+            let sum = |(at, sum): (usize, &Sum)| {
+                if pixels.has(at) { *sum } else { Sum::default() }
+            };
+            self.sums = each.map(sum).collect();
+        } else {
+            for at in (0..TILE_PIXELS).filter(|at| pixels.has(*at)) {
+                self.sums[at].merge(&sums[at]);
+            }
+        }
+        for half in (0..2).filter(|half| pixels.has_half(*half)) {
+            self.counts[half] += count;
         }
     }
 }
@@ -42,18 +76,8 @@ impl TilePlanes {
     pub fn add(&mut self, pixels: Pixels, planes: PlaneSet, sums: &[Sum], count: u32) {
         let each = self.0.iter_mut().zip(sums.chunks_exact(TILE_PIXELS));
         for (number, (plane, sums)) in each.enumerate() {
-            if !planes.has(number) {
-                continue;
-            }
-            for at in (0..TILE_PIXELS).filter(|at| pixels.has(*at)) {
-                if plane.counts[half_of(at)] == count {
-                    let moved = plane.sums[at].half_difference(&sums[at], count);
-                    plane.moved[at] = moved.map(|moved| moved as f32);
-                }
-                plane.sums[at].merge(&sums[at]);
-            }
-            for half in (0..2).filter(|half| pixels.has_half(*half)) {
-                plane.counts[half] += count;
+            if planes.has(number) {
+                plane.add(pixels, sums, count);
             }
         }
     }
@@ -67,8 +91,11 @@ impl TilePlanes {
         let mut moved = Vec3::ZERO;
         for (plane, tint) in self.0.iter().zip(tints) {
             let stretch = f64::from(count) / f64::from(plane.counts[half].max(1));
-            sum.merge_scaled(&plane.sums[at], tint.as_dvec3() * stretch);
-            moved += *tint * Vec3::from_array(plane.moved[at]);
+            sum.merge_scaled(&plane.sum(at), tint.as_dvec3() * stretch);
+            moved += plane
+                .moved
+                .get(at)
+                .map_or(Vec3::ZERO, |moved| *tint * Vec3::from_array(*moved));
         }
         (sum, moved.length_squared() / 3.0)
     }
@@ -76,7 +103,7 @@ impl TilePlanes {
     /// The mean of a pixel's samples in one plane, without its tint.
     pub fn mean(&self, plane: usize, at: usize) -> Vec3 {
         let plane = &self.0[plane];
-        plane.sums[at].mean(plane.counts[half_of(at)])
+        plane.sum(at).mean(plane.counts[half_of(at)])
     }
 
     /// Writes the picture that the planes are with these tints into all pixels that have samples. The moves before the

@@ -4,7 +4,7 @@
 use super::error::{Means, Moves};
 use super::sample_chunk::Subject;
 use super::tile_planes::TilePlanes;
-use super::tiles::{FilmPixel, NOT_KNOWN, Tile, empty_tile};
+use super::tiles::{FilmPixel, NOT_KNOWN, Tile};
 use super::{Sum, TILE};
 use crate::trace::PlaneSet;
 use crate::trace::planes::OWN;
@@ -171,11 +171,12 @@ impl TileState {
 
     /// Adds `count` samples to every pixel of the chunk, whose sums are given.
     fn commit(&mut self, subject: &Subject, chunk: &Chunk, sums: &[Sum], count: u64) {
-        if self.pixels.is_empty() {
-            self.pixels = empty_tile();
-        }
         if subject.stays_apart {
             self.commit_apart(subject, chunk, sums, count);
+            return;
+        }
+        if self.pixels.is_empty() {
+            self.pixels = first_pixels(self.tile, chunk.pixels, count, |at| sums[at]);
             return;
         }
         let pixels = chunk.pixels;
@@ -202,6 +203,14 @@ impl TileState {
             .get_or_insert_with(|| Box::new(TilePlanes::new(subject.planes())));
         planes.add(chunk.pixels, chunk.planes, sums, count as u32);
         let is_more = chunk.planes.has(OWN);
+        if self.pixels.is_empty() {
+            // Samples are counted by what shines by itself: without it there are none yet.
+            if is_more {
+                let sum = |at| planes.fold(at, &subject.light.tints).0;
+                self.pixels = first_pixels(self.tile, chunk.pixels, count, sum);
+            }
+            return;
+        }
         for (_, at) in (self.tile.pixels()).filter(|(_, at)| chunk.pixels.has(*at)) {
             let pixel = &mut self.pixels[at];
             let (sum, moved) = planes.fold(at, &subject.light.tints);
@@ -295,6 +304,28 @@ impl TileState {
         }
         self.version = self.version.wrapping_add(1);
     }
+}
+
+/// The pixels of a tile whose first samples these are. They are written without being read: new memory comes page by page,
+/// and a page that is read before it is written comes twice.
+fn first_pixels(
+    tile: Tile,
+    pixels: Pixels,
+    count: u64,
+    sum: impl Fn(usize) -> Sum,
+) -> Box<[FilmPixel]> {
+    let pixel = |at: usize| {
+        let place = UVec2::new(at as u32 % TILE, at as u32 / TILE);
+        if !pixels.has(at) || place.cmpge(tile.extent).any() {
+            return FilmPixel::default();
+        }
+        FilmPixel {
+            sum: sum(at),
+            count: count as u32,
+            moved: if count > 1 { NOT_KNOWN } else { [0.0; 3] },
+        }
+    };
+    (0..TILE_PIXELS).map(pixel).collect()
 }
 
 #[cfg(test)]
