@@ -199,7 +199,8 @@ fn check_places(file: &Path, folder: &Path) -> Result<(), Failure> {
             check_writable(&there.join("report"))
                 .map_err(|error| FileError::new(folder, error.problem))?;
         }
-        check_room(&there.join("report"), BYTES)?;
+        check_room(&there.join("report"), BYTES)
+            .map_err(|error| FileError::new(folder, error.problem))?;
     }
     Ok(())
 }

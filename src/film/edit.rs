@@ -18,7 +18,8 @@ use std::time::Duration;
 /// Where the first sample of the planes that are rendered again takes no longer than this, what is seen waits for it; else a
 /// coarse picture of everything comes first.
 const LONGEST_SAMPLE: Duration = Duration::from_millis(100);
-/// Planes are kept where those that are rendered again take no more than this part of a sample of everything.
+/// Planes are kept where those that are rendered again take no more than this part of a sample of everything: above it a
+/// render of its own is as soon complete, and shows what it has tile by tile.
 const LARGEST_PART: f64 = 0.8;
 
 /// What a render shall be of, and of each of its planes the number of the one that has the same light now.
@@ -183,8 +184,8 @@ fn same_planes(old: &Subject, new: &Subject) -> Option<Vec<Option<usize>>> {
 }
 
 impl Engine {
-    /// Renders another world from now on, its lights with these gains, and keeps what stays true of the picture. False, and nothing done, where that is
-    /// nothing, or hardly anything.
+    /// Renders another world from now on, its lights with these gains, and keeps what stays true of the picture. False, and
+    /// nothing done, where that is nothing, or hardly anything.
     pub fn edit(&self, world: World, gains: &Gains) -> bool {
         if !self.has_begun() {
             return false;

@@ -11,13 +11,19 @@ const ROUNDS: f32 = 12_582_912.0;
 /// Of the mantissa m in [1/√2, √2): 2/ln 2 · atanh z with z = (m-1)/(m+1), |z| < 0.172, by its series to z³.
 #[inline(always)]
 pub(super) fn log2(x: f32) -> f32 {
+    let (exponent, z) = exponent_and_z(x);
+    let z2 = z * z;
+    exponent + z * (2.885_39 + z2 * (0.961_797 + z2 * 0.577_08))
+}
+
+/// The exponent of a number whose mantissa m lies in [1/√2, √2), and (m-1)/(m+1).
+#[inline(always)]
+fn exponent_and_z(x: f32) -> (f32, f32) {
     const HALF_ROOT: u32 = 0x3f35_04f3;
     let shifted = x.to_bits().wrapping_sub(HALF_ROOT);
     let exponent = (shifted as i32) >> 23;
     let mantissa = f32::from_bits((shifted & 0x007f_ffff).wrapping_add(HALF_ROOT));
-    let z = (mantissa - 1.0) / (mantissa + 1.0);
-    let z2 = z * z;
-    exponent as f32 + z * (2.885_39 + z2 * (0.961_797 + z2 * 0.577_08))
+    (exponent as f32, (mantissa - 1.0) / (mantissa + 1.0))
 }
 
 /// 2^x within 2e-4 of itself, for x ≤ 0; 2^-126 below.
@@ -39,15 +45,11 @@ pub(super) fn exp2(x: f32) -> f32 {
 /// is as exact as it is small, so that large s do no harm.
 #[inline(always)]
 pub(super) fn power(x: f32, s: f32) -> f32 {
-    const HALF_ROOT: u32 = 0x3f35_04f3;
-    let shifted = x.to_bits().wrapping_sub(HALF_ROOT);
-    let exponent = (shifted as i32) >> 23;
-    let mantissa = f32::from_bits((shifted & 0x007f_ffff).wrapping_add(HALF_ROOT));
-    let z = (mantissa - 1.0) / (mantissa + 1.0);
+    let (exponent, z) = exponent_and_z(x);
     let z2 = z * z;
     let series =
         2.885_39 + z2 * (0.961_796_7 + z2 * (0.577_078 + z2 * (0.412_198_6 + z2 * 0.320_598_9)));
-    let y = s * (exponent as f32 + z * series);
+    let y = s * (exponent + z * series);
     let shifted = y.max(-127.0) + ROUNDS;
     let f = y.max(-127.0) - (shifted - ROUNDS);
     let p = 0.001_333_355_8 + f * (0.000_154_035_3 + f * 0.000_015_252_73);

@@ -1,5 +1,6 @@
 //! A model in a scene that is there already: how large it becomes, what it stands on, and what comes along with it.
 
+use super::parents::with_descendants;
 use super::plugin::{select, step};
 use super::{AddAt, add_model, name_of, scene_entity};
 use crate::bvh::Ray;
@@ -131,19 +132,6 @@ fn add_file(world: &mut World, file: &Path) -> Result<String, FileError> {
     Ok(format!("Import {name}"))
 }
 
-/// What hangs below an entity, itself first.
-fn with_all_below(world: &World, root: Entity) -> Vec<Entity> {
-    let mut all = vec![root];
-    let mut next = 0;
-    while let Some(&entity) = all.get(next) {
-        next += 1;
-        if let Some(children) = world.get::<Children>(entity) {
-            all.extend(children.iter());
-        }
-    }
-    all
-}
-
 fn is_camera(world: &World, entity: Entity) -> bool {
     world.get::<SceneCamera>(entity).is_some()
 }
@@ -157,7 +145,7 @@ fn lights_and_cameras(world: &World, root: Entity) -> Vec<Entity> {
             || entity.contains::<SegmentLamp>()
             || entity.contains::<ParallelogramLamp>()
     };
-    let all = with_all_below(world, root).into_iter();
+    let all = with_descendants(world, root).into_iter();
     all.filter(is_one).collect()
 }
 
@@ -337,11 +325,18 @@ mod tests {
     fn lights_and_cameras_are_counted_and_left_out_where_nobody_wants_them() {
         let mut world = World::new();
         let root = world.spawn(Transform::default()).id();
-        let parent = (PointLamp::default(), bevy::ecs::hierarchy::ChildOf(root));
+        let parent = (
+            SceneId(1),
+            PointLamp::default(),
+            bevy::ecs::hierarchy::ChildOf(root),
+        );
         let lamp = world.spawn(parent).id();
-        let below = |world: &mut World, on| world.spawn(bevy::ecs::hierarchy::ChildOf(on)).id();
-        let object = below(&mut world, lamp);
-        let camera = below(&mut world, root);
+        let below = |world: &mut World, id, on| {
+            let child = (SceneId(id), bevy::ecs::hierarchy::ChildOf(on));
+            world.spawn(child).id()
+        };
+        let object = below(&mut world, 2, lamp);
+        let camera = below(&mut world, 3, root);
         world.entity_mut(camera).insert(SceneCamera::default());
         let along = lights_and_cameras(&world, root);
         assert_eq!(along_text(&world, &along), "1 light and 1 camera");
