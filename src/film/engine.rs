@@ -3,13 +3,14 @@
 use super::control::{Control, Signal};
 use super::edit::Edit;
 use super::error::{Decline, ErrorEstimate, Moves};
+use super::past_moves::PAST_BYTES;
 use super::preview::Preview;
 use super::queue::Queue;
 use super::sample_chunk::{BatchSize, Subject, with_scratch};
 use super::status::{Ending, State, Status, TrendPoint, seconds_left};
 use super::tile_planes::PLANE_BYTES;
 use super::tile_state::{Chunk, TileState};
-use super::tiles::{FilmPixel, Tile, TileGrid};
+use super::tiles::{Tile, TileGrid};
 use super::unmet::Unmet;
 use super::{FilmMemory, lock};
 use crate::trace::RayCounts;
@@ -154,16 +155,12 @@ impl Engine {
     pub fn memory(&self) -> FilmMemory {
         let subject = self.subject();
         let pixels = self.grid.pixels();
-        let planes = if subject.stays_apart {
-            subject.planes()
-        } else {
-            0
-        };
+        let planes = subject.planes();
         let plane = pixels * PLANE_BYTES as u64;
         FilmMemory {
-            planes,
+            planes: if subject.stays_apart { planes } else { 0 },
             plane,
-            total: pixels * size_of::<FilmPixel>() as u64 + planes as u64 * plane,
+            total: pixels * PAST_BYTES as u64 + planes as u64 * plane,
         }
     }
 
@@ -187,6 +184,7 @@ impl Engine {
         self.reopen();
         self.take_edit();
         if self.has_begun() {
+            self.update_moves();
             self.note_error();
         }
         self.control.start_watch();
@@ -328,12 +326,8 @@ impl Engine {
             let pixels = {
                 // Its tints may be others by now.
                 let mut state = self.tile(chunk.tile as usize);
-                state.absorb(&self.subject(), chunk, &scratch.sums, rays.total());
-                state
-                    .tile
-                    .pixels()
-                    .filter(|(_, at)| chunk.pixels.has(*at))
-                    .count() as u64
+                state.absorb(&self.subject(), chunk, scratch.sums.all(), rays.total());
+                tile.count(chunk.pixels)
             };
             if chunk.planes.has(OWN) {
                 let samples = pixels * (chunk.range.end - chunk.range.start);
@@ -374,10 +368,16 @@ impl Engine {
         Decline::of(&self.moves())
     }
 
+    /// Works out on all threads how far the tiles moved that have other tints.
+    fn update_moves(&self) {
+        let tiles = (0..self.tiles.len()).into_par_iter();
+        self.on_threads(|| tiles.for_each(|tile| _ = self.tile(tile).moves()));
+    }
+
     /// Of each half of each tile.
     pub(super) fn moves(&self) -> Vec<Moves> {
         (0..self.tiles.len())
-            .flat_map(|tile| self.tile(tile).moves)
+            .flat_map(|tile| self.tile(tile).moves())
             .collect()
     }
 

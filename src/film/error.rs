@@ -23,12 +23,7 @@
 //!   at the next), and is too small only as far as few pixels have met the edge. `tests/film/calibration.rs`
 //!   has such a scene, a lamp 470 times as bright as the ceiling around it, and says what was measured.
 
-use super::TILE;
-use super::tile_state::TILE_PIXELS;
-use super::tiles::FilmPixel;
-use super::unmet::{Reach, ReachColumns};
-use crate::instruction_sets::vectorized;
-use glam::UVec2;
+use super::unmet::Reach;
 use std::fmt;
 
 /// Added to a pixel's squared value before its squared error is divided by it, so that black pixels
@@ -84,119 +79,6 @@ pub(super) struct Moves {
     pub pixels: u32,
     /// Sums over the pixels of how much they err by light that no sample has met.
     pub reach: Reach,
-}
-
-/// What is known of a tile's pixels, in columns.
-pub(super) struct Means<'a> {
-    pixels: &'a [FilmPixel],
-    /// What each pixel's squared error is multiplied by for the relative one: 1 / (likely value² + [`RELATIVE_FLOOR`]).
-    weights: [f64; TILE_PIXELS],
-    /// How much each errs by light that no sample has met.
-    reach: ReachColumns,
-}
-
-impl<'a> Means<'a> {
-    /// Of the pixels of a tile's memory, of which `extent` lies in the picture.
-    pub fn of(pixels: &'a [FilmPixel], extent: UVec2) -> Self {
-        let mut means = [0.0; TILE_PIXELS];
-        let mut moved = [0.0; TILE_PIXELS];
-        for (at, pixel) in pixels.iter().enumerate() {
-            means[at] = f64::from(pixel.sum.mean(pixel.count).element_sum()) / 3.0;
-            moved[at] = f64::from(pixel.moved[0]);
-        }
-        let mut around = [f64::NAN; AROUND * AROUND];
-        for y in 0..extent.y.min(TILE) as usize {
-            let columns = extent.x.min(TILE) as usize;
-            let (from, to) = (y * TILE as usize, place_around(y * TILE as usize));
-            around[to..to + columns].copy_from_slice(&means[from..from + columns]);
-        }
-        let mut weights = [0.0; TILE_PIXELS];
-        relative_weights(&around, &moved, &mut weights);
-        Self {
-            pixels,
-            weights,
-            reach: ReachColumns::of(&means),
-        }
-    }
-
-    /// How far the pixels at these places of the tile's memory have moved.
-    pub fn moves(&self, places: impl Iterator<Item = usize>) -> Moves {
-        let mut moves = Moves::default();
-        for at in places {
-            let pixel = &self.pixels[at];
-            for (i, moved) in pixel.moved.into_iter().enumerate() {
-                moves.absolute[i] += f64::from(moved);
-                moves.relative[i] += f64::from(moved) * self.weights[at];
-            }
-            moves.reach.absolute += self.reach.absolute[at];
-            moves.reach.relative += self.reach.relative[at];
-            moves.count = pixel.count;
-            moves.pixels += 1;
-        }
-        moves
-    }
-}
-
-/// Edge of a tile with a margin of two pixels, in which nothing is known.
-const AROUND: usize = TILE as usize + 2 * MARGIN;
-const MARGIN: usize = 2;
-
-/// Where a pixel of a tile's memory lies in the tile with its margin.
-#[inline(always)]
-const fn place_around(at: usize) -> usize {
-    let (x, y) = (at % TILE as usize, at / TILE as usize);
-    (y + MARGIN) * AROUND + x + MARGIN
-}
-
-vectorized! {
-    /// The [`Means::weights`] of pixels with these means, not a number outside of the picture, whose last moves squared
-    /// are `moved`.
-    fn relative_weights(
-        around: &[f64; AROUND * AROUND],
-        moved: &[f64; TILE_PIXELS],
-        weights: &mut [f64; TILE_PIXELS],
-    ) {
-        for y in 0..TILE as usize {
-            let row = y * TILE as usize;
-            for x in 0..TILE as usize {
-                let at = row + x;
-                let value = likely_value(around, place_around(row) + x, moved[at].sqrt());
-                weights[at] = 1.0 / (value * value + RELATIVE_FLOOR);
-            }
-        }
-    }
-}
-
-/// What a pixel's value is likely to be, by which its squared error is divided. Where one rare,
-/// bright sample has moved a dark pixel far, its mean is far above its value, and dividing by the
-/// mean would hide nearly all of the error. So a pixel counts as the mean of itself and of those two
-/// opposite ones near it that are most alike: along an edge, not across it. (Neighbours across a
-/// corner and the next but one of the row and the column: they are of the same half as it, and what a
-/// half says must not depend on the other.) But it counts as no further from its own mean than that has
-/// moved: a small highlight stands out and is there.
-#[inline(always)]
-fn likely_value(around: &[f64; AROUND * AROUND], at: usize, moved: f64) -> f64 {
-    const PAIRS: [usize; 4] = [2, 2 * AROUND, AROUND + 1, AROUND - 1];
-    let own = around[at];
-    let (mut least, mut a, mut b) = (f64::INFINITY, own, own);
-    for offset in PAIRS {
-        let (one, other) = (around[at + offset], around[at - offset]);
-        let apart = (one - other).abs();
-        // Never where one of them lies outside.
-        let is_less = apart < least;
-        least = if is_less { apart } else { least };
-        a = if is_less { one } else { a };
-        b = if is_less { other } else { b };
-    }
-    let mean = (own + a + b) / 3.0;
-    let (low, high) = (own - moved, own + moved);
-    let mean = if mean < low { low } else { mean };
-    let mean = if mean > high { high } else { mean };
-    if least < f64::INFINITY && moved < f64::INFINITY {
-        mean
-    } else {
-        own
-    }
 }
 
 /// What a squared error is multiplied by when the samples double: one number for a whole picture, since
@@ -328,8 +210,6 @@ impl ErrorEstimate {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::film::Sum;
-    use glam::Vec3;
 
     fn moves(squares: [f64; 3], count: u32) -> Moves {
         Moves {
@@ -345,53 +225,6 @@ mod tests {
     fn alone(squares: [f64; 3], count: u32) -> Expected {
         let moves = moves(squares, count);
         moves.expected(&Decline::of([&moves])).unwrap()
-    }
-
-    #[test]
-    fn one_bright_sample_in_a_dark_place_does_not_hide_its_own_error() {
-        // 16 × 16 pixels of value 0.1; one of them has met a light of 160 once in 16 samples.
-        let mut tile = vec![FilmPixel::default(); 256];
-        for pixel in &mut tile {
-            for _ in 0..16 {
-                pixel.sum.add(Vec3::splat(0.1));
-            }
-            pixel.count = 16;
-        }
-        let moves =
-            |tile: &[FilmPixel], size| Means::of(tile, UVec2::splat(size)).moves(0..tile.len());
-        tile[100].sum.add(Vec3::splat(160.0));
-        tile[100].moved = [100.0; 3];
-        // Its mean is 10.1, which has moved by 10.
-        let relative = moves(&tile, 16).relative[0];
-        let value: f64 = (0.1 + 0.1 + 10.1) / 3.0;
-        assert!(
-            (relative / (100.0 / value.powi(2)) - 1.0).abs() < 0.01,
-            "{relative}"
-        );
-        // Where the halves agree it is a bright pixel.
-        tile[100].moved = [0.01; 3];
-        let relative = moves(&tile, 16).relative[0];
-        assert!((relative / (0.01 / 100.0) - 1.0).abs() < 0.1, "{relative}");
-        // Of a row of pixels that all meet the light now and then, each may, whatever lies beside the row.
-        for (at, pixel) in tile.iter_mut().enumerate() {
-            let mean = match at / 16 {
-                0..6 => 0.1,
-                6 => 3.0,
-                _ => 33.0,
-            };
-            pixel.sum = Sum::default();
-            (0..16).for_each(|_| pixel.sum.add(Vec3::splat(mean)));
-            pixel.moved = [0.0; 3];
-        }
-        tile[102].sum.add(Vec3::splat(48.0));
-        tile[102].moved = [9.0; 3];
-        let relative = moves(&tile, 16).relative[0];
-        assert!((relative / (9.0 / 16.0) - 1.0).abs() < 0.01, "{relative}");
-        tile[100].sum.add(Vec3::splat(160.0));
-        tile[100].moved = [0.01; 3];
-        // Alone in the picture it has no neighbours.
-        let relative = moves(&tile[100..101], 1).relative[0];
-        assert!((relative / (0.01 / 169.0) - 1.0).abs() < 0.01, "{relative}");
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use super::engine::{Engine, Mode};
 use super::render::{Rendered, finish};
 use super::sample_chunk::Subject;
+use super::tiles::place_in_tile;
 use super::{Picture, Status, TILE, lock};
 use crate::scene::RenderSettings;
 use crate::trace::planes::OWN;
@@ -100,7 +101,7 @@ impl Engine {
                     return None;
                 }
                 let within = pixel % TILE;
-                let at = (within.y * TILE + within.x) as usize;
+                let at = place_in_tile(within.x, within.y);
                 let to = place / per_side;
                 for (plane, picture) in pictures.iter_mut().enumerate() {
                     picture.pixels[(to.y * size.x + to.x) as usize] +=

@@ -1,13 +1,10 @@
 //! What a film knows of each pixel beside its colour.
 
-use super::error::{Decline, Means, Moves};
-use super::tile_state::half_of;
-use super::tiles::{FilmPixel, Tile, TileGrid};
-use super::{Film, TILE};
-
-/// Edge in pixels of the square whose pixels are estimated together: the means of a single pixel
-/// moved too much by chance.
-const SQUARE: u32 = 4;
+use super::Film;
+use super::error::{Decline, Moves};
+use super::film_tile::FilmTile;
+use super::means::Means;
+use super::tiles::{BLOCK_PIXELS, TILE_PIXELS, Tile, TileGrid};
 
 /// The estimated relative error of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,10 +54,10 @@ impl Film {
         let size = self.size();
         let mut errors = vec![PixelError::UNKNOWN; size.x as usize * size.y as usize];
         for halves in tiles.chunks_exact(2) {
-            let squares = square_errors(halves, decline, self.hidden);
-            for (pixel, at) in halves[0].tile.pixels() {
-                let place = pixel.y as usize * size.x as usize + pixel.x as usize;
-                errors[place] = squares[square_of(at)];
+            let blocks = block_errors(halves, decline, self.hidden);
+            for (pixel, place) in halves[0].tile.pixels() {
+                let at = pixel.y as usize * size.x as usize + pixel.x as usize;
+                errors[at] = blocks[place / BLOCK_PIXELS];
             }
         }
         errors
@@ -74,14 +71,7 @@ impl PixelError {
     };
 }
 
-/// Squares along a tile's edge.
-const SQUARES: usize = (TILE / SQUARE) as usize;
-
-/// The number of the square that a place of a tile's memory lies in.
-fn square_of(at: usize) -> usize {
-    let (x, y) = (at as u32 % TILE, at as u32 / TILE);
-    (y / SQUARE) as usize * SQUARES + (x / SQUARE) as usize
-}
+const BLOCKS: usize = TILE_PIXELS / BLOCK_PIXELS;
 
 /// Half of a tile's pixels, as adaptive sampling halves them: the two may have different numbers of
 /// samples.
@@ -89,45 +79,38 @@ struct HalfTile {
     tile: Tile,
     /// How far they moved.
     whole: Moves,
-    /// How far those of each square did.
-    squares: [Moves; SQUARES * SQUARES],
+    /// How far those of each block did.
+    blocks: [Moves; BLOCKS],
 }
 
 impl HalfTile {
-    fn both(tile: Tile, pixels: &[FilmPixel]) -> [Self; 2] {
-        let means = Means::of(pixels, tile.extent);
-        let moves = |half: usize, which: &dyn Fn(usize) -> bool| {
-            let places = tile.pixels().map(|(_, at)| at);
-            means.moves(places.filter(|&at| half_of(at) == half && which(at)))
-        };
+    fn both(tile: Tile, pixels: &FilmTile) -> [Self; 2] {
+        let colors = pixels.means();
+        let means = Means::of(&colors, &pixels.past, pixels.counts, tile.extent);
         [0, 1].map(|half| Self {
             tile,
-            whole: moves(half, &|_| true),
-            squares: std::array::from_fn(|i| moves(half, &|at| square_of(at) == i)),
+            whole: means.moves(half),
+            blocks: std::array::from_fn(|block| means.moves_in_block(half, block)),
         })
     }
 }
 
-/// The relative error of each square: its share of what its tile's halves err by, or of what unmet features
+/// The relative error of each block: its share of what its tile's halves err by, or of what unmet features
 /// may hide in it.
-fn square_errors(
-    halves: &[HalfTile],
-    decline: &Decline,
-    hidden: f64,
-) -> [PixelError; SQUARES * SQUARES] {
+fn block_errors(halves: &[HalfTile], decline: &Decline, hidden: f64) -> [PixelError; BLOCKS] {
     std::array::from_fn(|i| {
         let (mut sum, mut unmet, mut pixels) = (0.0, 0.0, 0);
-        for half in halves.iter().filter(|half| half.squares[i].pixels > 0) {
+        for half in halves.iter().filter(|half| half.blocks[i].pixels > 0) {
             let Some(expected) = half.whole.expected(decline) else {
                 return PixelError::UNKNOWN;
             };
-            let square = &half.squares[i];
-            if square.relative[0] > 0.0 {
-                sum += expected.relative * square.relative[0] / half.whole.relative[0];
+            let block = &half.blocks[i];
+            if block.relative[0] > 0.0 {
+                sum += expected.relative * block.relative[0] / half.whole.relative[0];
             }
-            let in_square = f64::from(square.pixels);
-            unmet += hidden * square.reach_with(square.count).relative * in_square;
-            pixels += square.pixels;
+            let in_block = f64::from(block.pixels);
+            unmet += hidden * block.reach_with(block.count).relative * in_block;
+            pixels += block.pixels;
         }
         PixelError {
             relative: (sum.max(unmet) / f64::from(pixels.max(1))).sqrt() as f32,

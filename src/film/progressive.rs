@@ -183,7 +183,7 @@ impl Progressive {
     /// The exact sum of one pixel's samples so far, and their number; `None` outside the picture.
     pub fn pixel_sum(&self, pixel: UVec2) -> Option<(Sum, u32)> {
         let (film, place) = self.engine.tile_film(pixel)?;
-        Some((*film.sum(place.x, place.y), film.count(place.x, place.y)))
+        Some((film.sum(place.x, place.y), film.count(place.x, place.y)))
     }
 
     /// Waits until the render has ended by itself or by [`Self::cancel`], and says why it did.
@@ -413,7 +413,7 @@ mod tests {
                 error.relative,
                 errors[(pixel.y * SIZE.x + pixel.x) as usize]
             );
-            let sum = *film.sum(pixel.x, pixel.y);
+            let sum = film.sum(pixel.x, pixel.y);
             assert_eq!(render.pixel_sum(pixel), Some((sum, samples)));
         }
         assert_eq!(render.pixel(SIZE), None);

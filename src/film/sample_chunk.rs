@@ -1,11 +1,11 @@
 //! The samples of a chunk: batch by batch, so that a render can stop between two of them.
 
+use super::LightMix;
 use super::sum_columns::SumColumns;
 use super::tile_planes::PLANE_BYTES;
-use super::tile_state::{Chunk, TILE_PIXELS};
-use super::tiles::{Tile, TileGrid};
+use super::tile_state::Chunk;
+use super::tiles::{TILE_PIXELS, Tile, TileGrid, pixel_in_tile};
 use super::unmet::{NO_OCTAVES, Octaves, count_octaves};
-use super::{LightMix, Sum};
 use crate::scene::RenderSettings;
 use crate::trace::planes::OWN;
 use crate::trace::{
@@ -169,8 +169,9 @@ fn rays_of_first_hit(subject: &Subject) -> u64 {
 
 /// What a thread keeps from chunk to chunk, so that none allocates.
 pub(super) struct Scratch {
-    /// The chunk's pixels, each with its place in the tile, and the sums of the batches' samples.
-    places: Vec<(UVec2, usize)>,
+    /// The places of the chunk's pixels in the tile, and, where they are not all of the tile's, the sums of a segment in
+    /// their order.
+    places: Vec<usize>,
     columns: SumColumns,
     samples: Vec<SampleId>,
     /// Plane by plane.
@@ -181,7 +182,7 @@ pub(super) struct Scratch {
     /// When others last had the core for the asking.
     gave_way: Option<Instant>,
     /// `TILE_PIXELS` for each plane of each segment of the chunk.
-    pub sums: Vec<Sum>,
+    pub sums: SumColumns,
     /// How bright the chunk's samples are.
     pub octaves: Octaves,
 }
@@ -196,7 +197,7 @@ impl Default for Scratch {
             folded: Vec::new(),
             workspace: Workspace::default(),
             gave_way: None,
-            sums: Vec::new(),
+            sums: SumColumns::default(),
             octaves: NO_OCTAVES,
         }
     }
@@ -225,17 +226,21 @@ impl Scratch {
         stopped: &dyn Fn() -> bool,
     ) -> Option<RayCounts> {
         let mut rays = RayCounts::default();
-        self.sums.clear();
+        self.sums.truncate(0);
         self.octaves.fill(0);
         let mut places = std::mem::take(&mut self.places);
         places.clear();
-        let pixels = tile.pixels_in_blocks();
-        places.extend(pixels.filter(|(_, at)| chunk.pixels.has(*at)));
+        places.extend(tile.places(chunk.pixels));
         let complete = chunk.segments().all(|segment| {
-            let first = self.sums.len();
-            let sums = first + subject.planes() * TILE_PIXELS;
-            self.sums.resize(sums, Sum::default());
-            let sampled = self.sum_segment(subject, &places, segment, chunk.planes, batch, stopped);
+            self.sums.extend(subject.planes() * TILE_PIXELS);
+            let sampled = self.sum_segment(
+                subject,
+                (tile, &places),
+                segment,
+                chunk.planes,
+                batch,
+                stopped,
+            );
             rays += sampled.unwrap_or_default();
             sampled.is_some()
         });
@@ -250,7 +255,7 @@ impl Scratch {
     fn sum_segment(
         &mut self,
         subject: &Subject,
-        places: &[(UVec2, usize)],
+        (tile, places): (Tile, &[usize]),
         segment: Range<u64>,
         wanted: PlaneSet,
         batch: &BatchSize,
@@ -259,7 +264,10 @@ impl Scratch {
         let mut rays = RayCounts::default();
         let planes = subject.planes();
         let first = self.sums.len() - planes * TILE_PIXELS;
-        self.columns.reset(planes * places.len());
+        let is_whole = places.len() == TILE_PIXELS;
+        if !is_whole {
+            self.columns.reset(planes * places.len());
+        }
         // The next sample: of the pixel at that place, with that index.
         let (mut place, mut index) = (0, segment.start);
         let mut left = (segment.end - segment.start) * places.len() as u64;
@@ -270,31 +278,43 @@ impl Scratch {
             while self.samples.len() < count as usize {
                 let more = places.len() - place;
                 let more = more.min(count as usize - self.samples.len());
-                let pixels = places[place..place + more].iter();
-                (self.samples).extend(pixels.map(|&(pixel, _)| SampleId { pixel, index }));
+                let pixels = (places[place..place + more].iter())
+                    .map(|place| tile.origin + pixel_in_tile(*place));
+                (self.samples).extend(pixels.map(|pixel| SampleId { pixel, index }));
                 place += more;
                 if place == places.len() {
                     (place, index) = (0, index + 1);
                 }
             }
             rays += self.evaluate_samples(subject, wanted, batch);
-            self.sum_batch(planes, places.len(), first_place);
+            self.sum_batch(planes, places.len(), first_place, is_whole.then_some(first));
             left -= count;
             if stopped() {
                 return None;
             }
         }
-        for plane in 0..planes {
-            let sums = &mut self.sums[first + plane * TILE_PIXELS..][..TILE_PIXELS];
-            for (i, &(_, at)) in places.iter().enumerate() {
-                sums[at] = self.columns.get(plane * places.len() + i);
+        for plane in (0..planes).filter(|_| !is_whole) {
+            for (i, at) in places.iter().enumerate() {
+                let sum = self.columns.get(plane * places.len() + i);
+                self.sums.set(first + plane * TILE_PIXELS + at, &sum);
             }
         }
         Some(rays)
     }
 
-    /// Adds the batch's values to the pixels in turn, the first of them to that at `first_place`.
-    fn sum_batch(&mut self, planes: usize, pixels: usize, first_place: usize) {
+    /// Adds the batch's values to the pixels in turn, the first of them to that at `first_place`; where they are all of a
+    /// tile's to those of the chunk's sums from the `whole` on.
+    fn sum_batch(
+        &mut self,
+        planes: usize,
+        pixels: usize,
+        first_place: usize,
+        whole: Option<usize>,
+    ) {
+        let (sums, first) = match whole {
+            Some(first) => (&mut self.sums, first),
+            None => (&mut self.columns, 0),
+        };
         for plane in 0..planes {
             let count = self.samples.len();
             let values = &self.values[plane * count..][..count];
@@ -305,7 +325,7 @@ impl Scratch {
             let (mut at, mut rest) = (first_place, values);
             while !rest.is_empty() {
                 let (run, others) = rest.split_at(rest.len().min(pixels - at));
-                self.columns.add(plane * pixels + at, run);
+                sums.add(first + plane * pixels + at, run);
                 (at, rest) = (0, others);
             }
         }

@@ -1,9 +1,10 @@
 //! The picture of a render that goes on.
 
 use super::engine::Engine;
+use super::film_tile::draw;
 use super::preview::Preview;
 use super::tile_state::TileState;
-use super::tiles::{FilmPixel, Tile, empty_tile};
+use super::tiles::Tile;
 use super::{Film, Picture, TILE};
 use glam::{UVec2, Vec2, Vec3};
 use rayon::prelude::*;
@@ -42,8 +43,8 @@ impl Engine {
         rows.for_each(|(row, pixels)| {
             for column in 0..columns {
                 let state = self.tile(row * columns + column);
-                if self.renders(state.tile) {
-                    draw_means(&state, pixels, width);
+                if self.renders(state.tile) && state.has_samples() {
+                    draw(&state.means(), state.tile, pixels, width);
                 }
             }
         });
@@ -81,7 +82,7 @@ impl Engine {
                     let is_coarse = !is_whole || state.version == 0;
                     if is_whole && *version != state.version {
                         *version = state.version;
-                        draw_means(&state, pixels, width);
+                        draw(&state.means(), state.tile, pixels, width);
                         changed = true;
                     } else if is_coarse
                         && preview_changed
@@ -100,15 +101,14 @@ impl Engine {
     /// A copy of the sums. On the current rayon pool.
     pub fn film(&self) -> Film {
         let tiles = (0..self.tiles.len()).into_par_iter();
-        let tiles = tiles.map(|tile| film_tile(self.tile(tile).pixels.clone()));
+        let tiles = tiles.map(|tile| self.tile(tile).film_tile());
         Film::from_tiles(self.size(), tiles.collect(), self.hidden_in_a_pixel())
     }
 
     /// The sums of a render that nobody looks at any more.
     pub fn into_film(self) -> Film {
         let hidden = self.hidden_in_a_pixel();
-        let pixels_of = |tile: usize| std::mem::take(&mut self.tile(tile).pixels);
-        let tiles = (0..self.tiles.len()).map(|tile| film_tile(pixels_of(tile)));
+        let tiles = (0..self.tiles.len()).map(|tile| self.tile(tile).take_film_tile());
         Film::from_tiles(self.size(), tiles.collect(), hidden)
     }
 
@@ -117,8 +117,8 @@ impl Engine {
         if pixel.cmpge(self.size()).any() {
             return None;
         }
-        let state = self.tile(self.grid.tile_of(pixel));
-        let pixels = film_tile(state.pixels.clone());
+        let mut state = self.tile(self.grid.tile_of(pixel));
+        let pixels = state.film_tile();
         let extent = state.tile.extent;
         drop(state);
         let film = Film::from_tiles(extent, vec![pixels], self.hidden_in_a_pixel());
@@ -126,28 +126,8 @@ impl Engine {
     }
 }
 
-/// The pixels of a film's tile: one that no pass has reached has none while it is rendered.
-fn film_tile(pixels: Box<[FilmPixel]>) -> Box<[FilmPixel]> {
-    if pixels.is_empty() {
-        empty_tile()
-    } else {
-        pixels
-    }
-}
-
-/// Draws a tile into the rows of a picture, `width` pixels each, of which the first is the tile's first.
-fn draw_means(state: &TileState, rows: &mut [Vec3], width: usize) {
-    if state.pixels.is_empty() {
-        return;
-    }
-    for (pixel, at) in state.tile.pixels() {
-        let FilmPixel { sum, count, .. } = &state.pixels[at];
-        let row = (pixel.y - state.tile.origin.y) as usize;
-        rows[row * width + pixel.x as usize] = sum.mean(*count);
-    }
-}
-
-/// The same for a tile that has no means yet: from pixel to pixel of the finest lattice even, as far as its pixels are known.
+/// Draws a tile that has no means yet into the rows of a picture, `width` pixels each, of which the first is the tile's
+/// first: from pixel to pixel of the finest lattice even, as far as its pixels are known.
 fn draw_preview(state: &TileState, preview: &Preview, rows: &mut [Vec3], width: usize) {
     let Tile { origin, extent } = state.tile;
     let step = preview.step();

@@ -1,4 +1,5 @@
-use glam::{DVec3, Vec3};
+use super::fixed_point::{UNIT, to_f64, to_fixed};
+use glam::Vec3;
 
 /// The exact sum of colours, whatever the order in which they are added: 128-bit fixed point.
 ///
@@ -9,15 +10,14 @@ use glam::{DVec3, Vec3};
 pub struct Sum(pub(super) [i128; 3]);
 
 pub(super) const FRACTION_BITS: u32 = 64;
-/// What a fixed-point step is worth.
-const UNIT: f64 = 1.0 / (1u128 << FRACTION_BITS) as f64;
 pub(super) const LARGEST: f32 = (1u64 << 40) as f32;
 
 impl Sum {
     /// Adds a colour. A component that is not a number counts as zero, an infinite one as the largest.
     pub fn add(&mut self, value: Vec3) {
         for (sum, value) in self.0.iter_mut().zip(value.to_array()) {
-            *sum += to_fixed(value);
+            let (low, high) = to_fixed(value);
+            *sum += i128::from(high as i64) << 64 | i128::from(low);
         }
     }
 
@@ -25,22 +25,6 @@ impl Sum {
     pub fn merge(&mut self, other: &Self) {
         for (sum, other) in self.0.iter_mut().zip(other.0) {
             *sum += other;
-        }
-    }
-
-    /// Adds what another sum holds times a factor for each channel: rounded to 53 bits, where that is not 1. What is larger
-    /// than a sum can hold stays as large as that.
-    pub fn merge_scaled(&mut self, other: &Self, factor: DVec3) {
-        if factor == DVec3::ONE {
-            for (sum, other) in self.0.iter_mut().zip(other.0) {
-                *sum = sum.saturating_add(other);
-            }
-            return;
-        }
-        for ((sum, other), factor) in self.0.iter_mut().zip(other.0).zip(factor.to_array()) {
-            if other != 0 {
-                *sum = sum.saturating_add((to_f64(other) * factor) as i128);
-            }
         }
     }
 
@@ -63,54 +47,16 @@ impl Sum {
         Self(words.map(sum))
     }
 
-    /// Half the difference between the means of `other` and of this sum, each over `count` values:
-    /// how far the mean of both together is from this one's. In f64, from exact sums.
-    pub fn half_difference(&self, other: &Self, count: u32) -> [f64; 3] {
-        let unit = UNIT / (2.0 * f64::from(count.max(1)));
-        std::array::from_fn(|i| to_f64(other.0[i] - self.0[i]) * unit)
-    }
-
     /// The mean over `count` values; zero where there are none.
     pub fn mean(&self, count: u32) -> Vec3 {
         if count == 0 {
             return Vec3::ZERO;
         }
         let unit = UNIT / f64::from(count);
-        let [r, g, b] = self.0.map(|sum| (to_f64(sum) * unit) as f32);
+        let [r, g, b] = self
+            .0
+            .map(|sum| (to_f64(sum as u64, (sum >> 64) as u64) * unit) as f32);
         Vec3::new(r, g, b)
-    }
-}
-
-/// The nearest f64, or the one beside it: both halves are rounded, and their sum once more. A general conversion of 128
-/// bits takes several times as long.
-#[inline(always)]
-fn to_f64(sum: i128) -> f64 {
-    const HIGH: f64 = (1u128 << 64) as f64;
-    let magnitude = sum.unsigned_abs();
-    let value = (magnitude >> 64) as u64 as f64 * HIGH + magnitude as u64 as f64;
-    if sum < 0 { -value } else { value }
-}
-
-/// Exact but for what lies below 2^-64; NaN becomes zero.
-fn to_fixed(value: f32) -> i128 {
-    let value = value.clamp(-LARGEST, LARGEST);
-    // `value` = mantissa · 2^exponent with a 24-bit mantissa; a shift puts it in place.
-    let bits = value.to_bits();
-    let biased = (bits >> 23) & 0xff;
-    if biased == 0 || biased == 0xff {
-        return 0; // Zero, what is smaller than 2^-126, or NaN.
-    }
-    let mantissa = i128::from((bits & 0x7f_ffff) | 0x80_0000);
-    let shift = biased as i32 - 150 + FRACTION_BITS as i32;
-    let magnitude = match shift {
-        0.. => mantissa << shift,
-        -24..0 => (mantissa + (1 << (-shift - 1))) >> -shift,
-        _ => 0,
-    };
-    if bits >> 31 == 1 {
-        -magnitude
-    } else {
-        magnitude
     }
 }
 

@@ -1,40 +1,198 @@
 //! The sums of many pixels at once: those of [`Sum`], bit for bit, in loops over columns that vectorise.
 
 use super::Sum;
-use super::sum::{FRACTION_BITS, LARGEST};
+use super::fixed_point::{UNIT, saturating_sum, sum, to_f64, to_fixed, whole_steps};
+use super::tiles::{BLOCK_PIXELS, HALF_PIXELS, TILE_PIXELS};
 use crate::instruction_sets::vectorized;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
+use std::ops::Range;
+
+/// Numbers of a pixel.
+pub(super) const CHANNELS: usize = 3;
+/// Numbers of a block, of which each half's lie together.
+const BLOCK_LANES: usize = CHANNELS * BLOCK_PIXELS;
+const HALF_LANES: usize = CHANNELS * HALF_PIXELS;
+
+/// A number for each channel of each pixel of a tile, in the order of its memory.
+pub(super) type TileColors = [f32; CHANNELS * TILE_PIXELS];
 
 /// The sums of pixels, 128-bit fixed-point numbers as two columns of 64 bits, three for each pixel.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct SumColumns {
     low: Vec<u64>,
     high: Vec<u64>,
 }
 
+/// Some of them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sums<'a> {
+    low: &'a [u64],
+    high: &'a [u64],
+}
+
 impl SumColumns {
     /// As many sums of nothing.
     pub fn reset(&mut self, pixels: usize) {
-        for column in [&mut self.low, &mut self.high] {
-            column.clear();
-            column.resize(3 * pixels, 0);
+        self.truncate(0);
+        self.extend(pixels);
+    }
+
+    /// No more than so many.
+    pub fn truncate(&mut self, pixels: usize) {
+        self.low.truncate(CHANNELS * pixels);
+        self.high.truncate(CHANNELS * pixels);
+    }
+
+    /// So many more sums of nothing.
+    pub fn extend(&mut self, pixels: usize) {
+        let lanes = self.low.len() + CHANNELS * pixels;
+        self.low.resize(lanes, 0);
+        self.high.resize(lanes, 0);
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.low.is_empty()
+    }
+
+    /// How many pixels' they are.
+    pub fn len(&self) -> usize {
+        self.low.len() / CHANNELS
+    }
+
+    /// All of them, to be read.
+    pub fn all(&self) -> Sums<'_> {
+        Sums {
+            low: &self.low,
+            high: &self.high,
         }
     }
 
     /// Adds a colour to each pixel from the `first` on, as [`Sum::add`] does.
     pub fn add(&mut self, first: usize, values: &[Vec3]) {
-        let range = 3 * first..3 * (first + values.len());
-        let (low, high) = (&mut self.low[range.clone()], &mut self.high[range]);
+        let lanes = CHANNELS * first..CHANNELS * (first + values.len());
+        let (low, high) = (&mut self.low[lanes.clone()], &mut self.high[lanes]);
         add_columns(bytemuck::cast_slice(values), low, high);
+    }
+
+    /// Adds to the pixels from the `first` on what others hold.
+    pub fn merge(&mut self, first: usize, others: Sums) {
+        let lanes = CHANNELS * first..CHANNELS * first + others.low.len();
+        let (low, high) = (&mut self.low[lanes.clone()], &mut self.high[lanes]);
+        merge_columns(low, high, others.low, others.high);
+    }
+
+    /// These pixels have nothing.
+    pub fn clear(&mut self, pixels: Range<usize>) {
+        let lanes = CHANNELS * pixels.start..CHANNELS * pixels.end;
+        self.low[lanes.clone()].fill(0);
+        self.high[lanes].fill(0);
     }
 
     /// The sum of one pixel.
     pub fn get(&self, pixel: usize) -> Sum {
+        self.all().get(pixel)
+    }
+
+    /// Another sum of one pixel.
+    pub fn set(&mut self, pixel: usize, sum: &Sum) {
+        for (channel, sum) in sum.0.into_iter().enumerate() {
+            let at = CHANNELS * pixel + channel;
+            self.low[at] = sum as u64;
+            self.high[at] = (sum >> 64) as u64;
+        }
+    }
+}
+
+impl<'a> Sums<'a> {
+    /// Those of these pixels.
+    pub fn part(self, pixels: Range<usize>) -> Sums<'a> {
+        let lanes = CHANNELS * pixels.start..CHANNELS * pixels.end;
+        Sums {
+            low: &self.low[lanes.clone()],
+            high: &self.high[lanes],
+        }
+    }
+
+    /// A copy, which is written without being read: new memory comes page by page, and a page that is read before it is
+    /// written comes twice.
+    pub fn to_columns(self) -> SumColumns {
+        SumColumns {
+            low: self.low.to_vec(),
+            high: self.high.to_vec(),
+        }
+    }
+
+    /// The sum of one pixel.
+    pub fn get(self, pixel: usize) -> Sum {
         Sum(std::array::from_fn(|channel| {
-            let at = 3 * pixel + channel;
+            let at = CHANNELS * pixel + channel;
             (i128::from(self.high[at] as i64) << 64) | i128::from(self.low[at])
         }))
     }
+
+    /// The means of a tile's pixels, of which those of each half have so many samples; black where they have none.
+    pub fn means(self, counts: [u32; 2]) -> TileColors {
+        let unit = |count: u32| {
+            DVec3::splat(if count > 0 {
+                UNIT / f64::from(count)
+            } else {
+                0.0
+            })
+        };
+        let mut means = [0.0; CHANNELS * TILE_PIXELS];
+        multiply(&mut means, self.low, self.high, &lanes_of(counts.map(unit)));
+        means
+    }
+
+    /// Half the difference between the means of `others` and of these sums, each over `count` values: how far the mean of
+    /// both together is from that of these.
+    pub fn half_differences(self, others: Sums, count: u32, moved: &mut [f32]) {
+        let unit = UNIT / (2.0 * f64::from(count.max(1)));
+        half_differences(
+            moved,
+            [self.low, self.high],
+            [others.low, others.high],
+            unit,
+        );
+    }
+}
+
+/// The picture of a tile as a sum of others, each with a tint: exact where that is 1, else each rounded to 53 bits. What is
+/// larger than a sum can hold stays as large as that.
+pub(super) struct Blend {
+    low: [u64; CHANNELS * TILE_PIXELS],
+    high: [u64; CHANNELS * TILE_PIXELS],
+}
+
+impl Blend {
+    pub fn new() -> Self {
+        Self {
+            low: [0; CHANNELS * TILE_PIXELS],
+            high: [0; CHANNELS * TILE_PIXELS],
+        }
+    }
+
+    /// Adds the sums of a tile, those of each half times a factor for each channel.
+    pub fn add(&mut self, sums: Sums, factors: [DVec3; 2]) {
+        if factors == [DVec3::ONE; 2] {
+            saturating_merge(&mut self.low, &mut self.high, sums.low, sums.high);
+        } else {
+            let lanes = lanes_of(factors);
+            merge_scaled(&mut self.low, &mut self.high, sums.low, sums.high, &lanes);
+        }
+    }
+
+    pub fn sums(&self) -> Sums<'_> {
+        Sums {
+            low: &self.low,
+            high: &self.high,
+        }
+    }
+}
+
+/// A factor of each half for each channel, as a block's numbers have it.
+fn lanes_of(halves: [DVec3; 2]) -> [f64; BLOCK_LANES] {
+    std::array::from_fn(|lane| halves[lane / HALF_LANES][lane % CHANNELS])
 }
 
 vectorized! {
@@ -43,51 +201,67 @@ vectorized! {
         let (low, high) = (&mut low[..count], &mut high[..count]);
         for i in 0..count {
             let (value_low, value_high) = to_fixed(values[i]);
-            let sum = low[i].wrapping_add(value_low);
-            let carry = u64::from(sum < value_low);
-            low[i] = sum;
-            high[i] = high[i].wrapping_add(value_high).wrapping_add(carry);
+            (low[i], high[i]) = sum(low[i], high[i], value_low, value_high);
         }
     }
-}
 
-/// The fixed-point number of a value, as [`Sum::add`] rounds it: the lower and the upper 64 bits.
-#[inline(always)]
-fn to_fixed(value: f32) -> (u64, u64) {
-    let bits = value.clamp(-LARGEST, LARGEST).to_bits();
-    let biased = bits >> 23 & 0xff;
-    // Zero, what is smaller than 2^-126, and NaN count as nothing.
-    let counts = u64::from(biased != 0 && biased != 0xff).wrapping_neg();
-    let mantissa = u64::from(bits & 0x7f_ffff | 0x80_0000) & counts;
-    let left = i64::from(biased) - 150 + i64::from(FRACTION_BITS);
-    let (low, high) = if left >= 0 {
-        let left = left as u64;
-        let over = shifted_right(mantissa, 64_u64.wrapping_sub(left));
-        (
-            shifted_left(mantissa, left),
-            over | shifted_left(mantissa, left.wrapping_sub(64)),
-        )
-    } else {
-        let right = left.wrapping_neg() as u64;
-        let half = shifted_left(1, right.wrapping_sub(1));
-        (shifted_right(mantissa + half, right), 0)
-    };
-    // The number's complement where it is negative.
-    let negative = u64::from(bits >> 31).wrapping_neg();
-    let low = (low ^ negative).wrapping_sub(negative);
-    let borrow = negative & u64::from(low == 0);
-    (low, (high ^ negative).wrapping_add(borrow & 1))
-}
+    fn merge_columns(low: &mut [u64], high: &mut [u64], other_low: &[u64], other_high: &[u64]) {
+        let count = low.len();
+        let (high, other_low, other_high) = (&mut high[..count], &other_low[..count], &other_high[..count]);
+        for i in 0..count {
+            (low[i], high[i]) = sum(low[i], high[i], other_low[i], other_high[i]);
+        }
+    }
 
-/// Nothing is left where all bits are shifted out.
-#[inline(always)]
-fn shifted_left(bits: u64, by: u64) -> u64 {
-    if by < 64 { bits << by } else { 0 }
-}
+    fn saturating_merge(low: &mut [u64], high: &mut [u64], other_low: &[u64], other_high: &[u64]) {
+        let count = low.len();
+        let (high, other_low, other_high) = (&mut high[..count], &other_low[..count], &other_high[..count]);
+        for i in 0..count {
+            (low[i], high[i]) = saturating_sum(low[i], high[i], other_low[i], other_high[i]);
+        }
+    }
 
-#[inline(always)]
-fn shifted_right(bits: u64, by: u64) -> u64 {
-    if by < 64 { bits >> by } else { 0 }
+    fn merge_scaled(
+        low: &mut [u64],
+        high: &mut [u64],
+        other_low: &[u64],
+        other_high: &[u64],
+        factors: &[f64; BLOCK_LANES],
+    ) {
+        let sums = low.chunks_exact_mut(BLOCK_LANES).zip(high.chunks_exact_mut(BLOCK_LANES));
+        let others = other_low.chunks_exact(BLOCK_LANES).zip(other_high.chunks_exact(BLOCK_LANES));
+        for ((low, high), (other_low, other_high)) in sums.zip(others) {
+            for i in 0..BLOCK_LANES {
+                let scaled = to_f64(other_low[i], other_high[i]) * factors[i];
+                let (scaled_low, scaled_high) = whole_steps(scaled);
+                let is_exact = factors[i] == 1.0;
+                let scaled_low = if is_exact { other_low[i] } else { scaled_low };
+                let scaled_high = if is_exact { other_high[i] } else { scaled_high };
+                (low[i], high[i]) = saturating_sum(low[i], high[i], scaled_low, scaled_high);
+            }
+        }
+    }
+
+    fn multiply(products: &mut [f32], low: &[u64], high: &[u64], factors: &[f64; BLOCK_LANES]) {
+        let sums = low.chunks_exact(BLOCK_LANES).zip(high.chunks_exact(BLOCK_LANES));
+        for ((low, high), products) in sums.zip(products.chunks_exact_mut(BLOCK_LANES)) {
+            for i in 0..BLOCK_LANES {
+                products[i] = (to_f64(low[i], high[i]) * factors[i]) as f32;
+            }
+        }
+    }
+
+    fn half_differences(moved: &mut [f32], own: [&[u64]; 2], other: [&[u64]; 2], unit: f64) {
+        let count = moved.len();
+        let [own_low, own_high] = own.map(|column| &column[..count]);
+        let [other_low, other_high] = other.map(|column| &column[..count]);
+        for i in 0..count {
+            let low = other_low[i].wrapping_sub(own_low[i]);
+            let borrow = u64::from(other_low[i] < own_low[i]);
+            let high = other_high[i].wrapping_sub(own_high[i]).wrapping_sub(borrow);
+            moved[i] = (to_f64(low, high) * unit) as f32;
+        }
+    }
 }
 
 #[cfg(test)]
@@ -112,10 +286,87 @@ mod tests {
                     sum.add(*value);
                 }
             }
+            let mut merged = columns.all().to_columns();
+            merged.merge(0, columns.all());
             for (pixel, sum) in sums.iter().enumerate() {
                 prop_assert_eq!(columns.get(pixel), *sum);
+                let mut twice = *sum;
+                twice.merge(sum);
+                prop_assert_eq!(merged.get(pixel), twice);
+                columns.set(pixel, &twice);
+                prop_assert_eq!(columns.get(pixel), twice);
             }
         }
+
+        #[test]
+        fn means_and_what_they_moved_by_are_those_of_each_number(
+            pairs in prop::collection::vec(any::<[i128; 2]>(), 48),
+            shift in 0..127_u32,
+            counts in any::<[u16; 2]>(),
+        ) {
+            let own = tile(|lane| pairs[lane % 48][0] >> shift);
+            let other = tile(|lane| pairs[lane % 48][1] >> shift);
+            let means = own.all().means(counts.map(u32::from));
+            let mut moved = [0.0; CHANNELS * TILE_PIXELS];
+            own.all().half_differences(other.all(), 8, &mut moved);
+            for lane in 0..CHANNELS * TILE_PIXELS {
+                let [own, other] = pairs[lane % 48].map(|number| number >> shift);
+                let count = counts[lane % 48 / 24];
+                let mean = if count > 0 { own as f64 * UNIT / f64::from(count) } else { 0.0 };
+                prop_assert!((f64::from(means[lane]) - mean).abs() <= 1e-7 * mean.abs() + 1e-45);
+                let half = other.wrapping_sub(own) as f64 * UNIT / 16.0;
+                prop_assert!((f64::from(moved[lane]) - half).abs() <= 1e-7 * half.abs() + 1e-45);
+            }
+        }
+
+        #[test]
+        fn a_blend_adds_whole_steps_of_each_plane_whatever_their_order(
+            numbers in prop::collection::vec(any::<[i128; 2]>(), 48),
+            shift in 1..127_u32,
+            factors in prop::array::uniform2(prop_oneof![Just(1.0), Just(0.0), -1e3..1e3_f64, Just(1e30)]),
+        ) {
+            let planes = [0, 1].map(|plane| tile(|lane| numbers[lane % 48][plane] >> shift));
+            let scaled = |lane: usize, plane: usize| {
+                let number = numbers[lane % 48][plane] >> shift;
+                match factors[plane] {
+                    1.0 => number,
+                    factor => ((number as f64 * factor) as i128).max(-i128::MAX),
+                }
+            };
+            let blend = |order: [usize; 2]| {
+                let mut blend = Blend::new();
+                for plane in order {
+                    let factor = DVec3::splat(factors[plane]);
+                    // The channels of the other half are not 1, whatever this one's are.
+                    blend.add(planes[plane].all(), [factor, factor]);
+                }
+                blend.sums().to_columns()
+            };
+            let both = blend([0, 1]);
+            prop_assert_eq!(&both, &blend([1, 0]));
+            for lane in 0..48 {
+                let expected = scaled(lane, 0).saturating_add(scaled(lane, 1));
+                let number = both.get(lane / CHANNELS).0[lane % CHANNELS];
+                // The conversion to f64 may be the number beside the nearest.
+                let tolerance = (expected.unsigned_abs() >> 51) + (number.unsigned_abs() >> 51);
+                let largest = (0..2).map(|plane| scaled(lane, plane).unsigned_abs() >> 51).max();
+                let tolerance = tolerance.max(largest.unwrap_or(0));
+                prop_assert!(number.abs_diff(expected) <= tolerance, "{number} {expected}");
+            }
+        }
+    }
+
+    /// A tile in which each lane has such a number.
+    fn tile(number: impl Fn(usize) -> i128) -> SumColumns {
+        let mut columns = SumColumns::default();
+        columns.reset(TILE_PIXELS);
+        for pixel in 0..TILE_PIXELS {
+            let sum = Sum(std::array::from_fn(|channel| {
+                number(CHANNELS * pixel + channel)
+            }));
+            columns.set(pixel, &sum);
+        }
+        columns
     }
 
     #[test]

@@ -1,158 +1,277 @@
 //! A tile's light kept apart: the sums of each plane, and the picture that they are with their tints.
 
-use super::Sum;
-use super::tile_state::{Pixels, TILE_PIXELS, half_of};
-use super::tiles::FilmPixel;
+use super::film_tile::FilmTile;
+use super::past_moves::{PastMoves, squares};
+use super::sample_chunk::Subject;
+use super::sum_columns::{Blend, CHANNELS, SumColumns, Sums, TileColors};
+use super::tile_state::Pixels;
+use super::tiles::{TILE_PIXELS, half_of};
 use crate::trace::PlaneSet;
 use crate::trace::planes::OWN;
 use glam::Vec3;
 
-/// The planes of a tile.
-pub(super) struct TilePlanes(Vec<Plane>);
+/// The planes of a tile: one, where light is not kept apart.
+#[derive(Default)]
+pub(super) struct TilePlanes {
+    planes: Vec<Plane>,
+    /// How far the picture of all of them moved.
+    past: PastMoves,
+    /// Whether it is known how far each of them moved.
+    keeps_moves: bool,
+    /// Their tints are others since then.
+    past_is_old: bool,
+}
 
 /// What one plane has.
-#[derive(Clone)]
 struct Plane {
-    /// None before its first samples, so that its memory is written before it is read.
-    sums: Box<[Sum]>,
+    /// None before its first samples.
+    sums: SumColumns,
     /// How far each pixel's mean moved when its samples doubled last; none before they did.
-    moved: Box<[[f32; 3]]>,
+    moved: Option<Box<TileColors>>,
     /// Samples of each pixel of each half.
     counts: [u32; 2],
+    tint: Vec3,
 }
 
 /// What a pixel of a plane takes.
-pub(super) const PLANE_BYTES: usize = size_of::<Sum>() + size_of::<[f32; 3]>();
+pub(super) const PLANE_BYTES: usize = size_of::<i128>() * CHANNELS + size_of::<f32>() * CHANNELS;
 
 impl Plane {
-    fn empty() -> Self {
+    fn empty(tint: Vec3) -> Self {
         Self {
-            sums: Box::default(),
-            moved: Box::default(),
+            sums: SumColumns::default(),
+            moved: None,
             counts: [0; 2],
+            tint,
         }
-    }
-
-    fn sum(&self, at: usize) -> Sum {
-        self.sums.get(at).copied().unwrap_or_default()
     }
 
     /// Adds `count` samples to these pixels.
-    fn add(&mut self, pixels: Pixels, sums: &[Sum], count: u32) {
-        let doubles = |half: usize| self.counts[half] == count;
-        if doubles(0) || doubles(1) {
-            if self.moved.is_empty() {
-                self.moved = vec![[0.0; 3]; TILE_PIXELS].into();
-            }
-            let places = (0..TILE_PIXELS).filter(|at| pixels.has(*at) && doubles(half_of(*at)));
-            for at in places {
-                let moved = self.sums[at].half_difference(&sums[at], count);
-                self.moved[at] = moved.map(|moved| moved as f32);
-            }
-        }
-        if self.sums.is_empty() {
-            let each = sums.iter().enumerate();
-            let sum = |(at, sum): (usize, &Sum)| {
-                if pixels.has(at) { *sum } else { Sum::default() }
-            };
-            self.sums = each.map(sum).collect();
+    fn add(&mut self, pixels: Pixels, sums: Sums, count: u32) {
+        if self.sums.is_empty() && pixels == Pixels::All {
+            self.sums = sums.to_columns();
         } else {
-            for at in (0..TILE_PIXELS).filter(|at| pixels.has(*at)) {
-                self.sums[at].merge(&sums[at]);
+            if self.sums.is_empty() {
+                self.sums.reset(TILE_PIXELS);
+            }
+            for places in pixels.runs() {
+                self.sums.merge(places.start, sums.part(places));
             }
         }
-        for half in (0..2).filter(|half| pixels.has_half(*half)) {
+        for half in pixels.halves() {
             self.counts[half] += count;
         }
     }
 }
 
+/// How far the means of these pixels move from those of `own` sums with `count` more samples: as many as they have.
+fn moves_with(own: Sums, sums: Sums, pixels: Pixels, count: u32, moved: &mut TileColors) {
+    for places in pixels.runs() {
+        let lanes = CHANNELS * places.start..CHANNELS * places.end;
+        let own = own.part(places.clone());
+        own.half_differences(sums.part(places), count, &mut moved[lanes]);
+    }
+}
+
 impl TilePlanes {
-    pub fn new(count: usize) -> Self {
-        Self(vec![Plane::empty(); count])
+    /// Of a subject, before any sample.
+    pub fn of(subject: &Subject) -> Self {
+        let tints = &subject.light.tints;
+        Self {
+            planes: tints.iter().map(|tint| Plane::empty(*tint)).collect(),
+            keeps_moves: subject.stays_apart,
+            ..Self::default()
+        }
+    }
+
+    /// Whether it has nothing of any subject.
+    pub fn is_empty(&self) -> bool {
+        self.planes.is_empty()
+    }
+
+    /// Samples of each pixel of each half: of what shines by itself.
+    pub fn counts(&self) -> [u32; 2] {
+        self.planes.get(OWN).map_or([0; 2], |own| own.counts)
     }
 
     /// Adds `count` samples to these planes of these pixels. `sums` has `TILE_PIXELS` for each plane of the film.
-    pub fn add(&mut self, pixels: Pixels, planes: PlaneSet, sums: &[Sum], count: u32) {
-        let each = self.0.iter_mut().zip(sums.chunks_exact(TILE_PIXELS));
-        for (number, (plane, sums)) in each.enumerate() {
-            if planes.has(number) {
-                plane.add(pixels, sums, count);
-            }
-        }
-    }
-
-    /// The pixel's sum as if every plane had the samples of its own light, and how far its mean moved when they doubled
-    /// last: squared, averaged over the channels.
-    pub fn fold(&self, at: usize, tints: &[Vec3]) -> (Sum, f32) {
-        let half = half_of(at);
-        let count = self.0[OWN].counts[half];
-        let mut sum = Sum::default();
-        let mut moved = Vec3::ZERO;
-        for (plane, tint) in self.0.iter().zip(tints) {
-            let stretch = f64::from(count) / f64::from(plane.counts[half].max(1));
-            sum.merge_scaled(&plane.sum(at), tint.as_dvec3() * stretch);
-            moved += plane
-                .moved
-                .get(at)
-                .map_or(Vec3::ZERO, |moved| *tint * Vec3::from_array(*moved));
-        }
-        (sum, moved.length_squared() / 3.0)
-    }
-
-    /// The mean of a pixel's samples in one plane, without its tint.
-    pub fn mean(&self, plane: usize, at: usize) -> Vec3 {
-        let plane = &self.0[plane];
-        plane.sum(at).mean(plane.counts[half_of(at)])
-    }
-
-    /// Writes the picture that the planes are with these tints into all pixels that have samples. The moves before the
-    /// last are scaled as the last one is: no more is known of them.
-    pub fn retint(&self, pixels: &mut [FilmPixel], tints: &[Vec3]) {
-        for (at, pixel) in pixels.iter_mut().enumerate() {
-            if pixel.count == 0 {
+    pub fn add(&mut self, pixels: Pixels, planes: PlaneSet, sums: Sums, count: u32) {
+        self.update_past();
+        let before = self.counts();
+        let is_more = planes.has(OWN);
+        let mut alone = [0.0; CHANNELS * TILE_PIXELS];
+        for (number, plane) in self.planes.iter_mut().enumerate() {
+            if !planes.has(number) {
                 continue;
             }
-            let (sum, moved) = self.fold(at, tints);
-            pixel.sum = sum;
-            let [last, ..] = pixel.moved;
-            if last.is_finite() && last > 0.0 {
-                let scale = moved / last;
-                pixel.moved = pixel.moved.map(|before| before * scale);
+            let sums = sums.part(number * TILE_PIXELS..(number + 1) * TILE_PIXELS);
+            for half in pixels.halves() {
+                if plane.counts[half] == count {
+                    let moved = match &mut plane.moved {
+                        moved if self.keeps_moves => {
+                            moved.get_or_insert_with(|| Box::new([0.0; CHANNELS * TILE_PIXELS]))
+                        }
+                        _ => &mut alone,
+                    };
+                    moves_with(plane.sums.all(), sums, Pixels::Half(half), count, moved);
+                }
             }
-            if last.is_finite() {
-                pixel.moved[0] = moved;
+            plane.add(pixels, sums, count);
+        }
+        let has_doubled = |half: usize| before[half] == count;
+        if pixels.halves().any(|half| !is_more || has_doubled(half)) {
+            let squares = if self.keeps_moves {
+                self.squares()
+            } else {
+                squares(&alone)
+            };
+            for half in pixels.halves().map(|half| (half, Pixels::Half(half))) {
+                match half {
+                    (_, pixels) if !is_more => self.past.correct(pixels, &squares),
+                    (half, pixels) if has_doubled(half) => self.past.push(pixels, &squares),
+                    _ => {}
+                }
             }
+        }
+        for half in pixels.halves() {
+            if is_more && before[half] == 0 && count > 1 {
+                self.past.forget(Pixels::Half(half));
+            }
+        }
+    }
+
+    /// How far the picture moved when its samples doubled last, squared.
+    fn squares(&self) -> [f32; TILE_PIXELS] {
+        let mut all = [0.0; CHANNELS * TILE_PIXELS];
+        for plane in &self.planes {
+            let Some(moved) = &plane.moved else { continue };
+            let tint = plane.tint.to_array();
+            for (all, moved) in all
+                .chunks_exact_mut(CHANNELS)
+                .zip(moved.chunks_exact(CHANNELS))
+            {
+                for channel in 0..CHANNELS {
+                    all[channel] += tint[channel] * moved[channel];
+                }
+            }
+        }
+        squares(&all)
+    }
+
+    /// Other tints from now on.
+    pub fn retint(&mut self, tints: &[Vec3]) {
+        for (plane, tint) in self.planes.iter_mut().zip(tints) {
+            plane.tint = *tint;
+        }
+        self.past_is_old = self.keeps_moves;
+    }
+
+    /// How far the picture moved, with the tints that it has.
+    pub fn past(&mut self) -> &PastMoves {
+        self.update_past();
+        &self.past
+    }
+
+    fn update_past(&mut self) {
+        if std::mem::take(&mut self.past_is_old) {
+            let squares = self.squares();
+            self.past.rescale(&squares);
+        }
+    }
+
+    /// The picture's sums, as if every plane had the samples of its own light.
+    fn blend(&self) -> Blend {
+        let counts = self.counts().map(f64::from);
+        let mut blend = Blend::new();
+        for plane in self.planes.iter().filter(|plane| !plane.sums.is_empty()) {
+            let factor = |half: usize| {
+                let stretch = counts[half] / f64::from(plane.counts[half].max(1));
+                plane.tint.as_dvec3() * stretch
+            };
+            blend.add(plane.sums.all(), [factor(0), factor(1)]);
+        }
+        blend
+    }
+
+    /// The only plane there is, where it is the picture.
+    fn only(&self) -> Option<&Plane> {
+        let only = self.planes.first().filter(|_| self.planes.len() == 1)?;
+        (only.tint == Vec3::ONE && !only.sums.is_empty()).then_some(only)
+    }
+
+    /// The means of the picture's pixels.
+    pub fn means(&self) -> TileColors {
+        match self.only() {
+            Some(plane) => plane.sums.all().means(plane.counts),
+            None => self.blend().sums().means(self.counts()),
+        }
+    }
+
+    /// The picture.
+    pub fn film_tile(&mut self) -> FilmTile {
+        if self.counts() == [0; 2] {
+            return FilmTile::default();
+        }
+        self.update_past();
+        FilmTile {
+            sums: match self.only() {
+                Some(plane) => plane.sums.clone(),
+                None => self.blend().sums().to_columns(),
+            },
+            past: self.past.clone(),
+            counts: self.counts(),
+        }
+    }
+
+    /// The same without a copy, where that can be.
+    pub fn into_film_tile(mut self) -> FilmTile {
+        if self.only().is_none() {
+            return self.film_tile();
+        }
+        let counts = self.counts();
+        let sums = std::mem::take(&mut self.planes[OWN].sums);
+        FilmTile {
+            sums,
+            past: self.past,
+            counts,
+        }
+    }
+
+    /// The mean of a pixel's samples in one plane, without its tint; black where there is no such plane.
+    pub fn mean(&self, plane: usize, at: usize) -> Vec3 {
+        match self.planes.get(plane) {
+            Some(plane) if !plane.sums.is_empty() => {
+                plane.sums.get(at).mean(plane.counts[half_of(at)])
+            }
+            _ => Vec3::ZERO,
         }
     }
 
     /// The planes of an edited scene: of each the one of this number before, or none yet.
     pub fn rearrange(&mut self, from: &[Option<usize>]) {
-        let mut before: Vec<Option<Plane>> = self.0.drain(..).map(Some).collect();
-        self.0 = from
-            .iter()
-            .map(|plane| plane.and_then(|plane| before[plane].take()))
-            .map(|plane| plane.unwrap_or_else(Plane::empty))
+        let mut before: Vec<Option<Plane>> = self.planes.drain(..).map(Some).collect();
+        let planes = from.iter().map(|plane| before[(*plane)?].take());
+        self.planes = planes
+            .map(|plane| plane.unwrap_or_else(|| Plane::empty(Vec3::ONE)))
             .collect();
     }
 
     /// Whether some plane has no sample yet of pixels of which its own light has.
     pub fn lacks_light(&self) -> bool {
-        (0..2).any(|half| {
-            let own = self.0[OWN].counts[half];
-            own > 0 && self.0.iter().any(|plane| plane.counts[half] == 0)
-        })
+        let own = self.counts();
+        let lacks = |half| own[half] > 0 && self.planes.iter().any(|p| p.counts[half] == 0);
+        (0..2).any(lacks)
     }
 
     /// Planes of a half that have fewer samples than its own light: those that have fewest, and how many, and how many they
     /// should have.
     pub fn behind(&self, half: usize) -> Option<(PlaneSet, u32, u32)> {
-        let goal = self.0[OWN].counts[half];
-        let fewest = self.0.iter().map(|plane| plane.counts[half]).min()?;
+        let goal = self.counts()[half];
+        let fewest = self.planes.iter().map(|plane| plane.counts[half]).min()?;
         if fewest == goal {
             return None;
         }
-        let planes = self.0.iter().enumerate();
+        let planes = self.planes.iter().enumerate();
         let last = planes.filter(|(_, plane)| plane.counts[half] == fewest);
         let set = last.fold(PlaneSet::NONE, |set, (number, _)| set.with(number));
         Some((set, fewest, goal))

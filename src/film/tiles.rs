@@ -1,148 +1,61 @@
-use super::tile_state::TILE_PIXELS;
-use super::{Picture, Sum};
+use super::tile_state::Pixels;
 use bevy::math::URect;
-use glam::{UVec2, Vec2, Vec3};
+use glam::{UVec2, Vec2};
 
 /// Edge of a square tile in pixels: 256 pixels of one sample each fill a batch, and the arrays of a
 /// batch stay within a core's second-level cache.
 pub const TILE: u32 = 16;
+pub(super) const TILE_PIXELS: usize = (TILE * TILE) as usize;
 
-/// Sums and counts of every pixel, tile by tile, so that a tile is one piece of memory that a
-/// thread can have to itself.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Film {
-    size: UVec2,
-    /// `TILE_PIXELS` each.
-    tiles: Vec<Box<[FilmPixel]>>,
-    /// The squared error that unmet features may leave in a pixel, per [`Reach`](super::unmet::Reach) of a
-    /// sample, if they lie in all alike.
-    pub(super) hidden: f64,
+/// Edge of a block in pixels: the rays of its pixels walk the trees together, and what moved in it says how far its pixels are
+/// from the converged ones; the means of a single pixel move too much by chance.
+pub(super) const BLOCK: u32 = 4;
+pub(super) const BLOCK_PIXELS: usize = (BLOCK * BLOCK) as usize;
+/// Blocks along a tile's edge.
+const BLOCKS: u32 = TILE / BLOCK;
+
+/// Pixels of a block of each half: those with x + y even are one half of a picture, the others the other one. Adaptive
+/// sampling gives one half the samples that the other half asks for.
+pub(super) const HALF_PIXELS: usize = BLOCK_PIXELS / 2;
+
+/// Where a pixel of a tile, at this column and this row of it, lies in the tile's memory: block by block, and in each block
+/// first one half and then the other, so that the same is done to all pixels that lie beside one another.
+#[inline(always)]
+pub(super) const fn place_in_tile(x: u32, y: u32) -> usize {
+    let block = y / BLOCK * BLOCKS + x / BLOCK;
+    let half = (x + y) % 2;
+    let within = y % BLOCK * (BLOCK / 2) + x % BLOCK / 2;
+    block as usize * BLOCK_PIXELS + half as usize * HALF_PIXELS + within as usize
 }
 
-/// One pixel: what arrived, and how many samples it took.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct FilmPixel {
-    pub sum: Sum,
-    pub count: u32,
-    /// How far the mean moved when its samples doubled, the last time first: squared, averaged over
-    /// the channels; or [`NOT_KNOWN`]. They fill what the sum's alignment leaves.
-    pub moved: [f32; 3],
+/// Column and row of the pixel at a place of a tile's memory.
+#[inline(always)]
+pub(super) fn pixel_in_tile(place: usize) -> UVec2 {
+    static PIXELS: [UVec2; TILE_PIXELS] = {
+        let mut pixels = [UVec2::ZERO; TILE_PIXELS];
+        let mut place = 0;
+        while place < TILE_PIXELS {
+            pixels[place] = pixel_of(place);
+            place += 1;
+        }
+        pixels
+    };
+    PIXELS[place]
 }
 
-/// Of samples that did not arrive by doublings from the first one on. Infinite and not NaN, so that
-/// equal films are equal.
-pub(super) const NOT_KNOWN: [f32; 3] = [f32::INFINITY; 3];
-
-impl Film {
-    /// An empty film of `size` pixels.
-    pub fn new(size: UVec2) -> Self {
-        let tiles = TileGrid::new(size).tiles().map(|_| empty_tile());
-        Self::from_tiles(size, tiles.collect(), 0.0)
-    }
-
-    /// In pixels.
-    pub fn size(&self) -> UVec2 {
-        self.size
-    }
-
-    /// The film whose tiles' pixels are given, in the grid's order. `hidden` is what unmet features may leave in a
-    /// pixel, per reach of a sample.
-    pub(super) fn from_tiles(size: UVec2, tiles: Vec<Box<[FilmPixel]>>, hidden: f64) -> Self {
-        Self {
-            size,
-            tiles,
-            hidden,
-        }
-    }
-
-    /// The mean of every pixel's samples.
-    pub fn picture(&self) -> Picture {
-        let mut picture = Picture::black(self.size);
-        for y in 0..self.size.y {
-            for x in 0..self.size.x {
-                let pixel = self.pixel(x, y);
-                picture.pixels[y as usize * self.size.x as usize + x as usize] =
-                    pixel.sum.mean(pixel.count);
-            }
-        }
-        picture
-    }
-
-    /// The mean of one pixel's samples.
-    pub fn mean(&self, x: u32, y: u32) -> Vec3 {
-        let pixel = self.pixel(x, y);
-        pixel.sum.mean(pixel.count)
-    }
-
-    /// A film whose pixels hold these sums, row by row from the top, of `count` samples each. `None`
-    /// where there are more or fewer sums than pixels.
-    pub fn of_sums(size: UVec2, sums: &[Sum], count: u32) -> Option<Self> {
-        let columns = size.x as usize;
-        if sums.len() != columns * size.y as usize {
-            return None;
-        }
-        let mut film = Self::new(size);
-        for (i, sum) in sums.iter().enumerate() {
-            let (tile, at) = film.place((i % columns) as u32, (i / columns) as u32);
-            film.tiles[tile][at] = FilmPixel {
-                sum: *sum,
-                count,
-                moved: NOT_KNOWN,
-            };
-        }
-        Some(film)
-    }
-
-    /// The sum of a pixel's samples.
-    pub fn sum(&self, x: u32, y: u32) -> &Sum {
-        &self.pixel(x, y).sum
-    }
-
-    /// Adds the samples of another film of the same size. False, and nothing done, for another size.
-    /// Of the sum of two parts the error is not known: neither part tells how far it would have moved.
-    pub fn merge(&mut self, other: &Self) -> bool {
-        if self.size != other.size {
-            return false;
-        }
-        let pixels = self.tiles.iter_mut().flatten();
-        for (pixel, other) in pixels.zip(other.tiles.iter().flatten()) {
-            pixel.moved = match (pixel.count, other.count) {
-                (0, _) => other.moved,
-                (_, 0) => pixel.moved,
-                _ => NOT_KNOWN,
-            };
-            pixel.sum.merge(&other.sum);
-            pixel.count += other.count;
-        }
-        self.hidden = self.hidden.max(other.hidden);
-        true
-    }
-
-    /// How many samples a pixel has.
-    pub fn count(&self, x: u32, y: u32) -> u32 {
-        self.pixel(x, y).count
-    }
-
-    /// The memory of the tile with this number.
-    pub(super) fn tile(&self, number: usize) -> &[FilmPixel] {
-        &self.tiles[number]
-    }
-
-    fn pixel(&self, x: u32, y: u32) -> &FilmPixel {
-        let (tile, at) = self.place(x, y);
-        &self.tiles[tile][at]
-    }
-
-    /// The tile that a pixel lies in, and where in its memory.
-    fn place(&self, x: u32, y: u32) -> (usize, usize) {
-        let tile = TileGrid::new(self.size).tile_of(UVec2::new(x, y));
-        (tile, ((y % TILE) * TILE + x % TILE) as usize)
-    }
+/// The same, worked out.
+const fn pixel_of(place: usize) -> UVec2 {
+    let (block, half) = ((place / BLOCK_PIXELS) as u32, half_of(place) as u32);
+    let within = (place % HALF_PIXELS) as u32;
+    let y = within / (BLOCK / 2);
+    let x = within % (BLOCK / 2) * 2 + (y + half) % 2;
+    UVec2::new(block % BLOCKS * BLOCK + x, block / BLOCKS * BLOCK + y)
 }
 
-/// The pixels of a tile that nothing has arrived in.
-pub(super) fn empty_tile() -> Box<[FilmPixel]> {
-    vec![FilmPixel::default(); TILE_PIXELS].into()
+/// The half that the pixel at a place of a tile's memory belongs to.
+#[inline(always)]
+pub(super) const fn half_of(place: usize) -> usize {
+    place / HALF_PIXELS % 2
 }
 
 /// How a picture is cut into tiles: row by row from the top left.
@@ -224,25 +137,34 @@ impl Tile {
         self.origin.as_vec2() + 0.5 * self.extent.as_vec2()
     }
 
-    /// The same, in blocks of 4 × 4: rays of neighbours walk the trees together.
-    pub fn pixels_in_blocks(self) -> impl Iterator<Item = (UVec2, usize)> {
-        const BLOCK: u32 = 4;
-        let blocks = TILE / BLOCK;
-        (0..TILE * TILE).filter_map(move |i| {
-            let (block, within) = (i / (BLOCK * BLOCK), i % (BLOCK * BLOCK));
-            let x = block % blocks * BLOCK + within % BLOCK;
-            let y = block / blocks * BLOCK + within / BLOCK;
-            let inside = x < self.extent.x && y < self.extent.y;
-            inside.then(|| (self.origin + UVec2::new(x, y), (y * TILE + x) as usize))
-        })
+    /// How many of these pixels it has.
+    pub fn count(self, pixels: Pixels) -> u64 {
+        let all = u64::from(self.extent.element_product());
+        match pixels {
+            Pixels::All => all,
+            // Row by row and pixel by pixel in turns, the first one of the first half.
+            Pixels::Half(half) => (all + 1 - half as u64) / 2,
+        }
     }
 
-    /// Its pixels, each with its place in the tile's memory.
+    /// Whether it has the pixel at this place of its memory.
+    #[inline(always)]
+    pub fn has(self, place: usize) -> bool {
+        pixel_in_tile(place).cmplt(self.extent).all()
+    }
+
+    /// The places of these pixels in its memory, in their order: rays of neighbours walk the trees together.
+    pub fn places(self, pixels: Pixels) -> impl Iterator<Item = usize> {
+        pixels
+            .runs()
+            .flatten()
+            .filter(move |place| self.has(*place))
+    }
+
+    /// Its pixels in the order of its memory, each with its place there.
     pub fn pixels(self) -> impl Iterator<Item = (UVec2, usize)> {
-        (0..self.extent.y).flat_map(move |y| {
-            (0..self.extent.x)
-                .map(move |x| (self.origin + UVec2::new(x, y), (y * TILE + x) as usize))
-        })
+        let places = self.places(Pixels::All);
+        places.map(move |place| (self.origin + pixel_in_tile(place), place))
     }
 }
 
@@ -251,49 +173,30 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tiles_cover_every_pixel_once_whatever_the_size() {
-        for size in [UVec2::new(1, 1), UVec2::new(16, 16), UVec2::new(37, 18)] {
-            let mut tiles = Vec::new();
-            for tile in TileGrid::new(size).tiles() {
-                let mut pixels = empty_tile();
-                for (at, place) in tile.pixels() {
-                    let pixel = &mut pixels[place];
-                    pixel.sum.add(Vec3::new(at.x as f32, at.y as f32, 1.0));
-                    pixel.count += 1;
-                }
-                tiles.push(pixels);
-            }
-            let film = Film::from_tiles(size, tiles, 0.0);
-            assert_eq!(film.tiles.len(), Film::new(size).tiles.len());
-            let picture = film.picture();
-            for y in 0..size.y {
-                for x in 0..size.x {
-                    assert_eq!(picture.pixel(x, y), Vec3::new(x as f32, y as f32, 1.0));
-                    assert_eq!(film.mean(x, y), picture.pixel(x, y));
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn the_blocks_of_a_tile_hold_its_pixels_once_and_sixteen_in_a_row_are_neighbours() {
+    fn a_tile_has_each_of_its_pixels_once_block_by_block_and_half_by_half() {
         for extent in [UVec2::splat(TILE), UVec2::new(5, 16), UVec2::new(3, 1)] {
             let tile = Tile {
                 origin: UVec2::new(32, 48),
                 extent,
             };
-            let mut in_blocks: Vec<_> = tile.pixels_in_blocks().collect();
-            if extent == UVec2::splat(TILE) {
-                for block in in_blocks.chunks(16) {
-                    let corner = block[0].0;
-                    let far = block
-                        .iter()
-                        .map(|(pixel, _)| (*pixel - corner).max_element());
-                    assert_eq!(far.max(), Some(3));
-                }
+            let pixels: Vec<_> = tile.pixels().collect();
+            assert_eq!(pixels.len() as u32, extent.element_product());
+            for (pixel, place) in &pixels {
+                let within = *pixel - tile.origin;
+                assert!(within.cmplt(extent).all());
+                assert_eq!(place_in_tile(within.x, within.y), *place);
+                assert_eq!(half_of(*place) as u32, within.element_sum() % 2);
+                let block = within / BLOCK;
+                let number = block.y * (TILE / BLOCK) + block.x;
+                assert_eq!((place / BLOCK_PIXELS) as u32, number);
             }
-            in_blocks.sort_by_key(|(_, at)| *at);
-            assert_eq!(in_blocks, tile.pixels().collect::<Vec<_>>());
+            for half in 0..2 {
+                let of_half = pixels.iter().filter(|(_, place)| half_of(*place) == half);
+                assert_eq!(of_half.count() as u64, tile.count(Pixels::Half(half)));
+            }
+            let mut places: Vec<_> = pixels.iter().map(|(_, place)| *place).collect();
+            places.dedup();
+            assert!(places.is_sorted() && places.len() == pixels.len());
         }
     }
 

@@ -20,7 +20,7 @@
 
 use super::lock;
 use super::sample_chunk::Subject;
-use super::tile_state::TILE_PIXELS;
+use super::tiles::TILE_PIXELS;
 use crate::instruction_sets::vectorized;
 use crate::trace::emitters;
 use glam::Vec3;

@@ -174,7 +174,7 @@ pub(crate) fn picture_bytes(width: u32, height: u32, channel_bytes: u64) -> u64 
     pixels.saturating_mul(pixel)
 }
 
-/// Of a film, with the picture that is made of it: sums with their errors, of 64 bytes a pixel, while they are added up and
+/// Of a film, with the picture that is made of it: sums with their errors, of 60 bytes a pixel, while they are added up and
 /// again afterwards, and pixels of three floats before and after they are developed. Measured: 125 to 152 bytes a pixel.
 pub(crate) fn film_bytes(size: UVec2) -> u64 {
     const PIXEL: u64 = 160;

@@ -417,7 +417,7 @@ fn a_sample_evaluated_alone_is_what_the_film_adds_bit_for_bit() {
             let rays = probe(world, camera, settings, pixel, &Samples::One(index)).unwrap();
             let mut sum = Sum::default();
             sum.add(rays.samples[0].value);
-            assert_eq!(sum, *film.sum(pixel.x, pixel.y), "{name}, pixel {pixel}");
+            assert_eq!(sum, film.sum(pixel.x, pixel.y), "{name}, pixel {pixel}");
         }
     }
 }

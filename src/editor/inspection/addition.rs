@@ -210,7 +210,7 @@ mod tests {
         let shot = ray.shot().unwrap();
         let film = render(world, &shot.camera, settings, &|_, _| {}).film;
         let pixel = UVec2::new(300, 240);
-        let sum = *film.sum(pixel.x, pixel.y);
+        let sum = film.sum(pixel.x, pixel.y);
         let count = film.count(pixel.x, pixel.y);
         let rays = ray.rays().unwrap();
         let said = ray.addition().says_of_film(rays, Some((sum, count)));

@@ -55,7 +55,7 @@ fn channel_name(component: usize, word: usize) -> String {
 }
 
 /// The sums of a film, row by row.
-fn sums(film: &Film) -> impl Iterator<Item = &Sum> {
+fn sums(film: &Film) -> impl Iterator<Item = Sum> + '_ {
     let size = film.size();
     (0..size.y).flat_map(move |y| (0..size.x).map(move |x| film.sum(x, y)))
 }
