@@ -3,7 +3,9 @@
 use super::embed::Editing;
 use super::viewport::{EditorCamera, Viewport};
 use crate::scene::NotTraced;
-use crate::view::{RASTER_LAYER, TracedRender, TracedView, interface_camera, picture_camera};
+use crate::view::{
+    OVERLAY_LAYER, RASTER_LAYER, TracedRender, TracedView, interface_camera, picture_camera,
+};
 use bevy::app::{App, Plugin, PostUpdate, PreStartup};
 use bevy::camera::Camera;
 use bevy::camera::visibility::RenderLayers;
@@ -100,9 +102,9 @@ fn fit_viewport(
     }
     // What the traced picture covers is not drawn beneath it, once there is one.
     let wanted = if divider > 0.0 || render.shown().is_none() {
-        RenderLayers::from_layers(&[0, RASTER_LAYER])
+        RenderLayers::from_layers(&[0, RASTER_LAYER, OVERLAY_LAYER])
     } else {
-        RenderLayers::layer(0)
+        RenderLayers::from_layers(&[0, OVERLAY_LAYER])
     };
     layers.set_if_neq(wanted);
 }

@@ -14,8 +14,9 @@ use bevy::ecs::entity::Entity;
 use bevy::ecs::query::{Changed, Or, With, Without};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::schedule::IntoScheduleConfigs;
-use bevy::ecs::system::{Commands, Local, Query, Res};
+use bevy::ecs::system::{Commands, Local, Query, Res, ResMut};
 use bevy::ecs::world::World;
+use bevy::picking::PickingSettings;
 use bevy::window::{PrimaryWindow, WindowRef};
 
 /// Whether the editor is on, in an app with [`EditorPlugins`](super::EditorPlugins). Off, the app's
@@ -46,6 +47,7 @@ impl Plugin for EmbedPlugin {
                 PostUpdate,
                 (
                     share_cameras.before(crate::sync::SyncSystems),
+                    rest_picking,
                     rest_cameras.before(bevy::camera::CameraUpdateSystems),
                 ),
             );
@@ -63,6 +65,23 @@ fn adopt_scene(world: &mut World, mut done: Local<bool>) {
     }
     *done = true;
     adopt(world, "Untitled", None);
+}
+
+/// A click in the editor is none in the app: its observers hear of no pointer meanwhile.
+fn rest_picking(
+    editing: Res<Editing>,
+    picking: Option<ResMut<PickingSettings>>,
+    mut before: Local<Option<bool>>,
+) {
+    let Some(mut picking) = picking else { return };
+    if editing.0 && before.is_none() {
+        *before = Some(picking.is_hover_enabled);
+        picking.is_hover_enabled = false;
+    } else if !editing.0
+        && let Some(before) = before.take()
+    {
+        picking.is_hover_enabled = before;
+    }
 }
 
 /// What the app's camera and ours had in common last.
@@ -149,6 +168,7 @@ fn share_cameras(mut commands: Commands, mut cameras: AppCameras) {
 
 /// On a camera of the app that would draw if the editor did not.
 #[derive(Component)]
+#[component(clone_behavior = Ignore)]
 struct Rests;
 
 /// The app's cameras of the window rest while the editor is on.
@@ -173,6 +193,32 @@ fn rest_cameras(
         } else if !editing.0 && rests.is_some() {
             camera.is_active = true;
             commands.entity(entity).remove::<Rests>();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_apps_picking_rests_while_the_editor_is_on_and_is_what_it_was_after() {
+        for was_on in [true, false] {
+            let mut app = App::new();
+            app.init_resource::<Editing>()
+                .insert_resource(PickingSettings {
+                    is_hover_enabled: was_on,
+                    ..PickingSettings::default()
+                })
+                .add_systems(PostUpdate, rest_picking);
+            let hears = |app: &mut App, editing| {
+                app.insert_resource(Editing(editing));
+                app.update();
+                app.world().resource::<PickingSettings>().is_hover_enabled
+            };
+            let heard = [true, true, false, false, true, false].map(|on| hears(&mut app, on));
+            let expected = [false, false, was_on, was_on, false, was_on];
+            assert_eq!(heard, expected);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! How much room things take: for framing them, for pivots and for box selection.
 
 use crate::bvh::REACH;
+use crate::editor::history::LaidAside;
 use crate::scene::{
     DirectionalLamp, ParallelogramLamp, PointLamp, SceneCamera, SceneId, SegmentLamp,
 };
@@ -98,7 +99,8 @@ pub(super) fn extent_now(world: &World, root: Entity) -> Option<Extent> {
     let mut all = vec![root];
     while let Some(entity) = all.pop() {
         if let Some(children) = world.get::<Children>(entity) {
-            all.extend(children.iter());
+            let there = |child: &Entity| world.get::<LaidAside>(*child).is_none();
+            all.extend(children.iter().copied().filter(there));
         }
         extent = extent
             .into_iter()

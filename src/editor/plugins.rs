@@ -40,11 +40,14 @@ use bevy::app::{App, Plugin, PluginGroup, PluginGroupBuilder};
 /// [`NotTraced`](crate::scene::NotTraced) are left out. The view begins where the app's first camera
 /// stands.
 ///
-/// **While it is on** ([`Editing`](super::Editing), which the app may switch) the app's cameras of that window rest.
+/// **While it is on** ([`Editing`](super::Editing), which the app may switch) the app's cameras of that window rest,
+/// and so does its picking: no observer of the app's hears of the editor's clicks. What the editor draws lies in
+/// layers of its own ([`OVERLAY_LAYER`](crate::view::OVERLAY_LAYER)), which the app's cameras do not show.
 /// The app's systems go on; those that shall not are given the run condition `not(editing)`
 /// ([`editing`](super::editing)). What they do to the scene is shown and is no step: undo takes back only what was
-/// done in the editor. A deleted entity that undo brings back is another `Entity` with the same
-/// components; children that are no part of the scene are lost.
+/// done in the editor. A deleted entity is disabled until undo brings it back: it is the same `Entity`, with its
+/// observers and all that hangs on it, and no observer hears of its components. It is despawned when another
+/// scene is opened.
 ///
 /// **Components of the app's own** that are registered for reflection are shown in the inspector, edited by their fields,
 /// undone, copied and given to other entities. Scene files keep those that the app

@@ -18,7 +18,7 @@ impl Engine {
         let subject = self.subject();
         let focus = lock(&self.queue).focus();
         let preview = Arc::new(Preview::new(area));
-        let (seconds, threads) = self.on_threads(|| {
+        let (seconds, threads) = self.on_threads(|_| {
             let timed = time_samples(&subject, &preview, focus, &self.batch);
             (timed, rayon::current_num_threads())
         });
@@ -30,11 +30,13 @@ impl Engine {
             preview.begin(divider);
             let mut squares = lattice_squares(area.extent, divider);
             while !squares.is_empty() {
-                // Those that were not done when a pause came are tried again; what they had is kept.
-                squares = self.on_threads(|| {
+                // Those that were not done when a pause came, or the turn of another render, are tried again; what
+                // they had is kept.
+                squares = self.on_threads(|turn| {
                     let squares = squares.into_par_iter().with_max_len(1);
-                    let left =
-                        squares.filter(|square| !self.preview_square(&preview, *square, divider));
+                    let left = squares.filter(|square| {
+                        turn.is_over() || !self.preview_square(&preview, *square, divider)
+                    });
                     left.collect()
                 });
                 if let Some(ending) = self.interrupted() {

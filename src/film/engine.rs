@@ -4,6 +4,7 @@ use super::control::{Control, Signal};
 use super::edit::Edit;
 use super::error::{Decline, ErrorEstimate, Moves};
 use super::past_moves::PAST_BYTES;
+use super::pool::{SharedPool, Turn};
 use super::preview::Preview;
 use super::queue::Queue;
 use super::sample_chunk::{BatchSize, Subject, with_scratch};
@@ -17,7 +18,6 @@ use crate::trace::RayCounts;
 use crate::trace::planes::OWN;
 use bevy::math::URect;
 use glam::{UVec2, Vec2};
-use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
@@ -40,7 +40,7 @@ pub(super) struct Engine {
     subject: RwLock<Arc<Subject>>,
     pub mode: Mode,
     /// Whose threads trace; without one those of the caller's pool.
-    pub pool: Option<Arc<ThreadPool>>,
+    pub pool: Option<Arc<SharedPool>>,
     pub grid: TileGrid,
     pub tiles: Vec<Mutex<TileState>>,
     /// Those that are rendered, and the rectangle that they make.
@@ -90,7 +90,7 @@ struct Progress {
 }
 
 impl Engine {
-    pub fn new(subject: Subject, mode: Mode, pool: Option<Arc<ThreadPool>>) -> Self {
+    pub fn new(subject: Subject, mode: Mode, pool: Option<Arc<SharedPool>>) -> Self {
         let grid = TileGrid::new(subject.settings.size);
         let (rendered, area) = grid.within(mode.region);
         Self {
@@ -245,10 +245,10 @@ impl Engine {
 
     /// Works on the threads that trace. What waits does so outside, lest a paused render keeps a thread
     /// from others.
-    pub(super) fn on_threads<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
+    pub(super) fn on_threads<R: Send>(&self, work: impl FnOnce(Turn) -> R + Send) -> R {
         match &self.pool {
             Some(pool) => pool.install(work),
-            None => work(),
+            None => work(Turn::ENDLESS),
         }
     }
 
@@ -256,8 +256,8 @@ impl Engine {
     fn run_queue(&self, told: &(dyn Fn(&Self) + Sync)) -> Option<Interruption> {
         loop {
             let waiting = lock(&self.queue).len();
-            let next_chunk = |_| {
-                if self.must_stop() {
+            let next_chunk = |turn: Turn| {
+                if turn.is_over() || self.must_stop() {
                     return;
                 }
                 let next = lock(&self.queue).pop(&self.grid);
@@ -269,9 +269,9 @@ impl Engine {
                     }
                 }
             };
-            self.on_threads(|| {
+            self.on_threads(|turn| {
                 let chunks = (0..waiting).into_par_iter().with_max_len(1);
-                chunks.for_each(next_chunk);
+                chunks.for_each(|_| next_chunk(turn));
             });
             if let Some(ending) = self.interrupted() {
                 return Some(Interruption::End(ending));

@@ -2,7 +2,9 @@
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::io;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
 use thread_priority::ThreadPriority;
 
 /// What a render is for, and so who waits for its threads.
@@ -24,16 +26,58 @@ impl Purpose {
     }
 }
 
+/// So long a render keeps the threads while another waits for them: long beside what the change costs, and
+/// short beside what an eye takes for a delay.
+const TURN: Duration = Duration::from_millis(30);
+
+/// Threads that several renders share in turns.
+pub(super) struct SharedPool {
+    threads: ThreadPool,
+    /// How many renders wait for their turn.
+    waiting: AtomicUsize,
+}
+
+impl SharedPool {
+    fn new(threads: ThreadPool) -> Self {
+        let waiting = AtomicUsize::new(0);
+        Self { threads, waiting }
+    }
+
+    /// Works on the threads as soon as those who asked before have had their turn.
+    pub fn install<R: Send>(&self, work: impl FnOnce(Turn) -> R + Send) -> R {
+        self.waiting.fetch_add(1, Ordering::Relaxed);
+        self.threads.install(|| {
+            self.waiting.fetch_sub(1, Ordering::Relaxed);
+            work(Turn(Some((&self.waiting, Instant::now()))))
+        })
+    }
+}
+
+/// A render's turn at the threads.
+#[derive(Clone, Copy)]
+pub(super) struct Turn<'a>(Option<(&'a AtomicUsize, Instant)>);
+
+impl Turn<'_> {
+    /// Of a render that shares its threads with no other.
+    pub const ENDLESS: Self = Self(None);
+
+    /// Whether others wait, and have waited long enough: then what is left is left for the next turn.
+    pub fn is_over(&self) -> bool {
+        self.0.is_some_and(|(waiting, start)| {
+            waiting.load(Ordering::Relaxed) > 0 && start.elapsed() >= TURN
+        })
+    }
+}
+
 /// The pool that all renders for a purpose share: a thread for each core.
 ///
 /// They give way to others. Both cores of a small machine are busy with tracing all the time, and who
 /// moves a light waits for the frame, and for the thread that develops the picture, not for samples. Nor does
-/// a view wait for a file: a pass over that may take minutes, and a pool goes from one render to the next only
-/// where a pass ends.
+/// a view wait for a file, whose threads are others.
 ///
 /// An error where the system has no more threads; the next call tries again.
-pub(super) fn shared_pool(purpose: Purpose) -> io::Result<Arc<ThreadPool>> {
-    static POOLS: [Mutex<Option<Arc<ThreadPool>>>; 2] = [const { Mutex::new(None) }; 2];
+pub(super) fn shared_pool(purpose: Purpose) -> io::Result<Arc<SharedPool>> {
+    static POOLS: [Mutex<Option<Arc<SharedPool>>>; 2] = [const { Mutex::new(None) }; 2];
     let mut pool = super::lock(&POOLS[purpose as usize]);
     if let Some(pool) = &*pool {
         return Ok(pool.clone());
@@ -44,7 +88,7 @@ pub(super) fn shared_pool(purpose: Purpose) -> io::Result<Arc<ThreadPool>> {
         .start_handler(move |_| give_way(purpose.priority()))
         .build()
         .map_err(io::Error::other)?;
-    Ok(pool.insert(Arc::new(threads)).clone())
+    Ok(pool.insert(Arc::new(SharedPool::new(threads))).clone())
 }
 
 /// A system that does not let a thread do so has it trace as before.

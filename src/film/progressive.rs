@@ -299,6 +299,23 @@ mod tests {
     }
 
     #[test]
+    fn of_two_views_neither_waits_for_a_pass_of_the_other() {
+        // Each of its passes is as long as all before it: seconds, soon.
+        let long = settings(UVec2::splat(256), 1 << 14);
+        let long = Progressive::start(world(), camera(), long).unwrap();
+        wait_for(&long, |status| status.trend.len() >= 6);
+        let passes = |render: &Progressive| render.status().trend.len();
+        let before = passes(&long);
+        let short = start(4);
+        assert_eq!(short.wait(), Ending::Samples);
+        let ended = passes(&long) - before;
+        // One may have been at its end.
+        assert!(ended <= 1, "{ended} passes of the other ended meanwhile");
+        assert_eq!(long.status().state, State::Running);
+        long.cancel();
+    }
+
+    #[test]
     fn a_cancelled_render_keeps_whole_passes_of_tiles_only() {
         let mut passes = BTreeMap::new();
         let cancelled = start(1 << 12);

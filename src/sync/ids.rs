@@ -4,11 +4,13 @@ use crate::scene::{
     SegmentLamp,
 };
 use bevy::ecs::entity::Entity;
+use bevy::ecs::hierarchy::ChildOf;
 use bevy::ecs::query::{Changed, Or, With, Without};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Commands, Query, ResMut};
 use bevy::mesh::Mesh3d;
-use bevy::platform::collections::HashMap;
+use bevy::platform::collections::{HashMap, HashSet};
+use bevy::transform::components::Transform;
 
 /// Which entity has which number.
 #[derive(Resource, Default)]
@@ -29,18 +31,24 @@ type OfScene = Or<(
     With<SceneCamera>,
 )>;
 
-/// Gives every entity of the scene a number of its own. Of two with the same number the one that
+/// What has a place and no number.
+type Place = (With<Transform>, Without<SceneId>, Without<NotTraced>);
+
+/// Gives every entity of the scene a number of its own, and so every place that one of them hangs on. Of two with the same number the one that
 /// had it first keeps it; among those that appear in the same frame, the one with the lower index.
 pub(super) fn assign_scene_ids(
     changed: Query<(), Changed<SceneId>>,
     missing: Query<Entity, (OfScene, Without<SceneId>, Without<NotTraced>)>,
+    hung: Query<(), (Changed<ChildOf>, With<SceneId>)>,
+    parents: Query<&ChildOf>,
+    places: Query<Entity, Place>,
     ids: Query<(Entity, &SceneId)>,
     mut switched: Switched,
     mut known: ResMut<IdOwners>,
     mut commands: Commands,
 ) {
     // Who was made disabled has none when it is enabled. Not `||`: the reader has to be emptied.
-    if !switched.any() & changed.is_empty() & missing.is_empty() {
+    if !switched.any() & changed.is_empty() & missing.is_empty() & hung.is_empty() {
         return;
     }
     let mut all: Vec<(Entity, SceneId)> = ids.iter().map(|(entity, id)| (entity, *id)).collect();
@@ -54,12 +62,21 @@ pub(super) fn assign_scene_ids(
         }
     }
     let mut without: Vec<Entity> = missing.iter().collect();
+    let mut above: HashSet<Entity> = HashSet::default();
+    for entity in all.iter().map(|(entity, _)| *entity).chain(&missing) {
+        // What is above one that was met already was met with it.
+        let news = parents
+            .iter_ancestors(entity)
+            .take_while(|entity| above.insert(*entity));
+        without.extend(news.filter(|entity| places.contains(*entity)));
+    }
     for (entity, id) in all {
         if id.is_unassigned() || *owners.entry(id.0).or_insert(entity) != entity {
             without.push(entity);
         }
     }
     without.sort_unstable_by_key(|entity| entity.index_u32());
+    without.dedup();
     for entity in without {
         let id = next(&mut known.largest, &owners);
         owners.insert(id.0, entity);
@@ -117,6 +134,26 @@ mod tests {
         let copy = app.world_mut().spawn(SceneId(3)).id();
         app.update();
         assert_eq!([id(&app, original), id(&app, copy)], [3, 4]);
+    }
+
+    #[test]
+    fn what_an_object_hangs_on_is_of_the_scene_too_and_what_it_carries_is_not() {
+        let mut app = app();
+        let world = app.world_mut();
+        let root = world.spawn(Transform::default()).id();
+        let middle = world.spawn((Transform::default(), ChildOf(root))).id();
+        let object = world.spawn((Phong::default(), ChildOf(middle))).id();
+        let other = world.spawn((Transform::default(), ChildOf(object))).id();
+        let own = world.spawn((Transform::default(), NotTraced)).id();
+        world.spawn((Phong::default(), ChildOf(own)));
+        app.update();
+        let ids = [root, middle, object, other, own].map(|entity| id(&app, entity) > 0);
+        assert_eq!(ids, [true, true, true, false, false]);
+        let late = app.world_mut().spawn(Transform::default()).id();
+        app.world_mut().entity_mut(root).insert(ChildOf(late));
+        app.world_mut().entity_mut(object).insert(ChildOf(late));
+        app.update();
+        assert!(id(&app, late) > 0, "it hangs on it now");
     }
 
     #[test]

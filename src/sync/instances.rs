@@ -1,5 +1,6 @@
 use super::meshes::TracedMeshes;
 use super::motions::{WorldMotion, WorldMotions};
+use super::posed::{PosedMesh, traced_mesh};
 use super::problem::Fault;
 use super::reading::{Reader, Switched};
 use super::traced::Draft;
@@ -135,6 +136,7 @@ type Moved = (
     With<Mesh3d>,
     Or<(
         Changed<Mesh3d>,
+        Changed<PosedMesh>,
         Changed<GlobalTransform>,
         Changed<InheritedVisibility>,
         Changed<SceneId>,
@@ -147,7 +149,7 @@ type ObjectQuery<'w, 's> = Query<
     (
         Entity,
         &'static SceneId,
-        &'static Mesh3d,
+        (&'static Mesh3d, Option<&'static PosedMesh>),
         &'static GlobalTransform,
         Option<&'static InheritedVisibility>,
         Option<&'static Name>,
@@ -158,6 +160,7 @@ type ObjectQuery<'w, 's> = Query<
 pub(super) fn sync_instances(
     moved: Query<(), Moved>,
     mut no_mesh: RemovedComponents<Mesh3d>,
+    mut at_rest: RemovedComponents<PosedMesh>,
     mut no_transform: RemovedComponents<GlobalTransform>,
     mut no_visibility: RemovedComponents<InheritedVisibility>,
     mut no_id: RemovedComponents<SceneId>,
@@ -172,6 +175,7 @@ pub(super) fn sync_instances(
 ) {
     // Not `||`: every reader has to be emptied.
     let gone = no_mesh.read().count()
+        + at_rest.read().count()
         + no_transform.read().count()
         + no_visibility.read().count()
         + no_id.read().count();
@@ -213,7 +217,7 @@ fn read(
             name,
             problems: &mut draft.problems.instances,
         };
-        let mesh = match meshes.get(mesh.id()) {
+        let mesh = match meshes.get(traced_mesh(mesh)) {
             Some(Ok(mesh)) => mesh,
             Some(Err(fault)) => {
                 reader.note(Fault::Mesh(fault));

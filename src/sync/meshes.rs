@@ -1,4 +1,5 @@
 use super::mesh_data::{MeshCopy, MeshFault, trace_mesh};
+use super::posed::{PosedMesh, traced_mesh};
 use super::reading::Switched;
 use super::traced::Draft;
 use super::tree_building::{Built, TreeBuilding, TreeThreads};
@@ -8,7 +9,7 @@ use crate::trace;
 use bevy::asset::{AssetEvent, AssetId, Assets};
 use bevy::ecs::lifecycle::RemovedComponents;
 use bevy::ecs::message::MessageReader;
-use bevy::ecs::query::{Changed, Without};
+use bevy::ecs::query::{Changed, Or, Without};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Query, Res, ResMut};
 use bevy::mesh::{Mesh, Mesh3d};
@@ -96,9 +97,16 @@ impl TracedMeshes {
 pub(super) fn sync_meshes(
     mut events: MessageReader<AssetEvent<Mesh>>,
     mut removed: RemovedComponents<Mesh3d>,
+    mut at_rest: RemovedComponents<PosedMesh>,
     mut switched: Switched,
-    changed: Query<(), (Changed<Mesh3d>, Without<NotTraced>)>,
-    users: Query<&Mesh3d, Without<NotTraced>>,
+    changed: Query<
+        (),
+        (
+            Or<(Changed<Mesh3d>, Changed<PosedMesh>)>,
+            Without<NotTraced>,
+        ),
+    >,
+    users: Query<(&Mesh3d, Option<&PosedMesh>), Without<NotTraced>>,
     assets: Res<Assets<Mesh>>,
     settings: Res<RenderSettings>,
     building: Res<TreeBuilding>,
@@ -128,13 +136,14 @@ pub(super) fn sync_meshes(
         known.threads.finished()
     };
     // Not `&&`: every reader has to be emptied.
-    let users_changed = (removed.read().count() > 0) | switched.any() | !changed.is_empty();
+    let gone = removed.read().count() + at_rest.read().count() > 0;
+    let users_changed = gone | switched.any() | !changed.is_empty();
     let nothing = !users_changed && stale.is_empty() && built.is_empty() && !rebuild;
     if nothing {
         return;
     }
     stale.extend(known.take_built(built, &assets));
-    let used: HashSet<AssetId<Mesh>> = users.iter().map(|mesh| mesh.id()).collect();
+    let used: HashSet<AssetId<Mesh>> = users.iter().map(traced_mesh).collect();
     known.shown.retain(|id, _| used.contains(id));
     known.ready.retain(|id, _| used.contains(id));
     let in_force = known.options == known.wanted;

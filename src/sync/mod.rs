@@ -5,8 +5,8 @@
 //!
 //! | system | reads | redoes |
 //! |---|---|---|
-//! | `assign_scene_ids` | entities without a `SceneId`, or with one that another has | their numbers |
-//! | `sync_meshes` | `Mesh` assets that an object uses | that mesh's triangles and tree |
+//! | `assign_scene_ids` | entities without a `SceneId`, or with one that another has, and what they hang on | their numbers |
+//! | `sync_meshes` | `Mesh` assets that an object uses, or is posed as | that mesh's triangles and tree |
 //! | `sync_motions` | `Motion`, of entities and of all above them | how fast each moves in the world |
 //! | `sync_instances` | which mesh stands where, how it moves, and whether it is visible | the tree over the objects |
 //! | `sync_textures` | `Image` assets that a material or the environment uses | that texture |
@@ -48,6 +48,7 @@ mod materials;
 mod mesh_data;
 mod meshes;
 mod motions;
+mod posed;
 mod problem;
 mod reading;
 mod texture_data;
@@ -62,6 +63,7 @@ pub use cameras::{TracedCamera, TracedCameras};
 pub use left_out::LeftOut;
 pub use mesh_data::MeshFault;
 pub use motions::{WorldMotion, WorldMotions};
+pub use posed::PosedMesh;
 pub use problem::{Fault, SyncProblem};
 pub use texture_data::TextureFault;
 pub use traced::{Changes, Traced};

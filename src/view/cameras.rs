@@ -1,7 +1,7 @@
 //! The cameras of a window that shows a traced picture with an interface around it. The camera of
 //! [handles](super::HandleCameraPlugin) is between the two.
 
-use super::{RASTER_LAYER, TracedView, raster};
+use super::{OVERLAY_LAYER, RASTER_LAYER, TracedView, raster};
 use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{
     Camera, Camera2d, Camera3d, Camera3dDepthLoadOp, ClearColorConfig, PerspectiveProjection,
@@ -23,7 +23,7 @@ pub fn picture_camera() -> impl Bundle {
         Tonemapping::None,
         raster::exposure(),
         raster::ambient(),
-        RenderLayers::from_layers(&[0, RASTER_LAYER]),
+        RenderLayers::from_layers(&[0, RASTER_LAYER, OVERLAY_LAYER]),
         Projection::Perspective(PerspectiveProjection::default()),
     )
 }

@@ -22,6 +22,9 @@ use bevy::prelude::{
 use bevy::transform::TransformSystems;
 use bevy::transform::components::GlobalTransform;
 
+/// The layer of lines that an editor draws over its view of a scene: other cameras do not see them.
+pub const OVERLAY_LAYER: usize = 14;
+
 /// Draws [`DrawnLines`].
 pub struct LinesPlugin;
 
@@ -102,6 +105,7 @@ impl Line {
 
 /// A set of lines that is drawn as long as the entity lives. In a perspective view of the tracer's
 /// ([`TracedView`]) the farther ones of many are fainter, but for symbols ([`SymbolOf`]) and what is on top.
+/// Cameras of the entity's `RenderLayers` show them.
 #[derive(Component, Clone, Debug, Default, PartialEq)]
 #[require(Transform, Visibility, Fade)]
 pub struct DrawnLines {

@@ -22,6 +22,7 @@ use bevy::asset::{Asset, Assets, Handle};
 use bevy::camera::Exposure;
 use bevy::camera::visibility::{InheritedVisibility, RenderLayers, Visibility};
 use bevy::color::{Color, ColorToComponents, LinearRgba};
+use bevy::ecs::entity_disabling::Disabled;
 use bevy::light::{AmbientLight, DirectionalLight, PointLight, RectLight, SpotLight};
 use bevy::math::{Quat, Vec3};
 use bevy::mesh::Mesh3d;
@@ -30,7 +31,7 @@ use bevy::pbr::{
 };
 use bevy::platform::collections::HashMap;
 use bevy::prelude::{
-    AlphaMode, App, Changed, Commands, Component, DetectChanges, DetectChangesMut, Entity,
+    Added, AlphaMode, App, Changed, Commands, Component, DetectChanges, DetectChangesMut, Entity,
     IntoScheduleConfigs, Or, Plugin, PostUpdate, Query, Ref, RemovedComponents, ResMut, Resource,
     With, Without,
 };
@@ -244,6 +245,8 @@ type EditedLamp = Or<(
 fn give_lights(
     mut commands: Commands,
     edited: Query<(), (AnyLamp, EditedLamp)>,
+    disabled: Query<(), (AnyLamp, Added<Disabled>)>,
+    mut enabled: RemovedComponents<Disabled>,
     mut no_point: RemovedComponents<PointLamp>,
     mut no_directional: RemovedComponents<DirectionalLamp>,
     mut no_segment: RemovedComponents<SegmentLamp>,
@@ -255,8 +258,9 @@ fn give_lights(
     let gone = no_point.read().count()
         + no_directional.read().count()
         + no_segment.read().count()
-        + no_parallelogram.read().count();
-    if gone == 0 && edited.is_empty() {
+        + no_parallelogram.read().count()
+        + enabled.read().count();
+    if gone == 0 && edited.is_empty() && disabled.is_empty() {
         return;
     }
     for twin in &twins {

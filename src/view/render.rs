@@ -20,6 +20,7 @@ const LONGEST_WAIT: Duration = Duration::from_millis(100);
 
 /// The render that a [`TracedView`] shows.
 #[derive(Component, Default)]
+#[component(clone_behavior = Ignore)]
 pub struct TracedRender {
     pub(super) running: Option<Running>,
     pub(super) darkroom: Option<Darkroom>,

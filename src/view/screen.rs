@@ -10,6 +10,7 @@ use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat};
 
 /// What a view shows. A camera without it shows nothing that was traced.
 #[derive(Component, Clone, Debug, PartialEq)]
+#[component(clone_behavior = Ignore)]
 pub(super) struct Screen {
     /// Encoded for the screen.
     pub picture: Handle<Image>,

@@ -3,7 +3,7 @@
 //!
 //! Each entity's lines are made again when it changed, and only then.
 
-use super::lines::DrawnLines;
+use super::lines::{DrawnLines, OVERLAY_LAYER};
 use super::sketch::{Sketch, colors};
 use crate::scene::{
     DirectionalLamp, ParallelogramLamp, PointLamp, SceneCamera, SceneId, SegmentLamp,
@@ -12,17 +12,18 @@ use crate::sync::Traced;
 use crate::trace;
 use bevy::camera::Camera;
 use bevy::camera::primitives::Aabb;
-use bevy::camera::visibility::InheritedVisibility;
+use bevy::camera::visibility::{InheritedVisibility, RenderLayers};
+use bevy::ecs::entity_disabling::Disabled;
 use bevy::math::{Affine3A, Vec2, Vec3, Vec3A};
 use bevy::platform::collections::{HashMap, HashSet};
 use bevy::prelude::{
-    App, Changed, Children, Commands, Component, DetectChanges, Entity, IntoScheduleConfigs, Or,
-    Plugin, PostUpdate, Query, RemovedComponents, Res, ResMut, Resource, With, Without,
+    Added, App, Changed, Children, Commands, Component, DetectChanges, Entity, IntoScheduleConfigs,
+    Or, Plugin, PostUpdate, Query, RemovedComponents, Res, ResMut, Resource, With, Without,
 };
 use bevy::transform::TransformSystems;
 use bevy::transform::components::GlobalTransform;
 
-/// Draws symbols. Needs [`LinesPlugin`](super::LinesPlugin).
+/// Draws symbols, for cameras of [`OVERLAY_LAYER`]. Needs [`LinesPlugin`](super::LinesPlugin).
 pub struct SymbolsPlugin;
 
 impl Plugin for SymbolsPlugin {
@@ -222,10 +223,11 @@ fn draw_symbols(
     edited: Query<Entity, (With<SceneId>, Edited)>,
     selected: Query<(Entity, &SceneId)>,
     (groups, below, measured): (Groups, Below, Measured),
-    mut gone: RemovedComponents<SceneId>,
+    (mut gone, mut enabled): (RemovedComponents<SceneId>, RemovedComponents<Disabled>),
+    disabled: Query<Entity, (With<SceneId>, Added<Disabled>)>,
     mut drawn: Query<&mut DrawnLines, With<SymbolOf>>,
 ) {
-    for entity in gone.read() {
+    for entity in gone.read().chain(&disabled) {
         if let Some(lines) = symbols.lines.remove(&entity) {
             commands.entity(lines).despawn();
         }
@@ -240,7 +242,7 @@ fn draw_symbols(
             other = true;
         }
     }
-    for entity in &edited {
+    for entity in edited.iter().chain(enabled.read()) {
         if symbols.lines.contains_key(&entity) || lasting.contains(entity) {
             redo.insert(entity);
         }
@@ -328,6 +330,7 @@ fn draw_symbols(
             None => {
                 let lines = commands
                     .spawn((
+                        RenderLayers::layer(OVERLAY_LAYER),
                         SymbolOf {
                             id: *id,
                             is_picked: lasting.contains(entity),

@@ -24,7 +24,7 @@ use bevy::ecs::reflect::ReflectComponent;
 use bevy::image::Image;
 use bevy::math::{Rect, URect, UVec2, Vec2};
 use bevy::prelude::{
-    App, Commands, Component, EntityEvent, IntoScheduleConfigs, Plugin, PostUpdate, Query, Res,
+    App, Commands, Component, EntityEvent, IntoScheduleConfigs, Or, Plugin, PostUpdate, Query, Res,
     ResMut, With, Without,
 };
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
@@ -157,13 +157,22 @@ fn leave(view: On<Remove, TracedView>, mut commands: Commands) {
     }
 }
 
-/// Each view has a thread that develops for it; what was disabled, which no other query meets, has
-/// nothing that goes on.
+/// What a view is looked through with.
+type Complete = (With<Camera>, With<GlobalTransform>, With<Projection>);
+/// Disabled, which no other query meets, or no camera any more that could show anything.
+type Resting = Or<(
+    With<Disabled>,
+    Without<Camera>,
+    Without<GlobalTransform>,
+    Without<Projection>,
+)>;
+
+/// Each view has a thread that develops for it; one that rests has nothing that goes on.
 fn attend(
     mut commands: Commands,
     mut views: Query<(Entity, &mut TracedRender), With<TracedView>>,
-    resting: Query<Entity, (With<TracedRender>, With<Disabled>)>,
-    without: Query<Entity, (With<TracedView>, Without<TracedRender>)>,
+    resting: Query<Entity, (With<TracedRender>, Resting)>,
+    without: Query<Entity, (With<TracedView>, Without<TracedRender>, Complete)>,
 ) {
     for view in &resting {
         commands.entity(view).try_remove::<(TracedRender, Screen)>();
@@ -223,6 +232,10 @@ fn follow(
         let seen_from = traced_camera(transform, projection, optics);
         let own = own.cloned().unwrap_or_default();
         let size = seen_size(view, camera).map(|size| own.size.unwrap_or(size));
+        if seen_from.is_none() && render.shown.take().is_some() {
+            // It has no picture, and the one before is none of it.
+            commands.entity(entity).try_remove::<Screen>();
+        }
         let Some((size, camera)) = size.zip(seen_from) else {
             if render.running.is_some() {
                 render.retire();

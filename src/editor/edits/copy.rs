@@ -2,19 +2,19 @@
 
 use super::index::FreeIds;
 use super::names::Names;
-use super::parents::{place_in, roots_of, with_descendants};
+use super::parents::{all_below, place_in, roots_of, with_descendants};
 use super::{SceneIndex, scene_entity};
 use crate::editor::history::Kinds;
 use crate::io::place::world_from;
 use crate::io::{FileError, Folder, Rebase, SceneContent, SceneFiles, read_scene_text};
-use crate::scene::{Phong, PhongMaps, SceneId, UsesMaterial};
-use bevy::ecs::entity::Entity;
-use bevy::ecs::hierarchy::ChildOf;
+use crate::scene::{Phong, SceneId, UsesMaterial};
+use bevy::ecs::component::ComponentCloneBehavior;
+use bevy::ecs::entity::{Entity, EntityCloner, EntityHashMap};
+use bevy::ecs::hierarchy::{ChildOf, Children};
 use bevy::ecs::name::Name;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::{Mut, World};
 use bevy::math::Affine3A;
-use bevy::mesh::Mesh3d;
 use bevy::reflect::Reflect;
 use bevy::transform::components::Transform;
 use std::collections::{HashMap, HashSet};
@@ -51,61 +51,84 @@ fn scene_folder(world: &World) -> Folder {
     files.map(|files| files.folder.clone()).unwrap_or_default()
 }
 
-/// Adds copies of entities and of what is below them, beside the originals. They share the
-/// originals' materials. Returns the new roots.
-pub fn duplicate(world: &mut World, ids: &[SceneId]) -> Vec<SceneId> {
+/// Copies beside their originals.
+pub struct Duplicates {
+    /// The new roots.
+    pub roots: Vec<SceneId>,
+    /// What of an app's own could not be copied, a line for each.
+    pub lost: Vec<String>,
+}
+
+/// Adds copies of entities and of all that is below them, beside the originals. They share the
+/// originals' materials and observers, and have every component that can be cloned or reflected.
+pub fn duplicate(world: &mut World, ids: &[SceneId]) -> Duplicates {
     let mut free = FreeIds::new(world);
     let mut names = Names::new(world);
-    let mut roots = Vec::new();
+    let mut new = Duplicates {
+        roots: Vec::new(),
+        lost: Vec::new(),
+    };
     for id in roots_of(world, ids) {
         let Some(root) = scene_entity(world, id) else {
             continue;
         };
-        let mut twins: HashMap<Entity, Entity> = HashMap::new();
-        for original in with_descendants(world, root) {
-            let id = free.next();
-            let twin = copy_entity(world, original, id);
-            if let Some(name) = world.get::<Name>(original).map(ToString::to_string) {
-                let name = Name::new(names.unique(&name));
+        let originals = all_below(world, root);
+        // Known before anything is copied: what names one of them, as a skin its joints, names the copy.
+        let mut twins = EntityHashMap::<Entity>::default();
+        for &original in &originals {
+            twins.insert(original, world.spawn_empty().id());
+        }
+        let mut cloner = EntityCloner::build_opt_out(world);
+        cloner
+            .without_required_by_components(|cloner| {
+                cloner.deny::<(SceneId, Name, Children)>();
+            })
+            .add_observers(true);
+        let mut cloner = cloner.finish();
+        for original in originals {
+            let twin = cloner.clone_entity_mapped(world, original, &mut twins);
+            new.lost.extend(lost_of(world, original, twin));
+            let is_of_scene = world.get::<SceneId>(original).is_some();
+            if let Some(name) = world.get::<Name>(original).cloned() {
+                let name = match is_of_scene {
+                    true => Name::new(names.unique(&name)),
+                    false => name,
+                };
                 world.entity_mut(twin).insert(name);
             }
-            let parent = world.get::<ChildOf>(original).map(|child_of| child_of.0);
-            if let Some(parent) = parent {
-                let parent = twins.get(&parent).copied().unwrap_or(parent);
-                world.entity_mut(twin).insert(ChildOf(parent));
+            if is_of_scene {
+                let id = free.next();
+                world.entity_mut(twin).insert(id);
+                if original == root {
+                    new.roots.push(id);
+                }
             }
-            if original == root {
-                roots.push(id);
-            }
-            twins.insert(original, twin);
         }
     }
-    roots
+    new
 }
 
-/// A copy of the kept components, and of the handles that would be loaded again otherwise.
-fn copy_entity(world: &mut World, original: Entity, id: SceneId) -> Entity {
-    world.resource_scope(|world, kinds: Mut<Kinds>| {
-        let values: Vec<(usize, Box<dyn Reflect>)> = kinds.clones(world, original);
-        let maps = world.get::<PhongMaps>(original).cloned();
-        let mesh = world.get::<Mesh3d>(original).cloned();
-        let mut twin = world.spawn_empty();
-        for (place, value) in values {
-            let is_own =
-                value.as_ref().as_any().is::<SceneId>() || value.as_ref().as_any().is::<ChildOf>();
-            if !is_own {
-                kinds.insert(&mut twin, place, value.as_ref());
-            }
-        }
-        if let Some(maps) = maps {
-            twin.insert(maps);
-        }
-        if let Some(mesh) = mesh {
-            twin.insert(mesh);
-        }
-        twin.insert(id);
-        twin.id()
-    })
+/// What a copy lacks of its original though the app does not say that it shall.
+fn lost_of(world: &World, original: Entity, twin: Entity) -> Option<String> {
+    let [from, to] = [original, twin].map(|entity| world.entity(entity));
+    let names = from.archetype().components().iter().filter_map(|&id| {
+        let info = world.components().get_info(id)?;
+        let is_wanted = !matches!(info.clone_behavior(), ComponentCloneBehavior::Ignore);
+        let name = info.name().to_string();
+        let is_of_app = !name.starts_with("bevy");
+        (is_wanted && is_of_app && !to.contains_id(id)).then_some(name)
+    });
+    let mut names: Vec<String> = names.collect();
+    names.sort_unstable();
+    let whose = match (from.get::<Name>(), from.get::<SceneId>()) {
+        (Some(name), _) => name.to_string(),
+        (None, Some(id)) => format!("entity {}", id.0),
+        (None, None) => format!("entity {original}"),
+    };
+    let names = (!names.is_empty()).then(|| names.join(", "))?;
+    Some(format!(
+        "{whose}: {names} not copied; what is to be copied implements Clone, or is registered for reflection"
+    ))
 }
 
 /// What pasting needs to add these entities, what is below them, and the materials that they use.

@@ -1,5 +1,6 @@
 //! Which entity has which number.
 
+use crate::editor::history::LaidAside;
 use crate::scene::SceneId;
 use bevy::app::App;
 use bevy::ecs::entity::Entity;
@@ -19,10 +20,12 @@ pub struct SceneIndex {
 }
 
 impl SceneIndex {
-    /// The entity that has this number.
+    /// The entity that has this number; none where it was deleted.
     pub fn find(&self, world: &World, id: SceneId) -> Option<Entity> {
         let entity = *self.entities.get(&id)?;
-        (world.get::<SceneId>(entity) == Some(&id)).then_some(entity)
+        let is_there =
+            world.get::<SceneId>(entity) == Some(&id) && world.get::<LaidAside>(entity).is_none();
+        is_there.then_some(entity)
     }
 
     /// Numbers that were changed in place are noticed by those who look at changes.

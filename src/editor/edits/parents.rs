@@ -1,6 +1,7 @@
 //! Who is whose parent.
 
 use super::{SceneIndex, scene_entity};
+use crate::editor::history::LaidAside;
 use crate::io::place::world_from;
 use crate::scene::SceneId;
 use bevy::ecs::entity::Entity;
@@ -35,17 +36,24 @@ fn ancestors(world: &World, entity: Entity) -> impl Iterator<Item = Entity> {
 
 /// An entity and all below it that are of the scene, parents before children.
 pub(super) fn with_descendants(world: &World, root: Entity) -> Vec<Entity> {
+    below(world, root, |child| world.get::<SceneId>(child).is_some())
+}
+
+/// The same, of the scene or not.
+pub(super) fn all_below(world: &World, root: Entity) -> Vec<Entity> {
+    below(world, root, |_| true)
+}
+
+/// An entity and those below it that are `wanted` and not deleted.
+fn below(world: &World, root: Entity, wanted: impl Fn(Entity) -> bool) -> Vec<Entity> {
     let mut found = vec![root];
     let mut next = 0;
     while let Some(&entity) = found.get(next) {
         next += 1;
-        if let Some(children) = world.get::<Children>(entity) {
-            let of_scene = children
-                .iter()
-                .copied()
-                .filter(|&child| world.get::<SceneId>(child).is_some());
-            found.extend(of_scene);
-        }
+        let children = world.get::<Children>(entity).into_iter().flatten();
+        let there = children.copied();
+        let there = there.filter(|&child| world.get::<LaidAside>(child).is_none());
+        found.extend(there.filter(|&child| wanted(child)));
     }
     found
 }

@@ -224,7 +224,9 @@ fn step_duplicate(world: &mut World) -> Option<String> {
     let ids = selected(world);
     let name = format!("Duplicate {}", call(world, &ids));
     let new = duplicate(world, &ids);
-    select(world, new);
+    select(world, new.roots);
+    let mut notices = world.resource_mut::<Notices>();
+    notices.notes(&name, new.lost);
     Some(name)
 }
 

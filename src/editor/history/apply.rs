@@ -130,8 +130,9 @@ fn apply_entities(
     let mut made = BTreeSet::new();
     for (id, target) in &targets {
         if target.is_some() && find(world, *id).is_none() {
-            let new = world.spawn(*id).id();
-            aside::give_back(world, *id, new);
+            if !aside::give_back(world, *id) {
+                world.spawn(*id);
+            }
             made.insert(*id);
         }
     }

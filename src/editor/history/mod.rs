@@ -19,7 +19,7 @@ mod step;
 mod within;
 
 pub use apply::{go_to, redo, undo};
-pub(in crate::editor) use aside::remove;
+pub(in crate::editor) use aside::{LaidAside, remove};
 pub use gesture::Gesture;
 pub(in crate::editor) use state::Kinds;
 pub(in crate::editor) use within::{OnlyWithin, within};

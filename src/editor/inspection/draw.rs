@@ -7,7 +7,7 @@ use crate::editor::viewport::EditorCamera;
 use crate::inspect::{InspectSettings, LineSet, Subject, System};
 use crate::scene::RenderSettings;
 use crate::sync::{Traced, TracedCameras};
-use crate::view::DrawnLines;
+use crate::view::{DrawnLines, OVERLAY_LAYER};
 use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Commands, Query, Res, ResMut, Single};
@@ -74,7 +74,8 @@ pub(super) fn draw_inspection(
     for (system, set) in System::ALL.into_iter().zip(sets) {
         let is_on = system.is_on(&inspect) && (rays.is_some() || !system.needs_rays());
         let is_other = if is_on {
-            set.draw(system, &subject, &source, (), &mut commands, &mut lines)
+            let layer = OVERLAY_LAYER;
+            set.draw(system, &subject, &source, layer, &mut commands, &mut lines)
         } else {
             set.clear(&mut commands)
         };

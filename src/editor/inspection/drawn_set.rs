@@ -3,8 +3,8 @@
 use crate::inspect::{LineSet, Subject, System};
 use crate::trace::{self, RayTree, World};
 use crate::view::{DrawnLines, Line};
+use bevy::camera::visibility::RenderLayers;
 use bevy::color::LinearRgba;
-use bevy::ecs::bundle::Bundle;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::query::QueryFilter;
 use bevy::ecs::system::{Commands, Query};
@@ -51,14 +51,14 @@ impl DrawnSet {
         standing.is_some()
     }
 
-    /// Draws the system's lines of the subject, which is made of `source`; with `beside` on their
-    /// entity. True where they are others than before.
+    /// Draws the system's lines of the subject, which is made of `source`, for the cameras of a layer. True
+    /// where they are others than before.
     pub fn draw<F: QueryFilter>(
         &mut self,
         system: System,
         subject: &Subject,
         source: &Source,
-        beside: impl Bundle,
+        layer: usize,
         commands: &mut Commands,
         drawn: &mut Query<&mut DrawnLines, F>,
     ) -> bool {
@@ -79,7 +79,10 @@ impl DrawnSet {
                 }
                 standing.entity
             }
-            None => commands.spawn((wanted, beside)).id(),
+            None => {
+                let layers = RenderLayers::layer(layer);
+                commands.spawn((wanted, layers)).id()
+            }
         };
         self.0 = Some(Standing {
             entity,

@@ -10,7 +10,8 @@ use crate::editor::preferences::Preferences;
 use crate::editor::viewport::EditorCamera;
 use crate::inspect::{InspectSettings, StepKind, TreeView};
 use crate::trace::{RayEnd, TracedRay, World};
-use crate::view::{DrawnLines, Line};
+use crate::view::{DrawnLines, Line, OVERLAY_LAYER};
+use bevy::camera::visibility::RenderLayers;
 use bevy::color::LinearRgba;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::query::With;
@@ -129,7 +130,13 @@ pub(super) fn draw_lit(
                 }
             }
             None if drawn.lines.is_empty() => {}
-            None => *entity = Some(commands.spawn(drawn).id()),
+            None => {
+                *entity = Some(
+                    commands
+                        .spawn((drawn, RenderLayers::layer(OVERLAY_LAYER)))
+                        .id(),
+                )
+            }
         }
     }
     known.made_of = Some(made_of);

@@ -5,9 +5,10 @@ use crate::scene::{SceneId, UsesMaterial};
 use crate::sync::Traced;
 use crate::trace::Object;
 use bevy::ecs::entity::Entity;
+use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::lifecycle::RemovedComponents;
 use bevy::ecs::name::Name;
-use bevy::ecs::query::{Changed, Or};
+use bevy::ecs::query::{Added, Changed, Or};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Local, Query, Res, ResMut};
 use bevy::platform::collections::HashMap;
@@ -46,11 +47,13 @@ type Gone<'w, 's> = (
     RemovedComponents<'w, 's, Name>,
     RemovedComponents<'w, 's, SceneId>,
     RemovedComponents<'w, 's, UsesMaterial>,
+    RemovedComponents<'w, 's, Disabled>,
 );
 
 /// Learns them where any may be another, and not because something merely moved.
 pub(super) fn learn(
     changed: (Query<(), Renamed>, Query<(), Changed<UsesMaterial>>),
+    disabled: Query<(), Added<Disabled>>,
     mut gone: Gone,
     traced: Res<Traced>,
     named: Query<(Option<&SceneId>, &Name)>,
@@ -63,8 +66,10 @@ pub(super) fn learn(
         gone.0.read().count(),
         gone.1.read().count(),
         gone.2.read().count(),
+        gone.3.read().count(),
     ];
-    let renamed = !changed.0.is_empty() || gone[0] + gone[1] > 0;
+    let switched = gone[3] > 0 || !disabled.is_empty();
+    let renamed = !changed.0.is_empty() || switched || gone[0] + gone[1] > 0;
     let objects = &traced.world.objects;
     let same_objects = of.as_ref().is_some_and(|of| Arc::ptr_eq(of, objects));
     let assigned = renamed || !same_objects || !changed.1.is_empty() || gone[2] > 0;

@@ -7,6 +7,7 @@ use crate::scene::{
 };
 use bevy::camera::visibility::Visibility;
 use bevy::ecs::entity::Entity;
+use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::hierarchy::ChildOf;
 use bevy::ecs::lifecycle::RemovedComponents;
 use bevy::ecs::name::Name;
@@ -170,11 +171,13 @@ type Gone<'w, 's> = (
     RemovedComponents<'w, 's, MeshSource>,
     RemovedComponents<'w, 's, Phong>,
     RemovedComponents<'w, 's, SceneCamera>,
+    RemovedComponents<'w, 's, Disabled>,
 );
 
 /// Makes the list again where anything that it shows changed.
 pub(super) fn outline_scene(
     changed: Query<(), (With<SceneId>, ShowsChange)>,
+    disabled: Query<(), (With<SceneId>, Added<Disabled>)>,
     mut gone: Gone,
     all: Query<Parts>,
     mut outline: ResMut<Outline>,
@@ -185,8 +188,10 @@ pub(super) fn outline_scene(
         + gone.2.read().count()
         + gone.3.read().count()
         + gone.4.read().count()
-        + gone.5.read().count();
-    if changed.is_empty() && removed == 0 && outline.versions > 0 {
+        + gone.5.read().count()
+        + gone.6.read().count();
+    let is_same = changed.is_empty() && disabled.is_empty() && removed == 0;
+    if is_same && outline.versions > 0 {
         return;
     }
     let mut found: Vec<(Item, Option<Entity>)> = all

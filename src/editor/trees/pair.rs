@@ -15,7 +15,6 @@ use crate::scene::{Builder, RenderSettings};
 use crate::sync::{Traced, TracedCameras};
 use crate::trace::World;
 use crate::view::DrawnLines;
-use bevy::camera::visibility::RenderLayers;
 use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Commands, Query, Res, ResMut, Single};
@@ -201,8 +200,7 @@ pub(super) fn draw_pair(
             Subject::new(&source.world, photographer, &settings, &inspect, rays).seen_by(camera);
         for (system, drawn) in SYSTEMS.into_iter().zip(&mut side.drawn) {
             if system.is_wanted(&inspect) && (rays.is_some() || !system.needs_rays()) {
-                let beside = RenderLayers::layer(layer);
-                drawn.draw(system, &subject, &source, beside, &mut commands, &mut lines);
+                drawn.draw(system, &subject, &source, layer, &mut commands, &mut lines);
             } else {
                 drawn.clear(&mut commands);
             }

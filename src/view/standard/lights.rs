@@ -239,6 +239,7 @@ mod tests {
             .init_resource::<crate::scene::Environment>();
         bevy::asset::AssetApp::init_asset::<StandardMaterial>(&mut app);
         bevy::asset::AssetApp::init_asset::<Image>(&mut app);
+        bevy::asset::AssetApp::init_asset::<bevy::mesh::Mesh>(&mut app);
         app
     }
 

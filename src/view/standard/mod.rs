@@ -36,9 +36,9 @@
 //! | else | becomes |
 //! |---|---|
 //! | `ClearColor`, or the first view's own | the background, where the app has set no other |
-//! | `GlobalAmbientLight`, skyboxes, light probes, environment maps, fog, atmospheres | named |
+//! | `GlobalAmbientLight`, a camera's `AmbientLight`, skyboxes, light probes, environment maps, fog, atmospheres | named |
 //! | `NotShadowCaster`, `NotShadowReceiver`, `RenderLayers`, `Lightmap` of objects | named |
-//! | skinned and morphed meshes | as the asset has them, at rest; named |
+//! | skinned and morphed meshes | as they stand in this frame, in every frame in which a view traces them |
 //! | meshes and textures of `RenderAssetUsages::RENDER_WORLD` alone | named |
 
 mod add_material;
@@ -46,6 +46,8 @@ mod derived;
 mod lights;
 mod material;
 mod objects;
+mod pose;
+mod poses;
 mod surroundings;
 mod unknown;
 
@@ -55,10 +57,11 @@ mod tests;
 pub use add_material::AddTracedMaterial;
 
 use add_material::map_materials;
-use bevy::asset::{AssetApp, Assets};
+use bevy::asset::{AssetApp, AssetEventSystems, Assets};
 use bevy::ecs::schedule::SystemSet;
 use bevy::pbr::StandardMaterial;
 use bevy::prelude::{App, Component, IntoScheduleConfigs, Plugin, PostUpdate};
+use bevy::transform::TransformSystems;
 
 /// Keeps ours beside Bevy's. The tables are in the module's documentation.
 pub struct StandardMappingPlugin;
@@ -82,11 +85,21 @@ impl Plugin for StandardMappingPlugin {
                     lights::systems(),
                     surroundings::map_background,
                     surroundings::name_surroundings,
+                    surroundings::name_incomplete,
                     objects::name_flags,
                     unknown::name_unknown,
                 )
                     .chain()
                     .in_set(MappingSystems),
+            )
+            .add_systems(
+                PostUpdate,
+                (poses::straighten, poses::pose_meshes)
+                    .chain()
+                    .after(TransformSystems::Propagate)
+                    // So that a pose is traced in its own frame.
+                    .before(AssetEventSystems)
+                    .before(MappingSystems),
             );
         add_material::register(app, |material: &StandardMaterial, pictures| {
             material::surface(material, pictures)
@@ -103,5 +116,5 @@ impl Plugin for StandardMappingPlugin {
 
 /// What was mapped last. Ours is set only where that becomes another: an edit of ours stays until
 /// Bevy's is edited too.
-#[derive(Component)]
-struct Mapped<T: Send + Sync + 'static>(T);
+#[derive(Component, Clone)]
+struct Mapped<T: Clone + Send + Sync + 'static>(T);

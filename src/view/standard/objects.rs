@@ -6,16 +6,12 @@ use crate::view::RASTER_LAYER;
 use bevy::camera::visibility::RenderLayers;
 use bevy::light::{NotShadowCaster, NotShadowReceiver};
 use bevy::mesh::Mesh3d;
-use bevy::mesh::morph::MeshMorphWeights;
-use bevy::mesh::skinning::SkinnedMesh;
 use bevy::pbr::Lightmap;
 use bevy::prelude::{Changed, Entity, Has, Or, Query, RemovedComponents, ResMut, With, Without};
 
 type Flags = (
     Has<NotShadowCaster>,
     Has<NotShadowReceiver>,
-    Has<SkinnedMesh>,
-    Has<MeshMorphWeights>,
     Has<Lightmap>,
     Option<&'static RenderLayers>,
 );
@@ -24,8 +20,6 @@ type Edited = Or<(
     Changed<Mesh3d>,
     Changed<NotShadowCaster>,
     Changed<NotShadowReceiver>,
-    Changed<SkinnedMesh>,
-    Changed<MeshMorphWeights>,
     Changed<Lightmap>,
     Changed<RenderLayers>,
 )>;
@@ -37,8 +31,6 @@ pub(super) fn name_flags(
     mut no_mesh: RemovedComponents<Mesh3d>,
     mut casts: RemovedComponents<NotShadowCaster>,
     mut receives: RemovedComponents<NotShadowReceiver>,
-    mut no_skin: RemovedComponents<SkinnedMesh>,
-    mut no_morph: RemovedComponents<MeshMorphWeights>,
     mut no_lightmap: RemovedComponents<Lightmap>,
     mut no_layers: RemovedComponents<RenderLayers>,
     mut left_out: ResMut<LeftOut>,
@@ -46,8 +38,6 @@ pub(super) fn name_flags(
     let gone = (no_mesh.read())
         .chain(casts.read())
         .chain(receives.read())
-        .chain(no_skin.read())
-        .chain(no_morph.read())
         .chain(no_lightmap.read())
         .chain(no_layers.read());
     for entity in gone.chain(&edited) {
@@ -57,14 +47,7 @@ pub(super) fn name_flags(
 }
 
 fn names(
-    (no_caster, no_receiver, skin, morph, lightmap, layers): (
-        bool,
-        bool,
-        bool,
-        bool,
-        bool,
-        Option<&RenderLayers>,
-    ),
+    (no_caster, no_receiver, lightmap, layers): (bool, bool, bool, Option<&RenderLayers>),
 ) -> Vec<String> {
     let layered = layers.is_some_and(|layers| {
         // Our own objects lie in a layer that the raster picture alone has.
@@ -78,11 +61,6 @@ fn names(
         (
             no_receiver,
             "its NotShadowReceiver is left out: shadows fall on everything",
-        ),
-        (skin, "its skin is left out: it is traced as its mesh is"),
-        (
-            morph,
-            "its morph weights are left out: it is traced as its mesh is",
         ),
         (lightmap, "its lightmap is left out"),
         (

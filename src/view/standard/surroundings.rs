@@ -7,11 +7,12 @@ use crate::view::TracedView;
 use bevy::camera::{Camera, ClearColor, ClearColorConfig, Projection};
 use bevy::color::LinearRgba;
 use bevy::light::{
-    AtmosphereEnvironmentMapLight, EnvironmentMapLight, GeneratedEnvironmentMapLight,
+    AmbientLight, AtmosphereEnvironmentMapLight, EnvironmentMapLight, GeneratedEnvironmentMapLight,
     GlobalAmbientLight, IrradianceVolume, Skybox,
 };
 use bevy::pbr::DistanceFog;
 use bevy::prelude::{Entity, Has, Local, Query, Res, ResMut, With};
+use bevy::transform::components::GlobalTransform;
 
 /// Some object has a material of the app's: the scene is one of Bevy's.
 type OfBevy<'w, 's> = Query<'w, 's, (), With<Mapped<(Phong, PhongMaps)>>>;
@@ -51,6 +52,23 @@ pub(super) fn map_background(
     *last = Some(color);
 }
 
+/// Names views that lack what a view is looked through with.
+pub(super) fn name_incomplete(
+    views: Query<(Entity, Has<Camera>, Has<GlobalTransform>, Has<Projection>), With<TracedView>>,
+    mut left_out: ResMut<LeftOut>,
+) {
+    for (view, camera, place, projection) in &views {
+        let lacks = [
+            (camera, "its Camera is gone"),
+            (place, "its place is gone: it has no GlobalTransform"),
+            (projection, "its Projection is gone"),
+        ];
+        let lacks = lacks.into_iter().filter(|(is_there, _)| !is_there);
+        let lacks = lacks.map(|(_, what)| format!("{what}; nothing is traced for it"));
+        LeftOut::note(&mut left_out, "traced camera", view, lacks.collect());
+    }
+}
+
 type Around = (
     Has<Skybox>,
     Has<EnvironmentMapLight>,
@@ -58,6 +76,7 @@ type Around = (
     Has<AtmosphereEnvironmentMapLight>,
     Has<DistanceFog>,
     Has<IrradianceVolume>,
+    Option<&'static AmbientLight>,
 );
 
 /// Names what surrounds a scene of Bevy's in its raster picture alone.
@@ -68,11 +87,14 @@ pub(super) fn name_surroundings(
     mut left_out: ResMut<LeftOut>,
 ) {
     let is_of_bevy = !mapped.is_empty();
-    let ambient = ambient.map_or(0.0, |ambient| ambient.brightness);
-    let first = views.iter().map(|(view, ..)| view);
-    let first = first.min_by_key(|view| view.index_u32());
+    let all_around = ambient.map_or(0.0, |ambient| ambient.brightness);
+    let everywhere = |own: Option<&AmbientLight>| own.is_none() && all_around > 0.0;
+    let first = views.iter().filter(|(.., around)| everywhere(around.6));
+    let first = first
+        .map(|(view, ..)| view)
+        .min_by_key(|view| view.index_u32());
     for (view, camera, projection, around) in &views {
-        let (skybox, map, generated, of_atmosphere, fog, volume) = around;
+        let (skybox, map, generated, of_atmosphere, fog, volume, ambient) = around;
         let notes = [
             (
                 skybox,
@@ -95,10 +117,21 @@ pub(super) fn name_surroundings(
         ];
         let notes = notes.into_iter().filter(|(is_so, _)| *is_so);
         let mut notes: Vec<String> = notes.map(|(_, note)| note.into()).collect();
-        if is_of_bevy && ambient > 0.0 && Some(view) == first {
-            notes.push(format!(
-                "the GlobalAmbientLight of {ambient} cd/m² is left out: what no light reaches is black"
-            ));
+        let unlit = "is left out: what no light reaches is black";
+        match ambient {
+            Some(own) if is_of_bevy && own.brightness > 0.0 => {
+                notes.push(format!(
+                    "its AmbientLight of {} cd/m² {unlit}",
+                    own.brightness
+                ));
+            }
+            // It is one for all.
+            None if is_of_bevy && Some(view) == first => {
+                notes.push(format!(
+                    "the GlobalAmbientLight of {all_around} cd/m² {unlit}"
+                ));
+            }
+            _ => {}
         }
         LeftOut::note(&mut left_out, "view", view, notes);
     }

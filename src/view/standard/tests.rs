@@ -1,5 +1,7 @@
 //! Scenes of Bevy's own components, in an app without a renderer.
 
+mod poses;
+
 use super::{AddTracedMaterial, StandardMappingPlugin};
 use crate::app::headless_app_with;
 use crate::scene::{Environment, Phong};
@@ -7,9 +9,8 @@ use crate::sync::Traced;
 use crate::view::TracedView;
 use bevy::asset::{Asset, AssetApp, RenderAssetUsages};
 use bevy::color::LinearRgba;
-use bevy::light::{GlobalAmbientLight, NotShadowCaster, Skybox};
-use bevy::mesh::skinning::SkinnedMesh;
-use bevy::pbr::{Material, MeshMaterial3d, StandardMaterial};
+use bevy::light::{AmbientLight, GlobalAmbientLight, NotShadowCaster, Skybox};
+use bevy::pbr::{Lightmap, Material, MeshMaterial3d, StandardMaterial};
 use bevy::prelude::*;
 use bevy::reflect::TypePath;
 use bevy::render::render_resource::AsBindGroup;
@@ -51,7 +52,7 @@ fn what_objects_have_that_the_tracer_does_not_follow_is_named_while_they_have_it
     let mut app = app();
     let object = object(&mut app);
     assert_eq!(problems(&mut app), Vec::<String>::new());
-    let flags = (NotShadowCaster, SkinnedMesh::default());
+    let flags = (NotShadowCaster, Lightmap::default());
     app.world_mut().entity_mut(object).insert(flags);
     let named = problems(&mut app);
     assert_eq!(named.len(), 2, "{named:#?}");
@@ -60,7 +61,7 @@ fn what_objects_have_that_the_tracer_does_not_follow_is_named_while_they_have_it
         "{named:#?}"
     );
     let mut flagged = app.world_mut().entity_mut(object);
-    flagged.remove::<(NotShadowCaster, SkinnedMesh)>();
+    flagged.remove::<(NotShadowCaster, Lightmap)>();
     assert_eq!(problems(&mut app), Vec::<String>::new());
     app.world_mut().entity_mut(object).insert(NotShadowCaster);
     app.update();
@@ -130,6 +131,20 @@ fn a_views_surroundings_are_named() {
         "{named:#?}"
     );
     assert!(named[1].contains("GlobalAmbientLight"), "{named:#?}");
+    // A camera's own takes the place of that of all.
+    app.insert_resource(GlobalAmbientLight::NONE);
+    let mut view = app.world_mut().query_filtered::<Entity, With<Skybox>>();
+    let view = view.single(app.world()).unwrap();
+    let own = |brightness| AmbientLight {
+        brightness,
+        ..default()
+    };
+    app.world_mut().entity_mut(view).insert(own(50.0));
+    let named = problems(&mut app);
+    assert!(named[1].contains("its AmbientLight of 50"), "{named:#?}");
+    app.insert_resource(GlobalAmbientLight::default());
+    app.world_mut().entity_mut(view).insert(own(0.0));
+    assert_eq!(problems(&mut app).len(), 1);
 }
 
 #[test]

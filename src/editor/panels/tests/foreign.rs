@@ -5,11 +5,16 @@ use crate::editor::edits::{copy, duplicate, paste, scene_entity};
 use crate::editor::history::{History, redo, reset, undo};
 use crate::io::{KeepInSceneFiles, OpenOptions, SceneSource, builtin, open, save};
 use crate::scene::{Quantity, SceneId};
+use bevy::asset::Assets;
 use bevy::color::Color;
 use bevy::ecs::component::Component;
 use bevy::ecs::entity::Entity;
+use bevy::ecs::hierarchy::{ChildOf, Children};
 use bevy::ecs::reflect::ReflectComponent;
+use bevy::math::primitives::Cuboid;
 use bevy::math::{Quat, Vec3};
+use bevy::mesh::morph::MeshMorphWeights;
+use bevy::mesh::{Mesh, Mesh3d};
 use bevy::reflect::Reflect;
 use bevy::reflect::std_traits::ReflectDefault;
 use bevy_egui::egui::accesskit::Role;
@@ -248,7 +253,7 @@ fn what_has_no_value_to_begin_with_is_edited_and_copied_and_cannot_be_added() {
     let (mut desk, entity, id) = garden(Fence { posts: 4 });
     desk.enter("Posts", "9");
     assert_eq!(desk.world().get(entity), Some(&Fence { posts: 9 }));
-    let twin = duplicate(desk.world(), &[id])[0];
+    let twin = duplicate(desk.world(), &[id]).roots[0];
     let clipboard = copy(desk.world(), &[id]).unwrap();
     let pasted = paste(desk.world(), &clipboard).unwrap()[0];
     for id in [twin, pasted] {
@@ -269,7 +274,7 @@ fn what_has_no_value_to_begin_with_is_edited_and_copied_and_cannot_be_added() {
 }
 
 #[test]
-fn what_cannot_be_made_or_is_not_reflected_does_no_harm() {
+fn what_cannot_be_made_or_is_no_component_to_reflection_is_shown_and_copied() {
     let (mut desk, entity, id) = garden((Sealed { secret: 41 }, Hidden { depth: 2.0 }));
     desk.click_on("Other components");
     // It unfolds slowly.
@@ -277,12 +282,53 @@ fn what_cannot_be_made_or_is_not_reflected_does_no_harm() {
     desk.settle();
     desk.place_of("Sealed");
     desk.place_of("Sealed { secret: 41 }");
-    let twin = duplicate(desk.world(), &[id])[0];
+    let twin = duplicate(desk.world(), &[id]).roots[0];
     let twin = scene_entity(desk.world(), twin).unwrap();
-    assert!(desk.world().get::<Sealed>(twin).is_none());
+    assert_eq!(desk.world().get::<Sealed>(twin).unwrap().secret, 41);
+    assert_eq!(desk.world().get::<Hidden>(twin).unwrap().depth, 2.0);
     desk.world().get_mut::<Sealed>(entity).unwrap().secret = 42;
     desk.settle();
     assert_eq!(desk.world().get::<Sealed>(entity).unwrap().secret, 42);
+}
+
+/// Neither cloned nor reflected.
+#[derive(Component)]
+struct Opaque;
+
+#[test]
+fn a_copy_has_all_that_can_be_cloned_or_reflected_and_says_what_it_lacks() {
+    let (mut desk, entity, id) = garden(Opaque);
+    let flower = Mesh3d(
+        desk.world()
+            .resource_mut::<Assets<Mesh>>()
+            .add(Cuboid::default()),
+    );
+    // Below it, and no part of the scene.
+    let below = desk.world().spawn((Hidden { depth: 3.0 }, ChildOf(entity)));
+    let below = below.id();
+    let named = MeshMorphWeights::Reference(below);
+    desk.world()
+        .entity_mut(entity)
+        .insert((flower.clone(), named));
+    let copies = duplicate(desk.world(), &[id]);
+    assert_eq!(copies.lost.len(), 1, "{:?}", copies.lost);
+    let said = &copies.lost[0];
+    assert!(
+        said.contains("Opaque") && said.contains("Mirror block"),
+        "{said}"
+    );
+    let world = desk.world();
+    let twin = scene_entity(world, copies.roots[0]).unwrap();
+    assert_eq!(world.get::<Mesh3d>(twin), Some(&flower));
+    let children = world.get::<Children>(twin).unwrap();
+    let copied = children[0];
+    assert!(children.len() == 1 && copied != below);
+    assert_eq!(world.get::<Hidden>(copied).unwrap().depth, 3.0);
+    let names = world.get::<MeshMorphWeights>(twin).unwrap();
+    assert!(
+        matches!(names, MeshMorphWeights::Reference(named) if *named == copied),
+        "{names:?}"
+    );
 }
 
 #[test]

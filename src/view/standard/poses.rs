@@ -1,0 +1,203 @@
+//! Skinned and morphed meshes, traced as they stand in this frame.
+
+use super::pose::{Bend, bent};
+use crate::scene::NotTraced;
+use crate::sync::{LeftOut, PosedMesh, TreeBuilding};
+use crate::view::TracedView;
+use bevy::asset::{AssetEvent, AssetId, Assets, RenderAssetUsages};
+use bevy::camera::Camera;
+use bevy::ecs::query::QueryData;
+use bevy::ecs::system::SystemParam;
+use bevy::math::{Affine3A, Mat4};
+use bevy::mesh::morph::{MeshMorphWeights, MorphWeights};
+use bevy::mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes};
+use bevy::mesh::{Mesh, Mesh3d};
+use bevy::platform::collections::HashSet;
+use bevy::prelude::{
+    Commands, Component, Entity, MessageReader, Or, Query, RemovedComponents, Res, ResMut, With,
+    Without,
+};
+use bevy::transform::components::GlobalTransform;
+
+/// What an object's [`PosedMesh`] was made of.
+#[derive(Component, PartialEq)]
+#[component(clone_behavior = Ignore)]
+pub(super) struct Pose {
+    mesh: AssetId<Mesh>,
+    bend: Bend,
+}
+
+#[derive(QueryData)]
+pub(super) struct Bendable {
+    entity: Entity,
+    mesh: &'static Mesh3d,
+    skin: Option<&'static SkinnedMesh>,
+    morph: Option<&'static MeshMorphWeights>,
+    place: &'static GlobalTransform,
+    pose: Option<&'static Pose>,
+    posed: Option<&'static PosedMesh>,
+}
+
+type Bends = (
+    Or<(With<SkinnedMesh>, With<MeshMorphWeights>)>,
+    Without<NotTraced>,
+);
+
+/// Who would see a pose.
+#[derive(SystemParam)]
+pub(super) struct Onlookers<'w, 's> {
+    building: Option<Res<'w, TreeBuilding>>,
+    views: Query<'w, 's, (&'static TracedView, &'static Camera)>,
+}
+
+impl Onlookers<'_, '_> {
+    fn are_there(&self) -> bool {
+        let mut views = self.views.iter();
+        // A picture without a view is of trees that are waited for.
+        let at_once = Some(TreeBuilding::AtOnce);
+        self.building.as_deref().copied() == at_once
+            || views.any(|(view, camera)| camera.is_active && view.divider < 1.0 && !view.paused)
+    }
+}
+
+/// Bends what stands otherwise than it did, while somebody looks: it takes its time in every frame.
+pub(super) fn pose_meshes(
+    mut commands: Commands,
+    mut meshes: ResMut<Assets<Mesh>>,
+    bind_poses: Option<Res<Assets<SkinnedMeshInverseBindposes>>>,
+    places: Query<&GlobalTransform>,
+    weights: Query<&MorphWeights>,
+    objects: Query<Bendable, Bends>,
+    onlookers: Onlookers,
+    mut events: MessageReader<AssetEvent<Mesh>>,
+    mut left_out: ResMut<LeftOut>,
+) {
+    let edited: HashSet<AssetId<Mesh>> = events
+        .read()
+        .filter_map(|event| match event {
+            AssetEvent::Modified { id } | AssetEvent::Added { id } => Some(*id),
+            _ => None,
+        })
+        .collect();
+    let anyone = onlookers.are_there();
+    for object in &objects {
+        let entity = object.entity;
+        if !anyone {
+            if edited.contains(&object.mesh.id()) {
+                commands.entity(entity).try_remove::<Pose>();
+            }
+            continue;
+        }
+        let bend = bend_of(&object, bind_poses.as_deref(), &places, &weights);
+        let mesh = object.mesh.id();
+        let bend = match bend {
+            Ok(bend) => bend,
+            Err(why) => {
+                at_rest(&mut commands, &mut left_out, entity, Some(why));
+                continue;
+            }
+        };
+        let pose = Pose { mesh, bend };
+        if object.pose == Some(&pose) && !edited.contains(&mesh) {
+            continue;
+        }
+        // What is not loaded yet is bent when it is.
+        let Some(asset) = meshes.get(mesh) else {
+            continue;
+        };
+        // Of a mesh for the GPU alone that is said anyway.
+        let is_kept = asset.asset_usage.contains(RenderAssetUsages::MAIN_WORLD);
+        if pose.bend.is_none() || !is_kept {
+            at_rest(&mut commands, &mut left_out, entity, None);
+            continue;
+        }
+        let posed = match bent(asset, &pose.bend) {
+            Ok(posed) => posed,
+            Err(why) => {
+                at_rest(&mut commands, &mut left_out, entity, Some(why));
+                continue;
+            }
+        };
+        LeftOut::note(&mut left_out, "posed object", entity, Vec::new());
+        if let Some(known) = object.posed
+            && let Some(mut known) = meshes.get_mut(&known.0)
+        {
+            *known = posed;
+            commands.entity(entity).insert(pose);
+        } else {
+            let posed = PosedMesh(meshes.add(posed));
+            commands.entity(entity).insert((pose, posed));
+        }
+    }
+}
+
+/// An object whose skin and weights were taken away stands as its mesh is.
+pub(super) fn straighten(
+    mut commands: Commands,
+    mut no_skin: RemovedComponents<SkinnedMesh>,
+    mut no_morph: RemovedComponents<MeshMorphWeights>,
+    bent: Query<(), Bends>,
+    mut left_out: ResMut<LeftOut>,
+) {
+    for entity in no_skin.read().chain(no_morph.read()) {
+        if !bent.contains(entity) {
+            at_rest(&mut commands, &mut left_out, entity, None);
+        }
+    }
+}
+
+fn at_rest(
+    commands: &mut Commands,
+    left_out: &mut ResMut<LeftOut>,
+    entity: Entity,
+    why: Option<&str>,
+) {
+    let note = why.map(|why| format!("{why}: it is traced as its mesh is"));
+    LeftOut::note(left_out, "posed object", entity, note.into_iter().collect());
+    if let Ok(mut entity) = commands.get_entity(entity) {
+        entity.try_remove::<(Pose, PosedMesh)>();
+    }
+}
+
+/// How an object stands now.
+fn bend_of(
+    object: &BendableItem,
+    bind_poses: Option<&Assets<SkinnedMeshInverseBindposes>>,
+    places: &Query<&GlobalTransform>,
+    weights: &Query<&MorphWeights>,
+) -> Result<Bend, &'static str> {
+    let weights = match object.morph {
+        None => Vec::new(),
+        Some(MeshMorphWeights::Value { weights }) => weights.clone(),
+        Some(MeshMorphWeights::Reference(holder)) => {
+            let holder = weights.get(*holder);
+            let holder = holder.map_err(|_| "the entity with its morph weights is gone")?;
+            holder.weights().to_vec()
+        }
+    };
+    let Some(skin) = object.skin else {
+        return Ok(Bend {
+            joints: Vec::new(),
+            weights,
+        });
+    };
+    let bind_poses = bind_poses.and_then(|all| all.get(&skin.inverse_bindposes));
+    let bind_poses = bind_poses.ok_or("the bind poses of its skin are not loaded")?;
+    if skin.joints.is_empty() || bind_poses.len() < skin.joints.len() {
+        return Err("its skin has other joints than bind poses");
+    }
+    // Joints bend it in the world, wherever it stands itself.
+    let object_from_world = object.place.affine().inverse();
+    let mut joints = Vec::with_capacity(skin.joints.len());
+    for (&joint, bind_pose) in skin.joints.iter().zip(bind_poses.iter()) {
+        let place = places
+            .get(joint)
+            .map_err(|_| "a joint of its skin is gone")?;
+        let object_from_joint: Affine3A = object_from_world * place.affine();
+        joints.push(Mat4::from(object_from_joint) * *bind_pose);
+    }
+    if joints.iter().any(|joint| !joint.is_finite()) {
+        return Err("its place, or that of a joint of its skin, cannot be traced");
+    }
+    Ok(Bend { joints, weights })
+}
