@@ -89,11 +89,11 @@ print(json.dumps(dict(area=float(sum(g.area for g in meshes)), triangles=int(sum
 
 def measured(file):
     """What trimesh finds; None where it finds no triangles. In a process of its own: it may take any time and memory."""
+    run = [sys.executable, "-c", MEASURE, str(file)]
+    done = subprocess.run(run, capture_output=True, text=True, timeout=SECONDS)
     try:
-        run = [sys.executable, "-c", MEASURE, str(file)]
-        done = subprocess.run(run, capture_output=True, text=True, timeout=SECONDS)
         found = json.loads(done.stdout.splitlines()[-1])
-    except (subprocess.TimeoutExpired, ValueError, IndexError):
+    except (ValueError, IndexError):
         return None
     return found if found["area"] > 0 else None
 
@@ -107,7 +107,11 @@ def theirs(files, folder):
         for file in files:
             name = str(file.relative_to(folder))
             if name not in known:
-                known[name] = measured(file)
+                try:
+                    known[name] = measured(file)
+                except subprocess.TimeoutExpired:
+                    print(f"{name}: trimesh takes longer than {SECONDS} s; left out")
+                    continue
                 print(json.dumps([name, known[name]]), file=out, flush=True)
             yield file, known[name]
 
