@@ -148,6 +148,8 @@ pub enum Problem {
     Empty,
     #[error("is packed ({0}); unpack it first")]
     Packed(&'static str),
+    #[error("is {0} in place of a file; get the file itself")]
+    StandsForAFile(&'static str),
     #[error("{size} bytes, and the limit is {limit}; split it up")]
     TooLarge { size: u64, limit: u64 },
     #[error(
@@ -164,8 +166,10 @@ pub enum Problem {
     Malformed(String),
     #[error("ends too early: {0}; get a complete copy")]
     Truncated(String),
-    #[error("was cut off: below its last line it is grey; get a complete copy")]
+    #[error("was cut off: what is missing is grey; get a complete copy")]
     CutShort,
+    #[error("is damaged ({0}): what could not be decoded is grey; get a complete copy")]
+    DecodedInPart(String),
     #[error("{what} {index} is used, and there are {count}; the file is damaged")]
     IndexOutOfRange {
         what: &'static str,

@@ -3,14 +3,14 @@ use super::error::{FileError, Place, Problem};
 use super::file_name::{BUILTIN, split_fragment};
 use super::folder::Folder;
 use super::model::Model;
-use super::picture::{PictureUse, cut_short, read_picture};
+use super::picture::{PictureUse, ReadPicture, read_picture};
 use super::{Limits, extension, gltf, obj, open_regular, ply, shapes, stl};
 use crate::scene::{MeshSource, TextureSource};
 use bevy::image::Image;
 use bevy::mesh::Mesh;
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
-use std::io::{BufReader, Read};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// Loads what sources name, and parses each model file once however many of its meshes are asked
@@ -100,11 +100,10 @@ impl<'a> Loader<'a> {
             None => (fragment, usage),
         };
         if part.is_empty() {
-            let picture = read_picture(&file, usage, self.limits)?;
-            let bytes = BufReader::new(open_regular(&file)?);
-            self.notes.extend(cut_short(&file, bytes));
+            let ReadPicture { image, doubt } = read_picture(&file, usage, self.limits)?;
+            self.notes.extend(doubt);
             self.read.insert(file);
-            return Ok(picture);
+            return Ok(image);
         }
         let document = match self.documents.entry(file) {
             Entry::Occupied(known) => known.into_mut(),

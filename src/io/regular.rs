@@ -40,10 +40,26 @@ pub(super) fn open_to_read(path: &Path, limit: u64) -> Result<BufReader<File>, F
     let mut reader = BufReader::with_capacity(1 << 16, file);
     let start = reader.fill_buf();
     let start = start.map_err(|error| FileError::reading(path, &error))?;
-    match packed(start) {
-        Some(format) => Err(FileError::new(path, Problem::Packed(format))),
+    let problem = packed(start).map(Problem::Packed);
+    match problem.or_else(|| stands_for(start).map(Problem::StandsForAFile)) {
+        Some(problem) => Err(FileError::new(path, problem)),
         None => Ok(reader),
     }
+}
+
+/// What a file is that often lies where another was to be downloaded to.
+fn stands_for(start: &[u8]) -> Option<&'static str> {
+    const KINDS: [(&[u8], &str); 3] = [
+        (b"<!doctype html", "a web page"),
+        (b"<html", "a web page"),
+        (b"version https://git-lfs", "a pointer of Git LFS"),
+    ];
+    let begins = |bytes: &[u8]| {
+        let start = start.get(..bytes.len());
+        start.is_some_and(|start| start.eq_ignore_ascii_case(bytes))
+    };
+    let kind = KINDS.iter().find(|(bytes, _)| begins(bytes));
+    kind.map(|&(_, name)| name)
 }
 
 /// The format of a packed file, by how it begins: what is in it may have any.

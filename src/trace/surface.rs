@@ -29,7 +29,7 @@ pub struct Surface {
     pub shininess: f32,
     /// d, its map, the vertices' alphas and the cutoff included.
     pub opacity: f32,
-    /// ke, its map included.
+    /// ke, its map included, and where kd is black the vertices' colours.
     pub emission: Vec3,
 }
 
@@ -194,7 +194,12 @@ impl Surface {
         let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
         if !mesh.colors.is_empty() {
             let [a, b, c] = corners.map(|corner| mesh.colors[corner as usize]);
-            self.diffuse *= weights[0] * a + weights[1] * b + weights[2] * c;
+            let color = weights[0] * a + weights[1] * b + weights[2] * c;
+            self.diffuse *= color;
+            // What has no body shows its colours by itself, as unlit models do.
+            if material.diffuse == Vec3::ZERO {
+                self.emission *= color;
+            }
             if !mesh.alphas.is_empty() {
                 let [a, b, c] = corners.map(|corner| mesh.alphas[corner as usize]);
                 let alpha = weights[0] * a + weights[1] * b + weights[2] * c;

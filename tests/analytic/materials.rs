@@ -169,6 +169,26 @@ fn vertex_colours_multiply_kd_and_their_alphas_opacity_linearly_between_the_corn
 }
 
 #[test]
+fn vertex_colours_multiply_what_a_surface_sends_out_only_where_its_body_is_black() {
+    let colors = vec![Vec3::new(1.0, 0.5, 0.25); 4];
+    for (diffuse, by) in [(Vec3::ZERO, colors[0]), (Vec3::splat(0.01), Vec3::ONE)] {
+        let material = Material {
+            diffuse,
+            emission: Vec3::new(2.0, 4.0, 8.0),
+            ..Material::default()
+        };
+        let emission = material.emission;
+        let world = square(material, Vec::new(), colors.clone(), Vec::new());
+        let found = above(&world, &settings(), 0.3, -0.7).emission;
+        // Rounding of the corners' weights.
+        assert!(
+            found.abs_diff_eq(by * emission, 1e-5),
+            "{found} at {diffuse}"
+        );
+    }
+}
+
+#[test]
 fn a_mask_is_there_or_not_by_the_filtered_opacity() {
     let texture = || pair([1.0, 1.0, 1.0, 0.0], [1.0, 1.0, 1.0, 1.0]);
     let bilinear = RenderSettings {

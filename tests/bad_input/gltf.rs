@@ -95,6 +95,20 @@ fn a_buffer_whose_data_is_not_in_base64() {
 }
 
 #[test]
+fn points_are_left_out_with_one_note_and_not_one_more_for_what_they_hold() {
+    let (_folder, file) = changed(|document| {
+        let primitive = json!({ "attributes": { "POSITION": 0 }, "mode": 0 });
+        let primitives = &mut document["meshes"][0]["primitives"];
+        primitives.as_array_mut().unwrap().push(primitive);
+    });
+    let (_, opened) = opened(&file);
+    let mut told = opened.notes.lines();
+    told.retain(|line| !line.contains("added"));
+    assert_eq!(told.len(), 1, "{told:#?}");
+    assert!(told[0].contains("points and lines"), "{told:#?}");
+}
+
+#[test]
 fn a_primitive_of_a_mode_that_there_is_not_is_left_out() {
     let (_folder, file) = changed(|document| {
         let primitive = json!({ "attributes": { "POSITION": 0 }, "mode": 7 });
@@ -379,6 +393,34 @@ fn another_version_of_gltf() {
         d["meshes"] = json!({ "lid": {} });
     });
     says(&refused(&file), &["a.gltf", "glTF 1.0"]);
+}
+
+#[test]
+fn a_rotation_of_zeros_turns_nothing() {
+    let (_folder, file) = changed(|d| d["nodes"][0]["rotation"] = json!([0, 0, 0, 0]));
+    opens_and_says(&file, &["rotation of zeros", "not turned"]);
+    let (mut app, _) = opened(&file);
+    let triangle = crate::files::models::objects(app.world_mut())[0].2[0];
+    assert_eq!(triangle[1], [1.0, 0.0, 0.0], "{triangle:?}");
+}
+
+#[test]
+fn version_2_without_a_point_is_2() {
+    let (_folder, file) = changed(|d| d["asset"]["version"] = json!("2"));
+    opened(&file);
+}
+
+#[test]
+fn numbers_that_json_does_not_have_are_none() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "a.bin", bytes([0, 1, 2]));
+    let text = triangle().to_string();
+    for (number, name) in [("NaN", "a.gltf"), ("-Infinity", "b.gltf")] {
+        let text = text.replace(r#""max":[1.0,"#, &format!(r#""max":[{number},"#));
+        assert!(text.contains(number));
+        let file = write(folder.path(), name, text);
+        assert_eq!(opens_and_says(&file, &[name, "JSON does not have"]), 1);
+    }
 }
 
 #[test]

@@ -74,6 +74,27 @@ fn a_packed_file_is_called_so_whatever_its_name_says() {
 }
 
 #[test]
+fn a_web_page_or_a_pointer_in_place_of_a_file_is_called_so() {
+    let folder = tempfile::tempdir().unwrap();
+    for (text, kind) in [
+        ("<!DOCTYPE html>\n<html></html>\n", "web page"),
+        ("<HTML><body>404</body></HTML>", "web page"),
+        (
+            "version https://git-lfs.github.com/spec/v1\noid sha256:0\n",
+            "Git LFS",
+        ),
+    ] {
+        for name in ["a.obj", "a.ply", "a.stl", "a.gltf", "a.glb", "a.scn.ron"] {
+            let file = write(folder.path(), name, text);
+            says(&refused(&file), &[name, kind, "get the file itself"]);
+        }
+        let (folder, file) = mtl("newmtl a\nmap_Kd a.png\n");
+        write(folder.path(), "a.png", text);
+        assert_eq!(opens_and_says(&file, &["a.png", kind]), 1);
+    }
+}
+
+#[test]
 fn an_obj_without_triangles() {
     let (_folder, file) = obj("# nothing else\n");
     says(&refused(&file), &["model.obj", "no triangles"]);

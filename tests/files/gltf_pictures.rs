@@ -3,7 +3,11 @@
 use super::gltf::{document, plain};
 use super::models::objects;
 use bevy::color::LinearRgba;
-use glassbox::scene::{Alpha, MapFilter, Phong, TextureSource, Wrap};
+use bevy::math::Vec3;
+use glassbox::bvh::Ray;
+use glassbox::scene::{Alpha, MapFilter, Phong, RenderSettings, TextureSource, Wrap};
+use glassbox::sync::Traced;
+use glassbox::trace::Surface;
 use serde_json::{Value, json};
 
 /// The material of a document with one picture, of several textures with these samplers.
@@ -54,6 +58,42 @@ fn every_picture_that_phong_has_a_place_for_is_taken_with_its_factor_and_sampler
     );
     let cut_out = phong.opacity_map.map(|map| map.path);
     assert_eq!(cut_out.as_deref(), Some("a b.png#alpha"));
+}
+
+#[test]
+fn the_colours_of_vertices_of_what_is_unlit_are_seen_and_need_no_note() {
+    let (mut app, notes) = document(plain(), |d| {
+        d["materials"] = json!([{ "extensions": { "KHR_materials_unlit": {} } }]);
+        let primitive = &mut d["meshes"][0]["primitives"][0];
+        primitive["material"] = json!(0);
+        // The positions once more, as colours.
+        primitive["attributes"]["COLOR_0"] = json!(0);
+    });
+    assert!(
+        !notes.iter().any(|note| note.contains("unlit")),
+        "{notes:?}"
+    );
+    app.update();
+    let world = &app.world().resource::<Traced>().world;
+    let ray = Ray {
+        origin: Vec3::new(0.25, 0.5, 1.0),
+        direction: Vec3::NEG_Z,
+        t_max: f32::INFINITY,
+        time: 0.0,
+    };
+    let hit = world
+        .aggregate
+        .closest_hit(&ray)
+        .expect("it aims at the mesh");
+    let found = Surface::at(world, &RenderSettings::default(), &ray, 0.0, &hit);
+    // Where the ray meets it, with the rounding of the corners' weights.
+    let expected = Vec3::new(0.25, 0.5, 0.0);
+    assert!(
+        found.emission.abs_diff_eq(expected, 1e-5),
+        "{}",
+        found.emission
+    );
+    assert_eq!(found.diffuse, Vec3::ZERO);
 }
 
 #[test]

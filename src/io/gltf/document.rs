@@ -4,6 +4,7 @@ use super::super::names::{Missing, Names};
 use super::super::notes::Notes;
 use super::glb;
 use super::json::{Json, Marks};
+use super::not_finite;
 use super::uri::{data_of, is_data, path_of};
 use crate::io::Limits;
 use serde_json::Value;
@@ -74,8 +75,15 @@ impl Document {
         (limits.memory)
             .claim(json_bytes(text))
             .map_err(|problem| FileError::new(file, problem))?;
-        let root: Value =
-            serde_json::from_slice(text).map_err(|error| parse_error(file, text, &error))?;
+        let root = serde_json::from_slice(text).or_else(|error| {
+            let mended = not_finite::without_them(text);
+            let root = mended.and_then(|text| serde_json::from_slice::<Value>(&text).ok());
+            if root.is_some() {
+                let what = "NaN or Infinity, which JSON does not have";
+                notes.add(file, Place::Whole, what, "read as none");
+            }
+            root.ok_or_else(|| parse_error(file, text, &error))
+        })?;
         let mut document = Self {
             file: file.to_path_buf(),
             folder: folder.clone(),
@@ -165,7 +173,7 @@ impl Document {
         let is_first = json.get("meshes").is_some_and(|meshes| !meshes.is_list());
         let refuse = |text: String| Err(FileError::new(&self.file, Problem::Malformed(text)));
         match version {
-            Some(version) if version.starts_with("2.") => Ok(()),
+            Some(version) if version == "2" || version.starts_with("2.") => Ok(()),
             None if !is_first && json.get("meshes").is_some() => {
                 self.note("asset", "no version of glTF", "read as 2.0");
                 Ok(())

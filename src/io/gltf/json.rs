@@ -77,6 +77,16 @@ impl<'a> Json<'a> {
         self
     }
 
+    /// All that stands in it is known, and left out.
+    pub fn mark_all(self) {
+        self.mark();
+        let list = self.value.as_array().into_iter().flatten();
+        let values = self.value.as_object().into_iter().flatten();
+        for value in list.chain(values.map(|(_, value)| value)) {
+            Self { value, ..self }.mark_all();
+        }
+    }
+
     /// This value as an index or a count. Some programs write `4.0`.
     pub fn whole(self) -> Option<usize> {
         let float = || {

@@ -16,7 +16,8 @@
 //!
 //! A picture of metalness and roughness counts with its mean. `KHR_materials_pbrSpecularGlossiness`: `diffuse` and
 //! `specular` as they are there with their pictures, `specular` times the gloss of `r = 1 - glossiness`, which is `mirror`, too; a picture
-//! of glossiness counts with its mean. `KHR_materials_unlit`: what would be `diffuse` is `emission`, and reflects nothing.
+//! of glossiness counts with its mean. `KHR_materials_unlit`: what would be `diffuse` is `emission`, times
+//! the vertices' colours, and reflects nothing.
 //!
 //! Out: `b = diffuse`, `m = 0`, `r` from `shininess`, and the exact Phong numbers in the material's
 //! `extras` as `glassbox_phong`, which are preferred on the way in.
@@ -49,12 +50,6 @@ struct Numbers {
     emission: [f32; 3],
     /// As glTF's `alphaMode`, which is `OPAQUE` where nothing fades. Files without it blend.
     alpha: Option<String>,
-}
-
-/// Whether a material shows its colour as it is.
-pub(super) fn is_unlit(document: &Document, material: Option<usize>) -> bool {
-    let material = material.and_then(|index| document.json().element("materials", index));
-    material.is_some_and(|material| material.has_extension("KHR_materials_unlit"))
 }
 
 pub(super) const SPECULAR_GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";

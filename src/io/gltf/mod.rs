@@ -12,6 +12,7 @@ mod json;
 mod lamps;
 mod material;
 mod nodes;
+mod not_finite;
 mod pictures;
 mod primitive;
 mod read;

@@ -350,9 +350,14 @@ fn transform_of(node: Json, note: &impl Fn(&str, &'static str)) -> Transform {
     let transform = match node.numbers::<16>("matrix") {
         None => Transform {
             translation: node.numbers("translation").unwrap_or([0.0; 3]).into(),
-            rotation: node
-                .numbers("rotation")
-                .map_or(Quat::IDENTITY, |turn| Quat::from_array(turn).normalize()),
+            rotation: node.numbers("rotation").map_or(Quat::IDENTITY, |turn| {
+                let turn = Quat::from_array(turn);
+                if turn.length_squared() == 0.0 {
+                    note("a rotation of zeros, of", "not turned");
+                    return Quat::IDENTITY;
+                }
+                turn.normalize()
+            }),
             scale: node.numbers("scale").unwrap_or([1.0; 3]).into(),
         },
         Some(matrix) => {

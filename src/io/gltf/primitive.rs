@@ -6,7 +6,6 @@ use super::super::model::triangle_mesh;
 use super::accessors::{colors, floats, indices};
 use super::document::Document;
 use super::json::Json;
-use super::material::is_unlit;
 use super::pictures::placing_texture;
 use super::rest::{Pose, Vertices};
 use super::texture::TextureInfo;
@@ -30,10 +29,12 @@ pub(super) fn read_primitive(
     let mode = primitive.index("mode").unwrap_or(TRIANGLES);
     if mode <= LINE_STRIP {
         document.note(name, "points and lines", "left out");
+        primitive.mark_all();
         return Ok(None);
     }
     if mode > TRIANGLE_FAN {
         document.note(name, "a `mode` that glTF does not have", "left out");
+        primitive.mark_all();
         return Ok(None);
     }
     let is_compressed = primitive.has_extension(DRACO);
@@ -135,10 +136,6 @@ fn triangles(
         mesh.insert_attribute(Mesh::ATTRIBUTE_TANGENT, tangents);
     }
     if colors.iter().any(|&color| color != [1.0; 4]) {
-        if is_unlit(document, material) {
-            let what = "vertex colours of what is unlit";
-            document.note(name, what, "kept, and not seen");
-        }
         mesh.insert_attribute(Mesh::ATTRIBUTE_COLOR, colors);
     }
     Ok(Some(mesh))

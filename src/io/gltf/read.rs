@@ -1,14 +1,13 @@
 use super::super::error::{FileError, Problem};
 use super::super::folder::Folder;
 use super::super::model::Model;
-use super::super::picture::{PictureUse, cut_short, decode_picture, read_picture};
+use super::super::picture::{PictureUse, ReadPicture, decode_picture, read_picture};
 use super::document::{Document, Picture};
 use super::json::Json;
 use super::material::phong_of;
 use super::nodes::read_nodes;
-use crate::io::{Limits, open_regular};
+use crate::io::Limits;
 use bevy::image::Image;
-use std::io::BufReader;
 use std::path::Path;
 
 /// Reads a glTF or GLB file: the default scene, or the first, or all nodes where there is none. What no node of it
@@ -76,21 +75,18 @@ pub(crate) fn read_texture(
         let name = part.to_owned();
         return Err(FileError::new(file, Problem::NoSuchTexture { name, count }));
     };
-    match document.texture(index)? {
+    let ReadPicture { image, doubt } = match document.texture(index)? {
         Picture::Beside(path) => {
             let path = document.folder.resolve(&path)?;
-            let picture = read_picture(&path, usage, limits)?;
-            notes.extend(cut_short(&path, BufReader::new(open_regular(&path)?)));
-            Ok(picture)
+            read_picture(&path, usage, limits)?
         }
         Picture::Inside(bytes) => {
             let name = format!("{}#{part}", file.display());
-            let name = Path::new(&name);
-            let picture = decode_picture(name, &bytes, usage, limits)?;
-            notes.extend(cut_short(name, &*bytes));
-            Ok(picture)
+            decode_picture(Path::new(&name), &bytes, usage, limits)?
         }
-    }
+    };
+    notes.extend(doubt);
+    Ok(image)
 }
 
 /// A name that the file gives, or what stands for it.

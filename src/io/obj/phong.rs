@@ -17,7 +17,7 @@ use super::super::error::Place;
 use super::super::file_name::of_file;
 use super::super::folder::Folder;
 use super::super::notes::Notes;
-use super::super::picture::{PictureUse, read_picture};
+use super::super::picture::{PictureUse, ReadPicture, read_picture};
 use super::mtl::{Map, MtlMaterial, NamedMap};
 use super::parts::{Pictured, Placement};
 use crate::io::Limits;
@@ -174,7 +174,8 @@ fn opacity_source(map: &Map, is_diffuse: bool, folder: &Folder, limits: &Limits)
     let file = folder.resolve(&map.path).ok();
     // One that cannot be read is noted where it is loaded.
     let picture = file.and_then(|file| read_picture(&file, PictureUse::Data, limits).ok());
-    let has_alpha = picture.is_some_and(|picture| {
+    let has_alpha = picture.is_some_and(|read| {
+        let picture = read.image;
         let is_half = picture.texture_descriptor.format == TextureFormat::Rgba16Float;
         let pixels = picture.width() as usize * picture.height() as usize;
         let data = picture.data.unwrap_or_default();
@@ -214,7 +215,7 @@ fn opacity_source(map: &Map, is_diffuse: bool, folder: &Folder, limits: &Limits)
 fn holds_normals(map: &Map, folder: &Folder, limits: &Limits) -> bool {
     let file = folder.resolve(&map.path).ok();
     let picture = file.and_then(|file| read_picture(&file, PictureUse::Data, limits).ok());
-    let Some(picture) = picture else {
+    let Some(ReadPicture { image: picture, .. }) = picture else {
         return false;
     };
     let data = picture.data.as_deref().unwrap_or_default();

@@ -39,18 +39,26 @@ pub(super) fn recognised(head: &[u8]) -> Result<ImageFormat, Problem> {
 
 /// What a file is instead that often stands where a picture should, for the message.
 fn unread(head: &[u8]) -> Option<&'static str> {
+    // These follow the length of the first box (ISO/IEC 14496-12).
+    const BOXED: [(&[u8], &str); 4] = [
+        (b"ftyphei", "a picture in HEIC"),
+        (b"ftypmif1", "a picture in HEIC"),
+        (b"JXL ", "a picture in JPEG XL"),
+        (b"jP  ", "a picture in JPEG 2000"),
+    ];
     const MARKS: [(&[u8], &str); 6] = [
         (b"\xabKTX ", "a texture in KTX"),
-        (b"\0\0\0\x0cjP  ", "a picture in JPEG 2000"),
+        (b"sB", "a texture in Basis Universal"),
+        (b"\xff\x0a", "a picture in JPEG XL"),
+        (b"\xff\x4f\xff\x51", "a picture in JPEG 2000"),
         (b"8BPS", "a document of Photoshop"),
-        (b"<!DOCTYPE html", "a web page"),
         (b"<svg", "a drawing in SVG"),
-        (
-            b"version https://git-lfs",
-            "a pointer of Git LFS to the file",
-        ),
     ];
-    let found = MARKS.iter().find(|(mark, _)| head.starts_with(mark));
+    let is_at = |start: usize| {
+        move |(mark, _): &&(&[u8], _)| head.get(start..).is_some_and(|rest| rest.starts_with(mark))
+    };
+    let found = MARKS.iter().find(is_at(0));
+    let found = found.or_else(|| BOXED.iter().find(is_at(4)));
     found.map(|&(_, name)| name)
 }
 
@@ -96,5 +104,14 @@ mod tests {
         );
         let texture = recognised(b"\xabKTX 20\xbb\r\n\x1a\n").unwrap_err();
         assert!(texture.to_string().contains("KTX"), "{texture}");
+        for (head, name) in [
+            (&b"\0\0\0\x18ftypheic\0\0\0\0"[..], "HEIC"),
+            (b"\0\0\0\x0cJXL \r\n\x87\n", "JPEG XL"),
+            (b"\0\0\0\x0cjP  \r\n\x87\n", "JPEG 2000"),
+            (b"\0\0\0\x1cftypavif\0\0\0\0", "avif"),
+        ] {
+            let told = recognised(head).unwrap_err().to_string();
+            assert!(told.contains(name), "{told}");
+        }
     }
 }

@@ -3,6 +3,7 @@
 
 use super::super::error::{FileError, Problem};
 use super::claim_picture;
+use super::read::Decoded;
 use crate::io::Limits;
 use image::{DynamicImage, ImageBuffer, Rgba};
 use std::io::{self, Read};
@@ -11,6 +12,8 @@ use std::path::Path;
 /// The head with its mark, and what follows it where it is of the newer kind.
 const HEAD: usize = 128;
 const NEWER_HEAD: usize = 20;
+/// What stands for pixels that are not there.
+const GREY: [u8; 4] = [0x80, 0x80, 0x80, u8::MAX];
 /// Flags of the pixel format: which masks count.
 const HAS_ALPHA: u32 = 0x1;
 const HAS_CODE: u32 = 0x4;
@@ -30,7 +33,7 @@ pub(super) fn decode_uncompressed(
     name: &Path,
     reader: &mut impl Read,
     limits: &Limits,
-) -> Result<Option<DynamicImage>, FileError> {
+) -> Result<Option<Decoded>, FileError> {
     let mut head = [0; HEAD];
     reader
         .read_exact(&mut head)
@@ -45,11 +48,16 @@ pub(super) fn decode_uncompressed(
     };
     claim_picture(name, (width, height), 1, limits)?;
     let mut row = vec![0; width as usize * layout.bytes];
-    let mut pixels = Vec::with_capacity(width as usize * height as usize * 4);
-    for _ in 0..height {
-        reader
-            .read_exact(&mut row)
-            .map_err(|error| failure(name, &error))?;
+    let mut pixels = Vec::with_capacity(width as usize * height as usize * GREY.len());
+    let mut doubt = None;
+    for y in 0..height {
+        match reader.read_exact(&mut row) {
+            Err(error) if y > 0 && error.kind() == io::ErrorKind::UnexpectedEof => {
+                doubt = Some(Problem::CutShort);
+                break;
+            }
+            read => read.map_err(|error| failure(name, &error))?,
+        }
         for pixel in row.chunks_exact(layout.bytes) {
             let mut bytes = [0; 4];
             bytes[..layout.bytes].copy_from_slice(pixel);
@@ -59,8 +67,14 @@ pub(super) fn decode_uncompressed(
             pixels.push(channel(value, alpha, u8::MAX));
         }
     }
+    let all = width as usize * height as usize;
+    let missing = all - pixels.len() / GREY.len();
+    pixels.extend(std::iter::repeat_n(GREY, missing).flatten());
     let picture: Option<ImageBuffer<Rgba<u8>, _>> = ImageBuffer::from_raw(width, height, pixels);
-    Ok(picture.map(DynamicImage::ImageRgba8))
+    Ok(picture.map(|picture| Decoded {
+        doubt,
+        ..Decoded::from(DynamicImage::ImageRgba8(picture))
+    }))
 }
 
 fn layout(word: &impl Fn(usize) -> u32, reader: &mut impl Read) -> io::Result<Option<Layout>> {

@@ -2,9 +2,11 @@
 //! OpenEXR and Radiance HDR linear light in floating point. What is read its content tells, and there
 //! are more kinds of it: WebP, TGA, BMP, DDS, and the first frame of a GIF.
 
+mod as_far;
 mod content;
 mod dds;
 mod exr_blocks;
+mod exr_subsampled;
 mod jpeg;
 mod light_layers;
 mod open_exr;
@@ -15,9 +17,8 @@ mod room;
 mod write;
 
 pub(crate) use exr_blocks::block_bytes;
-pub(crate) use jpeg::cut_short;
 pub use light_layers::{LightLayers, layer_name};
-pub(crate) use read::{PictureUse, decode_picture, read_picture};
+pub(crate) use read::{PictureUse, ReadPicture, decode_picture, read_picture};
 pub use rendered::{Note, picture_notes, write_lights, write_rendered};
 pub use room::check_room;
 pub(crate) use write::{encode_png, stage_picture};

@@ -12,37 +12,47 @@
 //! `beauty`, then what comes first in the file. No other channel is kept.
 
 use super::super::error::{FileError, Problem};
-use super::read::one_line;
-use super::{block_bytes, check_size, claim_picture, decoder_bytes};
+use super::read::{Decoded, one_line};
+use super::{block_bytes, check_size, claim_picture, decoder_bytes, exr_subsampled};
 use crate::io::Limits;
 use exr::block::UncompressedBlock;
+use exr::block::lines::LineIndex;
 use exr::block::reader::ChunksReader;
+use exr::compression::Compression;
 use exr::error::{Error, UnitResult};
-use exr::meta::attribute::SampleType;
+use exr::meta::attribute::{ChannelDescription, SampleType};
 use exr::meta::header::Header;
 use exr::prelude::{Vec2, f16};
 use image::{DynamicImage, ImageBuffer};
-use std::io::{BufRead, Seek};
+use std::io::{BufRead, Seek, SeekFrom};
 use std::path::Path;
 
-/// What a file holds.
-pub(super) struct Decoded {
-    /// RGB in `f32`, or RGBA where it has alpha.
-    pub picture: DynamicImage,
-    /// All of it was in 16 bits.
-    pub is_half: bool,
-}
-
-/// Decodes the largest level of an OpenEXR picture, as large as its display window.
+/// Decodes the largest level of an OpenEXR picture, as large as its display window: RGB in `f32`, or RGBA where it has alpha.
 pub(super) fn decode(
     name: &Path,
-    reader: impl BufRead + Seek,
+    mut reader: impl BufRead + Seek,
     limits: &Limits,
 ) -> Result<Decoded, FileError> {
     let fails = |error| FileError::new(name, problem(error));
-    let reader = exr::block::read(reader, false).map_err(fails)?;
+    let opened = exr::block::read(&mut reader, false);
+    let reader = match opened {
+        Err(error @ Error::NotSupported(_)) => {
+            let rewound = reader.seek(SeekFrom::Start(0));
+            rewound.map_err(|error| FileError::reading(name, &error))?;
+            let decoded = exr_subsampled::decode(name, reader, limits)?;
+            return decoded.ok_or_else(|| fails(error));
+        }
+        opened => opened.map_err(fails)?,
+    };
     let layer = Layer::chosen(reader.headers()).map_err(|problem| FileError::new(name, problem))?;
     let header = &reader.headers()[layer.header];
+    if matches!(
+        header.compression,
+        Compression::HTJ2K32 | Compression::HTJ2K256
+    ) {
+        let text = "is compressed as HTJ2K, which is not read; ZIP and PIZ are, for example";
+        return Err(FileError::new(name, Problem::Malformed(text.to_owned())));
+    }
     check_memory(name, header, limits)?;
     let is_half = layer.is_half(header);
     let mut pixels = Pixels::new(layer, header);
@@ -55,20 +65,7 @@ pub(super) fn decode(
             chunks.decompress_parallel(false, |meta, block| pixels.take(&meta.headers, &block))
         })
         .map_err(fails)?;
-    if pixels.layer.is_chroma {
-        pixels.colors_from_chroma();
-    }
-    let (width, height) = (pixels.size.0 as u32, pixels.size.1 as u32);
-    let picture = if pixels.channels == 4 {
-        ImageBuffer::from_raw(width, height, pixels.values).map(DynamicImage::ImageRgba32F)
-    } else {
-        ImageBuffer::from_raw(width, height, pixels.values).map(DynamicImage::ImageRgb32F)
-    };
-    let incomplete = || Problem::Malformed("holds fewer pixels than it says".into());
-    Ok(Decoded {
-        picture: picture.ok_or_else(|| FileError::new(name, incomplete()))?,
-        is_half,
-    })
+    pixels.decoded(name, is_half)
 }
 
 /// Blocks that are decoded at the same time.
@@ -76,7 +73,7 @@ const BLOCKS_AT_A_TIME: u64 = 8;
 
 /// Refuses what asks for too much memory: as a picture, or for one of the blocks that it is kept in, which
 /// hold every channel.
-fn check_memory(name: &Path, header: &Header, limits: &Limits) -> Result<(), FileError> {
+pub(super) fn check_memory(name: &Path, header: &Header, limits: &Limits) -> Result<(), FileError> {
     let (data, display) = (
         header.layer_size,
         header.shared_attributes.display_window.size,
@@ -99,7 +96,7 @@ fn check_memory(name: &Path, header: &Header, limits: &Limits) -> Result<(), Fil
 
 /// The channels that are taken, as indices into those of a part of the file.
 #[derive(Debug, Default, PartialEq)]
-struct Layer {
+pub(super) struct Layer {
     /// Which part.
     header: usize,
     /// Red, green and blue, where they are there.
@@ -112,7 +109,7 @@ struct Layer {
 }
 
 impl Layer {
-    fn chosen(headers: &[Header]) -> Result<Self, Problem> {
+    pub fn chosen(headers: &[Header]) -> Result<Self, Problem> {
         let mut best: Option<([u8; 2], Self)> = None;
         for (index, header) in headers
             .iter()
@@ -138,7 +135,7 @@ impl Layer {
         })
     }
 
-    fn is_half(&self, header: &Header) -> bool {
+    pub fn is_half(&self, header: &Header) -> bool {
         let taken = self
             .colors
             .iter()
@@ -216,7 +213,7 @@ fn layers(header: usize, names: &[String]) -> Vec<([u8; 2], Layer)> {
 }
 
 /// The picture while its blocks arrive.
-struct Pixels {
+pub(super) struct Pixels {
     layer: Layer,
     /// Columns and rows of the display window.
     size: (usize, usize),
@@ -228,7 +225,7 @@ struct Pixels {
 }
 
 impl Pixels {
-    fn new(layer: Layer, header: &Header) -> Self {
+    pub fn new(layer: Layer, header: &Header) -> Self {
         let display = header.shared_attributes.display_window;
         let size = (display.size.width(), display.size.height());
         let channels = if layer.alpha.is_some() { 4 } else { 3 };
@@ -263,49 +260,79 @@ impl Pixels {
             .ok_or(Error::Invalid("no such part".into()))?
             .channels;
         for line in block.lines(list) {
-            let channel = line.location.channel;
-            let to = if self.layer.grey == Some(channel) {
-                0..3
-            } else if self.layer.alpha == Some(channel) {
-                3..4
-            } else if let Some(i) = self.layer.colors.iter().position(|c| *c == Some(channel)) {
-                i..i + 1
-            } else {
-                continue;
-            };
-            let at = line.location.position;
-            let Some(start) = self.start_of(at) else {
-                continue;
-            };
-            let sample_type = list.list.get(channel).map(|channel| channel.sample_type);
-            let values = &mut self.values;
-            let (width, channels) = (self.size.0 as i64, self.channels);
-            let mut put = |i: usize, value: f32| {
-                let x = start.0 + i as i64;
-                if (0..width).contains(&x) {
-                    let texel = (start.1 + x as usize) * channels;
-                    values[texel..][to.clone()].fill(value);
-                }
-            };
-            match sample_type {
-                Some(SampleType::F16) => {
-                    for (i, value) in line.read_samples::<f16>().enumerate() {
-                        put(i, value?.to_f32());
-                    }
-                }
-                Some(SampleType::F32) => {
-                    for (i, value) in line.read_samples::<f32>().enumerate() {
-                        put(i, value?);
-                    }
-                }
-                _ => {
-                    for (i, value) in line.read_samples::<u32>().enumerate() {
-                        put(i, value? as f32);
-                    }
-                }
+            let LineIndex {
+                channel, position, ..
+            } = line.location;
+            if let Some(description) = list.list.get(channel) {
+                self.put(channel, position, description, line.value);
             }
         }
         Ok(())
+    }
+
+    /// Takes a line of a channel that begins at such a pixel of the data, where the channel is one of the chosen.
+    pub fn put(
+        &mut self,
+        channel: usize,
+        at: Vec2<usize>,
+        description: &ChannelDescription,
+        line: &[u8],
+    ) {
+        let to = if self.layer.grey == Some(channel) {
+            0..3
+        } else if self.layer.alpha == Some(channel) {
+            3..4
+        } else if let Some(i) = self.layer.colors.iter().position(|c| *c == Some(channel)) {
+            i..i + 1
+        } else {
+            return;
+        };
+        let Vec2(across, down) = description.sampling;
+        for y in at.y()..at.y() + down {
+            let Some(start) = self.start_of(Vec2(at.x(), y)) else {
+                continue;
+            };
+            let (width, channels) = (self.size.0 as i64, self.channels);
+            let values = &mut self.values;
+            let mut put = |i: usize, value: f32| {
+                for column in i * across..(i + 1) * across {
+                    let x = start.0 + column as i64;
+                    if (0..width).contains(&x) {
+                        let texel = (start.1 + x as usize) * channels;
+                        values[texel..][to.clone()].fill(value);
+                    }
+                }
+            };
+            let words = || line.as_chunks().0.iter().copied().enumerate();
+            match description.sample_type {
+                SampleType::F16 => {
+                    let halves = line.as_chunks().0.iter().copied().enumerate();
+                    halves.for_each(|(i, bytes)| put(i, f16::from_ne_bytes(bytes).to_f32()));
+                }
+                SampleType::F32 => words().for_each(|(i, bytes)| put(i, f32::from_ne_bytes(bytes))),
+                SampleType::U32 => {
+                    words().for_each(|(i, bytes)| put(i, u32::from_ne_bytes(bytes) as f32));
+                }
+            }
+        }
+    }
+
+    /// The whole picture.
+    pub fn decoded(mut self, name: &Path, is_half: bool) -> Result<Decoded, FileError> {
+        if self.layer.is_chroma {
+            self.colors_from_chroma();
+        }
+        let (width, height) = (self.size.0 as u32, self.size.1 as u32);
+        let picture = if self.channels == 4 {
+            ImageBuffer::from_raw(width, height, self.values).map(DynamicImage::ImageRgba32F)
+        } else {
+            ImageBuffer::from_raw(width, height, self.values).map(DynamicImage::ImageRgb32F)
+        };
+        let incomplete = || Problem::Malformed("holds fewer pixels than it says".into());
+        Ok(Decoded {
+            is_half,
+            ..Decoded::from(picture.ok_or_else(|| FileError::new(name, incomplete()))?)
+        })
     }
 
     /// The column where a line begins, and the index of its row's first pixel; `None` where that row is
@@ -317,7 +344,7 @@ impl Pixels {
     }
 }
 
-fn problem(error: Error) -> Problem {
+pub(super) fn problem(error: Error) -> Problem {
     match error {
         Error::Io(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
             Problem::Truncated("the picture is incomplete".into())

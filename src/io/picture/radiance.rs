@@ -5,12 +5,13 @@
 //! Pixels", Graphics Gems II, 1991; Radiance's `filefmts.pdf`, "Radiance Picture File Format").
 
 use super::super::error::{FileError, Problem};
+use super::as_far::AsFar;
 use super::claim_picture;
-use super::read::failure;
+use super::read::{Decoded, failure};
 use crate::io::Limits;
 use image::DynamicImage;
 use image::codecs::hdr::HdrDecoder;
-use std::io::{BufRead, Cursor, Read};
+use std::io::{self, BufRead, Cursor, Read};
 use std::path::Path;
 
 /// Bytes of a head: more than any program writes.
@@ -38,7 +39,7 @@ pub(super) fn decode(
     name: &Path,
     mut reader: impl BufRead,
     limits: &Limits,
-) -> Result<DynamicImage, FileError> {
+) -> Result<Decoded, FileError> {
     let head = head(&mut reader).map_err(|problem| FileError::new(name, problem))?;
     let [rows, pixels] = head.rows;
     let (width, height) = if head.transposed {
@@ -48,8 +49,15 @@ pub(super) fn decode(
     };
     claim_picture(name, (width, height), 4, limits)?;
     let told = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {rows} +X {pixels}\n");
+    let mut doubt = None;
     let decoder = HdrDecoder::new(Cursor::new(told).chain(reader));
-    let picture = decoder.and_then(DynamicImage::from_decoder);
+    let picture = decoder.and_then(|decoder| {
+        DynamicImage::from_decoder(AsFar {
+            decoder,
+            doubt: &mut doubt,
+            fails_in_big_endian: false,
+        })
+    });
     let mut picture = picture.map_err(|error| failure(name, error))?.into_rgb32f();
     if head.xyz || head.exposure != [1.0; 3] {
         for pixel in picture.pixels_mut() {
@@ -71,17 +79,21 @@ pub(super) fn decode(
     if head.from_bottom {
         picture = picture.flipv();
     }
-    Ok(picture)
+    Ok(Decoded {
+        doubt,
+        ..Decoded::from(picture)
+    })
 }
 
 fn head(reader: &mut impl BufRead) -> Result<Head, Problem> {
     let mut limited = reader.take(LONGEST_HEAD);
+    let end = first_end(&mut limited)?;
     let mut exposure = [1.0_f32; 3];
     let mut xyz = false;
     let sizes = loop {
-        let line = line(&mut limited)?;
+        let line = line(&mut limited, end)?;
         if line.is_empty() {
-            break self::line(&mut limited)?;
+            break self::line(&mut limited, end)?;
         }
         // Some programs leave out the empty line before it.
         if is_size(&line) {
@@ -169,15 +181,44 @@ fn is_size(line: &str) -> bool {
     is_pair(&mut words) && is_pair(&mut words)
 }
 
-/// The next line without its end, LF or CR and LF.
-fn line(reader: &mut impl BufRead) -> Result<String, Problem> {
+/// Skips the first line, and says how it ended: with LF, before which a CR may stand, or with CR alone. So do the
+/// others; after the last any byte may follow.
+fn first_end(reader: &mut impl BufRead) -> Result<u8, Problem> {
+    let unreadable = |error: io::Error| Problem::Unreadable(error.to_string());
+    loop {
+        let byte = next_byte(reader).map_err(unreadable)?;
+        match byte {
+            Some(b'\n') => return Ok(b'\n'),
+            Some(b'\r') => {
+                let is_both = reader.fill_buf().map_err(unreadable)?.first() == Some(&b'\n');
+                reader.consume(usize::from(is_both));
+                return Ok(if is_both { b'\n' } else { b'\r' });
+            }
+            Some(_) => {}
+            None => return Err(incomplete()),
+        }
+    }
+}
+
+fn next_byte(reader: &mut impl BufRead) -> io::Result<Option<u8>> {
+    let byte = reader.fill_buf()?.first().copied();
+    reader.consume(usize::from(byte.is_some()));
+    Ok(byte)
+}
+
+/// The next line without its end.
+fn line(reader: &mut impl BufRead, end: u8) -> Result<String, Problem> {
     let mut bytes = Vec::new();
-    let read = reader.read_until(b'\n', &mut bytes);
+    let read = reader.read_until(end, &mut bytes);
     read.map_err(|error| Problem::Unreadable(error.to_string()))?;
-    if bytes.pop() != Some(b'\n') {
-        return Err(Problem::Truncated("the head is incomplete".into()));
+    if bytes.pop() != Some(end) {
+        return Err(incomplete());
     }
     Ok(String::from_utf8_lossy(&bytes).trim_end().to_owned())
+}
+
+fn incomplete() -> Problem {
+    Problem::Truncated("the head is incomplete".into())
 }
 
 /// From XYZ to linear light with sRGB's primaries (IEC 61966-2-1).
@@ -198,7 +239,8 @@ mod tests {
         let mut bytes = format!("{head}{sizes}").into_bytes();
         bytes.extend((1..=6_u8).flat_map(|red| [red, 0, 0, 136]));
         let decoded = decode(Path::new("a.hdr"), &bytes[..], &Limits::default());
-        let picture = decoded.map_err(|error| error.to_string())?.into_rgb32f();
+        let decoded = decoded.map_err(|error| error.to_string())?;
+        let picture = decoded.pixels.into_rgb32f();
         Ok(picture.pixels().map(|pixel| pixel.0[0]).collect())
     }
 
@@ -212,11 +254,36 @@ mod tests {
             "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n",
             "#?RADIANCE\n\n",
         ] {
-            for end in ["\n", "\r\n"] {
-                let found = picture(head, &format!("-Y 3 +X 2{end}"));
+            for end in ["\n", "\r\n", "\r"] {
+                let head = match end {
+                    "\r" => head.replace("\r\n", "\n").replace('\n', "\r"),
+                    _ => head.to_owned(),
+                };
+                let found = picture(&head, &format!("-Y 3 +X 2{end}"));
                 assert_eq!(found, Ok(vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]), "{head:?}");
             }
         }
+        // A line feed after a head of other ends is a pixel's.
+        let mut bytes = b"#?RADIANCE\r\r-Y 1 +X 1\r".to_vec();
+        bytes.extend([10, 0, 0, 136]);
+        let decoded = decode(Path::new("a.hdr"), &bytes[..], &Limits::default()).unwrap();
+        assert_eq!(decoded.pixels.into_rgb32f().into_raw(), [10.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn what_there_is_of_a_picture_is_shown_and_the_rest_grey() {
+        let mut bytes = b"#?RADIANCE\n\n-Y 3 +X 2\n".to_vec();
+        bytes.extend((1..=5_u8).flat_map(|red| [red, 0, 0, 136]));
+        let decoded = decode(Path::new("a.hdr"), &bytes[..], &Limits::default()).unwrap();
+        let told = decoded.doubt.map(|doubt| doubt.to_string());
+        assert!(told.is_some_and(|told| told.contains("cut off")));
+        let picture = decoded.pixels.into_rgb32f();
+        let red: Vec<f32> = picture.pixels().map(|pixel| pixel.0[0]).collect();
+        assert_eq!(red[..4], [1.0, 2.0, 3.0, 4.0]);
+        assert!(
+            red[4..].iter().all(|red| (red - 0.2).abs() < 0.01),
+            "{red:?}"
+        );
     }
 
     #[test]

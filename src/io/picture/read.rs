@@ -1,7 +1,8 @@
 use super::super::error::{FileError, Problem};
 use super::super::open_to_read;
+use super::as_far::AsFar;
 use super::content::{HEAD, recognised};
-use super::{claim_picture, dds, decoder_bytes, open_exr, radiance};
+use super::{claim_picture, dds, decoder_bytes, jpeg, open_exr, radiance};
 use crate::io::Limits;
 use crate::scene::{PhongMap, SRGB_16_BITS};
 use crate::trace::srgb::decode_table_16;
@@ -38,10 +39,29 @@ impl PictureUse {
 }
 
 /// A picture as its file has it.
-struct Decoded {
-    pixels: DynamicImage,
+pub(super) struct Decoded {
+    pub pixels: DynamicImage,
     /// Its floats are those of 16 bits.
-    is_half: bool,
+    pub is_half: bool,
+    /// Where it is not as the file means it: why.
+    pub doubt: Option<Problem>,
+}
+
+impl From<DynamicImage> for Decoded {
+    fn from(pixels: DynamicImage) -> Self {
+        Self {
+            pixels,
+            is_half: false,
+            doubt: None,
+        }
+    }
+}
+
+/// A picture.
+pub(crate) struct ReadPicture {
+    pub image: Image,
+    /// Where it is not shown as the file means it: why.
+    pub doubt: Option<FileError>,
 }
 
 /// Reads a picture file. Its size is checked in the header, before anything is decoded.
@@ -49,7 +69,7 @@ pub(crate) fn read_picture(
     path: &Path,
     usage: PictureUse,
     limits: &Limits,
-) -> Result<Image, FileError> {
+) -> Result<ReadPicture, FileError> {
     let reader = open_to_read(path, limits.file_bytes)?;
     decode(path, reader, usage, limits)
 }
@@ -60,7 +80,7 @@ pub(crate) fn decode_picture(
     bytes: &[u8],
     usage: PictureUse,
     limits: &Limits,
-) -> Result<Image, FileError> {
+) -> Result<ReadPicture, FileError> {
     decode(name, Cursor::new(bytes), usage, limits)
 }
 
@@ -70,37 +90,42 @@ fn decode(
     mut reader: impl BufRead + Seek,
     usage: PictureUse,
     limits: &Limits,
-) -> Result<Image, FileError> {
+) -> Result<ReadPicture, FileError> {
     let mut head = Vec::with_capacity(HEAD);
     (reader.by_ref().take(HEAD as u64).read_to_end(&mut head))
         .and_then(|_| reader.seek(SeekFrom::Start(0)))
         .map_err(|error| FileError::reading(name, &error))?;
-    let whole = |pixels| Decoded {
-        pixels,
-        is_half: false,
-    };
-    let decoded = match recognised(&head).map_err(|problem| FileError::new(name, problem))? {
-        ImageFormat::Hdr => whole(radiance::decode(name, reader, limits)?),
-        ImageFormat::OpenExr => {
-            let open_exr::Decoded { picture, is_half } = open_exr::decode(name, reader, limits)?;
-            Decoded {
-                pixels: picture,
-                is_half,
-            }
-        }
+    let fails = |problem| FileError::new(name, problem);
+    let decoded = match recognised(&head).map_err(fails)? {
+        ImageFormat::Hdr => radiance::decode(name, reader, limits)?,
+        ImageFormat::OpenExr => open_exr::decode(name, reader, limits)?,
         ImageFormat::Dds => {
             let plain = dds::decode_uncompressed(name, &mut reader, limits)?;
-            let rewound = reader.seek(SeekFrom::Start(0));
-            rewound.map_err(|error| FileError::reading(name, &error))?;
-            let picture = match plain {
+            rewind(name, &mut reader)?;
+            match plain {
                 Some(picture) => picture,
                 None => decode_as(ImageFormat::Dds, name, reader, limits)?,
-            };
-            whole(picture)
+            }
         }
-        format => whole(decode_as(format, name, reader, limits)?),
+        ImageFormat::Jpeg => {
+            let mut decoded = decode_as(ImageFormat::Jpeg, name, &mut reader, limits)?;
+            rewind(name, &mut reader)?;
+            decoded.doubt = jpeg::cut_short(reader);
+            decoded
+        }
+        format => decode_as(format, name, reader, limits)?,
     };
-    Ok(to_image(decoded, usage))
+    let (doubt, pixels) = (decoded.doubt.map(fails), decoded.pixels);
+    Ok(ReadPicture {
+        image: to_image(pixels, decoded.is_half, usage),
+        doubt,
+    })
+}
+
+fn rewind(name: &Path, reader: &mut impl Seek) -> Result<(), FileError> {
+    let rewound = reader.seek(SeekFrom::Start(0));
+    rewound.map_err(|error| FileError::reading(name, &error))?;
+    Ok(())
 }
 
 /// The first frame of a picture.
@@ -109,7 +134,7 @@ fn decode_as(
     name: &Path,
     reader: impl BufRead + Seek,
     limits: &Limits,
-) -> Result<DynamicImage, FileError> {
+) -> Result<Decoded, FileError> {
     let fails = |error| failure(name, error);
     let mut reader = ImageReader::with_format(reader, format);
     let mut decoder_limits = image::Limits::default();
@@ -119,13 +144,24 @@ fn decode_as(
     let (width, height) = decoder.dimensions();
     let channel = decoder.color_type().bytes_per_pixel() / decoder.color_type().channel_count();
     claim_picture(name, (width, height), channel, limits)?;
-    DynamicImage::from_decoder(decoder).map_err(fails)
+    let mut doubt = None;
+    let picture = match format {
+        ImageFormat::Png | ImageFormat::Bmp => DynamicImage::from_decoder(AsFar {
+            decoder,
+            doubt: &mut doubt,
+            fails_in_big_endian: format == ImageFormat::Png,
+        }),
+        _ => DynamicImage::from_decoder(decoder),
+    };
+    Ok(Decoded {
+        doubt,
+        ..Decoded::from(picture.map_err(fails)?)
+    })
 }
 
 /// The picture as Bevy keeps it, with as many bits as the file has.
-fn to_image(decoded: Decoded, usage: PictureUse) -> Image {
+fn to_image(pixels: DynamicImage, is_half: bool, usage: PictureUse) -> Image {
     use DynamicImage as D;
-    let Decoded { pixels, is_half } = decoded;
     let is_float = matches!(pixels, D::ImageRgb32F(_) | D::ImageRgba32F(_));
     let is_16_bits = matches!(
         pixels,

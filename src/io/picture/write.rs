@@ -271,8 +271,9 @@ mod tests {
         for (name, tolerance) in [("a.exr", 0.0), ("a.hdr", 1.0 / 128.0)] {
             let path = folder.path().join(name);
             write_picture(&path, 2, 1, &pixels).unwrap();
-            let image = read_picture(&path, PictureUse::Color, &Limits::default()).unwrap();
-            let read: Vec<f32> = image
+            let read = read_picture(&path, PictureUse::Color, &Limits::default()).unwrap();
+            let read: Vec<f32> = read
+                .image
                 .data
                 .unwrap()
                 .as_chunks()

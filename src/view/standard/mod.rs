@@ -16,7 +16,7 @@
 //! | unlit | `emission` of the base colour, and nothing else |
 //! | normal map | the normals; flipped ones are named |
 //! | specular transmission | `opacity`, light goes straight through; named |
-//! | vertex colours | multiply `diffuse`, their alpha `opacity` |
+//! | vertex colours | multiply `diffuse`, of what is unlit `emission`; their alpha `opacity` |
 //! | double-sidedness, culling | both sides are seen and lit |
 //! | `uv_transform`, second texture coordinates, occlusion, depth, clearcoat, anisotropy, diffuse transmission | named |
 //! | **another material** | what [`add_traced_material`](AddTracedMaterial::add_traced_material) says; else named |
