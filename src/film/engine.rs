@@ -371,7 +371,7 @@ impl Engine {
     /// Works out on all threads how far the tiles moved that have other tints.
     fn update_moves(&self) {
         let tiles = (0..self.tiles.len()).into_par_iter();
-        self.on_threads(|| tiles.for_each(|tile| _ = self.tile(tile).moves()));
+        self.on_threads(|_| tiles.for_each(|tile| _ = self.tile(tile).moves()));
     }
 
     /// Of each half of each tile.
