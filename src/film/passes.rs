@@ -17,9 +17,13 @@ const CHUNK_RAYS: u64 = 1 << 17;
 /// Samples of each pixel with which a render begins that nobody watches.
 const UNWATCHED_START: u64 = LEAST_SAMPLES as u64;
 /// Samples of each pixel from which on they tell where more are wanted: the fewest that differ. A tile has hundreds by then,
-/// and what they say of its error is nearly as good as what 16 of each pixel say (`tests/film/calibration.rs`). Where most of
-/// a picture is even and edges make its error, every sample saved here is one of all pixels.
+/// and what they say of its error is nearly as good as what 16 of each pixel say. Where most of a picture is even and edges
+/// make its error, every sample saved here is one of all pixels. (Showcase at 640 × 480 and a teapot at 800 × 800, errors of
+/// .5 to 12 %, several seeds: told .92 to 1.21 times the true one.)
 const SCOUTS: u64 = 2;
+/// The same of a picture of few pixels, of which one may make most of its error (`tests/film/calibration.rs`).
+const SCOUTS_OF_FEW: u64 = 4;
+const FEW_PIXELS: f64 = 65_536.0;
 
 impl Engine {
     /// The chunks of the next pass; or why there is none. They follow from what the tiles have.
@@ -37,8 +41,13 @@ impl Engine {
         let goal = f64::from(settings.sampling.error);
         let has_goal = goal > 0.0 || settings.sampling.time > 0.0;
         let is_adaptive = settings.sampling.adaptive && has_goal && start == 0;
-        let least = if is_adaptive {
+        let scouts = if self.pixels() < FEW_PIXELS {
+            SCOUTS_OF_FEW
+        } else {
             SCOUTS
+        };
+        let least = if is_adaptive {
+            scouts
         } else {
             u64::from(LEAST_SAMPLES)
         };
@@ -72,7 +81,7 @@ impl Engine {
         let in_time = settings.sampling.time > 0.0;
         let first = match (self.mode.watched || in_time, is_adaptive) {
             (true, _) => 1,
-            (_, true) => SCOUTS,
+            (_, true) => scouts,
             _ => UNWATCHED_START,
         };
         let next = match (start, level) {

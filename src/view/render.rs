@@ -81,9 +81,14 @@ impl TracedRender {
     /// The picture as it is now, linear and as shown; `None` while there is no render. It takes some
     /// milliseconds a megapixel.
     pub fn picture(&self) -> Option<TracedPicture> {
+        Some(self.picture_later()?())
+    }
+
+    /// What makes the picture, as it is when that is called, on any thread.
+    pub fn picture_later(&self) -> Option<impl FnOnce() -> TracedPicture + Send + 'static + use<>> {
         let running = self.running.as_ref()?;
-        let output = &running.order.output;
-        Some(TracedPicture::of(&running.render, output))
+        let (render, output) = (running.render.clone(), running.order.output);
+        Some(move || TracedPicture::of(&render, &output))
     }
 
     /// What stands on the screen.

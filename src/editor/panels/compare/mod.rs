@@ -6,8 +6,10 @@
 //! | [`difference`] | two pictures as one, and in figures |
 //! | [`histogram`] | how often each brightness is there |
 //! | [`zoom`] | a picture to look into, down to the numbers of a pixel |
+//! | [`computed`] | what is computed of two pictures, beside the window |
 //! | [`window`] | all of them together |
 
+mod computed;
 mod difference;
 mod histogram;
 mod window;
@@ -26,6 +28,7 @@ use bevy::ecs::world::World;
 use bevy_egui::egui::{
     self, Align2, Color32, ColorImage, FontId, Rect, TextureHandle, TextureOptions, Ui, pos2, vec2,
 };
+use std::sync::Arc;
 use window::Comparison;
 
 pub(super) use window::window_ui;
@@ -47,7 +50,7 @@ struct Kept {
     /// The first one that was kept has 1.
     number: u32,
     name: String,
-    picture: TracedPicture,
+    picture: Arc<TracedPicture>,
     /// As egui knows it, once it was shown.
     texture: Option<TextureHandle>,
 }
@@ -85,7 +88,7 @@ impl KeptPictures {
         self.all.push(Kept {
             number: self.count,
             name: format!("{}: {} spp", self.count, samples.floor()),
-            picture,
+            picture: Arc::new(picture),
             texture: None,
         });
     }
@@ -127,20 +130,18 @@ fn is_comparing(world: &World) -> State {
 }
 
 fn keep(world: &mut World) {
-    let Some((picture, samples)) = picture_now(world) else {
+    let mut renders = world.query_filtered::<&TracedRender, With<EditorCamera>>();
+    let Ok(render) = renders.single(world) else {
         return;
     };
+    let (Some(picture), Some(status)) = (render.picture(), render.status()) else {
+        return;
+    };
+    let samples = status.samples;
     let mut kept = world.resource_mut::<KeptPictures>();
     kept.add(picture, samples);
     let text = format!("Kept picture {}: hold C to see it.", kept.count);
     world.resource_mut::<Notices>().tell(text);
-}
-
-/// The view's picture, and how many samples each pixel has.
-fn picture_now(world: &mut World) -> Option<(TracedPicture, f64)> {
-    let mut renders = world.query_filtered::<&TracedRender, With<EditorCamera>>();
-    let render = renders.single(world).ok()?;
-    Some((render.picture()?, render.status()?.samples))
 }
 
 fn flip_window(world: &mut World) {

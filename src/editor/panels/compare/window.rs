@@ -1,21 +1,25 @@
 //! The window that compares two pictures.
 
-use super::difference::{Figures, How, difference, figures, pixels};
-use super::histogram::{Histogram, histogram_ui};
+use super::computed::{Look, Pair, Source};
+use super::difference::{Figures, How, difference};
+use super::histogram::histogram_ui;
 use super::zoom::{Zoom, channels};
-use super::{KeptPictures, PIXELS, color_image, picture_now};
+use super::{KeptPictures, PIXELS};
 use crate::editor::inspection::column::color_text;
 use crate::editor::panels::fields::number;
 use crate::editor::panels::says::Says;
+use crate::editor::trees::background::{Background, Outcome};
+use crate::editor::viewport::EditorCamera;
 use crate::film::Picture;
 use crate::scene::Quantity;
-use crate::view::TracedPicture;
+use crate::view::TracedRender;
+use bevy::ecs::query::With;
 use bevy::ecs::world::{Mut, World};
 use bevy::math::{UVec2, Vec3};
 use bevy_egui::egui::{self, Color32, ColorImage, ComboBox, RichText, TextureHandle, Ui, vec2};
 use std::time::{Duration, Instant};
 
-/// How often the view's picture is looked at again: developing it takes milliseconds.
+/// How often the view's picture is looked at again: it is compared on one core for some hundredths of a second.
 const AGAIN: Duration = Duration::from_millis(400);
 /// Points of what stands below the picture.
 const BELOW: f32 = 90.0;
@@ -37,37 +41,24 @@ enum Side {
 /// What is compared, and how it is looked at.
 pub(super) struct Comparison {
     sides: [Side; 2],
-    how: How,
-    gain: f32,
+    look: Look,
     zoom: Zoom,
-    now: Option<Now>,
     drawn: Option<Drawn>,
+    under_way: Option<Background<Drawn>>,
+    /// When that which is under way, or drawn, was begun.
+    begun: Instant,
 }
 
-/// The view's picture a moment ago.
-struct Now {
-    picture: TracedPicture,
-    samples: f64,
-    taken: Instant,
-    /// Counts the pictures that were taken.
-    number: u32,
-}
-
-/// Of what something was computed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Of {
-    sides: [Side; 2],
-    now: u32,
-    how: How,
-    gain: f32,
-}
-
-/// What was computed of two pictures.
+/// What was computed, and of what.
 struct Drawn {
-    of: Of,
+    sides: [Side; 2],
+    look: Look,
+    pair: Pair,
+    /// Samples of each pixel of the view's picture.
+    samples: f64,
+    /// Taken by the texture as soon as it is there.
+    image: Option<ColorImage>,
     texture: Option<TextureHandle>,
-    figures: Option<Figures>,
-    histograms: [Histogram; 2],
 }
 
 impl Comparison {
@@ -75,12 +66,86 @@ impl Comparison {
     pub fn new(number: u32) -> Self {
         Self {
             sides: [Side::Kept(number), Side::Now],
-            how: How::default(),
-            gain: 4.0,
+            look: Look {
+                how: How::default(),
+                gain: 4.0,
+            },
             zoom: Zoom::default(),
-            now: None,
             drawn: None,
+            under_way: None,
+            begun: Instant::now(),
         }
+    }
+
+    /// Takes what has been computed.
+    fn take(&mut self, context: &egui::Context) {
+        let Some(outcome) = self.under_way.as_ref().map(Background::take) else {
+            return;
+        };
+        let mut drawn = match outcome {
+            Outcome::Pending => return,
+            Outcome::Done(drawn) => drawn,
+            Outcome::Lost => {
+                self.under_way = None;
+                return;
+            }
+        };
+        self.under_way = None;
+        let held = self.drawn.take().and_then(|before| before.texture);
+        drawn.texture = drawn.image.take().map(|image| match held {
+            Some(mut texture) => {
+                texture.set(image, PIXELS);
+                texture
+            }
+            None => context.load_texture("compared pictures", image, PIXELS),
+        });
+        self.drawn = Some(drawn);
+    }
+
+    /// Begins to compute what is wanted and not there yet; and again what the view shows, from time to time.
+    fn begin(&mut self, world: &mut World, kept: &KeptPictures) {
+        if self.under_way.is_some() {
+            return;
+        }
+        let (sides, look) = (self.sides, self.look);
+        let before = self.drawn.as_ref().filter(|drawn| drawn.sides == sides);
+        let looks_again = sides.contains(&Side::Now) && self.begun.elapsed() >= AGAIN;
+        if !looks_again && before.is_some_and(|before| before.look == look) {
+            return;
+        }
+        let mut renders = world.query_filtered::<&TracedRender, With<EditorCamera>>();
+        let render = renders.single(world).ok();
+        let source = |number: usize| match sides[number] {
+            Side::Kept(kept_number) => {
+                let kept = kept.find(kept_number)?;
+                Some(Source::There(kept.picture.clone()))
+            }
+            Side::Now => match before.filter(|_| !looks_again) {
+                Some(before) => Some(Source::There(before.pair.pictures[number].clone())),
+                None => Some(Source::Later(Box::new(render?.picture_later()?))),
+            },
+        };
+        let [Some(first), Some(second)] = [source(0), source(1)] else {
+            self.drawn = None;
+            return;
+        };
+        let status = render.and_then(TracedRender::status);
+        let samples = status.map_or(0.0, |status| status.samples);
+        let before = before.map(|before| before.pair.clone());
+        let work = move |_: &_| {
+            let pair = Pair::of([first, second], before);
+            Drawn {
+                image: pair.image(look),
+                sides,
+                look,
+                pair,
+                samples,
+                texture: None,
+            }
+        };
+        self.begun = Instant::now();
+        // Without a thread nothing is compared; everything else is there.
+        self.under_way = Background::start("comparison", work).ok();
     }
 }
 
@@ -97,7 +162,8 @@ pub(in crate::editor::panels) fn window_ui(
         let Some(mut comparison) = kept.comparison.take() else {
             return;
         };
-        look_again(world, &mut comparison);
+        comparison.take(context);
+        comparison.begin(world, &kept);
         let mut is_open = true;
         let most = (free.size() - vec2(20.0, 50.0)).max(vec2(320.0, 260.0));
         egui::Window::new("Compare")
@@ -116,70 +182,33 @@ pub(in crate::editor::panels) fn window_ui(
     });
 }
 
-/// Takes the view's picture, where that is wanted and has become another.
-fn look_again(world: &mut World, comparison: &mut Comparison) {
-    if !comparison.sides.contains(&Side::Now) {
-        return;
-    }
-    let before = comparison.now.as_ref();
-    if before.is_some_and(|now| now.taken.elapsed() < AGAIN) {
-        return;
-    }
-    let Some((picture, samples)) = picture_now(world) else {
-        return;
-    };
-    let is_same = before.is_some_and(|now| now.picture == picture);
-    let number = before.map_or(0, |now| now.number) + u32::from(!is_same);
-    comparison.now = Some(Now {
-        picture,
-        samples,
-        taken: Instant::now(),
-        number,
-    });
-}
-
 fn inner_ui(ui: &mut Ui, kept: &KeptPictures, comparison: &mut Comparison) {
     choices_ui(ui, kept, comparison);
-    let Comparison {
-        sides,
-        how,
-        gain,
-        zoom,
-        now,
-        drawn,
-    } = comparison;
-    let picture_of = |side: Side| match side {
-        Side::Kept(number) => kept.find(number).map(|kept| &kept.picture),
-        Side::Now => now.as_ref().map(|now| &now.picture),
-    };
-    let [Some(first), Some(second)] = sides.map(picture_of) else {
-        ui.weak("One of the pictures is not there.");
+    let is_under_way = comparison.under_way.is_some();
+    let Some(drawn) = &comparison.drawn else {
+        ui.weak(match is_under_way {
+            true => "Compared in a moment.",
+            false => "One of the pictures is not there.",
+        });
         return;
     };
-    let of = Of {
-        sides: *sides,
-        now: now.as_ref().map_or(0, |now| now.number),
-        how: *how,
-        gain: *gain,
-    };
-    if drawn.as_ref().is_none_or(|drawn| drawn.of != of) {
-        let before = drawn.take();
-        *drawn = Some(Drawn::new(ui.ctx(), of, [first, second], before));
-    }
-    let Some(drawn) = drawn else {
-        return;
-    };
-    figures_ui(ui, drawn.figures);
+    figures_ui(ui, drawn.pair.figures);
     let Some(texture) = &drawn.texture else {
         ui.weak("The pictures have different sizes, so there is no difference to show.");
         return;
     };
-    let pair = [&first.linear, &second.linear];
-    let size = pair[usize::from(*how == How::Second)].size();
+    let how = drawn.look.how;
+    let pair = drawn
+        .pair
+        .pictures
+        .each_ref()
+        .map(|picture| &picture.linear);
+    let size = pair[usize::from(how == How::Second)].size();
     let height = (ui.available_height() - BELOW).max(80.0);
+    let zoom = &mut comparison.zoom;
     let pixel = zoom.ui(ui, height, (texture.id(), size), |pixel| {
         let [a, b] = pair.map(|picture| at(picture, pixel));
-        channels(match *how {
+        channels(match how {
             How::First => a,
             How::Second => b,
             How::Signed => b - a,
@@ -187,7 +216,7 @@ fn inner_ui(ui: &mut Ui, kept: &KeptPictures, comparison: &mut Comparison) {
         })
     });
     pixel_ui(ui, pixel, pair);
-    let [a, b] = &drawn.histograms;
+    let [a, b] = &drawn.pair.histograms;
     histogram_ui(ui, &[(a, INKS[0]), (b, INKS[1])]);
 }
 
@@ -199,55 +228,9 @@ fn at(picture: &Picture, pixel: UVec2) -> Vec3 {
     }
 }
 
-impl Drawn {
-    fn new(
-        context: &egui::Context,
-        of: Of,
-        [first, second]: [&TracedPicture; 2],
-        before: Option<Self>,
-    ) -> Self {
-        let pair = [&first.linear, &second.linear];
-        let size = pair[0].size();
-        let difference = |is_relative| {
-            let pixels = pixels(pair[0], pair[1], is_relative, of.gain)?;
-            Some(ColorImage::new([size.x as usize, size.y as usize], pixels))
-        };
-        let image = match of.how {
-            How::First => Some(color_image(first)),
-            How::Second => Some(color_image(second)),
-            How::Signed => difference(false),
-            How::Relative => difference(true),
-        };
-        let is_of_the_same = |before: &Self| before.of.sides == of.sides && before.of.now == of.now;
-        let (held, known) = match before {
-            Some(before) if is_of_the_same(&before) => {
-                let known = Some((before.figures, before.histograms));
-                (before.texture, known)
-            }
-            Some(before) => (before.texture, None),
-            None => (None, None),
-        };
-        let (figures, histograms) =
-            known.unwrap_or_else(|| (figures(pair[0], pair[1]), pair.map(Histogram::of)));
-        let texture = image.map(|image| match held {
-            Some(mut texture) => {
-                texture.set(image, PIXELS);
-                texture
-            }
-            None => context.load_texture("compared pictures", image, PIXELS),
-        });
-        Self {
-            of,
-            texture,
-            figures,
-            histograms,
-        }
-    }
-}
-
 /// Which two, and how they are shown.
 fn choices_ui(ui: &mut Ui, kept: &KeptPictures, comparison: &mut Comparison) {
-    let samples = comparison.now.as_ref().map(|now| now.samples);
+    let samples = comparison.drawn.as_ref().map(|drawn| drawn.samples);
     let name = |side: Side| match side {
         Side::Kept(number) => kept
             .find(number)
@@ -291,13 +274,13 @@ fn choices_ui(ui: &mut Ui, kept: &KeptPictures, comparison: &mut Comparison) {
                 "The difference as a part of the first's brightness",
             ),
         ] {
-            ui.selectable_value(&mut comparison.how, how, text)
+            ui.selectable_value(&mut comparison.look.how, how, text)
                 .says(says);
         }
         number(
             ui,
             "How many times the difference is shown",
-            &mut comparison.gain,
+            &mut comparison.look.gain,
             GAIN,
         );
     });
@@ -345,12 +328,24 @@ mod tests {
     use crate::editor::action::Action;
     use crate::editor::document::adopt;
     use crate::editor::panels::tests::Desk;
+    use crate::view::TracedPicture;
+    use std::thread::sleep;
 
     fn picture(level: f32) -> TracedPicture {
         let mut linear = Picture::black(UVec2::new(8, 4));
         linear.pixels.fill(Vec3::splat(level));
         let shown = vec![128; 4 * linear.pixels.len()];
         TracedPicture { linear, shown }
+    }
+
+    /// Frames until the window has this text.
+    fn wait_for(desk: &mut Desk, text: &str) {
+        let start = Instant::now();
+        while desk.find(text).is_none() {
+            assert!(start.elapsed() < Duration::from_secs(60), "never {text:?}");
+            sleep(Duration::from_millis(5));
+            desk.settle();
+        }
     }
 
     #[test]
@@ -375,11 +370,22 @@ mod tests {
         desk.settle();
         desk.place_of("1: 16 spp");
         desk.place_of("2: 64 spp");
-        desk.place_of("RMSE 0.10000");
+        wait_for(&mut desk, "RMSE 0.10000");
         desk.place_of("+10.000 % brighter");
         desk.click_on("Relative");
-        let kept = desk.world().resource::<KeptPictures>();
-        assert_eq!(kept.comparison.as_ref().unwrap().how, How::Relative);
+        let look = |desk: &mut Desk| {
+            let kept = desk.world().resource::<KeptPictures>();
+            let comparison = kept.comparison.as_ref().unwrap();
+            let drawn = comparison.drawn.as_ref().map(|drawn| drawn.look);
+            (comparison.look, drawn)
+        };
+        assert_eq!(look(&mut desk).0.how, How::Relative);
+        let start = Instant::now();
+        while look(&mut desk).1 != Some(look(&mut desk).0) {
+            assert!(start.elapsed() < Duration::from_secs(60), "never drawn");
+            sleep(Duration::from_millis(5));
+            desk.settle();
+        }
         desk.world().write_message(Action::Open("triangle".into()));
         desk.settle();
         assert!(desk.find("Difference").is_none());
