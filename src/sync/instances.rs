@@ -33,6 +33,8 @@ pub(super) struct TracedInstances {
     traced_objects: u64,
     /// Whether some tree has yet to be begun for the rows as they are.
     stale: bool,
+    /// Trees in a row that came when the objects were others already.
+    late: u32,
 }
 
 impl TracedInstances {
@@ -72,10 +74,16 @@ impl TracedInstances {
             if at_once {
                 self.show(Some(work()), draft);
             } else {
-                // A tree that takes longer is not there in time, and the frame would wait for nothing.
-                let in_time = draft.world.aggregate.build_time() <= PATIENCE;
+                let takes = draft.world.aggregate.build_time();
                 thread.start(work);
-                let wait = if in_time { PATIENCE } else { Duration::ZERO };
+                let wait = if self.late >= MOST_LATE && takes <= LONGEST {
+                    Duration::MAX
+                } else if takes <= PATIENCE {
+                    PATIENCE
+                } else {
+                    // It would not be there in time, and the frame would wait for nothing.
+                    Duration::ZERO
+                };
                 self.show(thread.finished(wait), draft);
             }
         }
@@ -85,10 +93,16 @@ impl TracedInstances {
 
     /// A tree over objects that are no longer those goes, and the next one is waited for.
     fn show(&mut self, built: Option<(u64, Aggregate)>, draft: &mut Draft) {
-        if let Some((_, aggregate)) = built.filter(|(objects, _)| *objects == self.objects) {
+        let Some((objects, aggregate)) = built else {
+            return;
+        };
+        if objects == self.objects {
+            self.late = 0;
             self.traced_objects = self.objects;
             draft.world.aggregate = Arc::new(aggregate);
             draft.changes.top_level = true;
+        } else {
+            self.late += 1;
         }
     }
 }
@@ -96,6 +110,12 @@ impl TracedInstances {
 /// So long a frame waits for the tree over the objects where the one before took no longer: that of a thousand is
 /// there by then, and nothing lags behind the hand.
 const PATIENCE: Duration = Duration::from_micros(2000);
+
+/// Where something comes or goes in every frame, every tree is late, and nothing new would ever be seen: after so
+/// many a frame waits until one is there.
+const MOST_LATE: u32 = 3;
+/// But not where that takes longer.
+const LONGEST: Duration = Duration::from_millis(100);
 
 /// One object as the top level sees it.
 pub(super) struct Row {

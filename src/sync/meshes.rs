@@ -92,6 +92,12 @@ impl TracedMeshes {
     }
 }
 
+/// What has another mesh now, or is posed as another.
+type Dressed = (
+    Or<(Changed<Mesh3d>, Changed<PosedMesh>)>,
+    Without<NotTraced>,
+);
+
 /// Makes the trees of meshes that are new, were edited, or whose settings changed, and drops those
 /// of meshes that no object uses any more.
 pub(super) fn sync_meshes(
@@ -99,13 +105,7 @@ pub(super) fn sync_meshes(
     mut removed: RemovedComponents<Mesh3d>,
     mut at_rest: RemovedComponents<PosedMesh>,
     mut switched: Switched,
-    changed: Query<
-        (),
-        (
-            Or<(Changed<Mesh3d>, Changed<PosedMesh>)>,
-            Without<NotTraced>,
-        ),
-    >,
+    changed: Query<(), Dressed>,
     users: Query<(&Mesh3d, Option<&PosedMesh>), Without<NotTraced>>,
     assets: Res<Assets<Mesh>>,
     settings: Res<RenderSettings>,

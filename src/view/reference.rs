@@ -4,7 +4,7 @@ use super::Failed;
 use super::traced::traced_camera;
 use crate::film::{Ending, Picture, Progressive, State, develop_rgba8};
 use crate::scene::{Output, RenderSettings};
-use crate::sync::{SyncSystems, Traced};
+use crate::sync::{SyncSystems, Traced, TreeBuilding};
 use bevy::asset::RenderAssetUsages;
 use bevy::camera::Projection;
 use bevy::ecs::system::EntityCommands;
@@ -12,9 +12,10 @@ use bevy::image::Image;
 use bevy::math::UVec2;
 use bevy::prelude::{
     App, Commands, Component, Entity, EntityEvent, IntoScheduleConfigs, Plugin, PostUpdate, Query,
-    Res,
+    Res, ResMut, Resource,
 };
 use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat};
+use bevy::transform::TransformSystems;
 use bevy::transform::components::GlobalTransform;
 use std::sync::Arc;
 
@@ -79,7 +80,8 @@ struct Reference {
 
 /// Renders what a camera sees in this frame, while the game goes on: to the settings' size, samples,
 /// error or time. The camera needs no [`TracedView`](super::TracedView); its transform and projection
-/// count. Despawning the entity cancels it.
+/// count. Despawning the entity cancels it. This one frame waits for trees that are being built; the
+/// rest goes on beside the game.
 ///
 /// ```no_run
 /// # use bevy::prelude::*;
@@ -109,20 +111,51 @@ pub(super) struct ReferencePlugin;
 
 impl Plugin for ReferencePlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(PostUpdate, render.after(SyncSystems));
+        app.init_resource::<Hurried>().add_systems(
+            PostUpdate,
+            (
+                hurry.before(TransformSystems::Propagate),
+                (render, relax).chain().after(SyncSystems),
+            ),
+        );
+    }
+}
+
+/// Whether trees are waited for in this frame alone.
+#[derive(Resource, Default)]
+struct Hurried(bool);
+
+/// The picture is one of this frame: what is being built would be missing, and what moves in every
+/// frame is never without a tree that is being built.
+fn hurry(
+    references: Query<&Reference>,
+    mut building: ResMut<TreeBuilding>,
+    mut hurried: ResMut<Hurried>,
+) {
+    let begins = references.iter().any(|wanted| wanted.render.is_none());
+    if begins && *building == TreeBuilding::InBackground {
+        *building = TreeBuilding::AtOnce;
+        hurried.0 = true;
+    }
+}
+
+fn relax(mut building: ResMut<TreeBuilding>, mut hurried: ResMut<Hurried>) {
+    if std::mem::take(&mut hurried.0) {
+        *building = TreeBuilding::InBackground;
     }
 }
 
 fn render(
     mut commands: Commands,
     traced: Res<Traced>,
+    building: Res<TreeBuilding>,
     cameras: Query<(&GlobalTransform, &Projection)>,
     mut references: Query<(Entity, &mut Reference)>,
 ) {
     for (entity, mut reference) in &mut references {
         let Some(render) = &reference.render else {
-            // What is still being built would be missing.
-            if traced.pending > 0 {
+            // It was asked for too late in this frame.
+            if *building == TreeBuilding::InBackground {
                 continue;
             }
             match begin(&reference, &traced, &cameras) {

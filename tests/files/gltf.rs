@@ -20,7 +20,7 @@ pub(super) const POSITIONS: [[f32; 3]; 5] = [
     [0.0, 2.0, 0.0],
 ];
 
-pub(super) fn base64(bytes: &[u8]) -> String {
+pub fn base64(bytes: &[u8]) -> String {
     const DIGITS: &[u8] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::new();
     for chunk in bytes.chunks(3) {

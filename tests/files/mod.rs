@@ -3,7 +3,7 @@
 pub mod app;
 mod exports;
 mod framing;
-mod gltf;
+pub mod gltf;
 mod gltf_pictures;
 mod gltf_rest;
 mod gltf_tangents;

@@ -2,9 +2,11 @@
 //! a Vulkan driver (Debian: mesa-vulkan-drivers). Where it is missing a test says so and passes,
 //! unless `GLASSBOX_NEEDS_WINDOW=1` is set.
 
+mod hostile;
 mod lasting;
 mod own_picture;
 mod pictures;
+mod side_by_side;
 
 use bevy::app::{PluginGroup, PluginsState};
 use bevy::camera::{RenderTarget, Viewport};
@@ -64,6 +66,13 @@ const SHOWN_RED: u8 = 188;
 impl Game {
     /// `None`, said loudly, where nothing can be drawn with.
     fn open() -> Option<Self> {
+        let mut game = Self::without_walls(AssetPlugin::default())?;
+        game.build_walls();
+        Some(game)
+    }
+
+    /// The same with nothing in it.
+    fn without_walls(assets: AssetPlugin) -> Option<Self> {
         let one = ONE.lock().unwrap_or_else(PoisonError::into_inner);
         if !draws() {
             return None;
@@ -81,7 +90,8 @@ impl Game {
             })
             .disable::<WinitPlugin>()
             .disable::<PipelinedRenderingPlugin>()
-            .disable::<bevy::log::LogPlugin>();
+            .disable::<bevy::log::LogPlugin>()
+            .set(assets);
         app.add_plugins((plugins, GlassboxPlugins));
         app.init_resource::<Done>().add_observer(
             |done: On<Converged>, renders: Query<&TracedRender>, mut all: ResMut<Done>| {
@@ -102,13 +112,11 @@ impl Game {
         app.cleanup();
         let image = Image::new_target_texture(SIZE.x, SIZE.y, TextureFormat::Rgba8UnormSrgb, None);
         let image = app.world_mut().resource_mut::<Assets<Image>>().add(image);
-        let mut game = Self {
+        Some(Self {
             app,
             image,
             _one: one,
-        };
-        game.build_walls();
-        Some(game)
+        })
     }
 
     fn build_walls(&mut self) {

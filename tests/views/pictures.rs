@@ -138,3 +138,47 @@ fn a_reference_picture_is_rendered_beside_the_game_and_leaves_nothing_behind() {
     assert_eq!(told.failed, ["the camera is gone"]);
     assert!(game.app.world().get_entity(lost).is_err());
 }
+
+#[test]
+fn a_reference_picture_of_a_scene_that_never_stands_still_is_of_the_frame_that_asked_for_it() {
+    let Some(mut game) = Game::open() else {
+        return;
+    };
+    listen(&mut game);
+    let camera = game.camera(RED, None, 0);
+    let shape = |i: usize| Mesh::from(Sphere::new(1.0 + 0.1 * (i % 3) as f32).mesh().uv(300, 200));
+    let world = game.app.world_mut();
+    let ball = world.resource_mut::<Assets<Mesh>>().add(shape(0));
+    let glow = Phong {
+        diffuse: LinearRgba::BLACK,
+        emission: LinearRgba::GREEN * 0.5,
+        ..default()
+    };
+    let place = Transform::from_xyz(0.0, 0.0, -4.0);
+    let flies = world.spawn((Mesh3d(ball.clone()), glow, place)).id();
+    // In each frame its tree is another one, which is not there before the frame ends.
+    for i in 0..40 {
+        let world = game.app.world_mut();
+        let mut meshes = world.resource_mut::<Assets<Mesh>>();
+        meshes.insert(ball.id(), shape(i)).unwrap();
+        if i == 5 {
+            let settings = RenderSettings {
+                size: UVec2::new(16, 8),
+                spp: 2,
+                ..default()
+            };
+            render_reference(&mut world.commands(), camera, settings);
+            world.flush();
+        } else if i > 5 {
+            // Far away from where it was when the picture was asked for.
+            let mut place = world.get_mut::<Transform>(flies).unwrap();
+            place.translation.y = 50.0;
+        }
+        game.app.update();
+    }
+    wait_until(&mut game, "a picture", |told| told.reference.is_some());
+    let told = game.app.world().resource::<Told>();
+    let picture = told.reference.as_ref().unwrap();
+    let middle = picture.linear.pixel(8, 4);
+    assert_eq!([middle.x, middle.y], [0.0, 0.5], "the ball, as it stood");
+}

@@ -52,8 +52,11 @@ type Gone<'w, 's> = (
 
 /// Learns them where any may be another, and not because something merely moved.
 pub(super) fn learn(
-    changed: (Query<(), Renamed>, Query<(), Changed<UsesMaterial>>),
-    disabled: Query<(), Added<Disabled>>,
+    changed: (
+        Query<(), Renamed>,
+        Query<(), Changed<UsesMaterial>>,
+        Query<(), Added<Disabled>>,
+    ),
     mut gone: Gone,
     traced: Res<Traced>,
     named: Query<(Option<&SceneId>, &Name)>,
@@ -68,7 +71,7 @@ pub(super) fn learn(
         gone.2.read().count(),
         gone.3.read().count(),
     ];
-    let switched = gone[3] > 0 || !disabled.is_empty();
+    let switched = gone[3] > 0 || !changed.2.is_empty();
     let renamed = !changed.0.is_empty() || switched || gone[0] + gone[1] > 0;
     let objects = &traced.world.objects;
     let same_objects = of.as_ref().is_some_and(|of| Arc::ptr_eq(of, objects));

@@ -226,3 +226,26 @@ fn who_waits_for_all_trees_waits_for_none_that_nobody_wants() {
     until(&mut small.app, |app| height(app) == 4.0);
     assert_eq!(triangles(&small.app), [3, 5]);
 }
+
+#[test]
+fn objects_that_come_and_go_in_every_frame_are_traced_all_the_same() {
+    let mut small = small();
+    let mesh = add_mesh(&mut small.app, 3);
+    let thing = |mesh: &Handle<Mesh>, i: usize| {
+        let place = Transform::from_xyz(i as f32, 0.0, 0.0);
+        (Mesh3d(mesh.clone()), Phong::default(), place)
+    };
+    // So many that the tree over them is not there when the frame ends.
+    let many: Vec<_> = (0..20_000).map(|i| thing(&mesh, i)).collect();
+    small.app.world_mut().spawn_batch(many);
+    let mut newest = None;
+    for i in 0..20 {
+        let world = small.app.world_mut();
+        if let Some(before) = newest.replace(world.spawn(thing(&mesh, i)).id()) {
+            world.despawn(before);
+        }
+        frame(&mut small.app);
+    }
+    let traced = world(&small.app).aggregate.instances().len();
+    assert!(traced > 20_000, "{traced} objects are traced");
+}

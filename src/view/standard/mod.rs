@@ -8,7 +8,7 @@
 //!
 //! | `StandardMaterial` | [`Phong`](crate::scene::Phong), [`PhongMaps`](crate::scene::PhongMaps) |
 //! |---|---|
-//! | base colour, metalness, roughness | `diffuse` = `b · (1 - m·g)`; `specular` and `mirror` = `lerp(F0, b, m) · g`, so that what is rough is no mirror; `shininess` = `2/r⁴ - 2`, 1 to 10,000 (Beckmann's, Walter et al. 2007, with α = r²) |
+//! | base colour, metalness, roughness (by Lambert's law: where light grazes something rough Bevy's, Burley's, is up to 1.4 times as bright; of one light on a rough metal it has half) | `diffuse` = `b · (1 - m·g)`; `specular` and `mirror` = `lerp(F0, b, m) · g`, so that what is rough is no mirror; `shininess` = `2/r⁴ - 2`, 1 to 10,000 (Beckmann's, Walter et al. 2007, with α = r²) |
 //! | its map of metalness and roughness | counts with its mean; named |
 //! | base colour's map | multiplies `diffuse`, and `specular` and `mirror` of what is metal by more than half |
 //! | alpha and alpha mode | `opacity`, its map the base colour's alpha; `Opaque`, `Mask`, `Blend` as they are, what else there is blends; premultiplied, additive and multiplied are named |
@@ -24,7 +24,7 @@
 //! | Bevy's lights | ours |
 //! |---|---|
 //! | `PointLight` | [`PointLamp`](crate::scene::PointLamp) of lumens / 4π · E |
-//! | `SpotLight` | the same, with its cone |
+//! | `SpotLight` | the same, with its cone, which fades smoothly at both ends (Bevy's as a square) |
 //! | `DirectionalLight` | [`DirectionalLamp`](crate::scene::DirectionalLamp) of lux · E |
 //! | `RectLight` | [`ParallelogramLamp`](crate::scene::ParallelogramLamp) of lumens / (π · area) · E, unseen by the camera |
 //! | no shadows; a range at which light would still be seen | named: everything casts shadows, and light has no end |
