@@ -170,7 +170,7 @@ fn vertex_colours_multiply_kd_and_their_alphas_opacity_linearly_between_the_corn
 
 #[test]
 fn vertex_colours_multiply_what_a_surface_sends_out_only_where_its_body_is_black() {
-    let colors = vec![Vec3::new(1.0, 0.5, 0.25); 4];
+    let colors = vec![Vec3::new(1.0, 0.5, 0.25); 6];
     for (diffuse, by) in [(Vec3::ZERO, colors[0]), (Vec3::splat(0.01), Vec3::ONE)] {
         let material = Material {
             diffuse,

@@ -407,7 +407,8 @@ fn a_rotation_of_zeros_turns_nothing() {
 #[test]
 fn version_2_without_a_point_is_2() {
     let (_folder, file) = changed(|d| d["asset"]["version"] = json!("2"));
-    opened(&file);
+    let (mut app, _) = opened(&file);
+    assert_eq!(crate::files::models::objects(app.world_mut()).len(), 1);
 }
 
 #[test]

@@ -132,8 +132,8 @@ impl Blocks {
         for (channel, &[across, down]) in header.channels.list.iter_mut().zip(steps) {
             let is_known = (1..=MOST_STEPS).contains(&across) && (1..=MOST_STEPS).contains(&down);
             let divides = is_known
-                && header.layer_size.x() % across == 0
-                && header.layer_size.y() % down == 0
+                && header.layer_size.x().is_multiple_of(across)
+                && header.layer_size.y().is_multiple_of(down)
                 && position.x() % across as i32 == 0
                 && position.y() % down as i32 == 0;
             if !divides {
