@@ -52,12 +52,12 @@ pub(super) fn whole_steps(value: f64) -> (u64, u64) {
     const MANTISSA: u64 = (1 << 52) - 1;
     let bits = value.to_bits();
     let biased = bits >> 52 & 0x7ff;
-    let counts = u64::from(value == value).wrapping_neg();
+    let counts = u64::from(!value.is_nan()).wrapping_neg();
     let mantissa = (bits & MANTISSA | 1 << 52) & counts;
     let left = biased.wrapping_sub(1075) as i64;
     let (low, high) = shifted(mantissa, left);
     // Above 2^127.
-    let is_over = left > 74 && value == value;
+    let is_over = left > 74 && !value.is_nan();
     let low = if is_over { u64::MAX } else { low };
     let high = if is_over { u64::MAX >> 1 } else { high };
     negated(low, high, (bits >> 63).wrapping_neg())

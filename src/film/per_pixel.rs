@@ -2,8 +2,8 @@
 
 use super::Film;
 use super::error::{Decline, Moves};
-use super::film_tile::FilmTile;
 use super::means::Means;
+use super::tiled_film::FilmTile;
 use super::tiles::{BLOCK_PIXELS, TILE_PIXELS, Tile, TileGrid};
 
 /// The estimated relative error of a pixel.

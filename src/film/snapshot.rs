@@ -1,9 +1,9 @@
 //! The picture of a render that goes on.
 
 use super::engine::Engine;
-use super::film_tile::draw;
 use super::preview::Preview;
 use super::tile_state::TileState;
+use super::tiled_film::draw;
 use super::tiles::Tile;
 use super::{Film, Picture, TILE};
 use glam::{UVec2, Vec2, Vec3};

@@ -1,10 +1,10 @@
 //! A tile's light kept apart: the sums of each plane, and the picture that they are with their tints.
 
-use super::film_tile::FilmTile;
 use super::past_moves::{PastMoves, squares};
 use super::sample_chunk::Subject;
 use super::sum_columns::{Blend, CHANNELS, SumColumns, Sums, TileColors};
 use super::tile_state::Pixels;
+use super::tiled_film::FilmTile;
 use super::tiles::{TILE_PIXELS, half_of};
 use crate::trace::PlaneSet;
 use crate::trace::planes::OWN;

@@ -2,11 +2,11 @@
 //! is known of its error.
 
 use super::error::Moves;
-use super::film_tile::FilmTile;
 use super::means::Means;
 use super::sample_chunk::Subject;
 use super::sum_columns::{SumColumns, Sums, TileColors};
 use super::tile_planes::TilePlanes;
+use super::tiled_film::FilmTile;
 use super::tiles::{BLOCK_PIXELS, HALF_PIXELS, TILE_PIXELS, Tile};
 use crate::trace::PlaneSet;
 use glam::Vec3;
@@ -355,7 +355,7 @@ mod tests {
         assert!(whole.absorb(&subject(), &start, first.all(), 10));
         let mut pieces = tile();
         assert!(pieces.absorb(&subject(), &start, first.all(), 10));
-        let rest = sums([4..8], Pixels::All);
+        let rest = sums(std::iter::once(4..8), Pixels::All);
         assert!(whole.absorb(&subject(), &chunk(4..8, 4, Pixels::All), rest.all(), 10));
         for (range, half, complete) in [
             (6..8, 1, false),
@@ -365,7 +365,7 @@ mod tests {
         ] {
             let before = pieces.film_tile();
             let piece = chunk(range.clone(), 4, Pixels::Half(half));
-            let sums = sums([range], Pixels::Half(half));
+            let sums = sums(std::iter::once(range), Pixels::Half(half));
             let done = pieces.absorb(&subject(), &piece, sums.all(), 0);
             assert_eq!(done, complete);
             assert_eq!(pieces.film_tile() == before, !complete);

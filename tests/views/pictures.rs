@@ -146,7 +146,7 @@ fn a_reference_picture_of_a_scene_that_never_stands_still_is_of_the_frame_that_a
     };
     listen(&mut game);
     let camera = game.camera(RED, None, 0);
-    let shape = |i: usize| Mesh::from(Sphere::new(1.0 + 0.1 * (i % 3) as f32).mesh().uv(300, 200));
+    let shape = |i: usize| Sphere::new(1.0 + 0.1 * (i % 3) as f32).mesh().uv(300, 200);
     let world = game.app.world_mut();
     let ball = world.resource_mut::<Assets<Mesh>>().add(shape(0));
     let glow = Phong {

@@ -94,7 +94,7 @@ impl Shot {
         let places = (y(top)..y(bottom)).flat_map(|y| (x(left)..x(right)).map(move |x| (x, y)));
         let linear = |(x, y)| {
             let [r, g, b] = self.pixel(x, y);
-            Vec3::from(LinearRgba::from(Srgba::rgb_u8(r, g, b)).to_vec3())
+            LinearRgba::from(Srgba::rgb_u8(r, g, b)).to_vec3()
         };
         let all: Vec<Vec3> = places.map(linear).collect();
         all.iter().sum::<Vec3>() / all.len() as f32
