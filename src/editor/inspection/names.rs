@@ -50,13 +50,16 @@ type Gone<'w, 's> = (
     RemovedComponents<'w, 's, Disabled>,
 );
 
+/// Who was renamed, given another material, or disabled.
+type Edits<'w, 's> = (
+    Query<'w, 's, (), Renamed>,
+    Query<'w, 's, (), Changed<UsesMaterial>>,
+    Query<'w, 's, (), Added<Disabled>>,
+);
+
 /// Learns them where any may be another, and not because something merely moved.
 pub(super) fn learn(
-    changed: (
-        Query<(), Renamed>,
-        Query<(), Changed<UsesMaterial>>,
-        Query<(), Added<Disabled>>,
-    ),
+    changed: Edits,
     mut gone: Gone,
     traced: Res<Traced>,
     named: Query<(Option<&SceneId>, &Name)>,
