@@ -300,17 +300,18 @@ mod tests {
 
     #[test]
     fn of_two_views_neither_waits_for_a_pass_of_the_other() {
-        // Each of its passes is as long as all before it: seconds, soon.
+        // Each of its passes is as long as all before it.
         let long = settings(UVec2::splat(256), 1 << 14);
         let long = Progressive::start(world(), camera(), long).unwrap();
-        wait_for(&long, |status| status.trend.len() >= 6);
+        wait_for(&long, |status| status.trend.len() >= 7);
         let passes = |render: &Progressive| render.status().trend.len();
         let before = passes(&long);
         let short = start(4);
         assert_eq!(short.wait(), Ending::Samples);
         let ended = passes(&long) - before;
-        // One may have been at its end.
-        assert!(ended <= 1, "{ended} passes of the other ended meanwhile");
+        // It takes the threads five times and more, and would have waited for as many passes; one may have been at its
+        // end, and other tests share the threads.
+        assert!(ended <= 2, "{ended} passes of the other ended meanwhile");
         assert_eq!(long.status().state, State::Running);
         long.cancel();
     }
