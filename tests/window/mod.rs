@@ -50,6 +50,8 @@ impl Display {
                 screen,
                 "-nolisten",
                 "tcp",
+                // It would begin anew when its last client goes: the program asks whether there is a display before it opens it.
+                "-noreset",
             ])
             .stdout(Stdio::piped())
             .stderr(Stdio::null())
