@@ -7,6 +7,12 @@ pub(super) const UNIT: f64 = 1.0 / (1u128 << FRACTION_BITS) as f64;
 /// What a step of the upper 64 bits is worth in steps.
 const HIGH: f64 = (1u128 << 64) as f64;
 
+/// The number of which these are the lower and the upper 64 bits.
+#[inline(always)]
+pub(super) fn joined(low: u64, high: u64) -> i128 {
+    i128::from(high as i64) << 64 | i128::from(low)
+}
+
 /// The sum of two numbers, each with its lower and its upper 64 bits.
 #[inline(always)]
 pub(super) fn sum(low: u64, high: u64, other_low: u64, other_high: u64) -> (u64, u64) {
@@ -104,7 +110,7 @@ fn shifted_right(bits: u64, by: u64) -> u64 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
     #[test]
@@ -125,8 +131,11 @@ mod tests {
         values.extend((-3..130).map(|exponent| 1.234_567 * 2f64.powi(exponent)));
         for value in values.into_iter().flat_map(|value| [value, -value]) {
             let (low, high) = whole_steps(value);
-            let number = i128::from(high as i64) << 64 | i128::from(low);
-            assert_eq!(number, (value as i128).max(-i128::MAX), "{value:e}");
+            assert_eq!(
+                joined(low, high),
+                (value as i128).max(-i128::MAX),
+                "{value:e}"
+            );
         }
     }
 
@@ -153,17 +162,20 @@ mod tests {
         }
     }
 
+    /// Of every exponent and of both signs.
+    pub(in crate::film) fn values() -> impl Iterator<Item = f32> {
+        let mantissas = [0, 1, 0x40_0000, 0x7f_ffff, 0x2a_aaaa];
+        let bits = (0..=255_u32)
+            .flat_map(move |exponent| mantissas.map(|mantissa| exponent << 23 | mantissa));
+        bits.flat_map(|bits| [bits, 1 << 31 | bits])
+            .map(f32::from_bits)
+    }
+
     #[test]
     fn every_exponent_of_both_signs_is_what_a_shift_of_128_bits_makes_of_it() {
-        for exponent in 0..=255_u32 {
-            for mantissa in [0, 1, 0x40_0000, 0x7f_ffff, 0x2a_aaaa] {
-                for sign in [0, 1 << 31] {
-                    let value = f32::from_bits(sign | exponent << 23 | mantissa);
-                    let (low, high) = to_fixed(value);
-                    let number = i128::from(high as i64) << 64 | i128::from(low);
-                    assert_eq!(number, one_by_one(value), "{value:e}");
-                }
-            }
+        for value in values() {
+            let (low, high) = to_fixed(value);
+            assert_eq!(joined(low, high), one_by_one(value), "{value:e}");
         }
     }
 }

@@ -128,8 +128,8 @@ const fn place_around(at: usize) -> usize {
 }
 
 vectorized! {
-    /// The [`Means::weights`] row by row, of pixels with these means, not a number outside of the picture, whose last moves squared
-    /// are `moved`.
+    /// The [`Means::weights`] row by row, of pixels with these means, not a number outside of the picture, whose last moves
+    /// squared are `moved`.
     fn relative_weights(
         around: &[f64; AROUND * AROUND],
         moved: &[f64; TILE_PIXELS],

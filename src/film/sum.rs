@@ -1,4 +1,4 @@
-use super::fixed_point::{UNIT, to_f64, to_fixed};
+use super::fixed_point::{UNIT, joined, to_f64, to_fixed};
 use glam::Vec3;
 
 /// The exact sum of colours, whatever the order in which they are added: 128-bit fixed point.
@@ -17,7 +17,7 @@ impl Sum {
     pub fn add(&mut self, value: Vec3) {
         for (sum, value) in self.0.iter_mut().zip(value.to_array()) {
             let (low, high) = to_fixed(value);
-            *sum += i128::from(high as i64) << 64 | i128::from(low);
+            *sum += joined(low, high);
         }
     }
 

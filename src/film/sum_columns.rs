@@ -1,7 +1,7 @@
 //! The sums of many pixels at once: those of [`Sum`], bit for bit, in loops over columns that vectorise.
 
 use super::Sum;
-use super::fixed_point::{UNIT, saturating_sum, sum, to_f64, to_fixed, whole_steps};
+use super::fixed_point::{UNIT, joined, saturating_sum, sum, to_f64, to_fixed, whole_steps};
 use super::tiles::{BLOCK_PIXELS, HALF_PIXELS, TILE_PIXELS};
 use crate::instruction_sets::vectorized;
 use glam::{DVec3, Vec3};
@@ -126,7 +126,7 @@ impl<'a> Sums<'a> {
     pub fn get(self, pixel: usize) -> Sum {
         Sum(std::array::from_fn(|channel| {
             let at = CHANNELS * pixel + channel;
-            (i128::from(self.high[at] as i64) << 64) | i128::from(self.low[at])
+            joined(self.low[at], self.high[at])
         }))
     }
 
@@ -266,6 +266,7 @@ vectorized! {
 
 #[cfg(test)]
 mod tests {
+    use super::super::fixed_point;
     use super::*;
     use proptest::prelude::*;
 
@@ -371,20 +372,15 @@ mod tests {
 
     #[test]
     fn every_exponent_and_both_signs_are_added_as_one_by_one() {
-        for exponent in 0..=255_u32 {
-            for mantissa in [0, 1, 0x40_0000, 0x7f_ffff, 0x2a_aaaa] {
-                for sign in [0, 1 << 31] {
-                    let value = f32::from_bits(sign | exponent << 23 | mantissa);
-                    let mut columns = SumColumns::default();
-                    columns.reset(1);
-                    let mut sum = Sum::default();
-                    for added in [Vec3::splat(value), Vec3::new(-1.0, 2.5, value)] {
-                        columns.add(0, &[added]);
-                        sum.add(added);
-                    }
-                    assert_eq!(columns.get(0), sum, "{value:e}");
-                }
+        for value in fixed_point::tests::values() {
+            let mut columns = SumColumns::default();
+            columns.reset(1);
+            let mut sum = Sum::default();
+            for added in [Vec3::splat(value), Vec3::new(-1.0, 2.5, value)] {
+                columns.add(0, &[added]);
+                sum.add(added);
             }
+            assert_eq!(columns.get(0), sum, "{value:e}");
         }
     }
 }

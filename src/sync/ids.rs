@@ -34,8 +34,8 @@ type OfScene = Or<(
 /// What has a place and no number.
 type Place = (With<Transform>, Without<SceneId>, Without<NotTraced>);
 
-/// Gives every entity of the scene a number of its own, and so every place that one of them hangs on. Of two with the same number the one that
-/// had it first keeps it; among those that appear in the same frame, the one with the lower index.
+/// Gives every entity of the scene a number of its own, and so every place that one of them hangs on. Of two
+/// with the same number the one that had it first keeps it; among those that appear in the same frame, the one with the lower index.
 pub(super) fn assign_scene_ids(
     changed: Query<(), Changed<SceneId>>,
     missing: Query<Entity, (OfScene, Without<SceneId>, Without<NotTraced>)>,

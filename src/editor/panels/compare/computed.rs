@@ -21,6 +21,22 @@ pub(super) enum Source {
     Later(Box<dyn FnOnce() -> TracedPicture + Send>),
 }
 
+impl Source {
+    /// The picture; the known one, where another would be the same.
+    fn picture(self, known: Option<&Arc<TracedPicture>>) -> Arc<TracedPicture> {
+        match self {
+            Self::There(picture) => picture,
+            Self::Later(make) => {
+                let picture = make();
+                match known.filter(|known| ***known == picture) {
+                    Some(known) => known.clone(),
+                    None => Arc::new(picture),
+                }
+            }
+        }
+    }
+}
+
 /// What two pictures have in figures.
 #[derive(Clone)]
 pub(super) struct Pair {
@@ -32,22 +48,9 @@ pub(super) struct Pair {
 
 impl Pair {
     /// Of these two. What is known already of the same ones is not computed again.
-    pub fn of(sources: [Source; 2], before: Option<Self>) -> Self {
-        let mut number = 0;
-        let pictures = sources.map(|source| {
-            let known = before.as_ref().map(|before| &before.pictures[number]);
-            number += 1;
-            match (source, known) {
-                (Source::There(picture), _) => picture,
-                (Source::Later(make), known) => {
-                    let picture = make();
-                    match known.filter(|known| ***known == picture) {
-                        Some(known) => known.clone(),
-                        None => Arc::new(picture),
-                    }
-                }
-            }
-        });
+    pub fn of([first, second]: [Source; 2], before: Option<Self>) -> Self {
+        let known = |number: usize| before.as_ref().map(|before| &before.pictures[number]);
+        let pictures = [first.picture(known(0)), second.picture(known(1))];
         let is_same = |before: &Self| {
             let mut pairs = before.pictures.iter().zip(&pictures);
             pairs.all(|(before, now)| Arc::ptr_eq(before, now))
@@ -83,15 +86,7 @@ impl Pair {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::film::Picture;
-    use bevy::math::{UVec2, Vec3};
-
-    fn picture(level: f32) -> TracedPicture {
-        let mut linear = Picture::black(UVec2::new(8, 4));
-        linear.pixels.fill(Vec3::splat(level));
-        let shown = vec![128; 4 * linear.pixels.len()];
-        TracedPicture { linear, shown }
-    }
+    use crate::editor::panels::compare::even_picture as picture;
 
     #[test]
     fn a_picture_that_is_looked_at_again_and_is_the_same_is_not_computed_again() {

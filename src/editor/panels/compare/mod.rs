@@ -193,3 +193,12 @@ pub(super) fn compare_ui(ui: &mut Ui, free: Rect, world: &mut World) {
     let font = FontId::proportional(13.0);
     painter.text(at, Align2::CENTER_CENTER, name, font, Color32::WHITE);
 }
+
+/// A small picture of one brightness.
+#[cfg(test)]
+fn even_picture(level: f32) -> TracedPicture {
+    let mut linear = crate::film::Picture::black(bevy::math::UVec2::new(8, 4));
+    linear.pixels.fill(bevy::math::Vec3::splat(level));
+    let shown = vec![128; 4 * linear.pixels.len()];
+    TracedPicture { linear, shown }
+}

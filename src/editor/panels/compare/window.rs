@@ -327,16 +327,9 @@ mod tests {
     use super::*;
     use crate::editor::action::Action;
     use crate::editor::document::adopt;
+    use crate::editor::panels::compare::even_picture as picture;
     use crate::editor::panels::tests::Desk;
-    use crate::view::TracedPicture;
     use std::thread::sleep;
-
-    fn picture(level: f32) -> TracedPicture {
-        let mut linear = Picture::black(UVec2::new(8, 4));
-        linear.pixels.fill(Vec3::splat(level));
-        let shown = vec![128; 4 * linear.pixels.len()];
-        TracedPicture { linear, shown }
-    }
 
     /// Frames until the window has this text.
     fn wait_for(desk: &mut Desk, text: &str) {
