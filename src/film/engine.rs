@@ -2,7 +2,6 @@
 
 use super::control::{Control, Signal};
 use super::edit::Edit;
-use super::error::{Decline, ErrorEstimate, Moves};
 use super::past_moves::PAST_BYTES;
 use super::pool::{SharedPool, Turn};
 use super::preview::Preview;
@@ -338,49 +337,6 @@ impl Engine {
         })
     }
 
-    /// How far the film is from the converged one; `None` before there is anything to compare.
-    pub fn error(&self) -> Option<ErrorEstimate> {
-        if self.mode.samples.start > 0 || self.samples() < 2.0 {
-            return None;
-        }
-        let moves = self.moves();
-        let measured = ErrorEstimate::of(&moves, 0.0)?;
-        if measured.relative_mse > 0.0 {
-            return Some(measured);
-        }
-        // Samples that all agree say no more than what none of them has met.
-        ErrorEstimate::of(&moves, self.unmet.hidden(&self.subject(), 1))
-    }
-
-    /// The squared error that unmet features may leave in a pixel, per reach of a sample, if they lie in all
-    /// alike; 0 where samples differ anywhere, and so say more themselves.
-    pub fn hidden_in_a_pixel(&self) -> f64 {
-        match self.error() {
-            Some(error) if error.is_bound => {
-                self.unmet.hidden(&self.subject(), 1) / self.pixels().max(1.0)
-            }
-            _ => 0.0,
-        }
-    }
-
-    /// How the errors of the whole picture decline.
-    pub fn decline(&self) -> Decline {
-        Decline::of(&self.moves())
-    }
-
-    /// Works out on all threads how far the tiles moved that have other tints.
-    fn update_moves(&self) {
-        let tiles = (0..self.tiles.len()).into_par_iter();
-        self.on_threads(|_| tiles.for_each(|tile| _ = self.tile(tile).moves()));
-    }
-
-    /// Of each half of each tile.
-    pub(super) fn moves(&self) -> Vec<Moves> {
-        (0..self.tiles.len())
-            .flat_map(|tile| self.tile(tile).moves())
-            .collect()
-    }
-
     fn note_error(&self) {
         let Some(error) = self.error() else { return };
         let point = TrendPoint {
@@ -395,7 +351,7 @@ impl Engine {
     }
 
     /// Samples of a pixel, on average.
-    fn samples(&self) -> f64 {
+    pub(super) fn samples(&self) -> f64 {
         let pixels = self.pixels();
         self.done.load(Ordering::Relaxed) as f64 / pixels.max(1.0)
     }

@@ -27,6 +27,7 @@ mod edit;
 mod eight_bits;
 mod engine;
 mod error;
+mod estimate;
 mod first_hits;
 mod fixed_point;
 mod gaussian;

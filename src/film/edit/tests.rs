@@ -1,0 +1,236 @@
+use super::super::engine::{Engine, Mode};
+use super::super::sample_chunk::Subject;
+use super::super::test_scene::{camera, edited, lit, many, settings};
+use super::super::{Ending, Progressive};
+use crate::trace::{Gains, Lights, PointLight, Untinted, World};
+use glam::{UVec2, Vec3};
+use std::sync::Arc;
+
+const SIZE: UVec2 = UVec2::new(37, 22);
+
+fn start(world: &World, spp: u32) -> Progressive {
+    Progressive::start(world.clone(), camera(), settings(SIZE, spp)).unwrap()
+}
+
+#[test]
+fn another_colour_of_a_light_takes_no_ray_and_is_the_picture_of_a_render_with_that_colour() {
+    let before = lit();
+    let render = start(&before, 16);
+    render.wait();
+    let rays = render.status().rays;
+    for factor in [Vec3::new(0.25, 3.0, 1.0), Vec3::ZERO, Vec3::splat(1e6)] {
+        let world = edited(&before, |lights| {
+            lights.points[0].color *= factor;
+            lights.directionals[0].color = factor;
+            for color in &mut lights.parallelograms[1].colors {
+                *color *= factor.max_element();
+            }
+        });
+        assert!(render.edit(world.clone(), &Gains::default()));
+        assert_eq!(render.wait(), Ending::Samples);
+        assert_eq!(render.status().rays, rays, "no ray more");
+        let fresh = start(&world, 16);
+        fresh.wait();
+        assert_eq!(render.snapshot().picture, fresh.snapshot().picture);
+        assert_eq!(render.film().picture(), fresh.film().picture());
+        let errors = [&render, &fresh].map(|render| render.status().error().unwrap());
+        let ratio = errors[0].relative() / errors[1].relative();
+        assert!((0.2..5.0).contains(&ratio), "{errors:?}");
+    }
+}
+
+/// An edit of some light: its colour, its place, its being there.
+fn change(lights: &mut Lights, numbers: &mut impl FnMut(u32) -> u32) {
+    let offset = Vec3::new(
+        numbers(9) as f32 - 4.0,
+        numbers(5) as f32,
+        numbers(9) as f32 - 4.0,
+    ) * 0.1;
+    let color = Vec3::new(numbers(4) as f32, numbers(4) as f32, numbers(4) as f32);
+    match numbers(9) {
+        0 => lights
+            .points
+            .iter_mut()
+            .for_each(|light| light.color = color),
+        1 => lights
+            .points
+            .iter_mut()
+            .for_each(|light| light.position += offset),
+        2 => lights
+            .segments
+            .iter_mut()
+            .for_each(|light| light.ends[0] += offset),
+        3 => lights
+            .segments
+            .iter_mut()
+            .for_each(|light| light.colors = [color; 2]),
+        4 => lights.parallelograms.truncate(1),
+        5 => lights
+            .parallelograms
+            .iter_mut()
+            .for_each(|light| light.edges[0] += offset),
+        6 => {
+            let fresh = lit();
+            lights.parallelograms = fresh.lights.parallelograms.clone();
+        }
+        7 => lights.points.clear(),
+        _ => {
+            let id = 200 + u64::from(numbers(50));
+            if lights.all().all(|light| light.id() != id) {
+                lights.points.push(PointLight {
+                    id,
+                    position: Vec3::new(0.2, 1.0, 0.7) + offset,
+                    color,
+                    cone: None,
+                });
+                lights.points.sort_by_key(|light| light.id);
+            }
+        }
+    }
+}
+
+#[test]
+fn after_any_edits_of_the_lights_at_any_moment_the_picture_is_that_of_a_fresh_render() {
+    let mut state = 7_u32;
+    let mut numbers = |below: u32| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 16) % below
+    };
+    let (mut taken, mut kept) = (0, 0);
+    for spp in [1, 5, 16] {
+        let mut now = lit();
+        let mut render = start(&now, spp);
+        for step in 0..30 {
+            // Some edits find a render at work, some one that has ended.
+            if numbers(3) > 0 {
+                render.wait();
+            }
+            now = edited(&now, |lights| change(lights, &mut numbers));
+            kept += 1;
+            if render.edit(now.clone(), &Gains::default()) {
+                taken += 1;
+            } else {
+                render = start(&now, spp);
+            }
+            if step % 5 == 4 {
+                render.wait();
+                let fresh = start(&now, spp);
+                fresh.wait();
+                let pictures = [&render, &fresh].map(|render| render.snapshot().picture);
+                assert_eq!(pictures[0], pictures[1], "{spp} samples, step {step}");
+                assert_eq!(render.film().counts(), fresh.film().counts());
+            }
+        }
+    }
+    assert!(2 * taken > kept, "only {taken} of {kept} edits were taken");
+}
+
+#[test]
+fn lights_that_share_a_plane_are_rendered_again_together_and_a_light_that_is_seen_with_all() {
+    let before = lit();
+    let subject = |world: &World, lights| Subject {
+        light: Untinted::of(world, lights, &[], &Gains::default()),
+        ..Subject::new(world.clone(), camera(), settings(SIZE, 1), true)
+    };
+    let planes = |world: &World, lights| {
+        super::same_planes(&subject(&before, lights), &subject(world, lights))
+    };
+    let moved = edited(&before, |lights| lights.parallelograms[1].corner.x += 0.1);
+    let all = [Some(0), Some(1), Some(2), Some(3), Some(4)];
+    assert_eq!(planes(&moved, 8).unwrap(), [&all[..], &[None]].concat());
+    assert_eq!(
+        planes(&moved, 2).unwrap(),
+        [Some(0), Some(1), Some(2), None]
+    );
+    assert_eq!(planes(&moved, 0).unwrap(), [Some(0), None]);
+    let gone = edited(&before, |lights| lights.points.clear());
+    assert_eq!(
+        planes(&gone, 8).unwrap(),
+        [Some(0), Some(2), Some(3), Some(4), Some(5)]
+    );
+    assert_eq!(planes(&gone, 2).unwrap(), [Some(0), Some(2), None, None]);
+    let seen = edited(&before, |lights| lights.parallelograms[0].visible = true);
+    assert_eq!(planes(&seen, 8), None);
+    let other = World {
+        materials: Arc::new((*before.materials).clone()),
+        ..before.clone()
+    };
+    assert!(super::Edit::between(&subject(&before, 8), other, &Gains::default()).is_none());
+}
+
+#[test]
+fn who_is_edited_comes_first_and_nobody_where_all_are() {
+    let world = many(1..41);
+    let subject = Subject::new(world.clone(), camera(), settings(SIZE, 1), true);
+    let first = |edit: &dyn Fn(&mut Lights)| {
+        let world = edited(&world, |lights| edit(lights));
+        super::edited_first(&subject, &world)
+    };
+    assert_eq!(first(&|lights| lights.points[36].color.x = 0.5), [37]);
+    let none: [u64; 0] = [];
+    assert_eq!(first(&|lights| lights.points[2].color.x = 0.5), none);
+    let all = |lights: &mut Lights| lights.points.iter_mut().for_each(|l| l.color *= 0.5);
+    assert_eq!(first(&all), none);
+    let subject = subject.edited(world.clone(), vec![30, 20], Gains::default());
+    let moved = edited(&world, |lights| {
+        lights.points[39].position.x = 0.5;
+        lights.points.remove(19);
+    });
+    assert_eq!(super::edited_first(&subject, &moved), [40, 30]);
+}
+
+#[test]
+fn an_edit_that_takes_long_keeps_what_it_can_and_is_refused_where_that_is_hardly_anything() {
+    let started = |world: &World| {
+        let mode = Mode {
+            watched: true,
+            samples: 0..4,
+            region: None,
+        };
+        let subject = Subject::new(world.clone(), camera(), settings(SIZE, 4), true);
+        let engine = Engine::new(subject, mode, None);
+        engine.run(&|_| {});
+        engine
+    };
+    let world = lit();
+    let engine = started(&world);
+    let all = engine.status().rays.total();
+    // As if it took ten seconds a sample.
+    engine.pace.set(10.0).unwrap();
+    let other = edited(&world, |lights| {
+        lights.points[0].position.x += 0.1;
+        lights.directionals[0].to_light = Vec3::Y;
+        lights.segments[0].ends[0].x += 0.1;
+        for light in &mut lights.parallelograms {
+            light.corner.x += 0.1;
+        }
+    });
+    assert!(!engine.edit(other, &Gains::default()));
+    let moved = edited(&world, |lights| lights.points[0].position.x += 0.1);
+    assert!(engine.edit(moved.clone(), &Gains::default()));
+    assert_eq!(engine.run(&|_| {}), Ending::Samples);
+    let more = engine.status().rays.total() - all;
+    assert!(more < all / 2, "{more} rays for one light, {all} for all");
+    assert_eq!(engine.picture(), started(&moved).picture());
+}
+
+#[test]
+fn a_light_that_moves_among_many_takes_a_part_of_a_sample() {
+    let world = lit();
+    let subject = Subject::new(world.clone(), camera(), settings(SIZE, 1), true);
+    let part = |edit: &dyn Fn(&mut Lights)| {
+        let world = edited(&world, |lights| edit(lights));
+        super::Edit::between(&subject, world, &Gains::default())
+            .unwrap()
+            .part_of_sample()
+    };
+    assert_eq!(
+        part(&|lights| lights.points[0].position.x += 0.1),
+        2.0 / 6.0
+    );
+    let two = |lights: &mut Lights| {
+        lights.points[0].position.x += 0.1;
+        lights.segments[0].ends[0].x += 0.1;
+    };
+    assert_eq!(part(&two), 3.0 / 6.0);
+}
