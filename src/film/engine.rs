@@ -8,7 +8,7 @@ use super::preview::Preview;
 use super::queue::Queue;
 use super::sample_chunk::{BatchSize, Subject, with_scratch};
 use super::status::{Ending, State, Status, TrendPoint, seconds_left};
-use super::tile_planes::PLANE_BYTES;
+use super::tile_planes::{BLEND_BYTES, PLANE_BYTES};
 use super::tile_state::{Chunk, TileState};
 use super::tiles::{Tile, TileGrid};
 use super::unmet::Unmet;
@@ -156,10 +156,11 @@ impl Engine {
         let pixels = self.grid.pixels();
         let planes = subject.planes();
         let plane = pixels * PLANE_BYTES as u64;
+        let rest = if planes > 2 { BLEND_BYTES } else { 0 };
         FilmMemory {
             planes: if subject.stays_apart { planes } else { 0 },
             plane,
-            total: pixels * PAST_BYTES as u64 + planes as u64 * plane,
+            total: pixels * (PAST_BYTES + rest) as u64 + planes as u64 * plane,
         }
     }
 

@@ -29,7 +29,7 @@ pub struct FilmMemory {
     pub planes: usize,
     /// Of one of them.
     pub plane: u64,
-    /// Of all of it: the planes, and the picture that they make.
+    /// Of all of it: the planes, and what the others are together while one is edited.
     pub total: u64,
 }
 

@@ -73,10 +73,17 @@ impl Engine {
             if chosen.is_empty() {
                 return Err(Ending::Samples);
             }
-            return Ok(chosen
-                .into_iter()
-                .flat_map(|task| self.chunks(task.tile, task.pixels, PlaneSet::ALL, task.range))
-                .collect());
+            let mut chunks = Vec::new();
+            for task in chosen {
+                self.cut(
+                    task.tile,
+                    task.pixels,
+                    PlaneSet::ALL,
+                    task.range,
+                    &mut chunks,
+                );
+            }
+            return Ok(chunks);
         }
         let in_time = settings.sampling.time > 0.0;
         let first = match (self.mode.watched || in_time, is_adaptive) {
@@ -135,12 +142,12 @@ impl Engine {
                 [Some((planes, range)), other]
                     if has_one_half || other.as_ref() == Some(&(planes, range.clone())) =>
                 {
-                    chunks.extend(self.chunks(tile, Pixels::All, planes, range));
+                    self.cut(tile, Pixels::All, planes, range, &mut chunks);
                 }
                 halves => {
                     for (half, missing) in halves.into_iter().enumerate() {
                         if let Some((planes, range)) = missing {
-                            chunks.extend(self.chunks(tile, Pixels::Half(half), planes, range));
+                            self.cut(tile, Pixels::Half(half), planes, range, &mut chunks);
                         }
                     }
                 }
@@ -149,8 +156,15 @@ impl Engine {
         chunks
     }
 
-    /// One pass over a tile, in pieces of about [`CHUNK_RAYS`].
-    fn chunks(&self, tile: u32, pixels: Pixels, planes: PlaneSet, range: Range<u64>) -> Vec<Chunk> {
+    /// Adds one pass over a tile, in pieces of about [`CHUNK_RAYS`].
+    fn cut(
+        &self,
+        tile: u32,
+        pixels: Pixels,
+        planes: PlaneSet,
+        range: Range<u64>,
+        chunks: &mut Vec<Chunk>,
+    ) {
         let of = range.end - range.start;
         let (rays, samples) = {
             let state = lock(&self.tiles[tile as usize]);
@@ -164,15 +178,14 @@ impl Engine {
             // Nothing is known of its rays yet.
             step = UNWATCHED_START.min(of);
         }
-        (0..of.div_ceil(step))
-            .map(|i| Chunk {
-                tile,
-                pixels,
-                planes,
-                range: range.start + i * step..(range.start + (i + 1) * step).min(range.end),
-                of,
-            })
-            .collect()
+        let pieces = (0..of.div_ceil(step)).map(|i| Chunk {
+            tile,
+            pixels,
+            planes,
+            range: range.start + i * step..(range.start + (i + 1) * step).min(range.end),
+            of,
+        });
+        chunks.extend(pieces);
     }
 
     fn cells(&self) -> Vec<Cell> {

@@ -174,14 +174,14 @@ pub(super) struct Scratch {
     places: Vec<usize>,
     columns: SumColumns,
     samples: Vec<SampleId>,
-    /// Plane by plane.
+    /// Plane by plane of those that were asked for.
     values: Vec<Vec3>,
-    /// The values of the samples, all planes together, where there are several.
+    /// The values of the samples, all those planes together, where they are more than what shines by itself.
     folded: Vec<Vec3>,
     workspace: Workspace,
     /// When others last had the core for the asking.
     gave_way: Option<Instant>,
-    /// `TILE_PIXELS` for each plane of each segment of the chunk.
+    /// `TILE_PIXELS` for each of the chunk's planes, of each of its segments.
     pub sums: SumColumns,
     /// How bright the chunk's samples are.
     pub octaves: Octaves,
@@ -231,8 +231,9 @@ impl Scratch {
         let mut places = std::mem::take(&mut self.places);
         places.clear();
         places.extend(tile.places(chunk.pixels));
+        let rows = chunk.planes.of(subject.planes()).len();
         let complete = chunk.segments().all(|segment| {
-            self.sums.extend(subject.planes() * TILE_PIXELS);
+            self.sums.extend(rows * TILE_PIXELS);
             let sampled = self.sum_segment(
                 subject,
                 (tile, &places),
@@ -262,11 +263,12 @@ impl Scratch {
         stopped: &dyn Fn() -> bool,
     ) -> Option<RayCounts> {
         let mut rays = RayCounts::default();
-        let planes = subject.planes();
-        let first = self.sums.len() - planes * TILE_PIXELS;
+        let planes = wanted.of(subject.planes());
+        let rows = planes.len();
+        let first = self.sums.len() - rows * TILE_PIXELS;
         let is_whole = places.len() == TILE_PIXELS;
         if !is_whole {
-            self.columns.reset(planes * places.len());
+            self.columns.reset(rows * places.len());
         }
         // The next sample: of the pixel at that place, with that index.
         let (mut place, mut index) = (0, segment.start);
@@ -287,16 +289,17 @@ impl Scratch {
                 }
             }
             rays += self.evaluate_samples(subject, wanted, batch);
-            self.sum_batch(planes, places.len(), first_place, is_whole.then_some(first));
+            let whole = is_whole.then_some(first);
+            self.sum_batch(planes.clone(), places.len(), first_place, whole);
             left -= count;
             if stopped() {
                 return None;
             }
         }
-        for plane in (0..planes).filter(|_| !is_whole) {
+        for row in (0..rows).filter(|_| !is_whole) {
             for (i, at) in places.iter().enumerate() {
-                let sum = self.columns.get(plane * places.len() + i);
-                self.sums.set(first + plane * TILE_PIXELS + at, &sum);
+                let sum = self.columns.get(row * places.len() + i);
+                self.sums.set(first + row * TILE_PIXELS + at, &sum);
             }
         }
         Some(rays)
@@ -306,7 +309,7 @@ impl Scratch {
     /// tile's to those of the chunk's sums from the `whole` on.
     fn sum_batch(
         &mut self,
-        planes: usize,
+        planes: impl Iterator<Item = usize>,
         pixels: usize,
         first_place: usize,
         whole: Option<usize>,
@@ -315,9 +318,9 @@ impl Scratch {
             Some(first) => (&mut self.sums, first),
             None => (&mut self.columns, 0),
         };
-        for plane in 0..planes {
+        for (row, plane) in planes.enumerate() {
             let count = self.samples.len();
-            let values = &self.values[plane * count..][..count];
+            let values = &self.values[row * count..][..count];
             if plane != OWN && values.iter().all(|value| *value == Vec3::ZERO) {
                 // Most batches of many pictures see no light.
                 continue;
@@ -325,7 +328,7 @@ impl Scratch {
             let (mut at, mut rest) = (first_place, values);
             while !rest.is_empty() {
                 let (run, others) = rest.split_at(rest.len().min(pixels - at));
-                sums.add(first + plane * pixels + at, run);
+                sums.add(first + row * pixels + at, run);
                 (at, rest) = (0, others);
             }
         }
@@ -361,7 +364,8 @@ impl Scratch {
             ..
         } = &subject.light;
         let count = self.samples.len();
-        self.values.resize(planes.count() * count, Vec3::ZERO);
+        let rows = wanted.of(planes.count());
+        self.values.resize(rows.len() * count, Vec3::ZERO);
         let rays = radiance_in_planes(
             world,
             &subject.camera,
@@ -373,11 +377,11 @@ impl Scratch {
             &mut self.workspace,
         );
         self.folded.clear();
-        if planes.count() > 1 {
-            self.folded.extend_from_slice(&self.values[..count]);
-            for (values, tint) in self.values.chunks_exact(count).zip(tints).skip(OWN + 1) {
+        if rows.clone().any(|plane| plane != OWN) {
+            self.folded.resize(count, Vec3::ZERO);
+            for (values, plane) in self.values.chunks_exact(count).zip(rows) {
                 for (sum, value) in self.folded.iter_mut().zip(values) {
-                    *sum += *tint * *value;
+                    *sum += tints[plane] * *value;
                 }
             }
         }
@@ -393,13 +397,13 @@ impl Scratch {
         rays
     }
 
-    /// What the last [`Self::evaluate`] found, all planes together.
+    /// What the last [`Self::evaluate`] found, all its planes together.
     pub fn folded(&self) -> &[Vec3] {
         folded(&self.folded, &self.values, self.samples.len())
     }
 }
 
-/// The values of so many samples, all planes together: those of the only plane, where there is one.
+/// The values of so many samples, all planes together: those of what shines by itself, where that is all.
 fn folded<'a>(folded: &'a [Vec3], values: &'a [Vec3], samples: usize) -> &'a [Vec3] {
     if folded.is_empty() {
         &values[..samples]

@@ -42,7 +42,7 @@ impl Engine {
         let rows = picture.pixels.par_chunks_mut(row_of_tiles).enumerate();
         rows.for_each(|(row, pixels)| {
             for column in 0..columns {
-                let state = self.tile(row * columns + column);
+                let mut state = self.tile(row * columns + column);
                 if self.renders(state.tile) && state.has_samples() {
                     draw(&state.means(), state.tile, pixels, width);
                 }
@@ -77,7 +77,7 @@ impl Engine {
             .map(|(row, (pixels, versions))| {
                 let mut changed = false;
                 for (column, version) in versions.iter_mut().enumerate() {
-                    let state = self.tile(row * columns + column);
+                    let mut state = self.tile(row * columns + column);
                     let is_whole = !state.lacks_light();
                     let is_coarse = !is_whole || state.version == 0;
                     if is_whole && *version != state.version {

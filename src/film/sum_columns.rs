@@ -67,6 +67,14 @@ impl SumColumns {
         }
     }
 
+    /// Becomes these sums. Memory is written without being read: new memory comes page by page, and a page that is read
+    /// before it is written comes twice.
+    pub fn copy_from(&mut self, others: Sums) {
+        self.truncate(0);
+        self.low.extend_from_slice(others.low);
+        self.high.extend_from_slice(others.high);
+    }
+
     /// Adds a colour to each pixel from the `first` on, as [`Sum::add`] does.
     pub fn add(&mut self, first: usize, values: &[Vec3]) {
         let lanes = CHANNELS * first..CHANNELS * (first + values.len());
@@ -113,13 +121,11 @@ impl<'a> Sums<'a> {
         }
     }
 
-    /// A copy, which is written without being read: new memory comes page by page, and a page that is read before it is
-    /// written comes twice.
+    /// A copy.
     pub fn to_columns(self) -> SumColumns {
-        SumColumns {
-            low: self.low.to_vec(),
-            high: self.high.to_vec(),
-        }
+        let mut copy = SumColumns::default();
+        copy.copy_from(self);
+        copy
     }
 
     /// The sum of one pixel.
@@ -159,6 +165,7 @@ impl<'a> Sums<'a> {
 
 /// The picture of a tile as a sum of others, each with a tint: exact where that is 1, else each rounded to 53 bits. What is
 /// larger than a sum can hold stays as large as that.
+#[derive(Clone)]
 pub(super) struct Blend {
     low: [u64; CHANNELS * TILE_PIXELS],
     high: [u64; CHANNELS * TILE_PIXELS],

@@ -20,6 +20,15 @@ pub(super) struct TilePlanes {
     keeps_moves: bool,
     /// Their tints are others since then.
     past_is_old: bool,
+    /// Which of them are others since the picture was made.
+    changed: PlaneSet,
+    rest: Option<Rest>,
+}
+
+/// What all planes but one are together. While that one is edited, again and again, the others are not read again.
+struct Rest {
+    edited: usize,
+    blend: Box<Blend>,
 }
 
 /// What one plane has.
@@ -33,8 +42,10 @@ struct Plane {
     tint: Vec3,
 }
 
+/// What a pixel of several planes together takes.
+pub(super) const BLEND_BYTES: usize = size_of::<i128>() * CHANNELS;
 /// What a pixel of a plane takes.
-pub(super) const PLANE_BYTES: usize = size_of::<i128>() * CHANNELS + size_of::<f32>() * CHANNELS;
+pub(super) const PLANE_BYTES: usize = BLEND_BYTES + size_of::<f32>() * CHANNELS;
 
 impl Plane {
     fn empty(tint: Vec3) -> Self {
@@ -46,10 +57,17 @@ impl Plane {
         }
     }
 
+    /// Has nothing any more, but for its memory.
+    fn forget(&mut self) {
+        self.sums.truncate(0);
+        self.moved = None;
+        self.counts = [0; 2];
+    }
+
     /// Adds `count` samples to these pixels.
     fn add(&mut self, pixels: Pixels, sums: Sums, count: u32) {
         if self.sums.is_empty() && pixels == Pixels::All {
-            self.sums = sums.to_columns();
+            self.sums.copy_from(sums);
         } else {
             if self.sums.is_empty() {
                 self.sums.reset(TILE_PIXELS);
@@ -94,17 +112,24 @@ impl TilePlanes {
         self.planes.get(OWN).map_or([0; 2], |own| own.counts)
     }
 
-    /// Adds `count` samples to these planes of these pixels. `sums` has `TILE_PIXELS` for each plane of the film.
-    pub fn add(&mut self, pixels: Pixels, planes: PlaneSet, sums: Sums, count: u32) {
+    /// Adds `count` samples to these planes of these pixels. The sums are of the planes `of`, those among them: `TILE_PIXELS`
+    /// for each.
+    pub fn add(
+        &mut self,
+        pixels: Pixels,
+        planes: PlaneSet,
+        (of, sums): (PlaneSet, Sums),
+        count: u32,
+    ) {
         self.update_past();
         let before = self.counts();
         let is_more = planes.has(OWN);
         let mut alone = [0.0; CHANNELS * TILE_PIXELS];
         for (number, plane) in self.planes.iter_mut().enumerate() {
-            if !planes.has(number) {
+            let Some(row) = of.row(number).filter(|_| planes.has(number)) else {
                 continue;
-            }
-            let sums = sums.part(number * TILE_PIXELS..(number + 1) * TILE_PIXELS);
+            };
+            let sums = sums.part(row * TILE_PIXELS..(row + 1) * TILE_PIXELS);
             for half in pixels.halves() {
                 if plane.counts[half] == count {
                     let moved = match &mut plane.moved {
@@ -117,9 +142,11 @@ impl TilePlanes {
                 }
             }
             plane.add(pixels, sums, count);
+            self.changed = self.changed.with(number);
         }
         let has_doubled = |half: usize| before[half] == count;
-        if pixels.halves().any(|half| !is_more || has_doubled(half)) {
+        let may_have_moved = !self.keeps_moves || self.planes.iter().any(|p| p.moved.is_some());
+        if may_have_moved && pixels.halves().any(|half| !is_more || has_doubled(half)) {
             let squares = if self.keeps_moves {
                 self.squares()
             } else {
@@ -160,8 +187,11 @@ impl TilePlanes {
 
     /// Other tints from now on.
     pub fn retint(&mut self, tints: &[Vec3]) {
-        for (plane, tint) in self.planes.iter_mut().zip(tints) {
-            plane.tint = *tint;
+        for (number, (plane, tint)) in self.planes.iter_mut().zip(tints).enumerate() {
+            if plane.tint != *tint {
+                plane.tint = *tint;
+                self.changed = self.changed.with(number);
+            }
         }
         self.past_is_old = self.keeps_moves;
     }
@@ -180,17 +210,51 @@ impl TilePlanes {
     }
 
     /// The picture's sums, as if every plane had the samples of its own light.
-    fn blend(&self) -> Blend {
-        let counts = self.counts().map(f64::from);
+    fn blend(&mut self) -> Blend {
+        let changed = std::mem::replace(&mut self.changed, PlaneSet::NONE);
+        let is_same =
+            |rest: &Rest| changed == PlaneSet::NONE || changed.only() == Some(rest.edited);
+        if !self.rest.as_ref().is_some_and(is_same) {
+            // How all others are weighed hangs on the samples of what shines by itself.
+            let edited = changed
+                .only()
+                .filter(|edited| *edited != OWN && self.planes.len() > 2);
+            self.rest = edited.map(|edited| Rest {
+                edited,
+                blend: Box::new(self.blend_of(|plane| plane != edited)),
+            });
+        }
+        match &self.rest {
+            Some(rest) => {
+                let mut blend = Blend::clone(&rest.blend);
+                self.add_to(&mut blend, rest.edited);
+                blend
+            }
+            None => self.blend_of(|_| true),
+        }
+    }
+
+    /// Some of the planes together.
+    fn blend_of(&self, is_some: impl Fn(usize) -> bool) -> Blend {
         let mut blend = Blend::new();
-        for plane in self.planes.iter().filter(|plane| !plane.sums.is_empty()) {
-            let factor = |half: usize| {
-                let stretch = counts[half] / f64::from(plane.counts[half].max(1));
-                plane.tint.as_dvec3() * stretch
-            };
-            blend.add(plane.sums.all(), [factor(0), factor(1)]);
+        for plane in (0..self.planes.len()).filter(|plane| is_some(*plane)) {
+            self.add_to(&mut blend, plane);
         }
         blend
+    }
+
+    /// Adds a plane to others.
+    fn add_to(&self, blend: &mut Blend, plane: usize) {
+        let plane = &self.planes[plane];
+        if plane.sums.is_empty() {
+            return;
+        }
+        let counts = self.counts().map(f64::from);
+        let factor = |half: usize| {
+            let stretch = counts[half] / f64::from(plane.counts[half].max(1));
+            plane.tint.as_dvec3() * stretch
+        };
+        blend.add(plane.sums.all(), [factor(0), factor(1)]);
     }
 
     /// The only plane there is, where it is the picture.
@@ -200,7 +264,7 @@ impl TilePlanes {
     }
 
     /// The means of the picture's pixels.
-    pub fn means(&self) -> TileColors {
+    pub fn means(&mut self) -> TileColors {
         match self.only() {
             Some(plane) => plane.sums.all().means(plane.counts),
             None => self.blend().sums().means(self.counts()),
@@ -249,6 +313,17 @@ impl TilePlanes {
 
     /// The planes of an edited scene: of each the one of this number before, or none yet.
     pub fn rearrange(&mut self, from: &[Option<usize>]) {
+        let stays = |(plane, from): (usize, &Option<usize>)| from.is_none_or(|from| from == plane);
+        if from.len() == self.planes.len() && from.iter().enumerate().all(stays) {
+            for (number, plane) in self.planes.iter_mut().enumerate() {
+                if from[number].is_none() {
+                    plane.forget();
+                    self.changed = self.changed.with(number);
+                }
+            }
+            return;
+        }
+        self.changed = PlaneSet::ALL;
         let mut before: Vec<Option<Plane>> = self.planes.drain(..).map(Some).collect();
         let planes = from.iter().map(|plane| before[(*plane)?].take());
         self.planes = planes
@@ -275,5 +350,90 @@ impl TilePlanes {
         let last = planes.filter(|(_, plane)| plane.counts[half] == fewest);
         let set = last.fold(PlaneSet::NONE, |set, (number, _)| set.with(number));
         Some((set, fewest, goal))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const PLANES: usize = 4;
+
+    /// What happens to a tile between two pictures.
+    #[derive(Clone, Copy, Debug)]
+    enum Step {
+        Tint(usize, f32),
+        Samples,
+        /// Another light, with as many samples as there are.
+        Moved(usize, f32),
+        Swapped(usize, usize),
+        Nothing,
+    }
+
+    fn step() -> impl Strategy<Value = Step> {
+        let plane = || 0..PLANES;
+        prop_oneof![
+            4 => (1..PLANES, 0.0..4_f32).prop_map(|(plane, tint)| Step::Tint(plane, tint)),
+            1 => Just(Step::Samples),
+            4 => (1..PLANES, 0.0..9_f32).prop_map(|(plane, value)| Step::Moved(plane, value)),
+            1 => (plane(), plane()).prop_map(|(a, b)| Step::Swapped(a, b)),
+            1 => Just(Step::Nothing),
+        ]
+    }
+
+    /// `value` in every pixel of so many planes, a little more from pixel to pixel.
+    fn sums(planes: usize, value: f32) -> SumColumns {
+        let mut sums = SumColumns::default();
+        sums.reset(planes * TILE_PIXELS);
+        let values: Vec<Vec3> = (0..planes * TILE_PIXELS)
+            .map(|i| value * Vec3::new(1.0, 0.3, 1e-4 * i as f32))
+            .collect();
+        sums.add(0, &values);
+        sums
+    }
+
+    proptest! {
+        #[test]
+        fn a_picture_is_that_of_all_planes_whatever_is_kept_of_the_last_one(
+            steps in prop::collection::vec(step(), 1..40),
+        ) {
+            let mut tile = TilePlanes {
+                planes: (0..PLANES).map(|_| Plane::empty(Vec3::ONE)).collect(),
+                keeps_moves: true,
+                ..TilePlanes::default()
+            };
+            let all = PlaneSet::ALL;
+            tile.add(Pixels::All, all, (all, sums(PLANES, 0.7).all()), 1);
+            for step in steps {
+                let count = tile.counts()[0];
+                match step {
+                    Step::Tint(plane, tint) => {
+                        let mut tints: Vec<Vec3> = tile.planes.iter().map(|p| p.tint).collect();
+                        tints[plane] = Vec3::new(tint, 1.0, 0.5 * tint);
+                        tile.retint(&tints);
+                    }
+                    Step::Samples if count < 1 << 20 => {
+                        tile.add(Pixels::All, all, (all, sums(PLANES, 0.3).all()), count);
+                    }
+                    Step::Moved(plane, value) => {
+                        let mut from: Vec<_> = (0..PLANES).map(Some).collect();
+                        from[plane] = None;
+                        tile.rearrange(&from);
+                        prop_assert!(tile.lacks_light());
+                        let plane = PlaneSet::NONE.with(plane);
+                        tile.add(Pixels::All, plane, (plane, sums(1, value).all()), count);
+                    }
+                    Step::Swapped(a, b) if a != OWN && b != OWN => {
+                        let mut from: Vec<_> = (0..PLANES).map(Some).collect();
+                        from.swap(a, b);
+                        tile.rearrange(&from);
+                    }
+                    _ => {}
+                }
+                let whole = tile.blend_of(|_| true).sums().means(tile.counts());
+                prop_assert_eq!(tile.means(), whole, "after {:?}", step);
+            }
+        }
     }
 }

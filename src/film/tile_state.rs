@@ -119,38 +119,48 @@ impl TileState {
         }
     }
 
-    /// Takes the sums of a chunk, `TILE_PIXELS` for each plane of each of its segments. True where they complete the pass
-    /// and so have entered the pixels.
+    /// Takes the sums of a chunk, `TILE_PIXELS` for each of its planes, of each of its segments. True where they complete the
+    /// pass and so have entered the pixels.
     pub fn absorb(&mut self, subject: &Subject, chunk: &Chunk, sums: Sums, rays: u64) -> bool {
-        let each = subject.planes() * TILE_PIXELS;
+        let planes = chunk.planes.of(subject.planes());
+        let each = planes.len() * TILE_PIXELS;
         let length = chunk.range.end - chunk.range.start;
         self.rays += rays;
         self.samples += length * self.tile.count(chunk.pixels);
         if chunk.is_whole() {
             for (number, segment) in chunk.segments().enumerate() {
                 let sums = sums.part(number * each..(number + 1) * each);
-                self.commit(subject, chunk, sums, segment.end - segment.start);
+                self.commit(
+                    subject,
+                    chunk,
+                    chunk.planes,
+                    sums,
+                    segment.end - segment.start,
+                );
             }
             self.note_moves(chunk.pixels);
             return true;
         }
         let mut pending = self.pending.take().unwrap_or_else(|| {
             let mut sums = SumColumns::default();
-            sums.reset(each);
+            sums.reset(subject.planes() * TILE_PIXELS);
             Box::new(Pending {
                 sums,
                 missing: [0; 2],
             })
         });
         // Those of other pixels are sums of nothing.
-        pending.sums.merge(0, sums);
+        for (row, plane) in planes.enumerate() {
+            let sums = sums.part(row * TILE_PIXELS..(row + 1) * TILE_PIXELS);
+            pending.sums.merge(plane * TILE_PIXELS, sums);
+        }
         for half in chunk.pixels.halves() {
             let missing = &mut pending.missing[half];
             *missing = if *missing == 0 { chunk.of } else { *missing } - length;
         }
         let complete = (chunk.pixels.halves()).all(|half| pending.missing[half] == 0);
         if complete {
-            self.commit(subject, chunk, pending.sums.all(), chunk.of);
+            self.commit(subject, chunk, PlaneSet::ALL, pending.sums.all(), chunk.of);
             self.note_moves(chunk.pixels);
             for plane in 0..subject.planes() {
                 for run in chunk.pixels.runs() {
@@ -165,18 +175,14 @@ impl TileState {
         complete
     }
 
-    /// Adds `count` samples to every pixel of the chunk, whose sums are given.
-    fn commit(&mut self, subject: &Subject, chunk: &Chunk, sums: Sums, count: u64) {
+    /// Adds `count` samples to every pixel of the chunk. The sums are of these planes.
+    fn commit(&mut self, subject: &Subject, chunk: &Chunk, of: PlaneSet, sums: Sums, count: u64) {
         self.retint(subject);
         if self.planes.is_empty() {
             self.planes = TilePlanes::of(subject);
         }
-        let planes = if subject.stays_apart {
-            chunk.planes
-        } else {
-            PlaneSet::ALL
-        };
-        self.planes.add(chunk.pixels, planes, sums, count as u32);
+        let sums = (of, sums);
+        (self.planes).add(chunk.pixels, chunk.planes, sums, count as u32);
     }
 
     /// The pixels are what they are with the subject's tints.
@@ -215,7 +221,7 @@ impl TileState {
     }
 
     /// The means of the pixels' samples so far.
-    pub fn means(&self) -> TileColors {
+    pub fn means(&mut self) -> TileColors {
         self.planes.means()
     }
 

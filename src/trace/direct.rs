@@ -40,13 +40,12 @@ impl<R: Recorder> Batch<'_, R> {
             self.settings.lighting == Lighting::Classic || !self.settings.features.soft_shadows;
         self.weigh(vertices, &mut shadow_rays.weights);
         for (i, lamp) in self.world.lamps(self.settings).enumerate() {
-            let plane = self.planes.of_light(i);
-            if !self.wanted.has(plane) {
+            let Some(row) = self.wanted.row(self.planes.of_light(i)) else {
                 continue;
-            }
+            };
             let frame = if is_even { None } else { lamp.frame() };
-            self.gather(lamp, plane, frame.as_ref(), vertices, shadow_rays);
-            self.add_arriving_light(plane, shadow_rays);
+            self.gather(lamp, row, frame.as_ref(), vertices, shadow_rays);
+            self.add_arriving_light(row, shadow_rays);
         }
     }
 
@@ -77,7 +76,7 @@ impl<R: Recorder> Batch<'_, R> {
     fn gather(
         &mut self,
         lamp: Lamp,
-        plane: usize,
+        row: usize,
         frame: Option<&Frame>,
         vertices: &Vertices,
         shadow_rays: &mut ShadowRays,
@@ -97,7 +96,7 @@ impl<R: Recorder> Batch<'_, R> {
             numbers.draw(asking, Purpose::Light(lamp.id()), self.settings);
         }
         self.answer(&asked, vertices, shadow_rays);
-        self.collect(&asked, plane, vertices, shadow_rays);
+        self.collect(&asked, row, vertices, shadow_rays);
     }
 
     /// Answers all questions for points of a light.
@@ -230,7 +229,7 @@ impl<R: Recorder> Batch<'_, R> {
     fn collect(
         &mut self,
         asked: &Asked,
-        plane: usize,
+        row: usize,
         vertices: &Vertices,
         shadow_rays: &mut ShadowRays,
     ) {
@@ -275,7 +274,7 @@ impl<R: Recorder> Batch<'_, R> {
             }
             let sample = vertices.path(vertex).sample;
             if !self.settings.features.shadows {
-                self.add(sample, plane, Adding::Light(number), value);
+                self.add_to(row, sample, Adding::Light(number), value);
                 continue;
             }
             self.recorder.shadow_ray(number, &ray);
@@ -289,7 +288,7 @@ impl<R: Recorder> Batch<'_, R> {
     }
 
     /// Traces the shadow rays and adds what arrives.
-    fn add_arriving_light(&mut self, plane: usize, shadow_rays: &mut ShadowRays) {
+    fn add_arriving_light(&mut self, row: usize, shadow_rays: &mut ShadowRays) {
         let ShadowRays {
             rays,
             shadows,
@@ -305,7 +304,7 @@ impl<R: Recorder> Batch<'_, R> {
             for (shadow, &transmittance) in shadows.iter().zip(passing.get()) {
                 self.recorder.arrived(shadow.point, transmittance);
                 let value = shadow.value * transmittance;
-                self.add(shadow.sample, plane, Adding::Light(shadow.point), value);
+                self.add_to(row, shadow.sample, Adding::Light(shadow.point), value);
             }
             return;
         }
@@ -315,9 +314,9 @@ impl<R: Recorder> Batch<'_, R> {
         for (shadow, occluded) in shadows.iter().zip(occluded) {
             if !*occluded {
                 self.recorder.arrived(shadow.point, Vec3::ONE);
-                self.add(
+                self.add_to(
+                    row,
                     shadow.sample,
-                    plane,
                     Adding::Light(shadow.point),
                     shadow.value,
                 );

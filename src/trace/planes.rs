@@ -21,8 +21,8 @@ pub struct Planes {
     apart: u8,
 }
 
-/// Some of a picture's planes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Some of a picture's planes; by default none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PlaneSet(u64);
 
 /// A world whose lights that have a plane of their own shine at a tint of 1, and the tints that make it the world that it
@@ -113,7 +113,48 @@ impl PlaneSet {
     pub fn has(self, plane: usize) -> bool {
         self.0 >> plane & 1 == 1
     }
+
+    /// The only one, where they are one.
+    pub fn only(self) -> Option<usize> {
+        (self.0.count_ones() == 1).then_some(self.0.trailing_zeros() as usize)
+    }
+
+    /// Which of them a plane is, in their order; `None` where it is none of them.
+    #[inline(always)]
+    pub fn row(self, plane: usize) -> Option<usize> {
+        let below = self.0 & ((1 << plane) - 1);
+        self.has(plane).then_some(below.count_ones() as usize)
+    }
+
+    /// Those of a picture with so many planes, in order.
+    pub fn of(self, planes: usize) -> impl ExactSizeIterator<Item = usize> + Clone {
+        Rows(self.0 & ((1 << planes) - 1))
+    }
 }
+
+/// [`PlaneSet::of`].
+#[derive(Clone)]
+struct Rows(u64);
+
+impl Iterator for Rows {
+    type Item = usize;
+
+    fn next(&mut self) -> Option<usize> {
+        if self.0 == 0 {
+            return None;
+        }
+        let plane = self.0.trailing_zeros() as usize;
+        self.0 &= self.0 - 1;
+        Some(plane)
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        let left = self.0.count_ones() as usize;
+        (left, Some(left))
+    }
+}
+
+impl ExactSizeIterator for Rows {}
 
 impl Untinted {
     /// The world with these gains, in one plane.

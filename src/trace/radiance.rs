@@ -143,11 +143,11 @@ pub fn radiance(
     radiance_with(world, camera, settings, samples, values, workspace, &mut ())
 }
 
-/// The same kept apart: `values` holds the samples' values in plane 0, then those in plane 1, and so on. Those of planes
-/// that are not `wanted` are not complete, and lights whose planes are not are not asked.
+/// The same kept apart: `values` holds the samples' values in the first plane that is `wanted`, then those in the next, and
+/// so on. Lights whose planes are not wanted are not asked.
 ///
 /// # Panics
-/// If there is not exactly one value for each sample and plane.
+/// If there is not exactly one value for each sample and wanted plane.
 #[expect(
     clippy::too_many_arguments,
     reason = "all that a sample depends on, and where it goes"
@@ -205,11 +205,11 @@ fn evaluate<R: Recorder>(
     workspace: &mut Workspace,
     recorder: &mut R,
 ) -> RayCounts {
-    let expected = planes.count() * samples.len();
+    let expected = wanted.of(planes.count()).len() * samples.len();
     assert_eq!(
         expected,
         values.len(),
-        "one value for each sample and plane"
+        "one value for each sample and wanted plane"
     );
     values.fill(Vec3::ZERO);
     let Workspace {
@@ -263,7 +263,7 @@ pub(super) struct Batch<'a, R> {
     pub pixels: &'a [u32],
     pub planes: &'a Planes,
     pub wanted: PlaneSet,
-    /// Plane by plane, one for each sample.
+    /// Plane by plane of those that are wanted, one for each sample.
     values: &'a mut [Vec3],
     pub counts: RayCounts,
     pub recorder: &'a mut R,
@@ -334,7 +334,7 @@ impl<R: Recorder> Batch<'_, R> {
                 let number = i as u32;
                 if let Some(hit) = hit {
                     vertices.push_from_camera(number, *hit);
-                } else {
+                } else if self.wants_own() {
                     let background = self.background(ray.direction);
                     self.recorder.met_background(number, background);
                     self.add(number, OWN, Adding::Path(number), background);
@@ -351,9 +351,15 @@ impl<R: Recorder> Batch<'_, R> {
                     .met_surface(*number, &vertices.hits[i], &surface);
             }
         }
-        if self.world.needs.emission || !self.settings.features.shading {
+        let shines = self.world.needs.emission || !self.settings.features.shading;
+        if shines && self.wants_own() {
             self.add_emission(vertices);
         }
+    }
+
+    /// Whether what shines by itself is asked for: whoever edits a light has it.
+    fn wants_own(&self) -> bool {
+        self.wanted.has(OWN)
     }
 
     /// Adds what paths meet that is no surface, and takes the hits of the others.
@@ -380,10 +386,12 @@ impl<R: Recorder> Batch<'_, R> {
                 continue;
             }
             let Some(hit) = *hit else {
-                let background = self.background(ray.direction);
-                self.recorder.met_background(number, background);
-                let value = path.throughput * background;
-                self.add(path.sample, OWN, Adding::Path(number), value);
+                if self.wants_own() {
+                    let background = self.background(ray.direction);
+                    self.recorder.met_background(number, background);
+                    let value = path.throughput * background;
+                    self.add(path.sample, OWN, Adding::Path(number), value);
+                }
                 continue;
             };
             vertices.push(number, path, hit);
@@ -410,8 +418,16 @@ impl<R: Recorder> Batch<'_, R> {
         }
     }
 
-    pub(super) fn add(&mut self, sample: u32, plane: usize, by: Adding, value: Vec3) {
-        self.values[plane * self.samples.len() + sample as usize] += value;
+    fn add(&mut self, sample: u32, plane: usize, by: Adding, value: Vec3) {
+        if let Some(row) = self.wanted.row(plane) {
+            self.add_to(row, sample, by, value);
+        }
+    }
+
+    /// Adds to a plane that is wanted, this one of them.
+    #[inline(always)]
+    pub(super) fn add_to(&mut self, row: usize, sample: u32, by: Adding, value: Vec3) {
+        self.values[row * self.samples.len() + sample as usize] += value;
         self.recorder.added(by, value);
     }
 

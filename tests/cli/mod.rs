@@ -7,6 +7,8 @@ mod own_files;
 mod pictures;
 #[cfg(unix)]
 mod places;
+#[cfg(unix)]
+mod readme;
 mod report;
 mod statistics;
 mod views;
