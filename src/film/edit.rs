@@ -1,15 +1,16 @@
-//! An edit of the lights while a picture is rendered: what of the picture stays true, and what is rendered again.
+//! An edit of lights and materials while a picture is rendered: what of the picture stays true, and what is rendered again.
 //!
 //! Another tint of a light that has a plane of its own is no work at all; a light that moved, changed its shape or is new
-//! needs that plane again; one that went takes its plane with it. Whatever else changes the paths themselves, and lights
-//! that are seen are in the way of paths: nothing is kept then, and another render begins.
+//! needs that plane again; one that went takes its plane with it. Another material is rendered again in the tiles where some
+//! path met it: no sample elsewhere hangs on it, unless it lets light through. Whatever else changes the paths themselves, and
+//! lights that are seen are in the way of paths: nothing is kept then, and another render begins.
 
 use super::engine::Engine;
 use super::lock;
 use super::sample_chunk::{MOST_APART, Subject};
 use crate::scene::Lighting;
 use crate::trace::planes::OWN;
-use crate::trace::{Gains, Lamp, Lights, World, samples_per_pixel};
+use crate::trace::{Gains, Lamp, Lights, MaterialSet, World, samples_per_pixel};
 use glam::Vec3;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -26,6 +27,8 @@ const LARGEST_PART: f64 = 0.8;
 pub(super) struct Edit {
     subject: Subject,
     from: Vec<Option<usize>>,
+    /// The materials that are others.
+    materials: MaterialSet,
     /// A coarse picture comes first.
     is_long: bool,
 }
@@ -36,7 +39,6 @@ impl Edit {
         let same_paths = old.stays_apart
             && Arc::ptr_eq(&old.world.aggregate, &world.aggregate)
             && Arc::ptr_eq(&old.world.objects, &world.objects)
-            && Arc::ptr_eq(&old.world.materials, &world.materials)
             && Arc::ptr_eq(&old.world.textures, &world.textures)
             && old.world.environment.is_same(&world.environment)
             && old.world.needs == world.needs
@@ -47,12 +49,14 @@ impl Edit {
         if !same_paths || is_shared {
             return None;
         }
+        let materials = old.world.changed_materials(&world)?;
         let first = edited_first(old, &gains.applied(&world));
         let subject = old.edited(world, first, gains.clone());
         let from = same_planes(old, &subject)?;
         Some(Self {
             subject,
             from,
+            materials,
             is_long: false,
         })
     }
@@ -62,6 +66,7 @@ impl Edit {
         for from in &mut self.from {
             *from = from.and_then(|plane| before.from[plane]);
         }
+        self.materials = self.materials.and(before.materials);
         self
     }
 
@@ -72,21 +77,25 @@ impl Edit {
             .iter()
             .enumerate()
             .all(|(plane, from)| *from == Some(plane));
-        stays && self.from.len() == old.planes()
+        stays && self.from.len() == old.planes() && self.materials == MaterialSet::NONE
     }
 
-    /// Whether some plane has to be rendered.
+    /// Whether some plane has to be rendered, or some tile.
     fn needs_rays(&self) -> bool {
-        self.from.contains(&None)
+        self.from.contains(&None) || self.materials != MaterialSet::NONE
     }
 
-    /// About which part of a whole sample the planes take that have to be rendered: every light as much as the way to where
-    /// it is asked for.
-    fn part_of_sample(&self) -> f64 {
+    /// About which part of a whole sample that takes which has to be rendered, where that part of all tiles is emptied: every
+    /// light as much as the way to where it is asked for.
+    fn part_of_sample(&self, emptied: f64) -> f64 {
         let planes = &self.subject.light.planes;
         let lights = self.subject.world.lights.count();
         let stale = (0..lights).filter(|light| self.from[planes.of_light(*light)].is_none());
-        (1 + stale.count()) as f64 / (1 + lights) as f64
+        let of_others = match stale.count() {
+            0 => 0.0,
+            stale => (1 + stale) as f64 / (1 + lights) as f64,
+        };
+        emptied + (1.0 - emptied) * of_others
     }
 }
 
@@ -206,7 +215,7 @@ impl Engine {
             return true;
         }
         if edit.needs_rays() {
-            let part = edit.part_of_sample();
+            let part = edit.part_of_sample(self.part_that_shows(edit.materials));
             let seconds = self.seconds_a_sample() * part;
             edit.is_long = seconds > LONGEST_SAMPLE.as_secs_f64();
             if edit.is_long && part > LARGEST_PART {
@@ -219,6 +228,15 @@ impl Engine {
         true
     }
 
+    /// Which part of the tiles that are rendered may show one of these materials.
+    fn part_that_shows(&self, materials: MaterialSet) -> f64 {
+        if materials == MaterialSet::NONE {
+            return 0.0;
+        }
+        let shows = |tile: &&u32| lock(&self.tiles[**tile as usize]).may_show(materials);
+        self.rendered.iter().filter(shows).count() as f64 / self.rendered.len().max(1) as f64
+    }
+
     /// Becomes what the edit that waits wants, while nothing is traced.
     pub(super) fn take_edit(&self) {
         let Some(mut edit) = lock(&self.edits).take() else {
@@ -229,9 +247,15 @@ impl Engine {
         let arrangement = self.subject().arrangement.wrapping_add(1);
         edit.subject.arrangement = arrangement;
         self.set_subject(edit.subject);
+        let mut emptied = 0;
         for tile in &self.tiles {
-            lock(tile).rearrange(&edit.from, arrangement);
+            let mut tile = lock(tile);
+            tile.rearrange(&edit.from, arrangement);
+            if tile.may_show(edit.materials) {
+                emptied += tile.empty();
+            }
         }
+        self.forget_samples(emptied);
         if needs_rays {
             // Until it has light everywhere again, what is seen stays, or is coarse.
             self.set_divider(0);

@@ -326,6 +326,7 @@ impl Engine {
             let pixels = {
                 // Its tints may be others by now.
                 let mut state = self.tile(chunk.tile as usize);
+                state.meet(scratch.met);
                 state.absorb(&self.subject(), chunk, scratch.sums.all(), rays.total());
                 tile.count(chunk.pixels)
             };
@@ -355,6 +356,11 @@ impl Engine {
     pub(super) fn samples(&self) -> f64 {
         let pixels = self.pixels();
         self.done.load(Ordering::Relaxed) as f64 / pixels.max(1.0)
+    }
+
+    /// So many samples are no more.
+    pub(super) fn forget_samples(&self, samples: u64) {
+        self.done.fetch_sub(samples, Ordering::Relaxed);
     }
 
     /// Whether its coarse pictures are behind it, and what it has can be edited.

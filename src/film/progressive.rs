@@ -89,10 +89,12 @@ impl Progressive {
         Ok(Self { engine, edited })
     }
 
-    /// Renders another world from now on, which differs in its lights alone, and their `gains`: the colour or the gain of one
-    /// costs no ray, and one that moved its own. Only of lights that share a plane, since there are many, another colour
-    /// costs rays too; one that is edited has its own from then on. Samples and error are those that there are; the last picture is that of a render of this world, but
-    /// for the rounding of f32. False, and nothing done, where another render would show its first picture sooner.
+    /// Renders another world from now on, which differs in lights and materials alone, and its lights' `gains`: the colour or
+    /// the gain of a light costs no ray, one that moved its own, and a material those of the tiles where it was met, unless it
+    /// lets light through. Only of lights that share a plane, since there are many, another colour costs rays too; one that is
+    /// edited has its own from then on. Samples and error are those that there are; the last picture is that of a render of
+    /// this world, but for the rounding of f32. False, and nothing done, where another render would show its first picture
+    /// sooner.
     pub fn edit(&self, world: World, gains: &Gains) -> bool {
         let edited = self.engine.edit(world, gains);
         if edited {

@@ -9,7 +9,8 @@ use super::unmet::{NO_OCTAVES, Octaves, count_octaves};
 use crate::scene::RenderSettings;
 use crate::trace::planes::OWN;
 use crate::trace::{
-    Camera, Gains, PlaneSet, RayCounts, SampleId, Untinted, Workspace, World, radiance_in_planes,
+    Camera, Gains, MaterialSet, PlaneSet, RayCounts, SampleId, Untinted, Workspace, World,
+    radiance_in_planes,
 };
 use glam::{UVec2, Vec3};
 use std::cell::RefCell;
@@ -185,6 +186,8 @@ pub(super) struct Scratch {
     pub sums: SumColumns,
     /// How bright the chunk's samples are.
     pub octaves: Octaves,
+    /// The materials that they met.
+    pub met: MaterialSet,
 }
 
 impl Default for Scratch {
@@ -199,6 +202,7 @@ impl Default for Scratch {
             gave_way: None,
             sums: SumColumns::default(),
             octaves: NO_OCTAVES,
+            met: MaterialSet::NONE,
         }
     }
 }
@@ -231,6 +235,7 @@ impl Scratch {
         let mut places = std::mem::take(&mut self.places);
         places.clear();
         places.extend(tile.places(chunk.pixels));
+        self.workspace.take_met();
         let rows = chunk.planes.of(subject.planes()).len();
         let complete = chunk.segments().all(|segment| {
             self.sums.extend(rows * TILE_PIXELS);
@@ -246,6 +251,7 @@ impl Scratch {
             sampled.is_some()
         });
         self.places = places;
+        self.met = self.workspace.take_met();
         if !complete {
             return None;
         }

@@ -143,6 +143,17 @@ pub(super) fn edited(world: &World, edit: impl FnOnce(&mut Lights)) -> World {
     .with_needs()
 }
 
+/// The world with another colour of one of its materials.
+pub(super) fn repainted(world: &World, material: usize, diffuse: Vec3) -> World {
+    let mut materials = (*world.materials).clone();
+    materials[material].diffuse = diffuse;
+    World {
+        materials: Arc::new(materials),
+        ..world.clone()
+    }
+    .with_needs()
+}
+
 /// Point lights in a row, with these numbers.
 pub(super) fn many(ids: std::ops::Range<u64>) -> World {
     edited(&lit(), |lights| {

@@ -331,11 +331,20 @@ impl TilePlanes {
             .collect();
     }
 
-    /// Whether some plane has no sample yet of pixels of which its own light has.
+    /// Has no sample any more, but for its memory.
+    pub fn empty(&mut self) {
+        self.planes.iter_mut().for_each(Plane::forget);
+        self.past = PastMoves::default();
+        self.past_is_old = false;
+        self.changed = PlaneSet::ALL;
+        self.rest = None;
+    }
+
+    /// Whether it has no sample, or some plane has none yet of pixels of which its own light has.
     pub fn lacks_light(&self) -> bool {
         let own = self.counts();
         let lacks = |half| own[half] > 0 && self.planes.iter().any(|p| p.counts[half] == 0);
-        (0..2).any(lacks)
+        own == [0; 2] || (0..2).any(lacks)
     }
 
     /// Planes of a half that have fewer samples than its own light: those that have fewest, and how many, and how many they

@@ -8,7 +8,7 @@ use super::sum_columns::{SumColumns, Sums, TileColors};
 use super::tile_planes::TilePlanes;
 use super::tiled_film::FilmTile;
 use super::tiles::{BLOCK_PIXELS, HALF_PIXELS, TILE_PIXELS, Tile};
-use crate::trace::PlaneSet;
+use crate::trace::{MaterialSet, PlaneSet};
 use glam::Vec3;
 use std::ops::Range;
 
@@ -91,6 +91,8 @@ pub(super) struct TileState {
     /// Rays that its samples took, and how many samples that were.
     pub rays: u64,
     pub samples: u64,
+    /// The materials that they met.
+    met: MaterialSet,
     /// Counts how often its pixels have changed.
     pub version: u32,
 }
@@ -115,6 +117,7 @@ impl TileState {
             moves_are_old: false,
             rays: 0,
             samples: 0,
+            met: MaterialSet::NONE,
             version: 0,
         }
     }
@@ -209,6 +212,30 @@ impl TileState {
         }
     }
 
+    /// Samples on their way into it met these materials.
+    pub fn meet(&mut self, met: MaterialSet) {
+        self.met = self.met.and(met);
+    }
+
+    /// Whether some sample may have met one of these materials.
+    pub fn may_show(&self, materials: MaterialSet) -> bool {
+        self.met.may_share(materials)
+    }
+
+    /// Has no sample any more; how many they were.
+    pub fn empty(&mut self) -> u64 {
+        let samples = |half: usize| {
+            u64::from(self.planes.counts()[half]) * self.tile.count(Pixels::Half(half))
+        };
+        let samples = samples(0) + samples(1);
+        self.planes.empty();
+        self.pending = None;
+        self.moves = [Moves::default(); 2];
+        self.moves_are_old = true;
+        self.met = MaterialSet::NONE;
+        samples
+    }
+
     /// Samples that each pixel of a half has; `None` where it has no pixel.
     pub fn count(&self, half: usize) -> Option<u32> {
         let has_pixels = self.tile.count(Pixels::Half(half)) > 0;
@@ -248,7 +275,7 @@ impl TileState {
             && !self.lacks_light()
     }
 
-    /// Whether something that shines is missing in its pixels.
+    /// Whether something that shines is missing in its pixels, or all of it.
     pub fn lacks_light(&self) -> bool {
         self.planes.lacks_light()
     }

@@ -65,6 +65,32 @@ impl Material {
     }
 }
 
+/// Some of a world's materials, and maybe others with them: those whose numbers are the same modulo 64 are one to it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MaterialSet(u64);
+
+impl MaterialSet {
+    /// None of them.
+    pub const NONE: Self = Self(0);
+
+    /// With the material of this number.
+    #[must_use]
+    pub fn with(self, material: u32) -> Self {
+        Self(self.0 | 1 << (material % 64))
+    }
+
+    /// With those of another one.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// False where no material is in both.
+    pub fn may_share(self, other: Self) -> bool {
+        self.0 & other.0 != 0
+    }
+}
+
 impl Default for Material {
     /// Grey, matt, opaque.
     fn default() -> Self {

@@ -90,7 +90,7 @@ pub use lamp::Lamp;
 pub use lights::{
     DirectionalLight, LightPoint, Lights, MovingLight, ParallelogramLight, PointLight, SegmentLight,
 };
-pub use material::{Map, Material};
+pub use material::{Map, Material, MaterialSet};
 pub use needs::{Needs, samples_per_pixel};
 pub use parallelogram_frame::ParallelogramFrame;
 pub use parallelogram_warp::Places;

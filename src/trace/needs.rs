@@ -1,6 +1,7 @@
-use super::{Camera, Object, World};
+use super::{Camera, MaterialSet, Object, World};
 use crate::scene::{Alpha, RenderSettings};
 use glam::Vec3;
+use std::sync::Arc;
 
 /// What of the model a world uses at all. What it does not use is not computed, drawn or asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -30,6 +31,30 @@ impl Needs {
 }
 
 impl World {
+    /// Of the same objects with other materials, which of those differ. `None` where one of them lets light through, or did:
+    /// then it matters to what lies in its shadow.
+    pub fn changed_materials(&self, now: &Self) -> Option<MaterialSet> {
+        let (before, after) = (&self.materials, &now.materials);
+        if Arc::ptr_eq(before, after) {
+            return Some(MaterialSet::NONE);
+        }
+        if before.len() != after.len() {
+            return None;
+        }
+        let differs = |object: &&Object| {
+            let material = object.material as usize;
+            before[material] != after[material]
+        };
+        let mut changed = MaterialSet::NONE;
+        for object in self.objects.iter().filter(differs) {
+            if self.lets_light_through(object) || now.lets_light_through(object) {
+                return None;
+            }
+            changed = changed.with(object.material);
+        }
+        Some(changed)
+    }
+
     /// Whether an object may be transparent anywhere.
     pub(super) fn lets_light_through(&self, object: &Object) -> bool {
         let material = &self.materials[object.material as usize];

@@ -16,7 +16,7 @@ use super::recorder::{Adding, Recorder};
 use super::sampler::Sampler;
 use super::shadow_rays::ShadowRays;
 use super::vertices::Vertices;
-use super::{Camera, Cone, ParallelogramLight, RayCounts, World};
+use super::{Camera, Cone, MaterialSet, ParallelogramLight, RayCounts, World};
 use crate::bvh::{Hit, Order, Ray};
 use crate::scene::{Lighting, RenderSettings};
 use glam::{UVec2, Vec3};
@@ -42,6 +42,14 @@ pub struct Workspace {
     behind: Behind,
     vertices: Vertices,
     shadow_rays: ShadowRays,
+}
+
+impl Workspace {
+    /// The materials that paths have met since this was asked last. The values of samples depend on no other material, those
+    /// apart that let light through.
+    pub fn take_met(&mut self) -> MaterialSet {
+        std::mem::take(&mut self.vertices.met)
+    }
 }
 
 /// Paths on their way: the next ray of each, and what is known of it besides.

@@ -8,7 +8,7 @@
 use super::radiance::Path;
 use super::surface::{Facing, cut_opacity, smooth_normal};
 use super::vectors::{Vectors, column_vector, set_column};
-use super::{Cone, Surface, World};
+use super::{Cone, MaterialSet, Surface, World};
 use crate::bvh::{Hit, NearEdge, Placement, Ray, SurfacePoint};
 use crate::instruction_sets::vectorized;
 use crate::scene::{Lighting, RenderSettings};
@@ -46,6 +46,8 @@ pub(super) struct Vertices {
     pub emission: Vectors,
     pub shininess: Vec<f32>,
     pub opacity: Vec<f32>,
+    /// What any of them was made of, since somebody took that.
+    pub met: MaterialSet,
 }
 
 /// What is known of hits on one object before they are looked up.
@@ -219,6 +221,7 @@ impl Vertices {
         let instance = &world.aggregate.instances()[number];
         let object = &world.objects[number];
         let material = &world.materials[object.material as usize];
+        self.met = self.met.with(object.material);
         let placement = instance.placement();
         let is_physical = settings.lighting == Lighting::Physical;
         let normals = object.smooth_normals(settings);

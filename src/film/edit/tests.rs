@@ -1,7 +1,7 @@
 use super::super::engine::{Engine, Mode};
 use super::super::sample_chunk::Subject;
-use super::super::test_scene::{camera, edited, lit, many, settings};
-use super::super::{Ending, Progressive};
+use super::super::test_scene::{camera, edited, lit, many, repainted, settings};
+use super::super::{Ending, Progressive, Snapshot};
 use crate::trace::{Gains, Lights, PointLight, Untinted, World};
 use glam::{UVec2, Vec3};
 use std::sync::Arc;
@@ -90,7 +90,7 @@ fn change(lights: &mut Lights, numbers: &mut impl FnMut(u32) -> u32) {
 }
 
 #[test]
-fn after_any_edits_of_the_lights_at_any_moment_the_picture_is_that_of_a_fresh_render() {
+fn after_any_edits_of_lights_and_materials_at_any_moment_the_picture_is_that_of_a_fresh_render() {
     let mut state = 7_u32;
     let mut numbers = |below: u32| {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -105,7 +105,13 @@ fn after_any_edits_of_the_lights_at_any_moment_the_picture_is_that_of_a_fresh_re
             if numbers(3) > 0 {
                 render.wait();
             }
-            now = edited(&now, |lights| change(lights, &mut numbers));
+            if numbers(4) > 0 {
+                now = edited(&now, |lights| change(lights, &mut numbers));
+            }
+            if numbers(3) == 0 {
+                let diffuse = Vec3::new(0.5, 0.1, numbers(10) as f32 / 10.0);
+                now = repainted(&now, numbers(3) as usize, diffuse);
+            }
             kept += 1;
             if render.edit(now.clone(), &Gains::default()) {
                 taken += 1;
@@ -151,11 +157,70 @@ fn lights_that_share_a_plane_are_rendered_again_together_and_a_light_that_is_see
     assert_eq!(planes(&gone, 2).unwrap(), [Some(0), Some(2), None, None]);
     let seen = edited(&before, |lights| lights.parallelograms[0].visible = true);
     assert_eq!(planes(&seen, 8), None);
-    let other = World {
-        materials: Arc::new((*before.materials).clone()),
-        ..before.clone()
+}
+
+#[test]
+fn another_material_is_rendered_again_where_paths_met_it_and_nowhere_else() {
+    let size = UVec2::new(320, 180);
+    let start =
+        |world: &World| Progressive::start(world.clone(), camera(), settings(size, 5)).unwrap();
+    let before = lit();
+    let render = start(&before);
+    render.wait();
+    let mut rays = render.status().rays.total();
+    let mut now = before;
+    // The wall is seen by itself, and in the mirror.
+    for (step, green) in [0.9, 0.1, 0.5].into_iter().enumerate() {
+        now = repainted(&now, 1, Vec3::new(0.2, green, 0.2));
+        if step == 1 {
+            now = edited(&now, |lights| lights.points[0].position.x += 0.1);
+        }
+        assert!(render.edit(now.clone(), &Gains::default()));
+        assert_eq!(render.wait(), Ending::Samples);
+        let fresh = start(&now);
+        fresh.wait();
+        assert_eq!(render.snapshot().picture, fresh.snapshot().picture);
+        assert_eq!(render.film().counts(), fresh.film().counts());
+        assert_eq!(render.status().samples, 5.0);
+        let all = fresh.status().rays.total();
+        let more = render.status().rays.total() - rays;
+        assert!(
+            2 * more < all,
+            "step {step}: {more} rays more, {all} for all"
+        );
+        rays += more;
+    }
+    let mut glass = now.clone();
+    Arc::make_mut(&mut glass.materials)[1].opacity = 0.5;
+    assert!(
+        !render.edit(glass.with_needs(), &Gains::default()),
+        "its shadow"
+    );
+}
+
+#[test]
+fn what_one_material_shows_while_it_is_rendered_again_is_what_was_there() {
+    let size = UVec2::new(320, 180);
+    let mode = Mode {
+        watched: true,
+        samples: 0..2,
+        region: None,
     };
-    assert!(super::Edit::between(&subject(&before, 8), other, &Gains::default()).is_none());
+    let world = lit();
+    let subject = Subject::new(world.clone(), camera(), settings(size, 2), true);
+    let engine = Engine::new(subject, mode, None);
+    engine.run(&|_| {});
+    let mut snapshot = Snapshot::black(size);
+    engine.redraw(&mut snapshot);
+    let before = snapshot.picture.clone();
+    let red = repainted(&world, 1, Vec3::X);
+    assert!(engine.edit(red, &Gains::default()));
+    engine.take_edit();
+    engine.redraw(&mut snapshot);
+    assert_eq!(snapshot.picture, before, "nothing new is known");
+    engine.run(&|_| {});
+    engine.redraw(&mut snapshot);
+    assert_ne!(snapshot.picture, before);
 }
 
 #[test]
@@ -222,7 +287,7 @@ fn a_light_that_moves_among_many_takes_a_part_of_a_sample() {
         let world = edited(&world, |lights| edit(lights));
         super::Edit::between(&subject, world, &Gains::default())
             .unwrap()
-            .part_of_sample()
+            .part_of_sample(0.0)
     };
     assert_eq!(
         part(&|lights| lights.points[0].position.x += 0.1),
