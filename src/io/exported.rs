@@ -1,6 +1,7 @@
 //! What a model file can hold of the open scene, gathered for its writers.
 
 use super::error::Place;
+use super::model::MeshParts;
 use super::notes::Notes;
 use super::place::is_hidden;
 use super::scene_file::scene_entities;
@@ -10,9 +11,11 @@ use crate::scene::{
 };
 use crate::trace::srgb;
 use bevy::asset::{AssetId, Assets};
+use bevy::color::{ColorToComponents, LinearRgba};
 use bevy::ecs::hierarchy::ChildOf;
 use bevy::ecs::name::Name;
 use bevy::image::Image;
+use bevy::math::Vec3;
 use bevy::mesh::{Mesh, Mesh3d};
 use bevy::prelude::{Component, Entity, World};
 use exr::prelude::f16;
@@ -109,6 +112,21 @@ pub(crate) fn gather(world: &mut World, file: &Path) -> Exported {
     let settings = world.get_resource::<RenderSettings>();
     let is_set = settings.is_some_and(|settings| *settings != RenderSettings::default());
     note(is_set.into(), "the render settings");
+    for object in out
+        .objects
+        .iter()
+        .filter(|object| glows_in_colors(world, object, &out.materials))
+    {
+        let what =
+            "colours of vertices of what shines by itself, which other programs do not show, of";
+        (out.notes).add_named(
+            file,
+            Place::Whole,
+            what,
+            &object.name,
+            "written all the same",
+        );
+    }
     out.entities = entities
         .into_iter()
         .filter(|&entity| !is_only_a_material(world, entity))
@@ -138,6 +156,18 @@ impl Exported {
             }
         }
     }
+}
+
+/// Whether the colours of its vertices are those of its glow, which they are where it has no body: in no model format they
+/// are.
+fn glows_in_colors(world: &World, object: &Object, materials: &[Material]) -> bool {
+    let phong = &materials[object.material].phong;
+    let is_black = |color: LinearRgba| color.to_vec3() == Vec3::ZERO;
+    let mesh = world.get_resource::<Assets<Mesh>>();
+    let mesh = mesh.and_then(|meshes| meshes.get(object.mesh));
+    is_black(phong.diffuse)
+        && !is_black(phong.emission)
+        && (mesh.and_then(MeshParts::of)).is_some_and(|parts| !parts.colors.is_empty())
 }
 
 fn count<T: Component>(world: &World, entities: &[Entity]) -> usize {

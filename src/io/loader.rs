@@ -2,7 +2,7 @@ use super::budget::mesh_bytes;
 use super::error::{FileError, Place, Problem};
 use super::file_name::{BUILTIN, split_fragment};
 use super::folder::Folder;
-use super::model::Model;
+use super::model::{Model, drop_unused};
 use super::picture::{PictureUse, ReadPicture, read_picture};
 use super::{Limits, extension, gltf, obj, open_regular, ply, shapes, stl};
 use crate::scene::{MeshSource, TextureSource};
@@ -148,6 +148,7 @@ pub(crate) fn read_model(
         let what = format!("a name that ends in .{extension}, and the content of a .{kind}");
         (model.notes).add(file, Place::Whole, what, "read as what it holds");
     }
+    model.meshes.values_mut().for_each(drop_unused);
     Ok(model)
 }
 

@@ -105,6 +105,50 @@ pub(crate) fn triangle_mesh(
     mesh
 }
 
+/// Takes out the vertices that no triangle has. Parts of a model often share one list of them, and each would hold all
+/// of it; and what is not seen would count where it is asked how large something is.
+pub(crate) fn drop_unused(mesh: &mut Mesh) {
+    const UNUSED: u32 = u32::MAX;
+    let mut places = vec![UNUSED; mesh.count_vertices()];
+    let Ok(Some(indices)) = mesh.try_indices_mut_option() else {
+        return;
+    };
+    let Indices::U32(corners) = indices else {
+        return;
+    };
+    for &corner in &*corners {
+        if let Some(place) = places.get_mut(corner as usize) {
+            *place = 0;
+        }
+    }
+    if !places.contains(&UNUSED) {
+        return;
+    }
+    let mut count = 0;
+    for place in places.iter_mut().filter(|place| **place != UNUSED) {
+        *place = count;
+        count += 1;
+    }
+    for corner in corners {
+        *corner = places.get(*corner as usize).copied().unwrap_or(0);
+    }
+    fn keep<T>(values: &mut Vec<T>, places: &[u32]) {
+        let mut places = places.iter();
+        values.retain(|_| places.next().is_some_and(|&place| place != UNUSED));
+        values.shrink_to_fit();
+    }
+    use bevy::mesh::VertexAttributeValues as Values;
+    for (_, values) in mesh.attributes_mut() {
+        match values {
+            Values::Float32x2(values) => keep(values, &places),
+            Values::Float32x3(values) => keep(values, &places),
+            Values::Float32x4(values) => keep(values, &places),
+            // No reader makes others.
+            _ => {}
+        }
+    }
+}
+
 /// What a mesh of triangles holds, borrowed.
 pub(crate) struct MeshParts<'a> {
     pub positions: &'a [[f32; 3]],

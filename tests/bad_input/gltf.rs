@@ -416,12 +416,38 @@ fn numbers_that_json_does_not_have_are_none() {
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), "a.bin", bytes([0, 1, 2]));
     let text = triangle().to_string();
-    for (number, name) in [("NaN", "a.gltf"), ("-Infinity", "b.gltf")] {
+    for (number, name) in [
+        ("NaN", "a.gltf"),
+        ("-Infinity", "b.gltf"),
+        ("1e400", "c.gltf"),
+    ] {
         let text = text.replace(r#""max":[1.0,"#, &format!(r#""max":[{number},"#));
         assert!(text.contains(number));
         let file = write(folder.path(), name, text);
         assert_eq!(opens_and_says(&file, &[name, "JSON does not have"]), 1);
     }
+}
+
+#[test]
+fn names_in_an_old_encoding_do_not_cost_the_document() {
+    let (folder, _) = changed(|_| {});
+    let text = triangle().to_string();
+    let text = text.replace(r#""nodes":[{"#, r#""nodes":[{"name":"caf_","#);
+    let mut text = text.into_bytes();
+    for byte in text.iter_mut().filter(|byte| **byte == b'_') {
+        *byte = 0xe9;
+    }
+    let file = write(folder.path(), "b.gltf", text);
+    let (mut app, opened) = opened(&file);
+    let said = opened.notes.lines();
+    assert!(
+        said.iter().any(|line| line.contains("no UTF-8")),
+        "{said:?}"
+    );
+    let world = app.world_mut();
+    let mut names = world.query::<&bevy::ecs::name::Name>();
+    let found = names.iter(world).any(|name| name.as_str() == "caf\u{e9}");
+    assert!(found, "no entity has the name");
 }
 
 #[test]

@@ -93,10 +93,16 @@ fn what_is_not_there_or_cannot_be_written_ends_with_code_1_and_is_named() {
     std::fs::create_dir(path.join("folder.png")).unwrap();
     std::fs::write(path.join("empty.obj"), "").unwrap();
     std::fs::write(path.join("scene.xyz"), "x").unwrap();
+    let long = format!("{}.png", "x".repeat(300));
     for (arguments, parts) in [
+        // It would be told only after tracing.
         (
-            &["render", "no-such-scene", "-o", "a.png"][..],
-            &["no-such-scene", "cornell-box"][..],
+            &["render", "triangle", "-o", &long, "--spp", "1000000"][..],
+            &["xxx", "cannot be written"][..],
+        ),
+        (
+            &["render", "no-such-scene", "-o", "a.png"],
+            &["no-such-scene", "cornell-box"],
         ),
         (&["render", "no-such.obj", "-o", "a.png"], &["no-such.obj"]),
         (&["render", "empty.obj", "-o", "a.png"], &["empty.obj"]),

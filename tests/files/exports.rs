@@ -99,3 +99,29 @@ fn vertex_colours_come_back_from_what_was_exported() {
         assert_eq!(colors(&file).1, before, "{name}");
     }
 }
+
+#[test]
+fn the_colours_of_what_glows_are_noted_as_they_are_seen_here_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let text =
+        "mtllib a.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nusemtl a\no leaf\nf 1 2 3\n";
+    let file = super::app::write(folder.path(), "a.obj", text);
+    for (diffuse, glow, times) in [
+        ("0 0 0", "1 1 1", 1),
+        ("0.5 0 0", "1 1 1", 0),
+        ("0 0 0", "0 0 0", 0),
+    ] {
+        let material = format!("newmtl a\nKd {diffuse}\nKe {glow}\n");
+        super::app::write(folder.path(), "a.mtl", material);
+        let (mut app, _) = super::app::opened(&file);
+        for name in ["b.obj", "b.glb"] {
+            let notes = save(app.world_mut(), &folder.path().join(name))
+                .unwrap()
+                .lines();
+            let is_it =
+                |line: &&String| line.contains("which other programs do not show, of `leaf`");
+            let said = notes.iter().filter(is_it).count();
+            assert_eq!(said, times, "{name}, Kd {diffuse}, Ke {glow}: {notes:?}");
+        }
+    }
+}

@@ -177,3 +177,34 @@ fn the_key_light_stands_over_the_left_shoulder_of_whoever_looks() {
     let behind = from.dot(-*eye.forward());
     assert!(left > 0.2 && from.y > 0.5 && behind > 0.5, "{from}");
 }
+
+#[test]
+fn a_camera_of_the_file_that_looks_past_everything_is_told() {
+    let looking = |rotation: &str, kind: &str| {
+        let camera = format!(
+            r#""cameras": [{kind}], "nodes": [{{"camera": 0,
+            "translation": [0.0, 0.0, 5.0], "rotation": {rotation}}}, "#
+        );
+        let text =
+            under_a_sun(500.0).replace(r#""nodes": [{"mesh""#, &format!(r#"{camera}{{"mesh""#));
+        let text = text.replace(
+            r#""scenes": [{"nodes": [0, 1]}]"#,
+            r#""scenes": [{"nodes": [0, 1, 2]}]"#,
+        );
+        let (_, opened) = open("a.gltf", &text);
+        notes(&opened, "looks past everything").len()
+    };
+    let perspective = r#"{"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1}}"#;
+    let orthographic = r#"{"type": "orthographic",
+        "orthographic": {"xmag": 2.0, "ymag": 2.0, "znear": 0.0, "zfar": 10.0}}"#;
+    for kind in [perspective, orthographic] {
+        // Ahead, back, to the side.
+        let turns = [
+            "[0, 0, 0, 1]",
+            "[0, 1, 0, 0]",
+            "[0, 0.7071068, 0, 0.7071068]",
+        ];
+        let told = turns.map(|turn| looking(turn, kind));
+        assert_eq!(told, [0, 1, 1], "{kind}");
+    }
+}

@@ -3,7 +3,8 @@
 use super::gltf::{POSITIONS, base64, corners, document, place, plain};
 use super::models::objects;
 use bevy::math::Vec3;
-use bevy::mesh::Mesh3d;
+use bevy::mesh::{Mesh, Mesh3d};
+use bevy::prelude::Assets;
 use serde_json::json;
 
 #[test]
@@ -69,4 +70,73 @@ fn a_mesh_that_is_instanced_is_there_as_often() {
         let place = place(app.world_mut(), &format!("node/{i}"));
         assert_eq!(place.translation, Vec3::new(x, y, z).into());
     }
+}
+
+#[test]
+fn vertices_that_no_triangle_has_are_not_there() {
+    // The indices name four of the five vertices.
+    let (mut app, _) = document(plain(), |d| {
+        d["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = json!(0);
+    });
+    assert_eq!(corners(&mut app).len(), 2);
+    let world = app.world_mut();
+    let handle = world.query::<&Mesh3d>().single(world).unwrap().0.clone();
+    let mesh = world.resource::<Assets<Mesh>>().get(&handle).unwrap();
+    let counts: Vec<usize> = mesh.attributes().map(|(_, values)| values.len()).collect();
+    assert_eq!(counts, [4; 3]);
+}
+
+#[test]
+fn what_a_matrix_shears_is_sheared_here_with_all_that_stands_below_it() {
+    use bevy::math::{Affine3A, Mat4, Vec4};
+    let columns = |matrix: Mat4| matrix.to_cols_array().to_vec();
+    // Far away, where the shear is small beside the translation.
+    let above = Mat4::from_cols(
+        Vec4::new(1.0, 0.0, 0.0, 0.0),
+        Vec4::new(0.5, 2.0, 0.0, 0.0),
+        Vec4::new(0.0, -0.25, 1.0, 0.0),
+        Vec4::new(9000.0, 0.0, 0.0, 1.0),
+    );
+    let below = Mat4::from_rotation_z(0.7) * Mat4::from_scale(Vec3::new(1.0, -2.0, 1.0));
+    let (mut app, notes) = document(plain(), |d| {
+        d["nodes"] = json!([
+            { "name": "above", "mesh": 0, "matrix": columns(above), "children": [1] },
+            { "name": "below", "mesh": 0, "matrix": columns(below) },
+        ]);
+    });
+    assert!(
+        !notes.iter().any(|note| note.contains("shear")),
+        "{notes:?}"
+    );
+    let world = app.world_mut();
+    assert_eq!(objects(world).len(), 2);
+    for (name, expected) in [("above/turned", above), ("below", above * below)] {
+        let off = place(world, name).matrix3 - Affine3A::from_mat4(expected).matrix3;
+        let largest = off
+            .to_cols_array()
+            .map(f32::abs)
+            .into_iter()
+            .fold(0.0, f32::max);
+        assert!(largest < 1e-5, "{name}: {off}");
+    }
+}
+
+#[test]
+fn a_value_of_a_kind_that_is_none_of_its_own_is_told() {
+    let (_, notes) = document(plain(), |d| {
+        d["nodes"][0]["scale"] = json!([2.0, 2.0]);
+        d["nodes"][0]["matrix"] = json!(null);
+        d["materials"] = json!([{
+            "pbrMetallicRoughness": { "baseColorFactor": [1.0, 0.0, 0.0], "roughnessFactor": "rough" },
+        }]);
+        d["meshes"][0]["primitives"][0]["material"] = json!(0);
+    });
+    for key in ["`scale`", "`baseColorFactor`", "`roughnessFactor`"] {
+        let told = notes.iter().filter(|note| note.contains(key));
+        assert_eq!(told.count(), 1, "{key}: {notes:#?}");
+    }
+    assert!(
+        !notes.iter().any(|note| note.contains("`matrix`")),
+        "{notes:#?}"
+    );
 }

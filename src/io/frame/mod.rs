@@ -18,8 +18,8 @@ use super::ids::assign_ids;
 use super::notes::Notes;
 use super::place::world_from;
 use crate::scene::{
-    DirectionalLamp, Environment, ParallelogramLamp, PointLamp, RenderSettings, SceneCamera,
-    SegmentLamp,
+    DirectionalLamp, Environment, ParallelogramLamp, PointLamp, Projection, RenderSettings,
+    SceneCamera, SegmentLamp,
 };
 use bevy::color::LinearRgba;
 use bevy::ecs::name::Name;
@@ -49,7 +49,13 @@ pub(crate) fn frame(world: &mut World, file: &Path, notes: &mut Notes) {
     }
     let mut added = Vec::new();
     let eye = match first_camera(world) {
-        Some(eye) => eye,
+        Some((eye, projection)) => {
+            if viewpoint::looks_past(&surface, &eye, projection) {
+                let instead = "its picture is empty; choose another or --eye and --look-at";
+                note("has a camera that looks past everything", instead);
+            }
+            eye
+        }
         None => {
             let eye = framing(&surface);
             added.push(spawn(world, "Camera", eye, SceneCamera::default()));
@@ -91,17 +97,17 @@ pub(super) fn frame_nothing(world: &mut World) {
     assign_ids(world, &[camera, light]);
 }
 
-/// Where the first camera stands.
-fn first_camera(world: &mut World) -> Option<Transform> {
-    let mut cameras = world.query_filtered::<Entity, With<SceneCamera>>();
-    let camera = cameras.iter(world).next()?;
+/// Where the first camera stands, and how it projects.
+fn first_camera(world: &mut World) -> Option<(Transform, Projection)> {
+    let mut cameras = world.query::<(Entity, &SceneCamera)>();
+    let (camera, &SceneCamera { projection, .. }) = cameras.iter(world).next()?;
     let place = world_from(world, camera);
     let (forward, up) = (
         place.transform_vector3(-Vec3::Z),
         place.transform_vector3(Vec3::Y),
     );
     let position = Transform::from_translation(place.translation.into());
-    Some(position.looking_to(forward, up))
+    Some((position.looking_to(forward, up), projection))
 }
 
 fn spawn(world: &mut World, name: &'static str, transform: Transform, what: impl Bundle) -> Entity {

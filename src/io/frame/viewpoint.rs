@@ -26,6 +26,8 @@ const AZIMUTHS: [f32; 12] = [
 const MOST_PIXELS: usize = 1 << 22;
 /// What a pixel with the back of a triangle counts, beside 1 for a front.
 const BACK: f32 = 0.5;
+/// A surface that is seen at less than this cosine counts as if it were seen at it.
+const LEAST_COSINE: f32 = 0.1;
 /// By how much the usual view may show less and be taken all the same; less so the further a view is from it.
 const HABIT: f32 = 0.25;
 /// What a view from below counts, beside 1: things stand on something.
@@ -64,17 +66,37 @@ pub(super) fn framing(surface: &Surface) -> Transform {
     let score = |&towards: &Vec3| {
         let habit = 1.0 + HABIT * towards.dot(USUAL);
         let below = if towards.y < 0.0 { BELOW } else { 1.0 };
-        let eye = eye(towards);
-        // As an area in the scene: a thing that is seen end on fills its picture too.
-        let scale = eye.translation.distance_squared(centre);
-        shown(surface, &eye, tangent) * scale * habit * below
+        shown(surface, &eye(towards), tangent) * habit * below
     };
     views.par_iter().map(score).collect_into_vec(&mut scores);
     let best = (0..views.len()).max_by(|&a, &b| scores[a].total_cmp(&scores[b]).then(b.cmp(&a)));
     eye(best.map_or(USUAL.normalize(), |best| views[best]))
 }
 
-/// What a camera sees of everything, in pixels.
+/// Whether all there is lies behind a camera or on one side of its picture, were that twice as wide as high: then nothing
+/// is seen for sure.
+pub(super) fn looks_past(surface: &Surface, eye: &Transform, projection: Projection) -> bool {
+    const ASPECT: f32 = 2.0;
+    let view_from_world = eye.compute_affine().inverse();
+    let mut are_all_beyond = [!surface.points.is_empty(); 5];
+    for &point in &surface.points {
+        let p = view_from_world.transform_point3(point);
+        let high = match projection {
+            Projection::Perspective { fov_y } => (0.5 * fov_y).tan() * -p.z,
+            Projection::Orthographic { height } => 0.5 * height,
+        };
+        let wide = ASPECT * high;
+        let is_beyond = [p.z >= 0.0, p.x > wide, -p.x > wide, p.y > high, -p.y > high];
+        for (are_all, is) in are_all_beyond.iter_mut().zip(is_beyond) {
+            *are_all &= is;
+        }
+    }
+    are_all_beyond.contains(&true)
+}
+
+/// How much a camera sees of everything: the geometric mean of the surface that it sees and of that as its picture has it,
+/// in pixels at a distance of 1. By the first alone a plate would be seen as well from its edge, and by the second a box
+/// from its front, of which the sides are seen too from beside it.
 fn shown(surface: &Surface, eye: &Transform, tangent: f32) -> f32 {
     let view_from_world = eye.compute_affine().inverse();
     // 1 / distance of the nearest so far, and what it counts.
@@ -92,7 +114,11 @@ fn shown(surface: &Surface, eye: &Transform, tangent: f32) -> f32 {
         if !area.is_finite() {
             continue;
         }
-        let counts = if area > 0.0 { 1.0 } else { BACK };
+        let side = if area > 0.0 { 1.0 } else { BACK };
+        let [p, q, r] = corners;
+        let normal = (q - p).cross(r - p).normalize_or_zero();
+        let cosine = normal.dot((p + q + r).normalize_or_zero()).abs();
+        let counts = side / cosine.max(LEAST_COSINE).sqrt();
         let mut draw = |x: usize, y: usize, nearness: f32| {
             let pixel = &mut pixels[y * SIDE + x];
             if nearness > pixel.0 {
@@ -130,7 +156,9 @@ fn shown(surface: &Surface, eye: &Transform, tangent: f32) -> f32 {
             }
         }
     }
-    pixels.iter().map(|&(_, counts)| counts).sum()
+    let seen = pixels.iter().filter(|(nearness, _)| *nearness > 0.0);
+    let area = seen.map(|&(nearness, counts)| f64::from(counts) / f64::from(nearness).powi(2));
+    area.sum::<f64>() as f32
 }
 
 #[cfg(test)]
@@ -176,6 +204,26 @@ mod tests {
                 facing > 0.45,
                 "{normal}: looked at along {forward:?}, at a cosine of {facing}"
             );
+        }
+    }
+
+    #[test]
+    fn three_faces_of_a_box_are_seen() {
+        for size in [
+            Vec3::ONE,
+            Vec3::new(1.0, 2.0, 1.0),
+            Vec3::new(3.0, 1.0, 2.0),
+            Vec3::new(1.0, 1.0, 5.0),
+            Vec3::new(1e-3, 1e-3, 2e-3),
+        ] {
+            let walls = [Vec3::X, -Vec3::X, Vec3::Y, -Vec3::Y, Vec3::Z, -Vec3::Z];
+            let wall = |wall: Vec3| square(wall, wall.any_orthonormal_vector(), wall);
+            let scaled =
+                |triangle: [[f32; 3]; 3]| triangle.map(|p| (Vec3::from(p) * size).to_array());
+            let triangles: Vec<_> = walls.into_iter().flat_map(wall).map(scaled).collect();
+            let forward = framing(&surface(&triangles)).forward();
+            let least = forward.abs().min_element();
+            assert!(least > 0.2, "{size}: along {forward:?}");
         }
     }
 

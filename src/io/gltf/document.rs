@@ -76,13 +76,8 @@ impl Document {
             .claim(json_bytes(text))
             .map_err(|problem| FileError::new(file, problem))?;
         let root = serde_json::from_slice(text).or_else(|error| {
-            let mended = not_finite::without_them(text);
-            let root = mended.and_then(|text| serde_json::from_slice::<Value>(&text).ok());
-            if root.is_some() {
-                let what = "NaN or Infinity, which JSON does not have";
-                notes.add(file, Place::Whole, what, "read as none");
-            }
-            root.ok_or_else(|| parse_error(file, text, &error))
+            let note = |what: &str, instead| notes.add(file, Place::Whole, what, instead);
+            mended(text, note).ok_or_else(|| parse_error(file, text, &error))
         })?;
         let mut document = Self {
             file: file.to_path_buf(),
@@ -375,6 +370,26 @@ pub(super) enum Picture<'a> {
     Beside(String),
     /// A picture file inside it.
     Inside(Cow<'a, [u8]>),
+}
+
+/// A document that is no JSON but for what can be told: letters of an old encoding, numbers that are none.
+fn mended(text: &[u8], mut note: impl FnMut(&str, &'static str)) -> Option<Value> {
+    let decoded = super::super::text::text(text);
+    let is_latin = matches!(decoded, Cow::Owned(_));
+    let plain = is_latin
+        .then(|| serde_json::from_str(&decoded).ok())
+        .flatten();
+    let root = plain.or_else(|| {
+        let finite = not_finite::without_them(decoded.as_bytes())?;
+        let root = serde_json::from_slice(&finite).ok()?;
+        let what = "NaN, Infinity or numbers as large, which JSON does not have";
+        note(what, "read as none");
+        Some(root)
+    })?;
+    if is_latin {
+        note("text that is no UTF-8", "its letters are read as Latin-1");
+    }
+    Some(root)
 }
 
 fn parse_error(file: &Path, text: &[u8], error: &serde_json::Error) -> FileError {

@@ -41,9 +41,21 @@ impl<'a> Json<'a> {
 
     /// What stands under a key.
     pub fn get(self, key: &str) -> Option<Self> {
+        Some(self.peek(key)?.mark())
+    }
+
+    /// What stands under a key, which is not read by that.
+    fn peek(self, key: &str) -> Option<Self> {
         let value = self.value.get(key)?;
-        self.marks.0.borrow_mut().insert(address(value));
         Some(Self { value, ..self })
+    }
+
+    /// What stands under a key as something that `read` makes of it. What cannot be made into it stays unread.
+    fn get_as<T>(self, key: &str, read: impl Fn(Self) -> Option<T>) -> Option<T> {
+        let json = self.peek(key)?;
+        let read = read(json)?;
+        json.mark();
+        Some(read)
     }
 
     /// What an extension adds here.
@@ -59,16 +71,15 @@ impl<'a> Json<'a> {
 
     /// The elements of a list; none where there is none.
     pub fn list(self, key: &str) -> impl ExactSizeIterator<Item = Self> + 'a {
-        let list = self.get(key).and_then(|list| list.value.as_array());
+        let list = self.get_as(key, |list| list.value.as_array());
         let list = list.map_or(&[][..], Vec::as_slice);
         list.iter().map(move |value| Self { value, ..self })
     }
 
     /// One element of a list.
     pub fn element(self, key: &str, index: usize) -> Option<Self> {
-        let value = self.get(key)?.value.as_array()?.get(index)?;
-        self.marks.0.borrow_mut().insert(address(value));
-        Some(Self { value, ..self })
+        let value = self.get_as(key, |list| list.value.as_array())?.get(index)?;
+        Some(Self { value, ..self }.mark())
     }
 
     /// What is read is the element itself.
@@ -101,12 +112,12 @@ impl<'a> Json<'a> {
 
     /// An index or a count under a key.
     pub fn index(self, key: &str) -> Option<usize> {
-        self.get(key)?.whole()
+        self.get_as(key, Self::whole)
     }
 
     /// A number under a key, finite.
     pub fn number(self, key: &str) -> Option<f32> {
-        self.get(key)?.finite()
+        self.get_as(key, Self::finite)
     }
 
     fn finite(self) -> Option<f32> {
@@ -116,25 +127,28 @@ impl<'a> Json<'a> {
 
     /// As many numbers under a key, all finite.
     pub fn numbers<const N: usize>(self, key: &str) -> Option<[f32; N]> {
-        self.all_numbers(key)?.try_into().ok()
+        self.get_as(key, |json| json.all_finite()?.try_into().ok())
     }
 
     /// All numbers under a key; `None` where one is none.
     pub fn all_numbers(self, key: &str) -> Option<Vec<f32>> {
-        let list = self.get(key)?.value.as_array()?;
+        self.get_as(key, Self::all_finite)
+    }
+
+    fn all_finite(self) -> Option<Vec<f32>> {
+        let list = self.value.as_array()?;
         let number = |value| Self { value, ..self }.finite();
         list.iter().map(number).collect()
     }
 
     /// Text under a key.
     pub fn text(self, key: &str) -> Option<&'a str> {
-        self.get(key)?.value.as_str()
+        self.get_as(key, Self::as_text)
     }
 
     /// Whether this is true.
     pub fn is_true(self, key: &str) -> bool {
-        let value = self.get(key).and_then(|value| value.value.as_bool());
-        value == Some(true)
+        self.get_as(key, |json| json.value.as_bool()) == Some(true)
     }
 
     /// Whether this is a list.
@@ -172,7 +186,7 @@ impl<'a> Json<'a> {
             }
         }
         for (key, value) in self.value.as_object().into_iter().flatten() {
-            if IRRELEVANT.contains(&key.as_str()) {
+            if IRRELEVANT.contains(&key.as_str()) || value.is_null() {
                 continue;
             }
             if !path.is_empty() {
@@ -222,6 +236,30 @@ mod tests {
                 "materials[0].extensions.TWO.y"
             ]
         );
+    }
+
+    #[test]
+    fn what_is_of_another_kind_than_it_has_to_be_is_unread() {
+        let document = r#"{ "index": -1, "number": "1", "numbers": [1, 2], "all": [1, "x"], "text": 1, "flag": 1,
+            "list": {}, "elements": 1, "nothing": null, "good": 1 }"#;
+        let unread = unread(document, |json| {
+            json.index("index");
+            json.number("number");
+            json.numbers::<3>("numbers");
+            json.all_numbers("all");
+            json.text("text");
+            json.is_true("flag");
+            assert_eq!(json.list("list").len(), 0);
+            json.element("elements", 0);
+            json.index("nothing");
+            // One of two ways is enough.
+            json.text("good");
+            json.index("good");
+        });
+        let mut paths: Vec<&str> = unread.iter().map(|(path, _)| path.as_str()).collect();
+        paths.sort_unstable();
+        let all = "all elements flag index list number numbers text";
+        assert_eq!(paths.join(" "), all);
     }
 
     #[test]

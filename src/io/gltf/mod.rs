@@ -14,6 +14,7 @@ mod material;
 mod nodes;
 mod not_finite;
 mod pictures;
+mod placement;
 mod primitive;
 mod read;
 mod rest;

@@ -7,10 +7,11 @@ use super::document::Document;
 use super::json::Json;
 use super::lamps::{Lamp, camera_of, lamp_of};
 use super::material::default_phong;
+use super::placement::{Placement, placement_of};
 use super::primitive::read_primitive;
 use super::read::name_of;
 use super::rest::{Nodes, Pose};
-use bevy::math::{Mat4, Quat, Vec3};
+use bevy::math::{Quat, Vec3};
 use bevy::transform::components::Transform;
 use std::collections::HashMap;
 
@@ -56,16 +57,6 @@ impl Reader<'_> {
             .collect();
         while let Some((index, parent, depth)) = to_visit.pop() {
             let part = format!("node {index}");
-            // What it holds may become entities below its own.
-            let levels = depth + 1;
-            if levels > document.limits.depth {
-                let problem = Problem::TooMany {
-                    what: "ancestors",
-                    count: levels,
-                    limit: document.limits.depth,
-                };
-                return Err(document.error(part, problem));
-            }
             let Some(node) = document.json().element("nodes", index) else {
                 document.note(&part, "a node that there is not", "left out");
                 continue;
@@ -75,8 +66,21 @@ impl Reader<'_> {
                 document.note(&part, what, "shown once");
                 continue;
             }
-            let place = self.push_node(index, node, parent)?;
-            let children: Vec<usize> = node.list("children").filter_map(Json::whole).collect();
+            let name = name_of(node, "node", index);
+            let note = |what: &str, instead| document.note_named(&part, what, &name, instead);
+            let placement = placement_of(node, &note);
+            // What it holds may become entities below its own.
+            let levels = depth + 1 + u64::from(placement.within.is_some());
+            if levels > document.limits.depth {
+                let problem = Problem::TooMany {
+                    what: "ancestors",
+                    count: levels,
+                    limit: document.limits.depth,
+                };
+                return Err(document.error(part, problem));
+            }
+            let place = self.push_node(index, node, &name, parent, placement)?;
+            let children: Vec<usize> = node.list("children").map(index_of).collect();
             let children = children.into_iter().rev();
             to_visit.extend(children.map(|child| (child, Some(place), levels)));
         }
@@ -113,7 +117,7 @@ impl Reader<'_> {
             self.document.note("scenes", what, "the first is");
         }
         match json.element("scenes", chosen.unwrap_or(0)) {
-            Some(scene) => scene.list("nodes").filter_map(Json::whole).collect(),
+            Some(scene) => scene.list("nodes").map(index_of).collect(),
             None => {
                 let all = 0..self.nodes.len();
                 all.filter(|&node| self.nodes.is_root(node)).collect()
@@ -121,17 +125,18 @@ impl Reader<'_> {
         }
     }
 
-    /// Adds a node and what it holds; returns where it is in the model.
+    /// Adds a node and what it holds; returns where that below which its children stand is in the model.
     fn push_node(
         &mut self,
         index: usize,
         json: Json,
-        parent: Option<usize>,
+        name: &str,
+        mut parent: Option<usize>,
+        placement: Placement,
     ) -> Result<usize, FileError> {
         let document = self.document;
         let part = format!("node {index}");
-        let name = name_of(json, "node", index);
-        let note = |what: &str, instead| document.note_named(&part, what, &name, instead);
+        let note = |what: &str, instead| document.note_named(&part, what, name, instead);
         let mut contents = Vec::new();
         let meshes = self.meshes(index, json, &part);
         let is_skinned = json.index("skin").is_some() && !meshes.is_empty();
@@ -162,7 +167,23 @@ impl Reader<'_> {
                 }),
             }
         }
-        let transform = transform_of(json, &note);
+        let Placement {
+            mut transform,
+            within,
+        } = placement;
+        let mut own_name = name.to_owned();
+        if let Some(within) = within {
+            let above = Node {
+                name: name.to_owned(),
+                parent,
+                transform,
+                ..Node::default()
+            };
+            parent = Some(self.model.nodes.len());
+            self.model.nodes.push(above);
+            own_name.push_str("/turned");
+            transform = within;
+        }
         let place = self.model.nodes.len();
         let is_own = contents.len() == 1 && contents[0].transform == Transform::IDENTITY;
         let own = match is_own {
@@ -170,7 +191,7 @@ impl Reader<'_> {
             false => Node::default(),
         };
         self.model.nodes.push(Node {
-            name: name.clone(),
+            name: own_name,
             parent,
             transform,
             ..own
@@ -324,6 +345,11 @@ impl Reader<'_> {
     }
 }
 
+/// The index that a list's element is; that of nothing where it is none.
+fn index_of(element: Json) -> usize {
+    element.whole().unwrap_or(usize::MAX)
+}
+
 fn light_of(document: &Document, light: Json, note: &impl Fn(&str, &'static str)) -> Option<Node> {
     let lights = document.json().extension("KHR_lights_punctual");
     let light = light.index("light");
@@ -344,43 +370,4 @@ fn light_of(document: &Document, light: Json, note: &impl Fn(&str, &'static str)
         note("the range of the light in", "light has none here");
     }
     Some(content)
-}
-
-fn transform_of(node: Json, note: &impl Fn(&str, &'static str)) -> Transform {
-    let transform = match node.numbers::<16>("matrix") {
-        None => Transform {
-            translation: node.numbers("translation").unwrap_or([0.0; 3]).into(),
-            rotation: node.numbers("rotation").map_or(Quat::IDENTITY, |turn| {
-                let turn = Quat::from_array(turn);
-                if turn.length_squared() == 0.0 {
-                    note("a rotation of zeros, of", "not turned");
-                    return Quat::IDENTITY;
-                }
-                turn.normalize()
-            }),
-            scale: node.numbers("scale").unwrap_or([1.0; 3]).into(),
-        },
-        Some(matrix) => {
-            let matrix = Mat4::from_cols_array(&matrix);
-            let transform = Transform::from_matrix(matrix);
-            let largest = matrix
-                .to_cols_array()
-                .into_iter()
-                .fold(0.0, |a: f32, b| a.max(b.abs()));
-            // Between the rounding of a decomposition and what could be seen.
-            let tolerance = 1e-4 * largest;
-            if !transform.to_matrix().abs_diff_eq(matrix, tolerance) {
-                note("the shear in the matrix of", "left out");
-            }
-            transform
-        }
-    };
-    if transform.is_finite() {
-        return transform;
-    }
-    note(
-        "a transform that cannot be undone, of",
-        "it has no size here",
-    );
-    Transform::from_scale(Vec3::ZERO)
 }

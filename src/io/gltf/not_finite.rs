@@ -1,4 +1,4 @@
-//! Numbers that JSON cannot say. Python's `json` writes them all the same, and reads them.
+//! Numbers that JSON cannot say, which Python's `json` writes all the same, and such as no float holds.
 
 /// The text with `null` in the place of each; `None` where there are none.
 pub(super) fn without_them(text: &[u8]) -> Option<Vec<u8>> {
@@ -8,18 +8,24 @@ pub(super) fn without_them(text: &[u8]) -> Option<Vec<u8>> {
     let mut is_in_string = false;
     let mut at = 0;
     while let Some(&byte) = text.get(at) {
-        let name = match is_in_string {
-            true => None,
-            false => NAMES.iter().find(|name| text[at..].starts_with(name)),
+        let rest = if is_in_string { &[] } else { &text[at..] };
+        let name = NAMES.iter().find(|name| rest.starts_with(name));
+        let number = &rest[..number_length(rest)];
+        let length = match name {
+            Some(name) => name.len(),
+            None if is_too_large(number) => number.len(),
+            None => 0,
         };
-        if let Some(name) = name {
+        if length > 0 {
             mended.extend(b"null");
-            at += name.len();
+            at += length;
             found = true;
             continue;
         }
-        mended.push(byte);
-        at += 1;
+        // A number as a whole: its digits are no numbers of their own.
+        let length = number.len().max(1);
+        mended.extend(&text[at..at + length]);
+        at += length;
         match byte {
             b'"' => is_in_string = !is_in_string,
             b'\\' if is_in_string => {
@@ -32,6 +38,26 @@ pub(super) fn without_them(text: &[u8]) -> Option<Vec<u8>> {
     found.then_some(mended)
 }
 
+/// How many bytes of a text are the number that it begins with.
+fn number_length(text: &[u8]) -> usize {
+    let is_one = text
+        .first()
+        .is_some_and(|first| first.is_ascii_digit() || *first == b'-');
+    let is_in_it = |byte: &&u8| byte.is_ascii_digit() || b"+-.eE".contains(byte);
+    if is_one {
+        text.iter().take_while(is_in_it).count()
+    } else {
+        0
+    }
+}
+
+fn is_too_large(number: &[u8]) -> bool {
+    let number = std::str::from_utf8(number).ok();
+    number
+        .and_then(|number| number.parse().ok())
+        .is_some_and(f64::is_infinite)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -42,6 +68,8 @@ mod tests {
             (r#"[NaN, -Infinity,Infinity]"#, Some("[null, null,null]")),
             (r#"{"NaN": nan}"#, Some(r#"{"NaN": null}"#)),
             (r#"{"a\"NaN": -1}"#, None),
+            ("[1e400,-1E+999, 11e307]", Some("[null,null, 11e307]")),
+            (r#"["1e400", 1e-400]"#, None),
             (r#"{"a\\": NaN}"#, Some(r#"{"a\\": null}"#)),
             (r#"["NaN"#, None),
             (r#"["\"#, None),

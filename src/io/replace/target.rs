@@ -27,7 +27,13 @@ impl Target {
         if path.file_name().is_none() {
             return Err(FileError::new(path, Problem::IsAFolder));
         }
-        let old = fs::metadata(path).ok();
+        let old = match fs::metadata(path) {
+            // It would be told only when everything is done.
+            Err(error) if error.kind() == io::ErrorKind::InvalidFilename => {
+                return Err(writing(error));
+            }
+            old => old.ok(),
+        };
         if let Some(old) = &old {
             if old.is_dir() {
                 return Err(FileError::new(path, Problem::IsAFolder));
