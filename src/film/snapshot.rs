@@ -5,7 +5,7 @@ use super::preview::Preview;
 use super::tile_state::TileState;
 use super::tiled_film::draw;
 use super::tiles::Tile;
-use super::{Film, Picture, TILE};
+use super::{Film, Picture, TILE, lock};
 use glam::{UVec2, Vec2, Vec3};
 use rayon::prelude::*;
 
@@ -71,13 +71,15 @@ impl Engine {
         let width = snapshot.picture.width as usize;
         let columns = self.grid.columns() as usize;
         let row_of_tiles = (TILE as usize * width).max(1);
+        let subject = self.subject();
         let rows = snapshot.picture.pixels.par_chunks_mut(row_of_tiles);
         rows.zip(snapshot.versions.par_chunks_mut(columns))
             .enumerate()
             .map(|(row, (pixels, versions))| {
                 let mut changed = false;
                 for (column, version) in versions.iter_mut().enumerate() {
-                    let mut state = self.tile(row * columns + column);
+                    let mut state = lock(&self.tiles[row * columns + column]);
+                    state.retint(&subject);
                     let is_whole = !state.lacks_light();
                     let is_coarse = !is_whole || state.version == 0;
                     if is_whole && *version != state.version {

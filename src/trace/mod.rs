@@ -47,6 +47,7 @@ mod normal_map;
 mod numbers;
 mod parallelogram_frame;
 mod parallelogram_warp;
+mod paths;
 mod piecewise;
 pub mod planes;
 mod polynomials;

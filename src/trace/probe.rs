@@ -1,6 +1,7 @@
 //! Samples evaluated again, with every ray written down, by the very code that renders.
 
-use super::radiance::{Path, radiance_with};
+use super::paths::Path;
+use super::radiance::radiance_with;
 use super::ray_tree::{
     Crossing, LightSample, ProbedSample, RayEnd, RayHit, RayKind, RayTree, TracedRay,
 };

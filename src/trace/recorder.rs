@@ -1,7 +1,7 @@
 //! Watching [`radiance`](super::radiance()) at work. The batch tells a [`Recorder`] what it does, in
 //! the order in which it does it; `()` listens to nothing, and compiles to nothing.
 
-use super::radiance::Path;
+use super::paths::Path;
 use super::{LightPoint, Surface};
 use crate::bvh::{Hit, Ray};
 use glam::Vec3;

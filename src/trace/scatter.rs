@@ -2,7 +2,8 @@
 
 use super::Surface;
 use super::disc::offset_direction;
-use super::radiance::{Batch, Path, Paths};
+use super::paths::{Path, Paths};
+use super::radiance::Batch;
 use super::recorder::{Recorder, Way};
 use super::sampler::{Purpose, mix};
 use super::vertices::Vertices;

@@ -5,7 +5,7 @@
 //! edge, grazing rays), is looked up by itself, as [`Surface::at`] does: both take their formulas from the same places, so
 //! their bits are the same.
 
-use super::radiance::Path;
+use super::paths::Path;
 use super::surface::{Facing, cut_opacity, smooth_normal};
 use super::vectors::{Vectors, column_vector, set_column};
 use super::{Cone, MaterialSet, Surface, World};
