@@ -18,7 +18,9 @@ use crate::scene::{
 use bevy::asset::{AssetId, Assets, Handle};
 use bevy::image::Image;
 use bevy::mesh::{Mesh, Mesh3d};
-use bevy::prelude::{Changed, Commands, DetectChanges, Entity, Query, Res, ResMut, Resource};
+use bevy::prelude::{
+    Changed, Commands, DetectChanges, Entity, Local, Query, Res, ResMut, Resource,
+};
 use std::collections::{BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 
@@ -243,13 +245,14 @@ pub(crate) fn resolve_pictures(
     }
 }
 
-/// Loads the environment's map where it changed.
+/// Loads the environment's map where it changed. One that no source has named is the app's own, and stays.
 pub(crate) fn resolve_environment(
     environment: Res<Environment>,
     mut files: ResMut<SceneFiles>,
     mut images: ResMut<Assets<Image>>,
     meshes: Res<Assets<Mesh>>,
     mut problems: ResMut<LoadProblems>,
+    mut named: Local<Option<Handle<Image>>>,
     mut map: ResMut<EnvironmentMap>,
 ) {
     if !environment.is_changed() {
@@ -257,6 +260,10 @@ pub(crate) fn resolve_environment(
     }
     problems.forget_environment();
     let handle = match &environment.map {
+        None if map.0 != *named => {
+            *named = None;
+            return;
+        }
         None => None,
         Some(source) => {
             let (folder, limits) = (files.folder.clone(), files.limits_beside(&meshes, &images));
@@ -275,6 +282,7 @@ pub(crate) fn resolve_environment(
             }
         }
     };
+    named.clone_from(&handle);
     if map.0 != handle {
         map.0 = handle;
     }
@@ -317,5 +325,24 @@ mod tests {
             .diffuse_map = None;
         app.update();
         assert_eq!(diffuse(&app), None);
+    }
+
+    #[test]
+    fn a_panorama_of_the_apps_own_stays_while_the_environment_is_edited() {
+        let mut app = headless_app();
+        let world = app.world_mut();
+        let own = world.resource_mut::<Assets<Image>>().add(Image::default());
+        world.insert_resource(EnvironmentMap(Some(own.clone())));
+        let edit = |app: &mut bevy::app::App, source: Option<&str>| {
+            let mut environment = app.world_mut().resource_mut::<Environment>();
+            environment.intensity += 1.0;
+            environment.map = source.map(TextureSource::new);
+            app.update();
+            app.world().resource::<EnvironmentMap>().0.clone()
+        };
+        assert_eq!(edit(&mut app, None), Some(own.clone()));
+        let named = edit(&mut app, Some("builtin:uv"));
+        assert!(named.is_some() && named != Some(own));
+        assert_eq!(edit(&mut app, None), None);
     }
 }

@@ -21,6 +21,14 @@ pub(super) struct IdOwners {
     largest: u64,
 }
 
+#[cfg(test)]
+impl IdOwners {
+    /// How many are known.
+    pub fn kept(&self) -> usize {
+        self.owners.len()
+    }
+}
+
 type OfScene = Or<(
     With<Mesh3d>,
     With<Phong>,

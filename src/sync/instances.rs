@@ -33,8 +33,10 @@ pub(super) struct TracedInstances {
     traced_objects: u64,
     /// Whether some tree has yet to be begun for the rows as they are.
     stale: bool,
-    /// Trees in a row that came when the objects were others already.
-    late: u32,
+    /// What the count was for the tree that is being built.
+    begun_objects: u64,
+    /// How long the newest tree took.
+    took: Duration,
 }
 
 impl TracedInstances {
@@ -68,41 +70,39 @@ impl TracedInstances {
         self.show(thread.finished(wait), draft);
         if self.stale && !thread.is_busy() {
             self.stale = false;
+            self.begun_objects = self.objects;
             let instances = self.rows.iter().map(|row| row.instance.clone()).collect();
             let (objects, options) = (self.objects, self.options);
             let work = move || (objects, Aggregate::build(instances, &options));
             if at_once {
                 self.show(Some(work()), draft);
             } else {
-                let takes = draft.world.aggregate.build_time();
                 thread.start(work);
-                let wait = if self.late >= MOST_LATE && takes <= LONGEST {
-                    Duration::MAX
-                } else if takes <= PATIENCE {
-                    PATIENCE
-                } else {
-                    // It would not be there in time, and the frame would wait for nothing.
-                    Duration::ZERO
-                };
+                // A longer one would not be there in time, and the frame would wait for nothing.
+                let in_time = self.took <= PATIENCE;
+                let wait = if in_time { PATIENCE } else { Duration::ZERO };
                 self.show(thread.finished(wait), draft);
             }
         }
         draft.top_level_pending = thread.is_busy();
         draft.objects_ahead = self.objects != self.traced_objects;
+        draft.fits_pending = thread.is_busy() && self.objects == self.begun_objects;
     }
 
-    /// A tree over objects that are no longer those goes, and the next one is waited for.
+    /// A tree over objects that are no longer those is shown with what fitted it last.
     fn show(&mut self, built: Option<(u64, Aggregate)>, draft: &mut Draft) {
         let Some((objects, aggregate)) = built else {
             return;
         };
+        self.took = aggregate.build_time();
+        let fitting = draft.fitting.take();
         if objects == self.objects {
-            self.late = 0;
             self.traced_objects = self.objects;
             draft.world.aggregate = Arc::new(aggregate);
             draft.changes.top_level = true;
-        } else {
-            self.late += 1;
+        } else if let Some(mut world) = fitting.filter(|_| objects == self.begun_objects) {
+            world.aggregate = Arc::new(aggregate);
+            draft.late = Some(world);
         }
     }
 }
@@ -110,12 +110,6 @@ impl TracedInstances {
 /// So long a frame waits for the tree over the objects where the one before took no longer: that of a thousand is
 /// there by then, and nothing lags behind the hand.
 const PATIENCE: Duration = Duration::from_micros(2000);
-
-/// Where something comes or goes in every frame, every tree is late, and nothing new would ever be seen: after so
-/// many a frame waits until one is there.
-const MOST_LATE: u32 = 3;
-/// But not where that takes longer.
-const LONGEST: Duration = Duration::from_millis(100);
 
 /// One object as the top level sees it.
 pub(super) struct Row {

@@ -1,4 +1,5 @@
 use super::problem::{Fault, SyncProblem};
+use super::reading::Switched;
 use super::traced::Draft;
 use crate::scene::SceneId;
 use bevy::ecs::change_detection::DetectChanges;
@@ -29,13 +30,23 @@ impl LeftOut {
     }
 }
 
+#[cfg(test)]
+impl LeftOut {
+    /// Of how many things anything is said.
+    pub fn kept(&self) -> usize {
+        self.0.len()
+    }
+}
+
 /// Names what is left out of entities that there are.
 pub(super) fn name_left_out(
     notes: Res<LeftOut>,
     entities: Query<(Option<&SceneId>, Option<&Name>)>,
+    mut switched: Switched,
     draft: ResMut<Draft>,
 ) {
-    if !notes.is_changed() {
+    // Of what is disabled nothing is said.
+    if !(switched.any() | notes.is_changed()) {
         return;
     }
     let draft = draft.into_inner();

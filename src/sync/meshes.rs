@@ -92,6 +92,14 @@ impl TracedMeshes {
     }
 }
 
+#[cfg(test)]
+impl TracedMeshes {
+    /// How many are kept.
+    pub fn kept(&self) -> usize {
+        self.shown.len() + self.ready.len() + self.building.len()
+    }
+}
+
 /// What has another mesh now, or is posed as another.
 type Dressed = (
     Or<(Changed<Mesh3d>, Changed<PosedMesh>)>,

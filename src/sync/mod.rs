@@ -12,7 +12,7 @@
 //! | `sync_textures` | `Image` assets that a material or the environment uses | that texture |
 //! | `sync_materials` | `Phong`, `PhongMaps`, `UsesMaterial` | materials, and which object has which |
 //! | `sync_lights` | the four lamps | lights |
-//! | `sync_environment` | `Environment`, `EnvironmentMap` | background and map |
+//! | `sync_environment` | `Environment`, `EnvironmentMap`, a panorama or a cube | background and map |
 //! | `sync_cameras` | `SceneCamera`, `Lens` | [`TracedCameras`] |
 //! | `name_left_out` | [`LeftOut`] | what is named of it |
 //! | `publish_snapshot` | what the systems above redid | [`Traced`] |
@@ -48,6 +48,7 @@ mod materials;
 mod mesh_data;
 mod meshes;
 mod motions;
+mod panorama;
 mod posed;
 mod problem;
 mod reading;

@@ -43,6 +43,12 @@ impl WorldMotions {
         self.moving.get(&entity).copied()
     }
 
+    /// How many move.
+    #[cfg(test)]
+    pub(super) fn kept(&self) -> usize {
+        self.moving.len()
+    }
+
     /// True where this frame found others than the one before.
     pub(super) fn changed(&self) -> bool {
         self.changed

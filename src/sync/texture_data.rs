@@ -23,7 +23,7 @@ pub enum TextureFault {
     NotFlat,
     /// Pixels of a kind that is not read.
     #[error(
-        "has pixels of the format {0:?}, which is not read; use 8, 16 or 32 bits a channel, uncompressed"
+        "has pixels of the format {0:?}, which is not read; use 8, 16 or 32 bits a channel, or Rgb9e5Ufloat, uncompressed"
     )]
     Format(TextureFormat),
     /// The size and the data do not fit.
@@ -138,6 +138,12 @@ fn texels(
         TextureFormat::Rgba32Float => {
             return Ok(floats(&wide_words(data), count, LARGEST, |texel| texel));
         }
+        TextureFormat::Rgb9e5Ufloat => {
+            let words: Vec<u32> = (data.as_chunks().0.iter())
+                .map(|&b| u32::from_ne_bytes(b))
+                .collect();
+            return Ok(floats(&words, count, LARGEST, shared_exponent));
+        }
         other => return Err(TextureFault::Format(other)),
     };
     Ok((numbers, Replaced::default()))
@@ -217,6 +223,14 @@ fn half(bits: u16) -> f32 {
     }
 }
 
+/// Three times 9 bits, red lowest, and above them the exponent that they share, with a bias of 15: a
+/// channel is its 9 bits · 2^(e - 24) (Vulkan's specification, "RGB to shared exponent conversion").
+fn shared_exponent([word]: [u32; 1]) -> [f32; 4] {
+    let scale = 2f32.powi((word >> 27) as i32 - 24);
+    let channel = |at: u32| (word >> at & 0x1ff) as f32 * scale;
+    [channel(0), channel(9), channel(18), 1.0]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -266,6 +280,12 @@ mod tests {
         assert_eq!(
             first(TextureFormat::Rgba16Float, halves),
             [1.0, 2.5, 2f32.powi(-24)]
+        );
+        // 256, 64 and 511, all of them times 2^(16 - 24).
+        let shared = 16_u32 << 27 | 511 << 18 | 64 << 9 | 256;
+        assert_eq!(
+            first(TextureFormat::Rgb9e5Ufloat, shared.to_ne_bytes().to_vec()),
+            [1.0, 0.25, 511.0 / 256.0]
         );
         let units = words(&[0xffff, 0, 0xffff, 0]);
         assert_eq!(first(TextureFormat::Rgba16Unorm, units), [1.0, 0.0, 1.0]);

@@ -1,4 +1,5 @@
 use super::image_sampler::sampler_of;
+use super::panorama::{is_cube, trace_cube};
 use super::reading::Switched;
 use super::texture_data::{Replaced, TextureFault, trace_texture};
 use super::traced::Draft;
@@ -83,6 +84,14 @@ impl TracedTextures {
     }
 }
 
+#[cfg(test)]
+impl TracedTextures {
+    /// How many are kept, and how many of them cut out.
+    pub fn kept(&self) -> [usize; 2] {
+        [self.by_asset.len(), self.cut_outs.len()]
+    }
+}
+
 /// Converts pictures that are new or were edited, and drops those that nothing uses any more.
 pub(super) fn sync_textures(
     mut events: MessageReader<AssetEvent<Image>>,
@@ -113,6 +122,16 @@ pub(super) fn sync_textures(
     if !stale {
         return;
     }
+    if environment.is_changed()
+        && let Some(map) = &environment.0
+        && matches!(
+            known.by_asset.get(&map.id()),
+            Some(Err(TextureFault::NotFlat))
+        )
+    {
+        // A material has it too, and a cube is none for that.
+        known.by_asset.remove(&map.id());
+    }
     let used: HashSet<AssetId<Image>> = users
         .iter()
         .flat_map(|maps| PhongMap::ALL.map(|map| map.loaded(maps)))
@@ -124,8 +143,13 @@ pub(super) fn sync_textures(
     for id in used {
         if !known.by_asset.contains_key(&id) {
             let image = assets.get(id).ok_or(TextureFault::Missing);
+            let is_around = environment.0.as_ref().is_some_and(|map| map.id() == id);
             let texture = image.and_then(|image| {
-                let converted = trace_texture(image)?;
+                let converted = if is_around && is_cube(image) {
+                    trace_cube(image)?
+                } else {
+                    trace_texture(image)?
+                };
                 Ok(TracedTexture {
                     texture: Arc::new(converted.texture),
                     sampler: sampler_of(image),

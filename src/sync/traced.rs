@@ -66,8 +66,15 @@ pub(super) struct Draft {
     pub pending: usize,
     /// Whether the tree over the objects is being built.
     pub top_level_pending: bool,
-    /// Its objects are not those of the tree over them, which is being built: no snapshot yet.
+    /// Its objects are not those of the tree over them, which is being built: no snapshot of it yet.
     pub objects_ahead: bool,
+    /// Whether its objects are those that the tree over them is being built for.
+    pub fits_pending: bool,
+    /// The newest world that fits that tree, of the end of a frame.
+    pub fitting: Option<trace::World>,
+    /// That world with its tree, which came when the objects were others already: where something comes or
+    /// goes in every frame every tree does, and nothing new would ever be seen.
+    pub late: Option<trace::World>,
     /// Some object appeared, went, or has another mesh: who merely moved keeps the material.
     pub other_objects: bool,
     /// Some part was read again, so that its problems may be others although nothing was redone.
@@ -118,8 +125,22 @@ pub(super) fn publish_snapshot(
     draft.other_objects = false;
     let pending = draft.pending + usize::from(draft.top_level_pending);
     traced.bypass_change_detection().pending = pending;
+    if draft.fits_pending {
+        draft.fitting = Some(draft.world.clone());
+    }
+    let late = draft.late.take();
     if draft.objects_ahead {
-        traced.bypass_change_detection().changes = Changes::default();
+        let Some(world) = late else {
+            traced.bypass_change_detection().changes = Changes::default();
+            return;
+        };
+        // What was redone since is told again when it shows.
+        traced.changes = Changes {
+            top_level: true,
+            ..draft.changes
+        };
+        traced.problems = draft.problems.all();
+        traced.world = Arc::new(world.with_needs());
         return;
     }
     let changes = std::mem::take(&mut draft.changes);

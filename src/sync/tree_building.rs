@@ -19,7 +19,8 @@ use std::time::Duration;
 pub enum TreeBuilding {
     /// On threads of their own; no frame waits but 2 ms for the tree over the objects. Objects keep the mesh that they
     /// had until the new one's tree is there, and those that had none appear with it. What is edited while
-    /// the tree over the objects is built shows in a later frame: see [`Traced::pending`](super::Traced).
+    /// the tree over the objects is built shows in a later frame: see [`Traced::pending`](super::Traced). Where
+    /// objects come or go meanwhile, the scene is shown as it was when that tree was begun.
     #[default]
     InBackground,
     /// Within the frame that notices the edit, on the current rayon pool.

@@ -83,7 +83,7 @@ pub use camera::{Camera, ImagePlane, Optics};
 pub use digest::{Digest, digest};
 pub use dome::{DOME, Dome};
 pub use emitters::emitters;
-pub use environment::Environment;
+pub use environment::{Environment, direction_at};
 pub use first_hit::{FirstHit, central_hits, central_ray, first_hits};
 pub use footprint::Cone;
 pub use gains::Gains;

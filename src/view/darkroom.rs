@@ -5,9 +5,10 @@
 //! of each pass becomes smaller (Cycles' render scheduler does the same).
 
 use super::darkroom_threads::pool;
+use super::surfaces::Surfaces;
 use crate::bvh::Aggregate;
 use crate::film::views::{Scale, Source, Sources, View, show};
-use crate::film::{Ending, FirstHits, Progressive, Snapshot, State, depths, develop_rgba8};
+use crate::film::{Ending, FirstHits, Progressive, Snapshot, State, develop_rgba8};
 use crate::scene::{Output, RenderSettings};
 use crate::trace;
 use bevy::math::{URect, UVec2};
@@ -22,8 +23,6 @@ use std::time::{Duration, Instant};
 const INTERVAL: [Duration; 2] = [Duration::from_millis(50), Duration::from_millis(500)];
 /// How long until it is looked at again while there is no picture yet, and one is being traced.
 const FIRST: Duration = Duration::from_millis(2);
-/// Pixels of the depth that gizmos are hidden by, at most: it is traced besides the picture.
-const MOST_DEPTHS: f32 = 120_000.0;
 /// Samples a pixel of those views that are made of first hits.
 const VIEW_SAMPLES: u32 = 4;
 
@@ -40,9 +39,8 @@ pub(super) struct Print {
     pub size: UVec2,
     /// RGBA.
     pub bytes: Vec<u8>,
-    /// Metres along the view axis, with the size of their own; `None` where those of the print before
-    /// are still true, or come with the next.
-    pub depths: Option<(UVec2, Vec<f32>)>,
+    /// `None` where those of the print before are still true, or come with the next.
+    pub surfaces: Option<Surfaces>,
     pub scale: Option<Scale>,
     /// Which render it is of: [`Progressive::number`].
     pub of: u64,
@@ -111,11 +109,11 @@ fn follows_samples(view: View) -> bool {
     view.source() != Source::FirstHits
 }
 
-/// In place of a print that nobody has taken. Its depths, which come only when they are others, are
+/// In place of a print that nobody has taken. Its surfaces, which come only when they are others, are
 /// the newest still where this one has none.
 fn put_on(shelf: &mut Option<Print>, mut print: Print) {
-    if let (None, Some(before)) = (&print.depths, shelf.take()) {
-        print.depths = before.depths;
+    if let (None, Some(before)) = (&print.surfaces, shelf.take()) {
+        print.surfaces = before.surfaces;
     }
     *shelf = Some(print);
 }
@@ -137,8 +135,8 @@ struct Developer {
     job: Option<Job>,
     /// Outlives a job: what a new render has no picture of yet shows the one before.
     snapshot: Snapshot,
-    /// Of what the newest depths are.
-    depths_of: Option<DepthsOf>,
+    /// Of what the newest surfaces are.
+    surfaces_of: Option<SurfacesOf>,
     /// Of what the snapshot is.
     seen: Option<Seen>,
 }
@@ -157,9 +155,9 @@ impl Seen {
     }
 }
 
-/// All that depths depend on.
+/// All that surfaces depend on.
 #[derive(PartialEq)]
-struct DepthsOf {
+struct SurfacesOf {
     /// Kept, lest another is made at its address.
     trees: KeptTrees,
     camera: trace::Camera,
@@ -180,7 +178,7 @@ impl Developer {
             newest,
             job: None,
             snapshot: Snapshot::black(UVec2::ZERO),
-            depths_of: None,
+            surfaces_of: None,
             seen: None,
         }
     }
@@ -209,7 +207,7 @@ impl Developer {
             let Self {
                 job: Some(job),
                 snapshot,
-                depths_of,
+                surfaces_of,
                 ..
             } = &mut self
             else {
@@ -217,7 +215,7 @@ impl Developer {
             };
             if Instant::now() >= job.next
                 && !job.ended
-                && let Some(print) = pool.install(|| job.print(snapshot, depths_of))
+                && let Some(print) = pool.install(|| job.print(snapshot, surfaces_of))
             {
                 let mut shelf = self.newest.lock().unwrap_or_else(PoisonError::into_inner);
                 put_on(&mut shelf, print);
@@ -285,7 +283,7 @@ impl Job {
     fn print(
         &mut self,
         snapshot: &mut Snapshot,
-        depths_of: &mut Option<DepthsOf>,
+        surfaces_of: &mut Option<SurfacesOf>,
     ) -> Option<Print> {
         let status = self.render.status();
         let ended = matches!(status.state, State::Ended(_));
@@ -303,25 +301,26 @@ impl Job {
             settings,
             ..
         } = &*self.subject;
-        let wanted = DepthsOf {
+        let wanted = SurfacesOf {
             trees: KeptTrees(world.aggregate.clone()),
             camera: camera.clone(),
             size: settings.size,
         };
         // The first picture does not wait for them, but the last shows them.
-        let new_depths = depths_of.as_ref() != Some(&wanted);
-        let depths = (new_depths && (self.printed || ended)).then(|| self.depths());
-        if depths.is_some() {
-            *depths_of = Some(wanted);
+        let are_new = surfaces_of.as_ref() != Some(&wanted);
+        let surfaces = are_new && (self.printed || ended);
+        let surfaces = surfaces.then(|| Surfaces::of(&self.subject));
+        if surfaces.is_some() {
+            *surfaces_of = Some(wanted);
         }
         let age = self.started.elapsed();
         self.next = Instant::now()
-            + match new_depths && depths.is_none() {
+            + match are_new && surfaces.is_none() {
                 true => FIRST,
                 false => (age / 10).clamp(INTERVAL[0], INTERVAL[1]),
             };
         let stands = self.printed && !(changed && follows_samples(self.order.view));
-        if stands && depths.is_none() && !ended {
+        if stands && surfaces.is_none() && !ended {
             return None;
         }
         self.ended = ended;
@@ -330,7 +329,7 @@ impl Job {
         Some(Print {
             size: self.subject.settings.size,
             bytes: shown,
-            depths,
+            surfaces,
             scale,
             of,
             ending: match status.state {
@@ -384,22 +383,6 @@ impl Job {
             .collect();
         Some((bytes, shown.scale))
     }
-
-    /// For a picture that is small enough to be traced besides.
-    fn depths(&self) -> (UVec2, Vec<f32>) {
-        let Subject {
-            world,
-            camera,
-            settings,
-            ..
-        } = &*self.subject;
-        let pixels = settings.size.as_vec2().element_product();
-        let scale = (MOST_DEPTHS / pixels).sqrt().min(1.0);
-        let size = (settings.size.as_vec2() * scale).as_uvec2().max(UVec2::ONE);
-        let depths = depths(world, camera, settings, size);
-        // Finite, so that the shader's arithmetic is.
-        (size, depths.into_iter().map(|d| d.min(1e30)).collect())
-    }
 }
 
 #[cfg(test)]
@@ -410,7 +393,11 @@ mod tests {
         Print {
             size: UVec2::ONE,
             bytes: vec![0; 4],
-            depths: depths.map(|depth| (UVec2::ONE, vec![depth])),
+            surfaces: depths.map(|depth| Surfaces {
+                size: UVec2::ONE,
+                depths: vec![depth],
+                backs: Vec::new(),
+            }),
             scale: None,
             of,
             ending: None,
@@ -440,7 +427,7 @@ mod tests {
         put_on(&mut shelf, print(1, None));
         let depths = |shelf: &Option<Print>| {
             let print = shelf.as_ref().unwrap();
-            print.depths.as_ref().map(|(_, depths)| depths[0])
+            print.surfaces.as_ref().map(|surfaces| surfaces.depths[0])
         };
         assert_eq!(depths(&shelf), Some(3.0));
         put_on(&mut shelf, print(2, None));

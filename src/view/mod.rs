@@ -37,6 +37,7 @@ mod screen_pass;
 mod shot;
 mod sketch;
 pub mod standard;
+mod surfaces;
 mod symbols;
 mod traced;
 

@@ -42,22 +42,28 @@ pub struct Picked {
 /// What this ray meets first, at shutter time 0.
 pub fn pick(world: &trace::World, ray: &Ray) -> Option<Picked> {
     let hit = world.aggregate.closest_hit(ray)?;
-    let object = world.objects.get(hit.instance as usize)?;
-    let instance = world.aggregate.instances().get(hit.instance as usize)?;
-    let corners = instance.mesh.triangles().corners(hit.triangle);
-    let [a, b, c] = corners.map(|corner| instance.to_world_point(corner));
-    let normal = (b - a).cross(c - a).normalize_or_zero();
+    let (id, normal) = side_of(world, &hit)?;
     let normal = if normal.dot(ray.direction) > 0.0 {
         -normal
     } else {
         normal
     };
     Some(Picked {
-        id: SceneId(object.id),
+        id,
         point: ray.at(hit.t),
         normal,
         hit,
     })
+}
+
+/// Whose triangle was met, and its unit normal on the side where its corners go round counter-clockwise.
+pub(super) fn side_of(world: &trace::World, hit: &Hit) -> Option<(SceneId, Vec3)> {
+    let object = world.objects.get(hit.instance as usize)?;
+    let instance = world.aggregate.instances().get(hit.instance as usize)?;
+    let corners = instance.mesh.triangles().corners(hit.triangle);
+    let [a, b, c] = corners.map(|corner| instance.to_world_point(corner));
+    let normal = (b - a).cross(c - a).normalize_or_zero();
+    Some((SceneId(object.id), normal))
 }
 
 fn send_hits(

@@ -5,7 +5,7 @@ use super::reference::TracedPicture;
 use super::traced::TracedView;
 use crate::film::views::Scale;
 use crate::film::{LightMix, Progressive, State, Status};
-use crate::scene::RenderSettings;
+use crate::scene::{RenderSettings, SceneId};
 use crate::trace;
 use bevy::asset::Handle;
 use bevy::image::Image;
@@ -30,6 +30,8 @@ pub struct TracedRender {
     pub(super) failed: Option<String>,
     /// Of which render it was said that it has ended.
     pub(super) told: Option<u64>,
+    /// Whose backs it sees, of all that there are.
+    pub(super) backs: Vec<SceneId>,
 }
 
 /// What stands on the screen.

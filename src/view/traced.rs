@@ -8,6 +8,7 @@
 use super::darkroom::{Darkroom, Order, Print};
 use super::render::{PrintInfo, TracedRender, Wanted};
 use super::screen::{Screen, depth_image, depth_numbers, no_depth, picture_image};
+use super::surfaces::Surfaces;
 use crate::film::views::View;
 use crate::film::{Ending, LightMix};
 use crate::scene::{self, Output, RenderSettings, Sampling, SceneId};
@@ -312,13 +313,22 @@ fn show_prints(
         let Print {
             size,
             bytes,
-            depths,
+            surfaces,
             scale,
             of,
             ending,
         } = print;
         let picture = images.add(picture_image(size.x, size.y, bytes));
-        let depth = depths.map(|(size, depths)| images.add(depth_image(size.x, size.y, &depths)));
+        let depth = surfaces.map(
+            |Surfaces {
+                 size,
+                 depths,
+                 backs,
+             }| {
+                render.backs = backs;
+                images.add(depth_image(size.x, size.y, &depths))
+            },
+        );
         match screen {
             Some(mut screen) => {
                 screen.picture = picture.clone();

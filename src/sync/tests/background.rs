@@ -5,7 +5,7 @@
 
 use super::*;
 use crate::bvh::Aggregate;
-use crate::scene::{Builder, RenderSettings};
+use crate::scene::{Builder, Levels, RenderSettings};
 use crate::sync::finish;
 use crate::sync::tree_building::TopLevelThread;
 use std::sync::mpsc::{Sender, channel};
@@ -248,4 +248,57 @@ fn objects_that_come_and_go_in_every_frame_are_traced_all_the_same() {
     }
     let traced = world(&small.app).aggregate.instances().len();
     assert!(traced > 20_000, "{traced} objects are traced");
+}
+
+#[test]
+fn no_frame_waits_for_a_tree_that_takes_long_and_all_that_comes_and_goes_shows_in_turn() {
+    let mut small = small();
+    let mut settings = small.app.world_mut().resource_mut::<RenderSettings>();
+    // Over all triangles: far more than a tenth of a second.
+    settings.tree.levels = Levels::One;
+    let mesh = add_mesh(&mut small.app, 400);
+    let thing = |i: usize, color: f32| {
+        let phong = Phong {
+            emission: LinearRgba::rgb(color, 0.0, 0.0),
+            ..Phong::default()
+        };
+        let place = Transform::from_xyz(i as f32, 0.0, 0.0);
+        (Mesh3d(mesh.clone()), phong, place)
+    };
+    let many: Vec<_> = (0..1000).map(|i| thing(i, 0.0)).collect();
+    small.app.world_mut().spawn_batch(many);
+    finish(&mut small.app);
+    // In each frame another one, in a colour of its own.
+    let mut newest = None;
+    let mut seen = Vec::new();
+    for frame in 1..60_000 {
+        let world = small.app.world_mut();
+        let next = world.spawn(thing(frame, frame as f32)).id();
+        if let Some(before) = newest.replace(next) {
+            world.despawn(before);
+        }
+        small.app.update();
+        let traced = self::world(&small.app);
+        let instances = traced.aggregate.instances();
+        assert_eq!(instances.len(), traced.objects.len(), "frame {frame}");
+        let last = traced.objects.iter().zip(instances).next_back();
+        let (object, instance) = last.expect("there are a thousand");
+        let place = instance.world_from_object().translation.x;
+        let color = traced.materials[object.material as usize].emission.x;
+        if color > 0.0 {
+            assert_eq!(
+                color, place,
+                "frame {frame}: of one the place, of another the colour"
+            );
+            if seen.last() != Some(&place) {
+                seen.push(place);
+            }
+        }
+        if seen.len() == 4 {
+            break;
+        }
+        thread::sleep(Duration::from_millis(1));
+    }
+    assert_eq!(seen.len(), 4, "of those that came {seen:?} were seen");
+    assert!(seen.is_sorted(), "{seen:?}");
 }

@@ -5,6 +5,7 @@ mod cut_outs;
 mod dice;
 mod domes;
 mod edits;
+mod kept;
 mod lights;
 mod motions;
 mod problems;

@@ -15,6 +15,14 @@ pub(super) struct DerivedPictures {
     alphas: HashMap<AssetId<Image>, Option<Handle<Image>>>,
 }
 
+#[cfg(test)]
+impl DerivedPictures {
+    /// How many are kept.
+    pub fn kept(&self) -> usize {
+        self.means.len() + self.alphas.len()
+    }
+}
+
 /// Pictures that were edited, loaded or removed say something else.
 pub(super) fn forget_edited(
     mut events: MessageReader<AssetEvent<Image>>,

@@ -236,7 +236,8 @@ mod tests {
         let mut app = App::new();
         app.add_plugins((bevy::asset::AssetPlugin::default(), StandardMappingPlugin))
             .init_resource::<ClearColor>()
-            .init_resource::<crate::scene::Environment>();
+            .init_resource::<crate::scene::Environment>()
+            .init_resource::<crate::scene::EnvironmentMap>();
         bevy::asset::AssetApp::init_asset::<StandardMaterial>(&mut app);
         bevy::asset::AssetApp::init_asset::<Image>(&mut app);
         bevy::asset::AssetApp::init_asset::<bevy::mesh::Mesh>(&mut app);

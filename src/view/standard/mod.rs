@@ -17,7 +17,7 @@
 //! | normal map | the normals; flipped ones are named |
 //! | specular transmission | `opacity`, light goes straight through; named |
 //! | vertex colours | multiply `diffuse`, of what is unlit `emission`; their alpha `opacity` |
-//! | double-sidedness, culling | both sides are seen and lit |
+//! | double-sidedness, culling | both sides are seen and lit; a view that sees a back which Bevy culls is named |
 //! | `uv_transform`, second texture coordinates, occlusion, depth, clearcoat, anisotropy, diffuse transmission | named |
 //! | **another material** | what [`add_traced_material`](AddTracedMaterial::add_traced_material) says; else named |
 //!
@@ -36,18 +36,23 @@
 //! | else | becomes |
 //! |---|---|
 //! | `ClearColor`, or the first view's own | the background, where the app has set no other |
-//! | `GlobalAmbientLight`, a camera's `AmbientLight`, skyboxes, light probes, environment maps, fog, atmospheres | named |
+//! | a view's `Skybox` | the map of [`Environment`](crate::scene::Environment), of brightness · E, where the app has set no other |
+//! | a view's `EnvironmentMapLight` (its specular map) or `GeneratedEnvironmentMapLight` | its light, with shadows; without a skybox it is seen behind the scene, too, and named; one that is another than the skybox is named |
+//! | skies turned otherwise than about the vertical axis, or of another view than the first | named |
+//! | `GlobalAmbientLight`, a camera's `AmbientLight`, light probes, fog, atmospheres | named |
 //! | `NotShadowCaster`, `NotShadowReceiver`, `RenderLayers`, `Lightmap` of objects | named |
 //! | skinned and morphed meshes | as they stand in this frame, in every frame in which a view traces them |
 //! | meshes and textures of `RenderAssetUsages::RENDER_WORLD` alone | named |
 
 mod add_material;
+mod backs;
 mod derived;
 mod lights;
 mod material;
 mod objects;
 mod pose;
 mod poses;
+mod sky;
 mod surroundings;
 mod unknown;
 
@@ -84,9 +89,12 @@ impl Plugin for StandardMappingPlugin {
                     map_materials::<StandardMaterial>,
                     lights::systems(),
                     surroundings::map_background,
+                    sky::map_sky,
                     surroundings::name_surroundings,
+                    surroundings::name_probes,
                     surroundings::name_incomplete,
                     objects::name_flags,
+                    backs::name_backs,
                     unknown::name_unknown,
                 )
                     .chain()

@@ -14,8 +14,8 @@ use bevy::mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes};
 use bevy::mesh::{Mesh, Mesh3d};
 use bevy::platform::collections::HashSet;
 use bevy::prelude::{
-    Commands, Component, Entity, MessageReader, Or, Query, RemovedComponents, Res, ResMut, With,
-    Without,
+    Commands, Component, Entity, Local, MessageReader, Or, Query, RemovedComponents, Res, ResMut,
+    With, Without,
 };
 use bevy::transform::components::GlobalTransform;
 
@@ -70,6 +70,8 @@ pub(super) fn pose_meshes(
     objects: Query<Bendable, Bends>,
     onlookers: Onlookers,
     mut events: MessageReader<AssetEvent<Mesh>>,
+    // Filled anew for each object: most stand as they stood, and nothing is kept of them.
+    mut now: Local<Bend>,
     mut left_out: ResMut<LeftOut>,
 ) {
     let edited: HashSet<AssetId<Mesh>> = events
@@ -88,17 +90,13 @@ pub(super) fn pose_meshes(
             }
             continue;
         }
-        let bend = bend_of(&object, bind_poses.as_deref(), &places, &weights);
+        if let Err(why) = find_bend(&object, bind_poses.as_deref(), &places, &weights, &mut now) {
+            at_rest(&mut commands, &mut left_out, &object, Some(why));
+            continue;
+        }
         let mesh = object.mesh.id();
-        let bend = match bend {
-            Ok(bend) => bend,
-            Err(why) => {
-                at_rest(&mut commands, &mut left_out, entity, Some(why));
-                continue;
-            }
-        };
-        let pose = Pose { mesh, bend };
-        if object.pose == Some(&pose) && !edited.contains(&mesh) {
+        let is_so = |pose: &Pose| pose.mesh == mesh && pose.bend == *now;
+        if object.pose.is_some_and(is_so) && !edited.contains(&mesh) {
             continue;
         }
         // What is not loaded yet is bent when it is.
@@ -107,16 +105,20 @@ pub(super) fn pose_meshes(
         };
         // Of a mesh for the GPU alone that is said anyway.
         let is_kept = asset.asset_usage.contains(RenderAssetUsages::MAIN_WORLD);
-        if pose.bend.is_none() || !is_kept {
-            at_rest(&mut commands, &mut left_out, entity, None);
+        if now.is_none() || !is_kept {
+            at_rest(&mut commands, &mut left_out, &object, None);
             continue;
         }
-        let posed = match bent(asset, &pose.bend) {
+        let posed = match bent(asset, &now) {
             Ok(posed) => posed,
             Err(why) => {
-                at_rest(&mut commands, &mut left_out, entity, Some(why));
+                at_rest(&mut commands, &mut left_out, &object, Some(why));
                 continue;
             }
+        };
+        let pose = Pose {
+            mesh,
+            bend: now.clone(),
         };
         LeftOut::note(&mut left_out, "posed object", entity, Vec::new());
         if let Some(known) = object.posed
@@ -140,8 +142,12 @@ pub(super) fn straighten(
     mut left_out: ResMut<LeftOut>,
 ) {
     for entity in no_skin.read().chain(no_morph.read()) {
-        if !bent.contains(entity) {
-            at_rest(&mut commands, &mut left_out, entity, None);
+        if bent.contains(entity) {
+            continue;
+        }
+        LeftOut::note(&mut left_out, "posed object", entity, Vec::new());
+        if let Ok(mut entity) = commands.get_entity(entity) {
+            entity.try_remove::<(Pose, PosedMesh)>();
         }
     }
 }
@@ -149,37 +155,39 @@ pub(super) fn straighten(
 fn at_rest(
     commands: &mut Commands,
     left_out: &mut ResMut<LeftOut>,
-    entity: Entity,
+    object: &BendableItem,
     why: Option<&str>,
 ) {
     let note = why.map(|why| format!("{why}: it is traced as its mesh is"));
-    LeftOut::note(left_out, "posed object", entity, note.into_iter().collect());
-    if let Ok(mut entity) = commands.get_entity(entity) {
+    let note = note.into_iter().collect();
+    LeftOut::note(left_out, "posed object", object.entity, note);
+    if object.pose.is_some() || object.posed.is_some() {
+        let mut entity = commands.entity(object.entity);
         entity.try_remove::<(Pose, PosedMesh)>();
     }
 }
 
-/// How an object stands now.
-fn bend_of(
+/// How an object stands now, into what has room for it.
+fn find_bend(
     object: &BendableItem,
     bind_poses: Option<&Assets<SkinnedMeshInverseBindposes>>,
     places: &Query<&GlobalTransform>,
     weights: &Query<&MorphWeights>,
-) -> Result<Bend, &'static str> {
-    let weights = match object.morph {
-        None => Vec::new(),
-        Some(MeshMorphWeights::Value { weights }) => weights.clone(),
+    bend: &mut Bend,
+) -> Result<(), &'static str> {
+    bend.joints.clear();
+    bend.weights.clear();
+    match object.morph {
+        None => {}
+        Some(MeshMorphWeights::Value { weights }) => bend.weights.extend(weights),
         Some(MeshMorphWeights::Reference(holder)) => {
             let holder = weights.get(*holder);
             let holder = holder.map_err(|_| "the entity with its morph weights is gone")?;
-            holder.weights().to_vec()
+            bend.weights.extend(holder.weights());
         }
-    };
+    }
     let Some(skin) = object.skin else {
-        return Ok(Bend {
-            joints: Vec::new(),
-            weights,
-        });
+        return Ok(());
     };
     let bind_poses = bind_poses.and_then(|all| all.get(&skin.inverse_bindposes));
     let bind_poses = bind_poses.ok_or("the bind poses of its skin are not loaded")?;
@@ -188,16 +196,15 @@ fn bend_of(
     }
     // Joints bend it in the world, wherever it stands itself.
     let object_from_world = object.place.affine().inverse();
-    let mut joints = Vec::with_capacity(skin.joints.len());
     for (&joint, bind_pose) in skin.joints.iter().zip(bind_poses.iter()) {
         let place = places
             .get(joint)
             .map_err(|_| "a joint of its skin is gone")?;
         let object_from_joint: Affine3A = object_from_world * place.affine();
-        joints.push(Mat4::from(object_from_joint) * *bind_pose);
+        bend.joints.push(Mat4::from(object_from_joint) * *bind_pose);
     }
-    if joints.iter().any(|joint| !joint.is_finite()) {
+    if bend.joints.iter().any(|joint| !joint.is_finite()) {
         return Err("its place, or that of a joint of its skin, cannot be traced");
     }
-    Ok(Bend { joints, weights })
+    Ok(())
 }

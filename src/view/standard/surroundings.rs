@@ -6,12 +6,9 @@ use crate::sync::LeftOut;
 use crate::view::TracedView;
 use bevy::camera::{Camera, ClearColor, ClearColorConfig, Projection};
 use bevy::color::LinearRgba;
-use bevy::light::{
-    AmbientLight, AtmosphereEnvironmentMapLight, EnvironmentMapLight, GeneratedEnvironmentMapLight,
-    GlobalAmbientLight, IrradianceVolume, Skybox,
-};
+use bevy::light::{AmbientLight, AtmosphereEnvironmentMapLight, GlobalAmbientLight, LightProbe};
 use bevy::pbr::DistanceFog;
-use bevy::prelude::{Entity, Has, Local, Query, Res, ResMut, With};
+use bevy::prelude::{Added, Entity, Has, Local, Query, RemovedComponents, Res, ResMut, With};
 use bevy::transform::components::GlobalTransform;
 
 /// Some object has a material of the app's: the scene is one of Bevy's.
@@ -52,11 +49,23 @@ pub(super) fn map_background(
     *last = Some(color);
 }
 
-/// Names views that lack what a view is looked through with.
+/// Names views that lack what a view is looked through with, and says nothing more of those that are gone.
 pub(super) fn name_incomplete(
     views: Query<(Entity, Has<Camera>, Has<GlobalTransform>, Has<Projection>), With<TracedView>>,
+    mut gone: RemovedComponents<TracedView>,
     mut left_out: ResMut<LeftOut>,
 ) {
+    for view in gone.read().filter(|view| !views.contains(*view)) {
+        for kind in [
+            "exposure",
+            "picture of view",
+            "sky of view",
+            "view",
+            "traced camera",
+        ] {
+            LeftOut::note(&mut left_out, kind, view, Vec::new());
+        }
+    }
     for (view, camera, place, projection) in &views {
         let lacks = [
             (camera, "its Camera is gone"),
@@ -70,14 +79,25 @@ pub(super) fn name_incomplete(
 }
 
 type Around = (
-    Has<Skybox>,
-    Has<EnvironmentMapLight>,
-    Has<GeneratedEnvironmentMapLight>,
     Has<AtmosphereEnvironmentMapLight>,
     Has<DistanceFog>,
-    Has<IrradianceVolume>,
     Option<&'static AmbientLight>,
 );
+
+/// Names light of a part of the scene alone.
+pub(super) fn name_probes(
+    probes: Query<Entity, Added<LightProbe>>,
+    mut gone: RemovedComponents<LightProbe>,
+    mut left_out: ResMut<LeftOut>,
+) {
+    for probe in gone.read() {
+        LeftOut::note(&mut left_out, "light probe", probe, Vec::new());
+    }
+    for probe in &probes {
+        let what = "its light is left out: a sky is around all".to_owned();
+        LeftOut::note(&mut left_out, "light probe", probe, vec![what]);
+    }
+}
 
 /// Names what surrounds a scene of Bevy's in its raster picture alone.
 pub(super) fn name_surroundings(
@@ -89,22 +109,14 @@ pub(super) fn name_surroundings(
     let is_of_bevy = !mapped.is_empty();
     let all_around = ambient.map_or(0.0, |ambient| ambient.brightness);
     let everywhere = |own: Option<&AmbientLight>| own.is_none() && all_around > 0.0;
-    let first = views.iter().filter(|(.., around)| everywhere(around.6));
+    let first = views.iter().filter(|(.., around)| everywhere(around.2));
     let first = first
         .map(|(view, ..)| view)
         .min_by_key(|view| view.index_u32());
     for (view, camera, projection, around) in &views {
-        let (skybox, map, generated, of_atmosphere, fog, volume, ambient) = around;
+        let (of_atmosphere, fog, ambient) = around;
         let notes = [
-            (
-                skybox,
-                "its skybox is left out: set the map of `Environment`",
-            ),
-            (
-                map || generated || of_atmosphere,
-                "the light of its environment map is left out",
-            ),
-            (volume, "the light of its irradiance volume is left out"),
+            (of_atmosphere, "the light of its atmosphere is left out"),
             (fog, "its fog is left out"),
             (
                 matches!(projection, Projection::Custom(_)),

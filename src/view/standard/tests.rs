@@ -1,19 +1,22 @@
 //! Scenes of Bevy's own components, in an app without a renderer.
 
 mod poses;
+mod sky;
 
+use super::derived::DerivedPictures;
 use super::{AddTracedMaterial, StandardMappingPlugin};
 use crate::app::headless_app_with;
 use crate::scene::{Environment, Phong};
-use crate::sync::Traced;
+use crate::sync::{LeftOut, Traced};
 use crate::view::TracedView;
 use bevy::asset::{Asset, AssetApp, RenderAssetUsages};
 use bevy::color::LinearRgba;
-use bevy::light::{AmbientLight, GlobalAmbientLight, NotShadowCaster, Skybox};
-use bevy::pbr::{Lightmap, Material, MeshMaterial3d, StandardMaterial};
+use bevy::ecs::entity_disabling::Disabled;
+use bevy::light::{AmbientLight, GlobalAmbientLight, NotShadowCaster};
+use bevy::pbr::{DistanceFog, Lightmap, Material, MeshMaterial3d, StandardMaterial};
 use bevy::prelude::*;
 use bevy::reflect::TypePath;
-use bevy::render::render_resource::AsBindGroup;
+use bevy::render::render_resource::{AsBindGroup, Extent3d, TextureDimension, TextureFormat};
 
 #[derive(Asset, AsBindGroup, TypePath, Clone, Debug)]
 struct Water {
@@ -122,18 +125,24 @@ fn a_views_surroundings_are_named() {
     let mut app = app();
     object(&mut app);
     app.insert_resource(GlobalAmbientLight::default());
-    let view = (TracedView::default(), Skybox::default(), Name::new("Eye"));
+    let view = (
+        TracedView::default(),
+        DistanceFog::default(),
+        Name::new("Eye"),
+    );
     app.world_mut().spawn(view);
     let named = problems(&mut app);
     assert_eq!(named.len(), 2, "{named:#?}");
     assert!(
-        named[0].contains("Eye") && named[0].contains("skybox"),
+        named[0].contains("Eye") && named[0].contains("fog"),
         "{named:#?}"
     );
     assert!(named[1].contains("GlobalAmbientLight"), "{named:#?}");
     // A camera's own takes the place of that of all.
     app.insert_resource(GlobalAmbientLight::NONE);
-    let mut view = app.world_mut().query_filtered::<Entity, With<Skybox>>();
+    let mut view = app
+        .world_mut()
+        .query_filtered::<Entity, With<DistanceFog>>();
     let view = view.single(app.world()).unwrap();
     let own = |brightness| AmbientLight {
         brightness,
@@ -145,6 +154,94 @@ fn a_views_surroundings_are_named() {
     app.insert_resource(GlobalAmbientLight::default());
     app.world_mut().entity_mut(view).insert(own(0.0));
     assert_eq!(problems(&mut app).len(), 1);
+}
+
+#[test]
+fn what_is_derived_and_said_is_of_what_there_is_whatever_has_come_and_gone() {
+    let mut app = app();
+    let mut there = Vec::new();
+    for i in 0..200_u8 {
+        let picture = Image::new(
+            Extent3d::default(),
+            TextureDimension::D2,
+            vec![i, i, i, 100],
+            TextureFormat::Rgba8Unorm,
+            RenderAssetUsages::default(),
+        );
+        let picture = Some(add(&mut app, picture));
+        let material = StandardMaterial {
+            base_color_texture: picture.clone(),
+            metallic_roughness_texture: picture,
+            alpha_mode: AlphaMode::Mask(0.5),
+            ..default()
+        };
+        let material = add::<StandardMaterial>(&mut app, material);
+        let mesh = add::<Mesh>(&mut app, Cuboid::default());
+        let world = app.world_mut();
+        let object = (Mesh3d(mesh), MeshMaterial3d(material), NotShadowCaster);
+        there.push(world.spawn(object).id());
+        there.push(world.spawn(PointLight::default()).id());
+        there.push(
+            world
+                .spawn((TracedView::default(), DistanceFog::default()))
+                .id(),
+        );
+        if i >= 10 {
+            for entity in there.drain(..3) {
+                world.despawn(entity);
+            }
+        }
+        app.update();
+    }
+    // What a handle let go of is gone some frames later.
+    problems(&mut app);
+    let kept = |app: &App| {
+        let world = app.world();
+        let derived = world.resource::<DerivedPictures>().kept();
+        [derived, world.resource::<LeftOut>().kept()]
+    };
+    // A mean and an alpha each; of an object its flag and its material, of a lamp and of a view one note.
+    assert_eq!(kept(&app), [20, 40]);
+    for entity in there {
+        app.world_mut().despawn(entity);
+    }
+    problems(&mut app);
+    problems(&mut app);
+    assert_eq!(kept(&app), [0, 0]);
+}
+
+#[test]
+fn of_a_view_or_a_light_that_is_gone_or_disabled_nothing_is_said_any_more() {
+    let mut app = app();
+    object(&mut app);
+    let spawn = |app: &mut App| {
+        let view = (TracedView::default(), DistanceFog::default());
+        let light = (PointLight::default(), Transform::default());
+        let world = app.world_mut();
+        [world.spawn(view).id(), world.spawn(light).id()]
+    };
+    for how in ["despawned", "disabled", "removed"] {
+        let [view, light] = spawn(&mut app);
+        // The lamp's range and its lack of shadows, and the view's fog.
+        let named = problems(&mut app);
+        assert_eq!(named.len(), 3, "{named:#?}");
+        let world = app.world_mut();
+        match how {
+            "despawned" => {
+                world.despawn(view);
+                world.despawn(light);
+            }
+            "disabled" => {
+                world.entity_mut(view).insert(Disabled);
+                world.entity_mut(light).insert(Disabled);
+            }
+            _ => {
+                world.entity_mut(view).remove::<TracedView>();
+                world.entity_mut(light).remove::<PointLight>();
+            }
+        }
+        assert_eq!(problems(&mut app), Vec::<String>::new(), "{how}");
+    }
 }
 
 #[test]
