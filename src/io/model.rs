@@ -124,10 +124,9 @@ pub(crate) fn drop_unused(mesh: &mut Mesh) {
     if !places.contains(&UNUSED) {
         return;
     }
-    let mut count = 0;
-    for place in places.iter_mut().filter(|place| **place != UNUSED) {
-        *place = count;
-        count += 1;
+    let used = places.iter_mut().filter(|place| **place != UNUSED);
+    for (number, place) in (0..).zip(used) {
+        *place = number;
     }
     for corner in corners {
         *corner = places.get(*corner as usize).copied().unwrap_or(0);
