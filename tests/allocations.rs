@@ -2,6 +2,8 @@
 //! weighed. A binary of its own, because it replaces the allocator.
 
 mod soak;
+#[cfg(feature = "view")]
+mod soak_game;
 
 use glam::{Affine3A, UVec2, Vec3};
 use glassbox::bvh::{Aggregate, BuildOptions, Builder, Instance, Levels, MeshTree, Ray, Triangles};

@@ -4,6 +4,7 @@ use super::{GREEN, Game, PATIENCE, RED, SIZE, Seen};
 use bevy::camera::{RenderTarget, Viewport};
 use bevy::prelude::*;
 use bevy::render::render_resource::TextureFormat;
+use bevy::window::{WindowRef, WindowResized, WindowResolution};
 use glassbox::prelude::*;
 use std::time::{Duration, Instant};
 
@@ -73,6 +74,55 @@ fn a_view_of_one_pixel_is_rendered_and_one_of_none_rests() {
     game.app.update();
     let render = game.app.world().get::<TracedRender>(view).unwrap();
     assert_eq!(render.status(), None, "it renders");
+}
+
+#[test]
+fn for_a_window_of_no_size_nothing_is_rendered_until_it_has_one() {
+    let Some(mut game) = Game::open() else {
+        return;
+    };
+    let resolution = WindowResolution::new(0, 0);
+    let window = Window {
+        resolution,
+        ..default()
+    };
+    let window = game.app.world_mut().spawn(window).id();
+    let view = game.view(GREEN, None, 0);
+    let target = RenderTarget::Window(WindowRef::Entity(window));
+    game.app.world_mut().entity_mut(view).insert(target);
+    let resize = |game: &mut Game, size: UVec2| {
+        let world = game.app.world_mut();
+        let mut known = world.get_mut::<Window>(window).unwrap();
+        known.resolution.set_physical_resolution(size.x, size.y);
+        let (width, height) = (size.x as f32, size.y as f32);
+        world.write_message(WindowResized {
+            window,
+            width,
+            height,
+        });
+        for _ in 0..3 {
+            game.app.update();
+        }
+    };
+    let rendered = |game: &Game| {
+        let render = game.app.world().get::<TracedRender>(view).unwrap();
+        render.picture().map(|picture| picture.size())
+    };
+    for _ in 0..2 {
+        resize(&mut game, UVec2::ZERO);
+        assert_eq!(rendered(&game), None, "it renders for nobody");
+        resize(&mut game, UVec2::new(64, 0));
+        assert_eq!(rendered(&game), None, "it renders for nobody");
+        for size in [UVec2::ONE, UVec2::new(33, 7)] {
+            resize(&mut game, size);
+            game.wait_for_pictures();
+            assert_eq!(rendered(&game), Some(size));
+        }
+    }
+    game.app.world_mut().entity_mut(window).despawn();
+    for _ in 0..3 {
+        game.app.update();
+    }
 }
 
 #[test]

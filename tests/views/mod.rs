@@ -6,6 +6,7 @@ mod hostile;
 mod lasting;
 mod own_picture;
 mod pictures;
+mod second_window;
 mod side_by_side;
 
 use bevy::app::{PluginGroup, PluginsState};

@@ -100,8 +100,14 @@ fn beside_the_divider_bevys_picture_stands_and_nothing_of_it_lies_over_the_trace
     let Some(mut game) = Game::open() else {
         return;
     };
-    // Drawn in Bevy's pass of what is blended, after all that is opaque.
+    // Drawn in Bevy's passes of what is blended and of what light is transmitted by, after all that is opaque.
     game.blue(AlphaMode::Blend, RED);
+    let glass = game.blue(AlphaMode::Opaque, RED);
+    let world = game.app.world_mut();
+    let glass = world.get::<MeshMaterial3d<StandardMaterial>>(glass);
+    let glass = glass.unwrap().0.clone();
+    let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
+    materials.get_mut(&glass).unwrap().specular_transmission = 0.5;
     let view = game.view(RED, None, 0);
     for (hdr, msaa) in [(false, Msaa::Off), (true, Msaa::Off), (true, Msaa::Sample4)] {
         let mut camera = game.app.world_mut().entity_mut(view);

@@ -1,10 +1,14 @@
 //! What Bevy draws and what is traced of the same scene, by the same camera, region by region.
 
 mod gltf;
+mod named;
 mod rows;
+mod skies;
 
 use super::{Game, SIZE, Shot};
+use bevy::camera::Exposure;
 use bevy::core_pipeline::tonemapping::{DebandDither, Tonemapping};
+use bevy::light::Skybox;
 use bevy::prelude::*;
 use glassbox::prelude::*;
 
@@ -15,6 +19,42 @@ pub(super) type Part = [f32; 4];
 pub(super) const LEFT: Part = [0.1, 0.2, 0.42, 0.8];
 pub(super) const RIGHT: Part = [0.58, 0.2, 0.9, 0.8];
 pub(super) const ALL: Part = [0.05, 0.1, 0.95, 0.9];
+
+/// A scene, which parts of its pictures are alike and how closely, and what is said to be left out.
+struct Row {
+    name: &'static str,
+    build: fn(&mut Stage),
+    alike: &'static [(Part, f32)],
+    named: &'static [&'static str],
+}
+
+/// As bright but for samples and rounding.
+const SAME: f32 = 1.04;
+
+/// Each row's two pictures, and what is said of it.
+fn compare(rows: &[Row]) {
+    let Some(mut stage) = Stage::open(AssetPlugin::default()) else {
+        return;
+    };
+    let mut faults = Vec::new();
+    for row in rows {
+        (row.build)(&mut stage);
+        let (shots, problems) = stage.both();
+        let parts = row.alike.iter();
+        let others = parts.filter_map(|&(part, factor)| unlike(&shots, part, factor));
+        faults.extend(others.map(|what| format!("{}: {what}", row.name)));
+        let is_known = |problem: &&String| row.named.iter().any(|named| problem.contains(named));
+        let unknown = problems.iter().filter(|problem| !is_known(problem));
+        faults.extend(unknown.map(|problem| format!("{}: said {problem}", row.name)));
+        for named in row.named {
+            if !problems.iter().any(|problem| problem.contains(named)) {
+                faults.push(format!("{}: nothing said {named:?}", row.name));
+            }
+        }
+        stage.clear();
+    }
+    assert!(faults.is_empty(), "{faults:#?}");
+}
 
 /// Darker than this is black: two levels of 255.
 const BLACK: f32 = 0.0006;
@@ -60,7 +100,12 @@ impl Stage {
             world.despawn(prop);
         }
         let camera = self.camera;
-        self.world().entity_mut(camera).remove::<TracedView>();
+        let world = self.world();
+        world.insert_resource(GlobalAmbientLight::NONE);
+        world.insert_resource(ClearColor(Color::BLACK));
+        let mut camera = world.entity_mut(camera);
+        camera.remove::<(TracedView, Skybox, EnvironmentMapLight)>();
+        camera.insert(Exposure::default());
     }
 
     /// What Bevy draws, and what is traced, and what is said to be left out.

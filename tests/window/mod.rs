@@ -5,6 +5,8 @@
 //! Where they are missing a test says so and passes, unless `GLASSBOX_NEEDS_WINDOW=1` is set.
 
 mod clicks;
+#[cfg(all(unix, not(target_os = "macos")))]
+mod examples;
 mod gizmos;
 mod handling;
 mod marks;
@@ -104,9 +106,20 @@ impl Display {
         command
             .args(&words[1..])
             .current_dir(folder)
-            .env("DISPLAY", &self.name)
-            .env_remove("WAYLAND_DISPLAY")
             .env("GLASSBOX_CONFIG_DIR", folder.join("settings"));
+        self.show(command)
+    }
+
+    /// What a program is told of it.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Any program on this display.
+    pub fn show(&self, mut command: Command) -> Command {
+        command
+            .env("DISPLAY", &self.name)
+            .env_remove("WAYLAND_DISPLAY");
         command
     }
 
@@ -139,7 +152,7 @@ impl Drop for Display {
 }
 
 /// Waits for a program, but not for ever.
-fn finish(mut command: Command) -> Output {
+pub(crate) fn finish(mut command: Command) -> Output {
     let child = command
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
