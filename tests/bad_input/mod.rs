@@ -4,6 +4,7 @@
 #[cfg(target_os = "linux")]
 mod full_disk;
 mod gltf;
+mod gltf_container;
 mod limits;
 mod memory;
 mod models;
