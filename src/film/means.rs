@@ -146,19 +146,13 @@ vectorized! {
     }
 }
 
-/// How many times as bright as its neighbours a pixel is in both halves of its samples that is bright by itself. (With
-/// 1 to 4 the errors of point lights 0.5 to 3 mm above a floor are told alike.)
-const FAR_BRIGHTER: f64 = 2.0;
-
 /// What a pixel's value is likely to be, by which its squared error is divided. Where one rare,
 /// bright sample has moved a dark pixel far, its mean is far above its value, and dividing by the
 /// mean would hide nearly all of the error. So a pixel counts as the mean of itself and of those two
 /// opposite ones near it that are most alike: along an edge, not across it. (Neighbours across a
 /// corner and the next but one of the row and the column: they are of the same half as it, and what a
 /// half says must not depend on the other.) But it counts as no further from its own mean than that has
-/// moved: a small highlight stands out and is there. And where both halves of its samples are far brighter
-/// than those near it, they have both met what is bright, and it counts as its mean: a point light close to a
-/// floor gives a pixel some hundred times what it gives the next, and its error was told as twice what it is.
+/// moved: a small highlight stands out and is there.
 #[inline(always)]
 fn likely_value(around: &[f64; AROUND * AROUND], at: usize, moved: f64) -> f64 {
     const PAIRS: [usize; 4] = [2, 2 * AROUND, AROUND + 1, AROUND - 1];
@@ -177,8 +171,7 @@ fn likely_value(around: &[f64; AROUND * AROUND], at: usize, moved: f64) -> f64 {
     let (low, high) = (own - moved, own + moved);
     let mean = if mean < low { low } else { mean };
     let mean = if mean > high { high } else { mean };
-    let stands_out = low > FAR_BRIGHTER * if a > b { a } else { b };
-    if least < f64::INFINITY && moved < f64::INFINITY && !stands_out {
+    if least < f64::INFINITY && moved < f64::INFINITY {
         mean
     } else {
         own
@@ -221,9 +214,6 @@ mod tests {
         // Where the halves agree it is a bright pixel.
         let told = relative(&means, &[(lit, 0.01)], 16);
         assert!((told / (0.01 / 100.0) - 1.0).abs() < 0.1, "{told}");
-        // Where both halves met it, it is as bright as its mean, however far that has moved.
-        let told = relative(&means, &[(lit, 64.0)], 16);
-        assert!((told / (64.0 / 102.0) - 1.0).abs() < 0.01, "{told}");
         // Of a row of pixels that all meet the light now and then, each may, whatever lies beside the row.
         for (x, y) in (0..16).flat_map(|y| (0..16).map(move |x| (x, y))) {
             let value = match y {
