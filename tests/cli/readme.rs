@@ -36,7 +36,7 @@ fn each_line_of_the_command_line_section_works_as_it_stands_in_this_order() {
     for name in [
         "c.png",
         "room.scn.ron",
-        "show-2.png",
+        "show-Close-up.png",
         "t.png",
         "tree.png",
         "report",

@@ -114,7 +114,7 @@ const ROWS: &[Row] = &[
             stage.put((sun, Transform::IDENTITY.looking_to(Vec3::NEG_Z, Vec3::Y)));
             let lamp = PointLight {
                 intensity: 60_000.0,
-                range: 20.0,
+                range: 10.0,
                 shadow_maps_enabled: true,
                 ..default()
             };
@@ -122,7 +122,7 @@ const ROWS: &[Row] = &[
             stage.wall(matte(0.6, 0.6, 0.6));
         },
         alike: &[([0.4, 0.3, 0.6, 0.7], 1.1)],
-        named: &["its shadow_maps_enabled is", "its range of 20 m"],
+        named: &["its shadow_maps_enabled is", "its range of 10 m"],
     },
     Row {
         name: "a mesh that the card alone has",
