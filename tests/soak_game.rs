@@ -86,6 +86,10 @@ impl Soaked {
             meshes.insert(handle.id(), other).expect("it is used");
         }
         self.app.update();
+        if i.is_multiple_of(8) {
+            // Frames without a picture come so fast that nothing would be traced before it is gone.
+            finish(&mut self.app);
+        }
     }
 
     /// Bytes that are allocated when all has come to rest.
@@ -155,11 +159,11 @@ fn a_game_that_spawns_despawns_and_edits_in_every_frame_leaves_no_memory_behind(
         for i in frames.by_ref().take(count) {
             soaked.frame(i);
         }
+        let left = soaked.at_rest();
         let traced = soaked.app.world().resource::<Traced>();
         let objects = traced.world.aggregate.instances().len();
-        // What comes in every frame is a few frames late.
-        assert!(objects >= 10, "{objects} are traced");
-        soaked.at_rest()
+        assert!(objects > 20, "{objects} are traced");
+        left
     };
     lap(WARM_UP);
     let laps = [(); 4].map(|()| lap(FRAMES));
