@@ -145,9 +145,10 @@ impl Bench {
 
     /// Milliseconds from what `begin` does until the picture of it has all its samples and is drawn.
     fn until_done(&mut self, begin: impl FnOnce(&mut Self)) -> f64 {
+        let before = self.render.as_ref().map(Progressive::number);
         let start = Instant::now();
         begin(self);
-        self.wait(|render| render.status().divider.is_some());
+        self.wait(|render| Some(render.number()) != before && render.status().divider.is_some());
         self.draw();
         self.first.push(ms(start));
         self.render.as_ref().expect("a render").wait();
