@@ -16,6 +16,8 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::sync::atomic::{AtomicIsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
 
 /// The system's allocator, counting what this thread asks of it, and weighing what all have.
 struct Counting;
@@ -23,8 +25,25 @@ struct Counting;
 static LIVE_BYTES: AtomicIsize = AtomicIsize::new(0);
 
 /// Bytes that are allocated now, by all threads.
-pub fn live_bytes() -> isize {
+fn live_bytes() -> isize {
     LIVE_BYTES.load(Ordering::Relaxed)
+}
+
+/// Bytes that are allocated when all has come to rest: what other threads give back, they give back by themselves, until that
+/// has been for a while.
+pub fn bytes_at_rest() -> isize {
+    let start = Instant::now();
+    let mut bytes = live_bytes();
+    let mut since = Instant::now();
+    while since.elapsed() < Duration::from_millis(300) {
+        assert!(start.elapsed().as_secs() < 60, "it does not come to rest");
+        thread::sleep(Duration::from_millis(10));
+        if live_bytes() != bytes {
+            bytes = live_bytes();
+            since = Instant::now();
+        }
+    }
+    bytes
 }
 
 /// Held by each test, since others' memory would be weighed too.

@@ -1,6 +1,6 @@
 //! Ten thousand edits of a scene that is being rendered: what they allocate is given back.
 
-use crate::{ALONE, live_bytes};
+use crate::{ALONE, bytes_at_rest};
 use bevy::app::App;
 use bevy::asset::Assets;
 use bevy::color::LinearRgba;
@@ -15,8 +15,6 @@ use glassbox::scene::{Builder, Phong, PointLamp, RenderSettings, SceneCamera, Sh
 use glassbox::sync::{Traced, TracedCameras, TreeBuilding, finish};
 use glassbox::trace::World;
 use std::sync::PoisonError;
-use std::thread;
-use std::time::{Duration, Instant};
 
 const SIZE: UVec2 = UVec2::splat(32);
 /// What may be left after 10,000 edits: a leak of seven bytes an edit is found.
@@ -142,19 +140,7 @@ impl Edited {
     fn at_rest(&mut self) -> isize {
         self.render = None;
         finish(&mut self.app);
-        // What was cancelled gives its memory back by itself: until that has been for a while.
-        let start = Instant::now();
-        let mut bytes = live_bytes();
-        let mut since = Instant::now();
-        while since.elapsed() < Duration::from_millis(300) {
-            assert!(start.elapsed().as_secs() < 60, "it does not come to rest");
-            thread::sleep(Duration::from_millis(10));
-            if live_bytes() != bytes {
-                bytes = live_bytes();
-                since = Instant::now();
-            }
-        }
-        bytes
+        bytes_at_rest()
     }
 }
 

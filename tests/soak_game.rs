@@ -1,7 +1,7 @@
 //! Games of Bevy's own components: what one that spawns, despawns and edits in every frame allocates is
 //! given back, and one that stands still allocates nothing.
 
-use crate::{ALONE, allocations, live_bytes};
+use crate::{ALONE, allocations, bytes_at_rest};
 use bevy::asset::Assets;
 use bevy::ecs::entity::Entity;
 use bevy::mesh::skinning::{SkinnedMesh, SkinnedMeshInverseBindposes};
@@ -13,7 +13,6 @@ use glassbox::sync::{Traced, TreeBuilding, finish};
 use glassbox::view::StandardMappingPlugin;
 use std::collections::VecDeque;
 use std::sync::PoisonError;
-use std::time::{Duration, Instant};
 
 /// What may be left after the last [`FRAMES`]: a leak of sixteen bytes a frame is found.
 const TOLERANCE: isize = 16 << 10;
@@ -95,18 +94,7 @@ impl Soaked {
     /// Bytes that are allocated when all has come to rest.
     fn at_rest(&mut self) -> isize {
         finish(&mut self.app);
-        let start = Instant::now();
-        let mut bytes = live_bytes();
-        let mut since = Instant::now();
-        while since.elapsed() < Duration::from_millis(300) {
-            assert!(start.elapsed().as_secs() < 60, "it does not come to rest");
-            std::thread::sleep(Duration::from_millis(10));
-            if live_bytes() != bytes {
-                bytes = live_bytes();
-                since = Instant::now();
-            }
-        }
-        bytes
+        bytes_at_rest()
     }
 }
 

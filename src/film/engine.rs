@@ -141,9 +141,13 @@ impl Engine {
 
     /// A tile with the tints that it has now.
     pub(super) fn tile(&self, number: usize) -> MutexGuard<'_, TileState> {
-        let subject = self.subject();
+        self.tile_of(&self.subject(), number)
+    }
+
+    /// A tile with the tints of the subject, which the caller has asked for.
+    pub(super) fn tile_of(&self, subject: &Subject, number: usize) -> MutexGuard<'_, TileState> {
         let mut state = lock(&self.tiles[number]);
-        state.retint(&subject);
+        state.retint(subject);
         state
     }
 

@@ -236,7 +236,7 @@ impl Scratch {
         places.clear();
         places.extend(tile.places(chunk.pixels));
         self.workspace.take_met();
-        let rows = chunk.planes.of(subject.planes()).len();
+        let rows = chunk.planes.rows(subject.planes());
         let complete = chunk.segments().all(|segment| {
             self.sums.extend(rows * TILE_PIXELS);
             let sampled = self.sum_segment(
@@ -270,7 +270,7 @@ impl Scratch {
     ) -> Option<RayCounts> {
         let mut rays = RayCounts::default();
         let planes = wanted.of(subject.planes());
-        let rows = planes.len();
+        let rows = wanted.rows(subject.planes());
         let first = self.sums.len() - rows * TILE_PIXELS;
         let is_whole = places.len() == TILE_PIXELS;
         if !is_whole {
@@ -370,8 +370,8 @@ impl Scratch {
             ..
         } = &subject.light;
         let count = self.samples.len();
-        let rows = wanted.of(planes.count());
-        self.values.resize(rows.len() * count, Vec3::ZERO);
+        let rows = wanted.rows(planes.count());
+        self.values.resize(rows * count, Vec3::ZERO);
         let rays = radiance_in_planes(
             world,
             &subject.camera,
@@ -383,9 +383,10 @@ impl Scratch {
             &mut self.workspace,
         );
         self.folded.clear();
-        if rows.clone().any(|plane| plane != OWN) {
+        let asked = wanted.of(planes.count());
+        if asked.clone().any(|plane| plane != OWN) {
             self.folded.resize(count, Vec3::ZERO);
-            for (values, plane) in self.values.chunks_exact(count).zip(rows) {
+            for (values, plane) in self.values.chunks_exact(count).zip(asked) {
                 for (sum, value) in self.folded.iter_mut().zip(values) {
                     *sum += tints[plane] * *value;
                 }

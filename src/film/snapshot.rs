@@ -5,7 +5,7 @@ use super::preview::Preview;
 use super::tile_state::TileState;
 use super::tiled_film::draw;
 use super::tiles::Tile;
-use super::{Film, Picture, TILE, lock};
+use super::{Film, Picture, TILE};
 use glam::{UVec2, Vec2, Vec3};
 use rayon::prelude::*;
 
@@ -78,8 +78,7 @@ impl Engine {
             .map(|(row, (pixels, versions))| {
                 let mut changed = false;
                 for (column, version) in versions.iter_mut().enumerate() {
-                    let mut state = lock(&self.tiles[row * columns + column]);
-                    state.retint(&subject);
+                    let mut state = self.tile_of(&subject, row * columns + column);
                     let is_whole = !state.lacks_light();
                     let is_coarse = !is_whole || state.version == 0;
                     if is_whole && *version != state.version {

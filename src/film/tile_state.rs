@@ -125,8 +125,7 @@ impl TileState {
     /// Takes the sums of a chunk, `TILE_PIXELS` for each of its planes, of each of its segments. True where they complete the
     /// pass and so have entered the pixels.
     pub fn absorb(&mut self, subject: &Subject, chunk: &Chunk, sums: Sums, rays: u64) -> bool {
-        let planes = chunk.planes.of(subject.planes());
-        let each = planes.len() * TILE_PIXELS;
+        let each = chunk.planes.rows(subject.planes()) * TILE_PIXELS;
         let length = chunk.range.end - chunk.range.start;
         self.rays += rays;
         self.samples += length * self.tile.count(chunk.pixels);
@@ -153,7 +152,7 @@ impl TileState {
             })
         });
         // Those of other pixels are sums of nothing.
-        for (row, plane) in planes.enumerate() {
+        for (row, plane) in chunk.planes.of(subject.planes()).enumerate() {
             let sums = sums.part(row * TILE_PIXELS..(row + 1) * TILE_PIXELS);
             pending.sums.merge(plane * TILE_PIXELS, sums);
         }

@@ -127,34 +127,15 @@ impl PlaneSet {
     }
 
     /// Those of a picture with so many planes, in order.
-    pub fn of(self, planes: usize) -> impl ExactSizeIterator<Item = usize> + Clone {
-        Rows(self.0 & ((1 << planes) - 1))
+    pub fn of(self, planes: usize) -> impl Iterator<Item = usize> + Clone {
+        (0..planes).filter(move |plane| self.has(*plane))
+    }
+
+    /// How many those are.
+    pub fn rows(self, planes: usize) -> usize {
+        (self.0 & ((1 << planes) - 1)).count_ones() as usize
     }
 }
-
-/// [`PlaneSet::of`].
-#[derive(Clone)]
-struct Rows(u64);
-
-impl Iterator for Rows {
-    type Item = usize;
-
-    fn next(&mut self) -> Option<usize> {
-        if self.0 == 0 {
-            return None;
-        }
-        let plane = self.0.trailing_zeros() as usize;
-        self.0 &= self.0 - 1;
-        Some(plane)
-    }
-
-    fn size_hint(&self) -> (usize, Option<usize>) {
-        let left = self.0.count_ones() as usize;
-        (left, Some(left))
-    }
-}
-
-impl ExactSizeIterator for Rows {}
 
 impl Untinted {
     /// The world with these gains, in one plane.

@@ -145,7 +145,7 @@ fn evaluate<R: Recorder>(
     workspace: &mut Workspace,
     recorder: &mut R,
 ) -> RayCounts {
-    let expected = wanted.of(planes.count()).len() * samples.len();
+    let expected = wanted.rows(planes.count()) * samples.len();
     assert_eq!(
         expected,
         values.len(),
@@ -297,7 +297,7 @@ impl<R: Recorder> Batch<'_, R> {
         }
     }
 
-    /// Whether what shines by itself is asked for: whoever edits a light has it.
+    /// Whether what shines by itself is asked for. While a light is edited it is there already.
     fn wants_own(&self) -> bool {
         self.wanted.has(OWN)
     }

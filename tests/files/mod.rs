@@ -17,3 +17,4 @@ mod ply;
 mod round_trip;
 mod sets;
 mod stl;
+mod versions;

@@ -4,6 +4,7 @@ mod bad_input;
 mod effects;
 mod figures;
 mod lights_and_rays;
+mod many_rays;
 mod program;
 mod recomputed;
 mod traversal;

@@ -10,6 +10,7 @@ mod lights;
 mod motions;
 mod problems;
 mod sharing;
+mod shown;
 
 use super::{Changes, SyncPlugin, Traced, TreeBuilding};
 use crate::scene::{Phong, PointLamp, SceneCamera, ScenePlugin};
