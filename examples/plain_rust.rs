@@ -36,10 +36,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let light = Vec3::new(1.0, 3.0, 2.0);
     let floor = Vec3::new(-0.3, 0.001, -0.6);
     let shadow = Ray {
-        origin: floor,
-        direction: light - floor,
         t_max: 1.0,
-        time: 0.0,
+        ..Ray::new(floor, light - floor)
     };
     let dark = aggregate.occluded(&shadow);
     println!("behind the triangle the light is hidden: {dark}");

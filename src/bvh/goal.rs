@@ -1,6 +1,11 @@
 //! What a ray asks of the trees.
 
-use super::{ray::Hit, safe_ray::Measure, triangle::Crossing, visitor::Visitor};
+use super::{
+    ray::{Hit, TriangleId},
+    safe_ray::Measure,
+    triangle::Crossing,
+    visitor::Visitor,
+};
 
 /// A ray that ends here wants nothing more.
 pub(crate) const STOP: f32 = f32::NEG_INFINITY;
@@ -107,11 +112,23 @@ impl Goal for All<'_> {
 /// A ray's goal on its way through the trees, and who watches.
 pub(crate) struct Question<'a, G, V> {
     pub(crate) measure: Measure,
+    /// The triangle that the ray starts on.
+    pub(crate) starts_on: TriangleId,
     pub(crate) goal: &'a mut G,
     pub(crate) visitor: &'a mut V,
 }
 
 impl<G: Goal, V: Visitor> Question<'_, G, V> {
+    /// The number of the triangle of an instance that the ray starts on; no triangle's where it starts elsewhere.
+    #[inline(always)]
+    pub(crate) fn starts_on(&self, instance: u32) -> u32 {
+        if self.starts_on.instance == instance {
+            self.starts_on.triangle
+        } else {
+            TriangleId::NONE.triangle
+        }
+    }
+
     /// Takes a crossing with a triangle of an instance if it lies on the ray, no farther than the limit. Returns as
     /// [`Goal::meet`].
     #[inline(always)]

@@ -49,6 +49,7 @@ pub(super) trait Arrangement: Copy {
     ) {
         let mut question = Question {
             measure: ray.measure,
+            starts_on: ray.starts_on,
             goal,
             visitor,
         };

@@ -86,7 +86,7 @@ pub use instance::{Instance, SingularTransform};
 pub use mesh_tree::MeshTree;
 pub use options::{BuildOptions, Builder, Levels, Preset};
 pub use order::Order;
-pub use ray::{Hit, Ray};
+pub use ray::{Hit, Ray, TriangleId};
 pub use sah::{COST_INTERSECT, COST_TRAVERSE};
 pub use split_plane::{SplitPlane, gap_plane, primitives_below, split_plane};
 pub use stats::{LARGEST_LEAF_BIN, TreeStats, bytes, node_cost, sah_cost};

@@ -8,7 +8,7 @@ use super::{
     leaves::{InstanceLeaves, MeshLeaves},
     levels::Arrangement,
     mesh_tree::MeshTree,
-    ray::Ray,
+    ray::{Ray, TriangleId},
     safe_ray::{ORDINARY, SafeRay},
     triangles::REACH,
     wide::{
@@ -23,6 +23,8 @@ pub(super) struct Packet<'a, S: InstructionSet> {
     pub(super) world: PacketRays<S::Packet>,
     time: S::Packet,
     end: S::Packet,
+    /// The triangle that each starts on: the bits of its instance's number and of its own. `None` where none does.
+    starts_on: Option<[S::Packet; 2]>,
     /// Which rays can be traced together.
     lanes: u32,
 }
@@ -33,11 +35,21 @@ impl<'a, S: InstructionSet> Packet<'a, S> {
     fn new(rays: &'a [Ray]) -> Self {
         let zero = S::Packet::splat(0.0);
         let mut rows = [[0.0; 8]; 16];
+        let mut all = TriangleId::NONE.triangle;
         for (row, ray) in rows.iter_mut().zip(rays) {
-            let (from, along) = (ray.origin, ray.direction);
-            *row = [
-                from.x, from.y, from.z, along.x, along.y, along.z, ray.t_max, ray.time,
-            ];
+            let numbers: &[f32; 10] = bytemuck::cast_ref(ray);
+            row.copy_from_slice(&numbers[..8]);
+            all &= ray.starts_on.triangle;
+        }
+        // Rays of a camera start on none.
+        let mut starts_on = None;
+        if all != TriangleId::NONE.triangle {
+            let mut names = [zero.to_array(); 2];
+            for (lane, ray) in rays.iter().enumerate() {
+                names[0].as_mut()[lane] = f32::from_bits(ray.starts_on.instance);
+                names[1].as_mut()[lane] = f32::from_bits(ray.starts_on.triangle);
+            }
+            starts_on = Some([S::Packet::load(&names[0]), S::Packet::load(&names[1])]);
         }
         let columns = S::Packet::columns(&rows);
         let [.., end, time] = columns;
@@ -61,6 +73,7 @@ impl<'a, S: InstructionSet> Packet<'a, S> {
             world: PacketRays::new(origin, direction, longest),
             time,
             end,
+            starts_on,
             lanes,
         }
     }
@@ -79,7 +92,7 @@ pub(super) fn trace_packet<Of: Arrangement, S: InstructionSet, G: Goal>(
     stack: &mut [u64],
 ) {
     let packet = Packet::<S>::new(rays);
-    let mut found = Found::nothing(packet.end);
+    let mut found = Found::nothing(packet.end, packet.starts_on);
     let ways = Ways::of(&packet.world);
     let mut left = packet.lanes;
     let mut alone = !left & ((1 << rays.len()) - 1);

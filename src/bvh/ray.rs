@@ -1,10 +1,11 @@
 //! A ray, and what it hits.
 
+use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 
 /// A half-open piece of a line: the points `origin + t · direction` with `0 < t < t_max`.
 // In this order, so that a packet reads eight numbers at once.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Ray {
     /// Where it starts, in world space. A coordinate that is not finite, or beyond [`super::REACH`], makes the ray a miss.
@@ -15,16 +16,39 @@ pub struct Ray {
     pub t_max: f32,
     /// When it is shot, in [0, 1]: moving instances stand where they are then.
     pub time: f32,
+    /// The triangle that it starts on, or [`TriangleId::NONE`]. A line crosses a plane once, so it does not meet that one
+    /// again, and is not tested against it: half of the crossings that a ray from a surface has to decide are with the
+    /// surface itself, a rounding away.
+    pub starts_on: TriangleId,
+}
+
+/// The name of a triangle of an [`super::Aggregate`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct TriangleId {
+    /// Index into [`super::Aggregate::instances`].
+    pub instance: u32,
+    /// Index into the mesh's [`super::Triangles::indices`].
+    pub triangle: u32,
+}
+
+impl TriangleId {
+    /// None.
+    pub const NONE: Self = Self {
+        instance: u32::MAX,
+        triangle: u32::MAX,
+    };
 }
 
 impl Ray {
-    /// A ray without an end, at time 0.
+    /// A ray without an end, at time 0, that starts on no triangle.
     pub fn new(origin: Vec3, direction: Vec3) -> Self {
         Self {
             origin,
             direction,
             t_max: f32::INFINITY,
             time: 0.0,
+            starts_on: TriangleId::NONE,
         }
     }
 
@@ -50,6 +74,15 @@ pub struct Hit {
 }
 
 impl Hit {
+    /// The triangle.
+    #[inline(always)]
+    pub fn id(&self) -> TriangleId {
+        TriangleId {
+            instance: self.instance,
+            triangle: self.triangle,
+        }
+    }
+
     /// Ties in `t` go to the smaller (instance, triangle): the same hit wins in any order of testing.
     #[inline(always)]
     pub(crate) fn beats(&self, other: &Hit) -> bool {

@@ -4,7 +4,7 @@ use glam::Vec3A;
 
 use super::{
     mesh_tree::ObjectRay,
-    ray::{Hit, Ray},
+    ray::{Hit, Ray, TriangleId},
     slab::SMALLEST_DIRECTION,
     triangles::REACH,
 };
@@ -19,6 +19,8 @@ pub(crate) struct SafeRay {
     pub(crate) end: f32,
     /// When it is shot.
     pub(crate) time: f32,
+    /// The triangle that it starts on.
+    pub(crate) starts_on: TriangleId,
     /// How the caller measures it.
     pub(crate) measure: Measure,
 }
@@ -84,6 +86,7 @@ impl SafeRay {
             start: 0.0,
             end: ray.t_max / scale,
             time: ray.time,
+            starts_on: ray.starts_on,
             measure: Measure {
                 scale,
                 t_max: ray.t_max,

@@ -23,7 +23,7 @@
 
 use glam::Vec3;
 
-use super::{Hit, Instance, wedges::Wedges};
+use super::{Hit, Instance, TriangleId, wedges::Wedges};
 
 /// A point of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,6 +34,8 @@ pub struct SurfacePoint {
     pub error: Vec3,
     /// Unit normal of the triangle, by the winding of its corners in object space.
     pub normal: Vec3,
+    /// The triangle.
+    pub triangle: TriangleId,
     /// Where the point is so close to an edge of its triangle that `error` may reach behind the surface beyond: the hit,
     /// from which [`Aggregate::leave`](super::Aggregate::leave) finds the start of a ray.
     pub near_edge: Option<NearEdge>,
@@ -259,6 +261,7 @@ impl Instance {
             position: placed.position,
             error: placed.error,
             normal: placed.normal,
+            triangle: hit.id(),
             near_edge: near,
         }
     }

@@ -109,7 +109,9 @@ pub(crate) struct Crossing {
 }
 
 /// Where the ray crosses a triangle, `0 < t <= limit`, whose edge functions do not differ in sign and have a finite sum, not
-/// zero: the rest of the test, for the few that get so far ([`super::wide`] has its beginning, for several at once).
+/// zero: the rest of the test, for the few that get so far ([`super::wide`] has its beginning, for several at once). Where only
+/// matters that there is one (`any`), the box may be enough to say so; then `t` is only somewhere in it, and the weights say
+/// nothing.
 #[inline(always)]
 pub(crate) fn accept(
     shear: &Shear,
@@ -117,18 +119,26 @@ pub(crate) fn accept(
     corners: [Vec3; 3],
     [u, v, w]: [f32; 3],
     limit: f32,
+    any: bool,
 ) -> Option<Crossing> {
+    let span = || slab.span(&triangle_box(corners.map(Vec3A::from)));
+    if any {
+        let (entry, exit) = span();
+        let in_range = (1.0 / IN_RANGE < entry) & (exit < IN_RANGE);
+        if in_range & (entry <= exit) & (exit < limit) {
+            return Some(Crossing {
+                t: exit,
+                u: 0.0,
+                v: 0.0,
+            });
+        }
+    }
     let plane = Plane::of(shear, corners);
     let crossed = plane.t();
-    // Most that come this far are the surface which the ray has just left.
     if !((crossed > 0.0) & (crossed <= limit)) && plane.is_outside(shear, corners, limit) {
         return None;
     }
-    let (entry, exit) = slab.span(&triangle_box([
-        corners[0].into(),
-        corners[1].into(),
-        corners[2].into(),
-    ]));
+    let (entry, exit) = span();
     let t = clamp(crossed, entry, exit);
     let passes = (entry <= exit) & (exit > 0.0) & (entry <= limit);
     (passes & (t > 0.0) & (t <= limit)).then(|| {
@@ -141,6 +151,9 @@ pub(crate) fn accept(
     })
 }
 
+/// Neither this nor its reciprocal comes to the end of the numbers when the ray is scaled by 2¹⁰⁰ or its reciprocal
+/// ([`super::safe_ray`]).
+const IN_RANGE: f32 = (1u64 << 26) as f32;
 /// The part of M by which a point of the ray may be off the triangle that it passes: 7u.
 const MOVED: f64 = 3.5 * f32::EPSILON as f64;
 /// The part of its terms by which n · d may be off, many times over.
@@ -261,7 +274,13 @@ mod tests {
             let limits = [f32::INFINITY, 1.0, 1e-3, t, t.next_down(), 0.5 * t];
             for limit in limits.into_iter().filter(|limit| *limit > 0.0) {
                 let expected = asked(&shear, &slab, corners, limit);
-                let found = accept(&shear, &slab, corners, edges, limit).map(|hit| hit.t);
+                let found = accept(&shear, &slab, corners, edges, limit, false).map(|hit| hit.t);
+                let is_found = accept(&shear, &slab, corners, edges, limit, true).is_some();
+                assert_eq!(
+                    is_found,
+                    found.is_some(),
+                    "round {round}, any before {limit:e}"
+                );
                 assert_eq!(
                     found, expected,
                     "round {round}, limit {limit:e}, {corners:?}"

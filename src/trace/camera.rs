@@ -6,7 +6,7 @@
 //! at distance d makes a circle of diameter `2a·|d-f|/d` on the focus plane.
 
 use super::disc::concentric;
-use crate::bvh::Ray;
+use crate::bvh::{Ray, TriangleId};
 use crate::scene::Projection;
 use glam::{Quat, UVec2, Vec2, Vec3};
 
@@ -195,6 +195,7 @@ impl ImagePlane<'_> {
             direction,
             t_max: f32::INFINITY,
             time,
+            starts_on: TriangleId::NONE,
         }
     }
 }

@@ -102,20 +102,30 @@ fn place(i: usize, [x, y]: [&[u32]; 2], [u, v]: [&[f32]; 2]) -> Vec2 {
     Vec2::new(x[i] as f32 + u[i], y[i] as f32 + v[i])
 }
 
+/// So many rays are written at a time.
+const ROWS: usize = 64;
+
 vectorized! {
-    /// Rays without an end, of columns.
+    /// Sets rays without an end, of columns; they start on no triangle as before.
     fn to_rays(origins: [&[f32]; 3], directions: [&[f32]; 3], times: &[f32], rays: &mut [Ray]) {
         let count = rays.len();
         let [ox, oy, oz] = origins.map(|column| &column[..count]);
         let [dx, dy, dz] = directions.map(|column| &column[..count]);
         let times = &times[..count];
-        for i in 0..count {
-            rays[i] = Ray {
-                origin: Vec3::new(ox[i], oy[i], oz[i]),
-                direction: Vec3::new(dx[i], dy[i], dz[i]),
-                t_max: f32::INFINITY,
-                time: times[i],
-            };
+        for start in (0..count).step_by(ROWS) {
+            // Rows of eight are a transposition in registers; a ray has ten numbers, of which the last two stay.
+            let some = ROWS.min(count - start);
+            let mut rows = [[0.0; 8]; ROWS];
+            let [ox, oy, oz] = [ox, oy, oz].map(|column| &column[start..start + some]);
+            let [dx, dy, dz] = [dx, dy, dz].map(|column| &column[start..start + some]);
+            let times = &times[start..start + some];
+            for (i, row) in rows[..some].iter_mut().enumerate() {
+                *row = [ox[i], oy[i], oz[i], dx[i], dy[i], dz[i], f32::INFINITY, times[i]];
+            }
+            let rays: &mut [[f32; 10]] = bytemuck::cast_slice_mut(&mut rays[start..start + some]);
+            for (ray, row) in rays.iter_mut().zip(&rows) {
+                ray[..8].copy_from_slice(row);
+            }
         }
     }
 

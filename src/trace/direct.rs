@@ -182,6 +182,7 @@ impl<R: Recorder> Batch<'_, R> {
                             direction: column_vector(&along, lane),
                             t_max,
                             time: vertices.times[vertex],
+                            starts_on: vertices.hits[vertex].id(),
                         },
                     };
                 }

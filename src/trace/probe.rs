@@ -146,6 +146,7 @@ impl<'a> Recording<'a> {
             after: 0.0,
             t_max: ray.t_max,
             time: ray.time,
+            starts_on: ray.starts_on,
             t: ray.t_max,
             end: RayEnd::Background,
             hit: None,
@@ -296,6 +297,7 @@ impl Recorder for Recording<'_> {
             direction: of_light.direction,
             t_max: of_light.distance,
             time: self.rays[parent as usize].time,
+            starts_on: surface.point.triangle,
         };
         let index = self.push(&ray, kind, Some(parent));
         let lighting = self.settings.lighting;

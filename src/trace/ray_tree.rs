@@ -3,7 +3,7 @@
 use super::World;
 use super::recorder::LightKind;
 use super::transmittance::{crossings, through};
-use crate::bvh::{Counters, Hit, Ray, Visitor};
+use crate::bvh::{Counters, Hit, Ray, TriangleId, Visitor};
 use crate::scene::RenderSettings;
 use glam::{UVec2, Vec3};
 use serde::Serialize;
@@ -63,6 +63,9 @@ pub struct TracedRay {
     pub t_max: f32,
     /// When it is shot, in the shutter's [0, 1].
     pub time: f32,
+    /// The triangle that it starts on; files name the object, [`Self::from`].
+    #[serde(skip)]
+    pub starts_on: TriangleId,
     /// Where it ended: at a surface, at a light, or at `t_max`.
     pub t: f32,
     /// What it ended at.
@@ -375,6 +378,7 @@ impl TracedRay {
             direction: self.direction,
             t_max: self.t_max,
             time: self.time,
+            starts_on: self.starts_on,
         }
     }
 

@@ -133,7 +133,7 @@ impl<R: Recorder> Batch<'_, R> {
                 ..*path
             };
             let way = if glossy { Way::Gloss } else { Way::Mirror };
-            let ray = spawned(origin, direction, vertex.ray.time);
+            let ray = spawned(origin, direction, vertex);
             self.go_on(vertex, ray, path, way, count, weight, next);
         }
         self.counts.mirror += u64::from(count);
@@ -186,7 +186,7 @@ impl<R: Recorder> Batch<'_, R> {
                 after: None,
                 ..*path
             };
-            let ray = spawned(origin, direction, vertex.ray.time);
+            let ray = spawned(origin, direction, vertex);
             self.go_on(vertex, ray, path, Way::Translucent, count, weight, next);
         }
         self.counts.transmission += u64::from(count);
@@ -219,13 +219,14 @@ impl<R: Recorder> Batch<'_, R> {
     }
 }
 
-/// A ray that starts at a surface.
-fn spawned(origin: Vec3, direction: Vec3, time: f32) -> Ray {
+/// A ray that starts at the surface that another met.
+fn spawned(origin: Vec3, direction: Vec3, vertex: &Departure) -> Ray {
     Ray {
         origin,
         direction,
         t_max: f32::INFINITY,
-        time,
+        time: vertex.ray.time,
+        starts_on: vertex.hit.id(),
     }
 }
 

@@ -5,7 +5,7 @@ use super::numbers::{Asking, Pairs};
 use super::vectors::Vectors;
 use super::vertices::Vertices;
 use super::{SampleId, Surface};
-use crate::bvh::{Aggregate, Ray, Transmittances};
+use crate::bvh::{Aggregate, Ray, Transmittances, TriangleId};
 use glam::Vec3;
 
 /// A shadow ray ends this much before its light, as a fraction of the distance: a light that lies
@@ -66,6 +66,7 @@ impl Reply {
             direction: Vec3::ZERO,
             t_max: 0.0,
             time: 0.0,
+            starts_on: TriangleId::NONE,
         },
     };
 }
@@ -138,20 +139,18 @@ pub(super) fn shadow_ray(
     time: f32,
 ) -> Ray {
     let origin = aggregate.leave(&surface.point, point.direction);
-    if point.distance == f32::INFINITY {
-        return Ray {
-            origin,
-            direction: point.direction,
-            t_max: f32::INFINITY,
-            time,
-        };
-    }
-    // From the moved origin to the light itself, so that the ray still ends there.
-    let to_light = point.distance * point.direction - (origin - surface.point.position);
+    let (direction, t_max) = if point.distance == f32::INFINITY {
+        (point.direction, f32::INFINITY)
+    } else {
+        // From the moved origin to the light itself, so that the ray still ends there.
+        let to_light = point.distance * point.direction - (origin - surface.point.position);
+        (to_light, SHORT_OF_THE_LIGHT)
+    };
     Ray {
         origin,
-        direction: to_light,
-        t_max: SHORT_OF_THE_LIGHT,
+        direction,
+        t_max,
         time,
+        starts_on: surface.point.triangle,
     }
 }

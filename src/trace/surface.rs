@@ -1,6 +1,6 @@
 use super::footprint::texture_footprint;
 use super::{Material, Object, Reading, World, normal_map};
-use crate::bvh::{Hit, Placement, Ray, SurfacePoint};
+use crate::bvh::{Hit, Placement, Ray, SurfacePoint, TriangleId};
 use crate::scene::{Alpha, Lighting, PhongMap, RenderSettings, TextureFilter};
 use glam::{Vec2, Vec3, Vec4};
 
@@ -302,6 +302,7 @@ impl Surface {
                 position,
                 error: Vec3::ZERO,
                 normal,
+                triangle: TriangleId::NONE,
                 near_edge: None,
             },
             geometric_normal: normal,

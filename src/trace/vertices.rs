@@ -107,6 +107,7 @@ impl Vertices {
                 position: self.position.get(i),
                 error: self.error.get(i),
                 normal: self.triangle_normal.get(i),
+                triangle: self.hits[i].id(),
                 near_edge: self.is_near_edge[i].then(|| NearEdge {
                     hit: self.hits[i],
                     time: self.times[i],

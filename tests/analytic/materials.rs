@@ -45,12 +45,7 @@ pub(super) fn at(
     direction: Vec3,
 ) -> Surface {
     let target = Vec3::new(x, 0.0, z);
-    let ray = Ray {
-        origin: target - direction,
-        direction,
-        t_max: f32::INFINITY,
-        time: 0.0,
-    };
+    let ray = Ray::new(target - direction, direction);
     let hit = world
         .aggregate
         .closest_hit(&ray)

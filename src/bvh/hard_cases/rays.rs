@@ -6,7 +6,7 @@ use super::{
     meshes::{cube, joined, scatter, soup, sphere},
     random::Random,
 };
-use crate::bvh::{Ray, Triangles};
+use crate::bvh::{Ray, TriangleId, Triangles};
 
 /// Triangles of all kinds in a cube of side 2.
 pub(crate) fn mixed() -> Triangles {
@@ -126,6 +126,7 @@ pub(crate) fn not_numbers(random: &mut Random) -> Ray {
         direction: three(),
         t_max: random.of(&ODD),
         time: random.of(&ODD),
+        starts_on: TriangleId::NONE,
     }
 }
 

@@ -67,7 +67,7 @@ impl SingleTriangle {
         if !(det != 0.0 && det.is_finite()) {
             return None;
         }
-        let crossing = accept(shear, &ray.slab, self.corners(), edges, limit);
+        let crossing = accept(shear, &ray.slab, self.corners(), edges, limit, false);
         crossing.map(|Crossing { t, u, v }| (t, u, v))
     }
 }

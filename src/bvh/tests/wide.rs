@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 use crate::bvh::{
     Aggregate, BuildOptions, Builder, Hit, Instance, Levels, MAX_DEPTH, MeshTree, Order, Ray,
-    Transmittances, Triangles,
+    Transmittances, TriangleId, Triangles,
     goal::{All, Nearest, Question},
     safe_ray::Measure,
     slab::SlabRay,
@@ -93,12 +93,64 @@ fn bundles(count: usize, places: &[Affine3A]) -> Vec<Ray> {
                         } else {
                             lead.time
                         },
+                        starts_on: TriangleId::NONE,
                     };
                     odd(ray, if bundle % 9 == 0 { bundle + i } else { 39 })
                 })
                 .collect::<Vec<_>>()
         })
         .collect()
+}
+
+/// Every third ray starts on the triangle that it hits; how many do.
+fn start_on_what_they_hit(scene: &Aggregate, rays: &mut [Ray]) -> usize {
+    let some = rays.iter_mut().step_by(3);
+    some.filter_map(|ray| {
+        ray.starts_on = scene.closest_hit(ray)?.id();
+        Some(())
+    })
+    .count()
+}
+
+#[test]
+fn a_ray_meets_everything_but_the_triangle_that_it_starts_on() {
+    let mut random = Random::new(6);
+    let mesh = joined(&[scatter(300, 0.2, 3), knot(30, 8)]);
+    let turned: Vec<Affine3A> = (0..5).map(|_| any_transform(&mut random)).collect();
+    for places in [vec![Affine3A::IDENTITY], turned] {
+        for levels in [Levels::One, Levels::Two] {
+            let options = BuildOptions {
+                levels,
+                ..BuildOptions::default()
+            };
+            let meshes: Vec<(Triangles, Affine3A)> =
+                places.iter().map(|&place| (mesh.clone(), place)).collect();
+            let scene = placed(&meshes, &options);
+            let mut rays = rays(10_000, &places);
+            rays.extend(bundles(10_000, &places));
+            let plain = rays.clone();
+            let count = start_on_what_they_hit(&scene, &mut rays);
+            assert!(count > 1_000, "only {count} rays");
+            let (mut all, mut left, mut found) = (Vec::new(), Vec::new(), Vec::new());
+            let mut occluded = Vec::new();
+            scene.closest_hits_in(Order::Tile, &rays, &mut found);
+            scene.occlusions_in(Order::Light, &rays, &mut occluded);
+            for (i, (ray, plain)) in rays.iter().zip(&plain).enumerate() {
+                scene.all_hits(plain, &mut all);
+                all.retain(|hit| hit.id() != ray.starts_on);
+                scene.all_hits(ray, &mut left);
+                assert_eq!(left, all, "{levels:?}: {ray:?}");
+                let nearest = all.first().copied();
+                assert!(
+                    same(found[i], nearest),
+                    "{levels:?}: {:?}, {ray:?}",
+                    found[i]
+                );
+                assert!(same(scene.closest_hit(ray), nearest), "{levels:?}: {ray:?}");
+                assert_eq!(occluded[i], nearest.is_some(), "{levels:?}: {ray:?}");
+            }
+        }
+    }
 }
 
 /// What a crossing lets through.
@@ -124,6 +176,8 @@ fn every_instruction_set_and_every_order_finds_the_same_bits() {
             // A million over the four scenes.
             let mut rays = rays(100_000, &places);
             rays.extend(bundles(150_000, &places));
+            let through_the_first = start_on_what_they_hit(&scene, &mut rays);
+            assert!(through_the_first > 10_000, "only {through_the_first} rays");
             let (mut hits, mut occluded) = (Vec::new(), Vec::new());
             scene.closest_hits(&rays, &mut hits);
             scene.occlusions(&rays, &mut occluded);
@@ -352,12 +406,14 @@ fn a_tree_as_deep_as_any_is_walked_to_its_last_leaf_within_its_stack() {
         let mut goal = Nearest::NONE;
         let mut nearest = Question {
             measure,
+            starts_on: TriangleId::NONE,
             goal: &mut goal,
             visitor: &mut (),
         };
         walk(&wide, &mut stack, &ray, end, &mut visits, &mut nearest);
         let mut all = Question {
             measure,
+            starts_on: TriangleId::NONE,
             goal: &mut All(&mut Vec::new()),
             visitor: &mut (),
         };

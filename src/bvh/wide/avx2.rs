@@ -194,6 +194,10 @@ impl Lanes for Avx2 {
         splat(x: f32) -> Self = Self(_mm256_set1_ps(x));
         lt(self, other: Self) -> __m256 = _mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0);
         le(self, other: Self) -> __m256 = _mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0);
+        same_bits(self, other: Self) -> __m256 = _mm256_castsi256_ps(_mm256_cmpeq_epi32(
+            _mm256_castps_si256(self.0),
+            _mm256_castps_si256(other.0),
+        ));
         and(a: __m256, b: __m256) -> __m256 = _mm256_and_ps(a, b);
         and_not(not: __m256, b: __m256) -> __m256 = _mm256_andnot_ps(not, b);
         bits(mask: __m256) -> u32 = _mm256_movemask_ps(mask) as u32;

@@ -167,6 +167,10 @@ impl Lanes for Half {
         splat(x: f32) -> Self = Self(_mm256_set1_ps(x));
         lt(self, other: Self) -> __mmask8 = _mm256_cmp_ps_mask::<_CMP_LT_OQ>(self.0, other.0);
         le(self, other: Self) -> __mmask8 = _mm256_cmp_ps_mask::<_CMP_LE_OQ>(self.0, other.0);
+        same_bits(self, other: Self) -> __mmask8 = _mm256_cmpeq_epi32_mask(
+            _mm256_castps_si256(self.0),
+            _mm256_castps_si256(other.0),
+        );
         select(mask: __mmask8, yes: Self, no: Self) -> Self = Self(_mm256_mask_blend_ps(mask, no.0, yes.0));
         splat_f64(x: f64) -> __m512d = _mm512_set1_pd(x);
         widen(self) -> __m512d = _mm512_cvtps_pd(self.0);
@@ -303,6 +307,10 @@ impl Lanes for Full {
         largest(self) -> f32 = _mm512_reduce_max_ps(self.0);
         lt(self, other: Self) -> __mmask16 = _mm512_cmp_ps_mask::<_CMP_LT_OQ>(self.0, other.0);
         le(self, other: Self) -> __mmask16 = _mm512_cmp_ps_mask::<_CMP_LE_OQ>(self.0, other.0);
+        same_bits(self, other: Self) -> __mmask16 = _mm512_cmpeq_epi32_mask(
+            _mm512_castps_si512(self.0),
+            _mm512_castps_si512(other.0),
+        );
         select(mask: __mmask16, yes: Self, no: Self) -> Self = Self(_mm512_mask_blend_ps(mask, no.0, yes.0));
         splat_f64(x: f64) -> [__m512d; 2] = [_mm512_set1_pd(x); 2];
         widen(self) -> [__m512d; 2] = [

@@ -11,7 +11,8 @@ use crate::bvh::{
     visitor::Visitor,
 };
 
-/// Set in the last lane's number where the next block belongs to the same leaf. Triangles are numbered in 31 bits.
+/// Set in the last lane's number where the next block belongs to the same leaf: the sign, read as an `f32`. Triangles are
+/// numbered in 31 bits.
 const CONTINUES: u32 = 1 << 31;
 
 /// 320 bytes, five cache lines: up to eight triangles, a lane each, their coordinates axis by axis and corner by
@@ -84,6 +85,13 @@ impl TriangleBlock {
         self.numbers[lane] & !CONTINUES
     }
 
+    /// The lane of a triangle, as a bit; none where it is not here. No triangle has a number of 32 bits.
+    #[inline(always)]
+    fn lane_of<E: Eight>(&self, number: u32) -> u32 {
+        let numbers = E::load(bytemuck::cast_ref(&self.numbers)).abs();
+        E::bits(numbers.same_bits(E::splat(f32::from_bits(number))))
+    }
+
     /// The lanes that hold a triangle: that are no point.
     fn lanes(&self) -> impl Iterator<Item = usize> + '_ {
         (0..Self::CAPACITY).filter(|&lane| {
@@ -153,6 +161,7 @@ impl TriangleBlock {
             return limit;
         }
         passed &= within(&corners, shear.depths(reach, limit));
+        passed &= !self.lane_of::<E>(question.starts_on(instance));
         if passed == 0 {
             return limit;
         }
@@ -162,7 +171,7 @@ impl TriangleBlock {
             passed &= passed - 1;
             let edges = [u[lane], v[lane], w[lane]];
             let corners = self.corners(lane);
-            if let Some(crossing) = accept(shear, slab, corners, edges, limit) {
+            if let Some(crossing) = accept(shear, slab, corners, edges, limit, G::ANY) {
                 let (is_wanted, new) =
                     question.meet((instance, self.number(lane)), crossing, limit);
                 limit = new;

@@ -47,6 +47,8 @@ pub(crate) trait Lanes: Copy {
     fn lt(self, other: Self) -> Self::Mask;
     /// Whether it is smaller or equal; not where either is NaN.
     fn le(self, other: Self) -> Self::Mask;
+    /// Whether the bits are the same.
+    fn same_bits(self, other: Self) -> Self::Mask;
     /// Both.
     fn and(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// The second, and not the first.

@@ -117,6 +117,11 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
+    fn same_bits(self, other: Self) -> u32 {
+        self.mask(other, |a, b| a.to_bits() == b.to_bits())
+    }
+
+    #[inline(always)]
     fn and(a: u32, b: u32) -> u32 {
         a & b
     }

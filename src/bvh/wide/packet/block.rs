@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::{Found, PacketRays, View, found::lanes_of, largest_size, view::Frame};
 use crate::bvh::{
     goal::Goal,
+    ray::TriangleId,
     slab::PAD,
     wide::{Eight, InstructionSet, Lanes, TriangleBlock, by_axis},
 };
@@ -134,7 +135,16 @@ impl TriangleBlock {
         let exit = x.min(y).min(z);
         let (zero, limit) = (S::Packet::splat(0.0), found.limit);
         let ahead = S::Packet::and(zero.lt(exit), entry.le(exit.min(limit)));
+        let number = self.number(triangle);
+        let this = TriangleId {
+            instance,
+            triangle: number,
+        };
         let mut within = passed & S::Packet::bits(ahead);
+        if within == 0 {
+            return false;
+        }
+        within &= !found.starting_on(this);
         if G::ANY {
             let sure = S::Packet::and(zero.lt(entry), exit.lt(limit));
             let sure = within & S::Packet::bits(sure);
@@ -155,7 +165,6 @@ impl TriangleBlock {
             return false;
         }
         let tied = ahead & found.hit & !nearer & S::Packet::bits(t.le(limit));
-        let number = self.number(triangle);
         let won = if tied == 0 {
             nearer
         } else {

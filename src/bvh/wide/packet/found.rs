@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 
 use crate::bvh::{
     goal::{Goal, Nearest, Question, STOP},
-    ray::Hit,
+    ray::{Hit, TriangleId},
     safe_ray::Measure,
     wide::Lanes,
 };
@@ -48,6 +48,8 @@ fn put<L: Lanes>(lanes: &mut L, mask: L::Mask, x: f32) {
 pub(crate) struct Found<L> {
     /// Where each ray ends.
     end: L,
+    /// The triangle that it starts on: the bits of its instance's number and of its own. `None` where no ray does.
+    starts_on: Option<[L; 2]>,
     /// The `t` of its nearest hit, or where it ends.
     pub(super) limit: L,
     /// Edge functions of the triangle that it hits: those of corners 1 and 2, and the sum of all.
@@ -72,12 +74,13 @@ pub(crate) enum Answers<'a> {
 }
 
 impl<L: Lanes> Found<L> {
-    /// Nothing, for rays that end there.
+    /// Nothing, for rays that end there and start on those triangles: the bits of instances' numbers and of their own.
     #[inline(always)]
-    pub(crate) fn nothing(end: L) -> Self {
+    pub(crate) fn nothing(end: L, starts_on: Option<[L; 2]>) -> Self {
         let zero = L::splat(0.0);
         Self {
             end,
+            starts_on,
             limit: end,
             edges: [zero; 3],
             triangle: zero,
@@ -86,6 +89,19 @@ impl<L: Lanes> Found<L> {
             active: 0,
             farthest: 0.0,
         }
+    }
+
+    /// The rays that start on that triangle.
+    #[inline(always)]
+    pub(super) fn starting_on(&self, of: TriangleId) -> u32 {
+        let Some([instance, triangle]) = self.starts_on else {
+            return 0;
+        };
+        let bits = |number: u32| L::splat(f32::from_bits(number));
+        L::bits(L::and(
+            instance.same_bits(bits(of.instance)),
+            triangle.same_bits(bits(of.triangle)),
+        ))
     }
 
     /// A group of rays sets out that has not done so before.
@@ -124,6 +140,12 @@ impl<L: Lanes> Found<L> {
         Alone {
             lane,
             end: number(self.end, lane),
+            starts_on: (self.starts_on).map_or(TriangleId::NONE, |[instance, triangle]| {
+                TriangleId {
+                    instance: number(instance, lane).to_bits(),
+                    triangle: number(triangle, lane).to_bits(),
+                }
+            }),
             limit,
             best: if is_hit { Nearest(hit) } else { Nearest::NONE },
             is_new: false,
@@ -187,6 +209,7 @@ impl<L: Lanes> Found<L> {
 pub(crate) struct Alone<G> {
     lane: usize,
     end: f32,
+    starts_on: TriangleId,
     /// Beyond this nothing matters.
     pub(crate) limit: f32,
     best: Nearest,
@@ -200,6 +223,7 @@ impl<G: Goal> Alone<G> {
     pub(crate) fn question<'a, V>(&'a mut self, visitor: &'a mut V) -> Question<'a, Self, V> {
         Question {
             measure: Measure::unscaled(self.end),
+            starts_on: self.starts_on,
             goal: self,
             visitor,
         }
