@@ -6,13 +6,14 @@ use super::past_moves::PAST_BYTES;
 use super::pool::{SharedPool, Turn};
 use super::preview::Preview;
 use super::queue::Queue;
-use super::sample_chunk::{BatchSize, Subject, with_scratch};
+use super::sample_chunk::{BatchSize, Scratch, Subject, with_scratch};
 use super::status::{Ending, State, Status, TrendPoint, seconds_left};
 use super::tile_planes::{BLEND_BYTES, PLANE_BYTES};
 use super::tile_state::{Chunk, TileState};
 use super::tiles::{Tile, TileGrid};
 use super::unmet::Unmet;
 use super::{FilmMemory, lock};
+use crate::scene::RenderSettings;
 use crate::trace::RayCounts;
 use crate::trace::planes::OWN;
 use bevy::math::URect;
@@ -54,7 +55,10 @@ pub(super) struct Engine {
     divider: AtomicU32,
     progress: Mutex<Progress>,
     ended: Condvar,
+    /// Samples that have entered pixels.
     done: AtomicU64,
+    /// When it ends at the latest, on its clock.
+    limit: Option<Duration>,
     /// Tells this render, as it is since its last edit, from all others of the process.
     number: AtomicU64,
     /// What it shall render from now on, as soon as nothing is traced.
@@ -78,6 +82,15 @@ enum Interruption {
 fn next_number() -> u64 {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     COUNT.fetch_add(1, Ordering::Relaxed) + 1
+}
+
+/// Small chunks are taken as so many samples at once: some tenths of a millisecond.
+const SAMPLES_AT_ONCE: u64 = 2048;
+
+/// How long a render may take; `None` is for ever.
+fn time_limit(settings: &RenderSettings) -> Option<Duration> {
+    let seconds = settings.sampling.time;
+    (seconds > 0.0).then(|| Duration::try_from_secs_f32(seconds).unwrap_or(Duration::MAX))
 }
 
 /// What the threads report.
@@ -106,6 +119,7 @@ impl Engine {
             progress: Mutex::default(),
             ended: Condvar::new(),
             done: AtomicU64::new(0),
+            limit: time_limit(&subject.settings),
             number: AtomicU64::new(next_number()),
             rendered,
             area,
@@ -260,22 +274,14 @@ impl Engine {
     fn run_queue(&self, told: &(dyn Fn(&Self) + Sync)) -> Option<Interruption> {
         loop {
             let waiting = lock(&self.queue).len();
-            let next_chunk = |turn: Turn| {
-                if turn.is_over() || self.must_stop() {
-                    return;
-                }
-                let next = lock(&self.queue).pop(&self.grid);
-                if let Some(chunk) = next {
-                    if self.run_chunk(&chunk) {
-                        told(self);
-                    } else {
-                        lock(&self.queue).push(chunk);
-                    }
+            let go_on = |turn: Turn| {
+                if !turn.is_over() && !self.must_stop() && with_scratch(|s| self.run_some(s)) {
+                    told(self);
                 }
             };
             self.on_threads(|turn| {
-                let chunks = (0..waiting).into_par_iter().with_max_len(1);
-                chunks.for_each(|_| next_chunk(turn));
+                let turns = (0..waiting).into_par_iter().with_max_len(1);
+                turns.for_each(|_| go_on(turn));
             });
             if let Some(ending) = self.interrupted() {
                 return Some(Interruption::End(ending));
@@ -298,10 +304,9 @@ impl Engine {
     }
 
     fn time_is_up(&self) -> bool {
-        let limit = self.subject().settings.sampling.time;
-        limit > 0.0
-            && self.divider.load(Ordering::Relaxed) == 1
-            && self.control.elapsed() >= Duration::try_from_secs_f32(limit).unwrap_or(Duration::MAX)
+        self.limit.is_some_and(|limit| {
+            self.divider.load(Ordering::Relaxed) == 1 && self.control.elapsed() >= limit
+        })
     }
 
     /// Waits out a pause; says what ends the render.
@@ -318,29 +323,50 @@ impl Engine {
         }
     }
 
-    /// Does a chunk. False where it had to stop: then nothing of it counts.
-    fn run_chunk(&self, chunk: &Chunk) -> bool {
-        let tile = self.grid.tile(chunk.tile);
-        let subject = self.subject();
-        with_scratch(|scratch| {
+    /// Works on what waits in front: on several chunks where they are small, so that threads do not get in each other's way
+    /// more often than they have to. False where nothing was done.
+    fn run_some(&self, scratch: &mut Scratch) -> bool {
+        let mut waiting = std::mem::take(&mut scratch.chunks);
+        lock(&self.queue).pop(&self.grid, SAMPLES_AT_ONCE, &mut waiting);
+        if waiting.is_empty() {
+            scratch.chunks = waiting;
+            return false;
+        }
+        let (number, subject) = (self.number(), self.subject());
+        scratch.octaves.fill(0);
+        let (mut rays, mut samples, mut done) = (RayCounts::default(), 0, 0);
+        for chunk in &waiting {
+            let tile = self.grid.tile(chunk.tile);
             let stopped = || self.must_stop();
-            let rays = scratch.sum_chunk(&subject, tile, chunk, &self.batch, &stopped);
-            let Some(rays) = rays else { return false };
-            self.unmet.met(&scratch.octaves);
-            let pixels = {
+            let taken = scratch.sum_chunk(&subject, tile, chunk, &self.batch, &stopped);
+            let Some(taken) = taken else { break };
+            rays += taken;
+            done += 1;
+            let is_complete = {
                 // Its tints may be others by now.
-                let mut state = self.tile(chunk.tile as usize);
+                let edited = (self.number() != number).then(|| self.subject());
+                let subject = edited.as_ref().unwrap_or(&subject);
+                let mut state = self.tile_of(subject, chunk.tile as usize);
                 state.meet(scratch.met);
-                state.absorb(&self.subject(), chunk, scratch.sums.all(), rays.total());
-                tile.count(chunk.pixels)
+                state.absorb(subject, chunk, scratch.sums.all(), taken.total())
             };
-            if chunk.planes.has(OWN) {
-                let samples = pixels * (chunk.range.end - chunk.range.start);
-                self.done.fetch_add(samples, Ordering::Relaxed);
+            // Pieces of a pass that an edit throws away have not been samples of the picture.
+            if is_complete && chunk.planes.has(OWN) {
+                samples += tile.count(chunk.pixels) * chunk.of;
             }
+        }
+        if done > 0 {
+            self.unmet.met(&scratch.octaves);
+            self.done.fetch_add(samples, Ordering::Relaxed);
             self.note_rays(rays);
-            true
-        })
+        }
+        if done < waiting.len() {
+            let mut queue = lock(&self.queue);
+            waiting.drain(done..).for_each(|chunk| queue.push(chunk));
+        }
+        waiting.clear();
+        scratch.chunks = waiting;
+        done > 0
     }
 
     fn note_error(&self) {

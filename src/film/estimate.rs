@@ -37,14 +37,16 @@ impl Engine {
 
     /// Works out on all threads how far the tiles moved that have other tints.
     pub(super) fn update_moves(&self) {
+        let subject = self.subject();
         let tiles = (0..self.tiles.len()).into_par_iter();
-        self.on_threads(|_| tiles.for_each(|tile| _ = self.tile(tile).moves()));
+        self.on_threads(|_| tiles.for_each(|tile| _ = self.tile_of(&subject, tile).moves()));
     }
 
     /// Of each half of each tile.
     pub(super) fn moves(&self) -> Vec<Moves> {
+        let subject = self.subject();
         (0..self.tiles.len())
-            .flat_map(|tile| self.tile(tile).moves())
+            .flat_map(|tile| self.tile_of(&subject, tile).moves())
             .collect()
     }
 }

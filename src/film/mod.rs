@@ -38,6 +38,7 @@ mod passes;
 mod past_moves;
 mod per_pixel;
 mod picture;
+mod plane_sums;
 mod pool;
 mod preview;
 mod progressive;

@@ -1,7 +1,7 @@
 //! Chunks that wait, those nearest the focus first.
 
 use super::tile_state::Chunk;
-use super::tiles::TileGrid;
+use super::tiles::{TILE_PIXELS, TileGrid};
 use glam::Vec2;
 use std::cmp::Reverse;
 
@@ -33,8 +33,8 @@ impl Queue {
         self.sorted = false;
     }
 
-    /// The chunk to do next.
-    pub fn pop(&mut self, grid: &TileGrid) -> Option<Chunk> {
+    /// The chunks to do next are added to `some`: more than one where they are no more than so many samples together.
+    pub fn pop(&mut self, grid: &TileGrid, samples: u64, some: &mut Vec<Chunk>) {
         if !self.sorted {
             let focus = self.focus;
             self.chunks.sort_by_cached_key(|chunk| {
@@ -44,7 +44,15 @@ impl Queue {
             });
             self.sorted = true;
         }
-        self.chunks.pop()
+        let mut left = samples;
+        while let Some(chunk) = self.chunks.last() {
+            let takes = (chunk.range.end - chunk.range.start) * TILE_PIXELS as u64;
+            if takes > left && !some.is_empty() {
+                break;
+            }
+            left = left.saturating_sub(takes);
+            some.extend(self.chunks.pop());
+        }
     }
 
     /// Nothing waits any more.
@@ -64,9 +72,8 @@ mod tests {
     use crate::trace::PlaneSet;
     use glam::UVec2;
 
-    #[test]
-    fn tiles_come_nearest_the_focus_first_and_a_new_focus_reorders_what_waits() {
-        let grid = TileGrid::new(UVec2::new(64, 16));
+    /// Four tiles, of which each waits for one sample of each pixel.
+    fn queue() -> (TileGrid, Queue) {
         let mut queue = Queue::default();
         for tile in 0..4 {
             queue.push(Chunk {
@@ -77,14 +84,37 @@ mod tests {
                 of: 1,
             });
         }
+        (TileGrid::new(UVec2::new(64, 16)), queue)
+    }
+
+    /// The tiles that come next.
+    fn next(queue: &mut Queue, grid: &TileGrid, samples: u64) -> Vec<u32> {
+        let mut some = Vec::new();
+        queue.pop(grid, samples, &mut some);
+        some.iter().map(|chunk| chunk.tile).collect()
+    }
+
+    #[test]
+    fn tiles_come_nearest_the_focus_first_and_a_new_focus_reorders_what_waits() {
+        let (grid, mut queue) = queue();
         queue.set_focus(Vec2::new(30.0, 8.0));
-        let mut next = || queue.pop(&grid).map(|chunk| chunk.tile);
-        assert_eq!(next(), Some(1));
-        assert_eq!(next(), Some(2));
+        assert_eq!(next(&mut queue, &grid, 1), [1]);
+        assert_eq!(next(&mut queue, &grid, 1), [2]);
         queue.set_focus(Vec2::new(64.0, 0.0));
-        let rest: Vec<_> =
-            std::iter::from_fn(|| queue.pop(&grid).map(|chunk| chunk.tile)).collect();
-        assert_eq!(rest, [3, 0]);
+        assert_eq!(next(&mut queue, &grid, 1), [3]);
+        assert_eq!(next(&mut queue, &grid, 1), [0]);
         assert_eq!(queue.len(), 0);
+    }
+
+    #[test]
+    fn small_chunks_come_together_and_a_large_one_alone() {
+        let (grid, mut queue) = queue();
+        let samples = TILE_PIXELS as u64;
+        assert_eq!(next(&mut queue, &grid, 3 * samples), [0, 1, 2]);
+        assert_eq!(next(&mut queue, &grid, 3 * samples), [3]);
+        assert!(next(&mut queue, &grid, 3 * samples).is_empty());
+        let (_, mut queue) = self::queue();
+        assert_eq!(next(&mut queue, &grid, samples - 1), [0]);
+        assert_eq!(next(&mut queue, &grid, 2 * samples - 1), [1]);
     }
 }

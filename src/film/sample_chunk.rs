@@ -13,7 +13,7 @@ use crate::trace::{
     radiance_in_planes,
 };
 use glam::{UVec2, Vec3};
-use std::cell::RefCell;
+use std::cell::Cell;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
@@ -39,6 +39,8 @@ pub(super) struct Subject {
 
 /// Lights of a picture that have a plane each, at the most; the others share one.
 pub(super) const MOST_APART: usize = 8;
+/// Those, that of the others, and that of what shines by itself.
+pub(super) const MOST_PLANES: usize = MOST_APART + 2;
 /// What all planes of a picture may take together, in bytes.
 const MOST_BYTES: f64 = 1e9;
 
@@ -170,6 +172,8 @@ fn rays_of_first_hit(subject: &Subject) -> u64 {
 
 /// What a thread keeps from chunk to chunk, so that none allocates.
 pub(super) struct Scratch {
+    /// What is worked on.
+    pub chunks: Vec<Chunk>,
     /// The places of the chunk's pixels in the tile, and, where they are not all of the tile's, the sums of a segment in
     /// their order.
     places: Vec<usize>,
@@ -184,7 +188,7 @@ pub(super) struct Scratch {
     gave_way: Option<Instant>,
     /// `TILE_PIXELS` for each of the chunk's planes, of each of its segments.
     pub sums: SumColumns,
-    /// How bright the chunk's samples are.
+    /// How bright samples are: added to, chunk by chunk.
     pub octaves: Octaves,
     /// The materials that they met.
     pub met: MaterialSet,
@@ -193,6 +197,7 @@ pub(super) struct Scratch {
 impl Default for Scratch {
     fn default() -> Self {
         Self {
+            chunks: Vec::new(),
             places: Vec::new(),
             columns: SumColumns::default(),
             samples: Vec::new(),
@@ -208,14 +213,15 @@ impl Default for Scratch {
 }
 
 thread_local! {
-    static SCRATCH: RefCell<Scratch> = RefCell::default();
+    /// None while it is in use.
+    static SCRATCH: Cell<Option<Box<Scratch>>> = const { Cell::new(None) };
 }
 
 /// Gives `work` what this thread keeps.
 pub(super) fn with_scratch<R>(work: impl FnOnce(&mut Scratch) -> R) -> R {
-    let mut scratch = SCRATCH.take();
+    let mut scratch = SCRATCH.take().unwrap_or_default();
     let result = work(&mut scratch);
-    SCRATCH.set(scratch);
+    SCRATCH.set(Some(scratch));
     result
 }
 
@@ -231,7 +237,6 @@ impl Scratch {
     ) -> Option<RayCounts> {
         let mut rays = RayCounts::default();
         self.sums.truncate(0);
-        self.octaves.fill(0);
         let mut places = std::mem::take(&mut self.places);
         places.clear();
         places.extend(tile.places(chunk.pixels));

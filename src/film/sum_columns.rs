@@ -138,15 +138,35 @@ impl<'a> Sums<'a> {
 
     /// The means of a tile's pixels, of which those of each half have so many samples; black where they have none.
     pub fn means(self, counts: [u32; 2]) -> TileColors {
-        let unit = |count: u32| {
-            DVec3::splat(if count > 0 {
-                UNIT / f64::from(count)
-            } else {
-                0.0
-            })
-        };
         let mut means = [0.0; CHANNELS * TILE_PIXELS];
-        multiply(&mut means, self.low, self.high, &lanes_of(counts.map(unit)));
+        multiply(&mut means, self.low, self.high, &units(counts));
+        means
+    }
+
+    /// The means of these sums and others, those of each half times a factor for each channel: what [`Blend::add`] and
+    /// [`Self::means`] come to.
+    pub fn means_with(self, others: Sums, factors: [DVec3; 2], counts: [u32; 2]) -> TileColors {
+        let mut means = [0.0; CHANNELS * TILE_PIXELS];
+        multiply_both(
+            &mut means,
+            [self.low, self.high],
+            [others.low, others.high],
+            &lanes_of(factors),
+            &units(counts),
+        );
+        means
+    }
+
+    /// [`Self::means_with`] of sums of one sample each.
+    pub fn means_with_values(
+        self,
+        values: &[f32],
+        factors: [DVec3; 2],
+        counts: [u32; 2],
+    ) -> TileColors {
+        let mut means = [0.0; CHANNELS * TILE_PIXELS];
+        let own = [self.low, self.high];
+        multiply_with_values(&mut means, own, values, &steps(factors), &units(counts));
         means
     }
 
@@ -165,7 +185,6 @@ impl<'a> Sums<'a> {
 
 /// The picture of a tile as a sum of others, each with a tint: exact where that is 1, else each rounded to 53 bits. What is
 /// larger than a sum can hold stays as large as that.
-#[derive(Clone)]
 pub(super) struct Blend {
     low: [u64; CHANNELS * TILE_PIXELS],
     high: [u64; CHANNELS * TILE_PIXELS],
@@ -179,6 +198,17 @@ impl Blend {
         }
     }
 
+    /// One that is kept.
+    pub fn boxed() -> Box<Self> {
+        Box::new(Self::new())
+    }
+
+    /// It is black.
+    pub fn clear(&mut self) {
+        self.low.fill(0);
+        self.high.fill(0);
+    }
+
     /// Adds the sums of a tile, those of each half times a factor for each channel.
     pub fn add(&mut self, sums: Sums, factors: [DVec3; 2]) {
         if factors == [DVec3::ONE; 2] {
@@ -189,6 +219,11 @@ impl Blend {
         }
     }
 
+    /// Adds a sample of each pixel of a tile, those of each half times a factor for each channel.
+    pub fn add_values(&mut self, values: &[f32], factors: [DVec3; 2]) {
+        merge_values(&mut self.low, &mut self.high, values, &steps(factors));
+    }
+
     pub fn sums(&self) -> Sums<'_> {
         Sums {
             low: &self.low,
@@ -197,9 +232,37 @@ impl Blend {
     }
 }
 
+/// What turns values into steps, times such factors. One rounding fewer than those of sums, for which it makes no difference:
+/// as a sum a value is a whole number of steps, and as exact.
+fn steps(factors: [DVec3; 2]) -> [f64; BLOCK_LANES] {
+    lanes_of(factors.map(|factor| factor / UNIT))
+}
+
+/// What turns sums of so many samples into means.
+fn units(counts: [u32; 2]) -> [f64; BLOCK_LANES] {
+    lanes_of(counts.map(|count| {
+        DVec3::splat(if count > 0 {
+            UNIT / f64::from(count)
+        } else {
+            0.0
+        })
+    }))
+}
+
 /// A factor of each half for each channel, as a block's numbers have it.
 fn lanes_of(halves: [DVec3; 2]) -> [f64; BLOCK_LANES] {
     std::array::from_fn(|lane| halves[lane / HALF_LANES][lane % CHANNELS])
+}
+
+/// A sum times a factor: exact where that is 1, else rounded to 53 bits and to whole steps.
+#[inline(always)]
+fn scaled(low: u64, high: u64, factor: f64) -> (u64, u64) {
+    let (scaled_low, scaled_high) = whole_steps(to_f64(low, high) * factor);
+    let is_exact = factor == 1.0;
+    (
+        if is_exact { low } else { scaled_low },
+        if is_exact { high } else { scaled_high },
+    )
 }
 
 vectorized! {
@@ -239,12 +302,58 @@ vectorized! {
         let others = other_low.chunks_exact(BLOCK_LANES).zip(other_high.chunks_exact(BLOCK_LANES));
         for ((low, high), (other_low, other_high)) in sums.zip(others) {
             for i in 0..BLOCK_LANES {
-                let scaled = to_f64(other_low[i], other_high[i]) * factors[i];
-                let (scaled_low, scaled_high) = whole_steps(scaled);
-                let is_exact = factors[i] == 1.0;
-                let scaled_low = if is_exact { other_low[i] } else { scaled_low };
-                let scaled_high = if is_exact { other_high[i] } else { scaled_high };
+                let (scaled_low, scaled_high) = scaled(other_low[i], other_high[i], factors[i]);
                 (low[i], high[i]) = saturating_sum(low[i], high[i], scaled_low, scaled_high);
+            }
+        }
+    }
+
+    fn merge_values(low: &mut [u64], high: &mut [u64], values: &[f32], steps: &[f64; BLOCK_LANES]) {
+        let sums = low.chunks_exact_mut(BLOCK_LANES).zip(high.chunks_exact_mut(BLOCK_LANES));
+        for ((low, high), values) in sums.zip(values.chunks_exact(BLOCK_LANES)) {
+            for i in 0..BLOCK_LANES {
+                let (value_low, value_high) = whole_steps(f64::from(values[i]) * steps[i]);
+                (low[i], high[i]) = saturating_sum(low[i], high[i], value_low, value_high);
+            }
+        }
+    }
+
+    fn multiply_with_values(
+        products: &mut [f32],
+        own: [&[u64]; 2],
+        values: &[f32],
+        steps: &[f64; BLOCK_LANES],
+        factors: &[f64; BLOCK_LANES],
+    ) {
+        let [low, high] = own.map(|column| column.chunks_exact(BLOCK_LANES));
+        let values = values.chunks_exact(BLOCK_LANES);
+        let products = products.chunks_exact_mut(BLOCK_LANES);
+        for (((low, high), values), products) in low.zip(high).zip(values).zip(products) {
+            for i in 0..BLOCK_LANES {
+                let (value_low, value_high) = whole_steps(f64::from(values[i]) * steps[i]);
+                let (low, high) = saturating_sum(low[i], high[i], value_low, value_high);
+                products[i] = (to_f64(low, high) * factors[i]) as f32;
+            }
+        }
+    }
+
+    fn multiply_both(
+        products: &mut [f32],
+        own: [&[u64]; 2],
+        other: [&[u64]; 2],
+        other_factors: &[f64; BLOCK_LANES],
+        factors: &[f64; BLOCK_LANES],
+    ) {
+        let [low, high] = own.map(|column| column.chunks_exact(BLOCK_LANES));
+        let [other_low, other_high] = other.map(|column| column.chunks_exact(BLOCK_LANES));
+        let products = products.chunks_exact_mut(BLOCK_LANES);
+        for (((low, high), (other_low, other_high)), products) in
+            low.zip(high).zip(other_low.zip(other_high)).zip(products)
+        {
+            for i in 0..BLOCK_LANES {
+                let (scaled_low, scaled_high) = scaled(other_low[i], other_high[i], other_factors[i]);
+                let (low, high) = saturating_sum(low[i], high[i], scaled_low, scaled_high);
+                products[i] = (to_f64(low, high) * factors[i]) as f32;
             }
         }
     }

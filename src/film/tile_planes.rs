@@ -1,19 +1,23 @@
 //! A tile's light kept apart: the sums of each plane, and the picture that they are with their tints.
 
 use super::past_moves::{PastMoves, squares};
-use super::sample_chunk::Subject;
-use super::sum_columns::{Blend, CHANNELS, SumColumns, Sums, TileColors};
+use super::plane_sums::PlaneSums;
+use super::sample_chunk::{MOST_PLANES, Subject};
+use super::sum_columns::{Blend, CHANNELS, Sums, TileColors};
 use super::tile_state::Pixels;
 use super::tiled_film::FilmTile;
 use super::tiles::{TILE_PIXELS, half_of};
 use crate::trace::PlaneSet;
 use crate::trace::planes::OWN;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 /// The planes of a tile: one, where light is not kept apart.
 #[derive(Default)]
 pub(super) struct TilePlanes {
     planes: Vec<Plane>,
+    /// Samples of each pixel of each half, plane by plane. Together and in place, since whoever plans a pass reads them of
+    /// every tile.
+    counts: [[u32; 2]; MOST_PLANES],
     /// How far the picture of all of them moved.
     past: PastMoves,
     /// Whether it is known how far each of them moved.
@@ -33,12 +37,9 @@ struct Rest {
 
 /// What one plane has.
 struct Plane {
-    /// None before its first samples.
-    sums: SumColumns,
+    sums: PlaneSums,
     /// How far each pixel's mean moved when its samples doubled last; none before they did.
     moved: Option<Box<TileColors>>,
-    /// Samples of each pixel of each half.
-    counts: [u32; 2],
     tint: Vec3,
 }
 
@@ -50,34 +51,26 @@ pub(super) const PLANE_BYTES: usize = BLEND_BYTES + size_of::<f32>() * CHANNELS;
 impl Plane {
     fn empty(tint: Vec3) -> Self {
         Self {
-            sums: SumColumns::default(),
+            sums: PlaneSums::default(),
             moved: None,
-            counts: [0; 2],
             tint,
         }
     }
 
     /// Has nothing any more, but for its memory.
     fn forget(&mut self) {
-        self.sums.truncate(0);
+        self.sums.forget();
         self.moved = None;
-        self.counts = [0; 2];
     }
 
     /// Adds `count` samples to these pixels.
     fn add(&mut self, pixels: Pixels, sums: Sums, count: u32) {
         if self.sums.is_empty() && pixels == Pixels::All {
-            self.sums.copy_from(sums);
-        } else {
-            if self.sums.is_empty() {
-                self.sums.reset(TILE_PIXELS);
-            }
-            for places in pixels.runs() {
-                self.sums.merge(places.start, sums.part(places));
-            }
+            return self.sums.begin(sums, count);
         }
-        for half in pixels.halves() {
-            self.counts[half] += count;
+        let own = self.sums.to_be_added_to();
+        for places in pixels.runs() {
+            own.merge(places.start, sums.part(places));
         }
     }
 }
@@ -102,6 +95,11 @@ impl TilePlanes {
         }
     }
 
+    /// Samples of each plane that there is.
+    fn counts_of_all(&self) -> impl Iterator<Item = [u32; 2]> {
+        self.counts.into_iter().take(self.planes.len())
+    }
+
     /// Whether it has nothing of any subject.
     pub fn is_empty(&self) -> bool {
         self.planes.is_empty()
@@ -109,7 +107,7 @@ impl TilePlanes {
 
     /// Samples of each pixel of each half: of what shines by itself.
     pub fn counts(&self) -> [u32; 2] {
-        self.planes.get(OWN).map_or([0; 2], |own| own.counts)
+        self.counts[OWN]
     }
 
     /// Adds `count` samples to these planes of these pixels. The sums are of the planes `of`, those among them: `TILE_PIXELS`
@@ -125,23 +123,26 @@ impl TilePlanes {
         let before = self.counts();
         let is_more = planes.has(OWN);
         let mut alone = [0.0; CHANNELS * TILE_PIXELS];
-        for (number, plane) in self.planes.iter_mut().enumerate() {
+        let every = self.planes.iter_mut().zip(&mut self.counts);
+        for (number, (plane, counts)) in every.enumerate() {
             let Some(row) = of.row(number).filter(|_| planes.has(number)) else {
                 continue;
             };
             let sums = sums.part(row * TILE_PIXELS..(row + 1) * TILE_PIXELS);
             for half in pixels.halves() {
-                if plane.counts[half] == count {
+                if counts[half] == count {
                     let moved = match &mut plane.moved {
                         moved if self.keeps_moves => {
                             moved.get_or_insert_with(|| Box::new([0.0; CHANNELS * TILE_PIXELS]))
                         }
                         _ => &mut alone,
                     };
-                    moves_with(plane.sums.all(), sums, Pixels::Half(half), count, moved);
+                    let own = plane.sums.to_be_added_to();
+                    moves_with(own.all(), sums, Pixels::Half(half), count, moved);
                 }
             }
             plane.add(pixels, sums, count);
+            pixels.halves().for_each(|half| counts[half] += count);
             self.changed = self.changed.with(number);
         }
         let has_doubled = |half: usize| before[half] == count;
@@ -209,52 +210,39 @@ impl TilePlanes {
         }
     }
 
-    /// The picture's sums, as if every plane had the samples of its own light.
-    fn blend(&mut self) -> Blend {
+    /// Keeps all planes but the only one that has changed, if they are worth it.
+    fn update_rest(&mut self) {
         let changed = std::mem::replace(&mut self.changed, PlaneSet::NONE);
         let is_same =
             |rest: &Rest| changed == PlaneSet::NONE || changed.only() == Some(rest.edited);
-        if !self.rest.as_ref().is_some_and(is_same) {
-            // How all others are weighed hangs on the samples of what shines by itself.
-            let edited = changed
-                .only()
-                .filter(|edited| *edited != OWN && self.planes.len() > 2);
-            self.rest = edited.map(|edited| Rest {
-                edited,
-                blend: Box::new(self.blend_of(|plane| plane != edited)),
-            });
-        }
-        match &self.rest {
-            Some(rest) => {
-                let mut blend = Blend::clone(&rest.blend);
-                self.add_to(&mut blend, rest.edited);
-                blend
-            }
-            None => self.blend_of(|_| true),
-        }
-    }
-
-    /// Some of the planes together.
-    fn blend_of(&self, is_some: impl Fn(usize) -> bool) -> Blend {
-        let mut blend = Blend::new();
-        for plane in (0..self.planes.len()).filter(|plane| is_some(*plane)) {
-            self.add_to(&mut blend, plane);
-        }
-        blend
-    }
-
-    /// Adds a plane to others.
-    fn add_to(&self, blend: &mut Blend, plane: usize) {
-        let plane = &self.planes[plane];
-        if plane.sums.is_empty() {
+        if self.rest.as_ref().is_some_and(is_same) {
             return;
         }
-        let counts = self.counts().map(f64::from);
-        let factor = |half: usize| {
-            let stretch = counts[half] / f64::from(plane.counts[half].max(1));
-            plane.tint.as_dvec3() * stretch
-        };
-        blend.add(plane.sums.all(), [factor(0), factor(1)]);
+        // How all others are weighed hangs on the samples of what shines by itself.
+        let edited = (changed.only()).filter(|edited| *edited != OWN && self.planes.len() > 2);
+        let before = self.rest.take();
+        self.rest = edited.map(|edited| {
+            let mut blend = before.map_or_else(Blend::boxed, |rest| rest.blend);
+            blend.clear();
+            self.blend_into(|plane| plane != edited, &mut blend);
+            Rest { edited, blend }
+        });
+    }
+
+    /// Adds some of the planes, as if each had the samples of the picture's own light.
+    fn blend_into(&self, is_some: impl Fn(usize) -> bool, blend: &mut Blend) {
+        for (number, plane) in self.planes.iter().enumerate() {
+            if is_some(number) {
+                plane.sums.add_to(blend, self.factors(number));
+            }
+        }
+    }
+
+    /// What a plane of each half has to be multiplied by: its tint, and how many more samples the picture has.
+    fn factors(&self, plane: usize) -> [DVec3; 2] {
+        let (goals, counts) = (self.counts(), self.counts[plane]);
+        let tint = self.planes[plane].tint.as_dvec3();
+        [0, 1].map(|half| tint * (f64::from(goals[half]) / f64::from(counts[half].max(1))))
     }
 
     /// The only plane there is, where it is the picture.
@@ -265,10 +253,18 @@ impl TilePlanes {
 
     /// The means of the picture's pixels.
     pub fn means(&mut self) -> TileColors {
-        match self.only() {
-            Some(plane) => plane.sums.all().means(plane.counts),
-            None => self.blend().sums().means(self.counts()),
+        if let Some(plane) = self.only() {
+            return plane.sums.means(self.counts());
         }
+        self.update_rest();
+        if let Some(rest) = &self.rest {
+            let others = rest.blend.sums();
+            let plane = &self.planes[rest.edited].sums;
+            return plane.means_with(others, self.factors(rest.edited), self.counts());
+        }
+        let mut blend = Blend::new();
+        self.blend_into(|_| true, &mut blend);
+        blend.sums().means(self.counts())
     }
 
     /// The picture.
@@ -279,8 +275,12 @@ impl TilePlanes {
         self.update_past();
         FilmTile {
             sums: match self.only() {
-                Some(plane) => plane.sums.clone(),
-                None => self.blend().sums().to_columns(),
+                Some(plane) => plane.sums.to_columns(),
+                None => {
+                    let mut blend = Blend::new();
+                    self.blend_into(|_| true, &mut blend);
+                    blend.sums().to_columns()
+                }
             },
             past: self.past.clone(),
             counts: self.counts(),
@@ -295,17 +295,17 @@ impl TilePlanes {
         let counts = self.counts();
         let sums = std::mem::take(&mut self.planes[OWN].sums);
         FilmTile {
-            sums,
+            sums: sums.into_columns(),
             past: self.past,
             counts,
         }
     }
 
     /// The mean of a pixel's samples in one plane, without its tint; black where there is no such plane.
-    pub fn mean(&self, plane: usize, at: usize) -> Vec3 {
-        match self.planes.get(plane) {
+    pub fn mean(&self, number: usize, at: usize) -> Vec3 {
+        match self.planes.get(number) {
             Some(plane) if !plane.sums.is_empty() => {
-                plane.sums.get(at).mean(plane.counts[half_of(at)])
+                plane.sums.get(at).mean(self.counts[number][half_of(at)])
             }
             _ => Vec3::ZERO,
         }
@@ -318,6 +318,7 @@ impl TilePlanes {
             for (number, plane) in self.planes.iter_mut().enumerate() {
                 if from[number].is_none() {
                     plane.forget();
+                    self.counts[number] = [0; 2];
                     self.changed = self.changed.with(number);
                 }
             }
@@ -325,6 +326,10 @@ impl TilePlanes {
         }
         self.changed = PlaneSet::ALL;
         let mut before: Vec<Option<Plane>> = self.planes.drain(..).map(Some).collect();
+        let counts = std::mem::take(&mut self.counts);
+        for (now, plane) in self.counts.iter_mut().zip(from) {
+            *now = plane.map_or([0; 2], |plane| counts[plane]);
+        }
         let planes = from.iter().map(|plane| before[(*plane)?].take());
         self.planes = planes
             .map(|plane| plane.unwrap_or_else(|| Plane::empty(Vec3::ONE)))
@@ -334,6 +339,7 @@ impl TilePlanes {
     /// Has no sample any more, but for its memory.
     pub fn empty(&mut self) {
         self.planes.iter_mut().for_each(Plane::forget);
+        self.counts = Default::default();
         self.past = PastMoves::default();
         self.past_is_old = false;
         self.changed = PlaneSet::ALL;
@@ -343,7 +349,7 @@ impl TilePlanes {
     /// Whether it has no sample, or some plane has none yet of pixels of which its own light has.
     pub fn lacks_light(&self) -> bool {
         let own = self.counts();
-        let lacks = |half| own[half] > 0 && self.planes.iter().any(|p| p.counts[half] == 0);
+        let lacks = |half| own[half] > 0 && self.counts_of_all().any(|counts| counts[half] == 0);
         own == [0; 2] || (0..2).any(lacks)
     }
 
@@ -351,12 +357,12 @@ impl TilePlanes {
     /// should have.
     pub fn behind(&self, half: usize) -> Option<(PlaneSet, u32, u32)> {
         let goal = self.counts()[half];
-        let fewest = self.planes.iter().map(|plane| plane.counts[half]).min()?;
+        let fewest = self.counts_of_all().map(|counts| counts[half]).min()?;
         if fewest == goal {
             return None;
         }
-        let planes = self.planes.iter().enumerate();
-        let last = planes.filter(|(_, plane)| plane.counts[half] == fewest);
+        let planes = self.counts_of_all().enumerate();
+        let last = planes.filter(|(_, counts)| counts[half] == fewest);
         let set = last.fold(PlaneSet::NONE, |set, (number, _)| set.with(number));
         Some((set, fewest, goal))
     }
@@ -364,6 +370,7 @@ impl TilePlanes {
 
 #[cfg(test)]
 mod tests {
+    use super::super::sum_columns::SumColumns;
     use super::*;
     use proptest::prelude::*;
 
@@ -440,7 +447,9 @@ mod tests {
                     }
                     _ => {}
                 }
-                let whole = tile.blend_of(|_| true).sums().means(tile.counts());
+                let mut whole = Blend::new();
+                tile.blend_into(|_| true, &mut whole);
+                let whole = whole.sums().means(tile.counts());
                 prop_assert_eq!(tile.means(), whole, "after {:?}", step);
             }
         }

@@ -39,6 +39,8 @@ pub(super) type Octaves = [u32; OCTAVES];
 pub(super) const NO_OCTAVES: Octaves = [0; OCTAVES];
 
 const OCTAVES: usize = 64;
+/// Counts that go on at once.
+const PARTS: usize = 4;
 
 /// The octave of the brightest channel: that of 1 is number 32, and what is darker or brighter than all
 /// counts as the first or the last.
@@ -63,8 +65,8 @@ vectorized! {
 pub(super) fn count_octaves(values: &[Vec3], counts: &mut Octaves) {
     let mut octaves = [0; LANES];
     let mut last = [Vec3::ZERO; LANES];
-    // Neighbours are often as bright as each other.
-    let (mut same, mut samples) = (0, 0);
+    // Neighbours are often as bright as each other: counts that wait for one another are several.
+    let mut parts = [NO_OCTAVES; PARTS];
     for some in values.chunks(LANES) {
         if let Ok(some) = some.try_into() {
             find_octaves(some, &mut octaves);
@@ -72,15 +74,15 @@ pub(super) fn count_octaves(values: &[Vec3], counts: &mut Octaves) {
             last[..some.len()].copy_from_slice(some);
             find_octaves(&last, &mut octaves);
         }
-        for &octave in &octaves[..some.len()] {
-            if octave != same {
-                counts[same as usize] += std::mem::take(&mut samples);
-                same = octave;
-            }
-            samples += 1;
+        for (i, &octave) in octaves[..some.len()].iter().enumerate() {
+            parts[i % PARTS][octave as usize % OCTAVES] += 1;
         }
     }
-    counts[same as usize] += samples;
+    for part in &parts {
+        for (count, part) in counts.iter_mut().zip(part) {
+            *count += part;
+        }
+    }
 }
 
 /// How often a feature is met at least before a render may end by its error. It decides by the samples that
