@@ -3,9 +3,9 @@
 //! The walk meets crossings in no particular order, and a product of rounded numbers depends on theirs. So they are kept
 //! until the walk is over, and multiplied nearest first, equal `t` by (instance, triangle): the product is the same to the
 //! last bit for every tree, and that of going from crossing to crossing ([`Aggregate::next_crossing`]). What nothing passes
-//! ends the walk, since the product is zero whatever else there is.
+//! ends the walk, since the product is zero whatever else there is; so do so many layers that an `f32` has nothing left.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use super::{
     aggregate::Aggregate,
@@ -47,8 +47,13 @@ pub(super) struct Transmit<'a> {
     /// Called where it stands, so that the walk is not compiled for each caller: it looks up surfaces.
     through: &'a mut dyn FnMut(&Hit) -> Vec3,
     crossings: &'a mut Vec<(Hit, Vec3)>,
+    /// The product of the crossings that surely count.
+    left: DVec3,
     is_blocked: bool,
 }
+
+/// Far below the smallest `f32`, and far above what a product in `f64` may be off by.
+const NOTHING: f64 = 1e-60;
 
 impl<'a> Transmit<'a> {
     /// The crossings are cleared: they only lend their memory.
@@ -65,6 +70,7 @@ impl<'a> Transmit<'a> {
             measure: ray.measure,
             through,
             crossings,
+            left: DVec3::ONE,
             is_blocked: false,
         }
     }
@@ -109,9 +115,12 @@ impl Goal for Transmit<'_> {
     fn meet(&mut self, hit: Hit, limit: f32) -> (bool, f32) {
         let part = (self.through)(&self.measure.scaled(hit));
         // What lies on an edge may be another triangle's crossing, which counts in its place.
-        if part == Vec3::ZERO && !self.aggregate.is_on_an_edge(&hit) {
-            self.is_blocked = true;
-            return (true, STOP);
+        if !self.aggregate.is_on_an_edge(&hit) {
+            self.left *= part.as_dvec3();
+            if self.left.max_element() < NOTHING {
+                self.is_blocked = true;
+                return (true, STOP);
+            }
         }
         self.crossings.push((hit, part));
         (true, limit)

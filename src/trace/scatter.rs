@@ -14,6 +14,11 @@ use glam::Vec3;
 /// this, then as one, chosen by chance: at 1/8 a stack of glass makes eight paths, not 2^depth.
 const SPLIT_ABOVE: f32 = 0.125;
 
+/// Of a path that has gone on as one, what carries less than this goes on by chance, and the more weighs what does: behind
+/// ten thousand panes there is nothing to be seen, and finding it out should not take ten thousand rays, each to a light
+/// behind as many.
+const FAINT: f32 = 1.0 / 4096.0;
+
 /// After this many scatterings in translucent surfaces a path ends: between fully transparent,
 /// scattering walls it would go on for ever.
 const MAX_SCATTERINGS: u32 = 256;
@@ -71,21 +76,33 @@ impl<R: Recorder> Batch<'_, R> {
             self.pass(vertex, next);
             return;
         }
-        if reflects > 0.0 && transmits > 0.0 && path.throughput.max_element() <= SPLIT_ABOVE {
-            let (sampler, index) = self.sampler(path.sample);
-            let u = sampler.block(index, Purpose::Branch, path.name)[0];
-            let share = reflects / (reflects + transmits);
-            if u < share {
-                self.reflect(vertex, 1.0 / share, next);
-            } else {
-                self.transmit(vertex, 1.0 / (1.0 - share), next);
+        let splits = path.throughput.max_element() > SPLIT_ABOVE;
+        let is_faint = !splits && reflects.max(transmits) < FAINT;
+        let does_both = reflects > 0.0 && transmits > 0.0;
+        if splits || !(is_faint || does_both) {
+            if reflects > 0.0 {
+                self.reflect(vertex, 1.0, next);
             }
+            self.transmit(vertex, 1.0, next);
             return;
         }
-        if reflects > 0.0 {
-            self.reflect(vertex, 1.0, next);
+        let (sampler, index) = self.sampler(path.sample);
+        let [which, whether, ..] = sampler.block(index, Purpose::Branch, path.name);
+        let mut weight = 1.0;
+        if is_faint {
+            let chance = reflects.max(transmits) / FAINT;
+            // A number tells no smaller chances.
+            if chance < f32::EPSILON || whether >= chance {
+                return;
+            }
+            weight = 1.0 / chance;
         }
-        self.transmit(vertex, 1.0, next);
+        let share = reflects / (reflects + transmits);
+        if which < share {
+            self.reflect(vertex, weight / share, next);
+        } else {
+            self.transmit(vertex, weight / (1.0 - share), next);
+        }
     }
 
     /// The same path goes on behind a surface that is not there: it is no first hit, scatters nothing and names no path,

@@ -1,7 +1,8 @@
 use crate::analytic::{central_radiance, object, quad, world};
-use glam::Vec3;
+use glam::{UVec2, Vec3};
+use glassbox::film::render;
 use glassbox::scene::RenderSettings;
-use glassbox::trace::{Camera, Environment, Lights, Material, PointLight};
+use glassbox::trace::{Camera, Environment, Lights, Material, PointLight, World};
 use std::sync::Arc;
 
 fn pane(opacity: f32, color: Vec3) -> Material {
@@ -54,6 +55,66 @@ fn sixty_four_layers_let_through_the_product_of_their_transmittances() {
     let error = (f64::from(value.x) / expected - 1.0).abs();
     assert!(error < 1e-5, "relative error {error:e}");
     assert_eq!(counts.transmission, 64);
+}
+
+/// So many panes that let half of the light through.
+fn halving(count: usize, background: f32) -> World {
+    let depths: Vec<f32> = (0..count).map(|i| i as f32 * -1e-3).collect();
+    let mut world = world(
+        vec![object(1, &panes(&depths), 0)],
+        vec![pane(0.5, Vec3::ONE)],
+    );
+    world.environment = Environment {
+        background: Vec3::splat(background),
+        ..Environment::default()
+    };
+    world
+}
+
+#[test]
+fn behind_ten_thousand_panes_nothing_is_looked_for() {
+    let mut world = halving(10_000, 1.0);
+    world.lights = Arc::new(Lights {
+        points: vec![PointLight {
+            id: 9,
+            position: Vec3::new(0.0, 0.0, -20.0),
+            color: Vec3::ONE,
+            cone: None,
+        }],
+        ..Lights::default()
+    });
+    let settings = RenderSettings {
+        spp: 1,
+        ..RenderSettings::default()
+    };
+    let (value, counts) = central_radiance(&world.with_needs(), &ahead(), &settings);
+    assert!(value.max_element() < 1e-4, "{value}");
+    // Twelve halvings to where chance begins, and two more on average.
+    let (crossed, to_light) = (counts.transmission, counts.shadow);
+    assert!((12..64).contains(&crossed), "{crossed} panes were crossed");
+    assert!(to_light <= crossed + 1, "{to_light} rays to the light");
+}
+
+#[test]
+fn what_goes_on_by_chance_is_what_arrives_on_average() {
+    // Four halvings below where chance begins: one sample in sixteen arrives, with 16.
+    let world = halving(16, 65_536.0);
+    let settings = RenderSettings {
+        spp: 4,
+        size: UVec2::splat(64),
+        ..RenderSettings::default()
+    };
+    let picture = render(&world, &ahead(), &settings, &|_, _| {}).picture;
+    let pixels = &picture.pixels;
+    let mean = pixels.iter().map(|p| f64::from(p.x)).sum::<f64>() / pixels.len() as f64;
+    // The standard deviation of a sample is sqrt(15).
+    let error = (15.0 / (4.0 * pixels.len() as f64)).sqrt();
+    assert!(
+        (mean - 1.0).abs() < 4.0 * error,
+        "{mean} where 1 arrives, standard error {error}"
+    );
+    let some = pixels.iter().filter(|p| p.x > 0.0).count();
+    assert!(some < pixels.len() / 2, "{some} pixels of {}", pixels.len());
 }
 
 #[test]
