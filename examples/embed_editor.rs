@@ -10,8 +10,7 @@
 use bevy::asset::RenderAssetUsages;
 use bevy::prelude::*;
 use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat};
-use glassbox::editor::{Editing, EditorPlugins};
-use glassbox::prelude::{KeepInSceneFiles, Quantity};
+use glassbox::prelude::{Editing, EditorPlugins, KeepInSceneFiles, Quantity, in_editor};
 
 fn main() {
     App::new()
@@ -23,7 +22,7 @@ fn main() {
         .add_plugins(EditorPlugins)
         .keep_in_scene_files::<Turning>()
         .add_systems(Startup, spawn_scene)
-        .add_systems(Update, (switch, turn, bob))
+        .add_systems(Update, (switch, turn.run_if(not(in_editor)), bob))
         .run();
 }
 
@@ -146,10 +145,7 @@ fn switch(keys: Res<ButtonInput<KeyCode>>, mut editing: ResMut<Editing>) {
 }
 
 /// Goes on only while the editor is off.
-fn turn(time: Res<Time>, editing: Res<Editing>, mut things: Query<(&Turning, &mut Transform)>) {
-    if editing.0 {
-        return;
-    }
+fn turn(time: Res<Time>, mut things: Query<(&Turning, &mut Transform)>) {
     for (turning, mut place) in &mut things {
         let axis = match turning.axis {
             Axis::Up => Dir3::Y,

@@ -1,5 +1,7 @@
 //! What a Bevy app mostly names of Glassbox: `use glassbox::prelude::*;` beside Bevy's own.
 
+#[cfg(feature = "editor")]
+pub use crate::editor::{Editing, EditorPlugins, in_editor};
 pub use crate::io::KeepInSceneFiles;
 pub use crate::scene::{
     DirectionalLamp, Environment, Lens, Motion, NotTraced, ParallelogramLamp, Phong, PhongMaps,

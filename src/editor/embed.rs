@@ -30,8 +30,8 @@ impl Default for Editing {
     }
 }
 
-/// Run condition: the editor is on.
-pub fn editing(editing: Option<Res<Editing>>) -> bool {
+/// Run condition: the editor is on. What shall rest beneath it is given `.run_if(not(in_editor))`.
+pub fn in_editor(editing: Option<Res<Editing>>) -> bool {
     editing.is_some_and(|editing| editing.0)
 }
 

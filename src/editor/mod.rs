@@ -65,7 +65,7 @@ pub mod viewport;
 mod window;
 
 pub use action::Action;
-pub use embed::{Editing, editing};
+pub use embed::{Editing, in_editor};
 pub use headless::{headless_editor, headless_editor_with_recovery};
 pub use plugins::EditorPlugins;
 pub use schedule::EditorUpdate;

@@ -43,8 +43,8 @@ use bevy::app::{App, Plugin, PluginGroup, PluginGroupBuilder};
 /// **While it is on** ([`Editing`](super::Editing), which the app may switch) the app's cameras of that window rest,
 /// and so does its picking: no observer of the app's hears of the editor's clicks. What the editor draws lies in
 /// layers of its own ([`OVERLAY_LAYER`](crate::view::OVERLAY_LAYER)), which the app's cameras do not show.
-/// The app's systems go on; those that shall not are given the run condition `not(editing)`
-/// ([`editing`](super::editing)). What they do to the scene is shown and is no step: undo takes back only what was
+/// The app's systems go on; those that shall not are given the run condition `not(in_editor)`
+/// ([`in_editor`](super::in_editor)). What they do to the scene is shown and is no step: undo takes back only what was
 /// done in the editor. A deleted entity is disabled until undo brings it back: it is the same `Entity`, with its
 /// observers and all that hangs on it, and no observer hears of its components. It is despawned when another
 /// scene is opened.

@@ -59,6 +59,7 @@ pub(super) fn sync_cameras(
     edited: Query<(), Edited>,
     mut no_camera: RemovedComponents<SceneCamera>,
     mut no_lens: RemovedComponents<Lens>,
+    mut no_name: RemovedComponents<Name>,
     mut switched: Switched,
     settings: Res<RenderSettings>,
     cameras: CameraQuery,
@@ -67,7 +68,8 @@ pub(super) fn sync_cameras(
     draft: ResMut<Draft>,
 ) {
     // Not `||`: every reader has to be emptied.
-    let gone = no_camera.read().count() + no_lens.read().count();
+    let unnamed = no_name.read().filter(|entity| cameras.contains(*entity));
+    let gone = no_camera.read().count() + no_lens.read().count() + unnamed.count();
     let switched = switched.any() || motions.changed();
     if gone == 0 && !switched && edited.is_empty() && !settings.is_changed() {
         return;

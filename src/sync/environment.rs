@@ -26,6 +26,11 @@ pub(super) fn sync_environment(
         return;
     }
     let draft = draft.into_inner();
+    let awaited = map.0.as_ref().filter(|_| settings.features.environment);
+    if awaited.is_some_and(|map| textures.get(map.id()).is_none()) {
+        // All stays as it was until its map is converted.
+        return;
+    }
     draft.problems.environment.clear();
     draft.reread = true;
     let mut reader = Reader {
@@ -36,7 +41,7 @@ pub(super) fn sync_environment(
     };
     let map = if settings.features.environment {
         match (&map.0, &environment.map) {
-            (Some(handle), _) => textures.get(handle.id()).map(Some),
+            (Some(handle), _) => textures.get(handle.id()).transpose(),
             (None, Some(source)) => Err(TextureFault::Unresolved(source.path.clone())),
             (None, None) => Ok(None),
         }

@@ -3,11 +3,12 @@ use crate::scene::{
     DirectionalLamp, NotTraced, ParallelogramLamp, Phong, PointLamp, SceneCamera, SceneId,
     SegmentLamp,
 };
-use bevy::ecs::entity::Entity;
-use bevy::ecs::hierarchy::ChildOf;
-use bevy::ecs::query::{Changed, Or, With, Without};
+use bevy::ecs::entity::{Entity, EntityHashMap};
+use bevy::ecs::hierarchy::{ChildOf, Children};
+use bevy::ecs::lifecycle::RemovedComponents;
+use bevy::ecs::query::{Added, Changed, Or, With, Without};
 use bevy::ecs::resource::Resource;
-use bevy::ecs::system::{Commands, Query, ResMut};
+use bevy::ecs::system::{Commands, Query, ResMut, SystemParam};
 use bevy::mesh::Mesh3d;
 use bevy::platform::collections::{HashMap, HashSet};
 use bevy::transform::components::Transform;
@@ -16,16 +17,33 @@ use bevy::transform::components::Transform;
 #[derive(Resource, Default)]
 pub(super) struct IdOwners {
     owners: HashMap<u64, Entity>,
+    /// The other way round.
+    numbers: EntityHashMap<u64>,
     /// The largest number that was ever seen. Numbers of deleted entities are not given to others,
     /// so that undo can bring them back.
     largest: u64,
+}
+
+impl IdOwners {
+    /// The entity has no number any more.
+    fn free(&mut self, entity: Entity) {
+        if let Some(number) = self.numbers.remove(&entity) {
+            self.owners.remove(&number);
+        }
+    }
+
+    fn give(&mut self, id: SceneId, entity: Entity) {
+        self.free(entity);
+        self.owners.insert(id.0, entity);
+        self.numbers.insert(entity, id.0);
+    }
 }
 
 #[cfg(test)]
 impl IdOwners {
     /// How many are known.
     pub fn kept(&self) -> usize {
-        self.owners.len()
+        self.owners.len().max(self.numbers.len())
     }
 }
 
@@ -42,63 +60,93 @@ type OfScene = Or<(
 /// What has a place and no number.
 type Place = (With<Transform>, Without<SceneId>, Without<NotTraced>);
 
+/// Whose numbers, or whose need of one, may be others than before.
+#[derive(SystemParam)]
+pub(super) struct Edited<'w, 's> {
+    changed: Query<'w, 's, Entity, Changed<SceneId>>,
+    missing: Query<'w, 's, Entity, (OfScene, Without<SceneId>, Without<NotTraced>)>,
+    hung: Query<'w, 's, Entity, (Changed<ChildOf>, With<SceneId>)>,
+    placed: Query<'w, 's, Entity, (Added<Transform>, With<Children>, Place)>,
+    no_id: RemovedComponents<'w, 's, SceneId>,
+    traced_again: RemovedComponents<'w, 's, NotTraced>,
+    switched: Switched<'w, 's>,
+}
+
 /// Gives every entity of the scene a number of its own, and so every place that one of them hangs on. Of two
 /// with the same number the one that had it first keeps it; among those that appear in the same frame, the one with the lower index.
 pub(super) fn assign_scene_ids(
-    changed: Query<(), Changed<SceneId>>,
-    missing: Query<Entity, (OfScene, Without<SceneId>, Without<NotTraced>)>,
-    hung: Query<(), (Changed<ChildOf>, With<SceneId>)>,
+    mut edited: Edited,
     parents: Query<&ChildOf>,
+    children: Query<&Children>,
     places: Query<Entity, Place>,
-    ids: Query<(Entity, &SceneId)>,
-    mut switched: Switched,
+    ids: Query<&SceneId>,
     mut known: ResMut<IdOwners>,
     mut commands: Commands,
 ) {
-    // Who was made disabled has none when it is enabled. Not `||`: the reader has to be emptied.
-    if !switched.any() & changed.is_empty() & missing.is_empty() & hung.is_empty() {
+    let switched: Vec<Entity> = edited.switched.read().collect();
+    let bared: Vec<Entity> = (edited.no_id.read())
+        .chain(edited.traced_again.read())
+        .collect();
+    // Who was made disabled has none when it is enabled.
+    let mut numbered: Vec<Entity> = edited.changed.iter().chain(switched.clone()).collect();
+    let mut without: Vec<Entity> = edited.missing.iter().collect();
+    // What is above them needs a number too.
+    let mut lower: Vec<Entity> = without.clone();
+    lower.extend(&edited.hung);
+    let may_be_above = switched.iter().chain(&bared).copied().chain(&edited.placed);
+    lower.extend(may_be_above.filter_map(|place| {
+        let mut below = places.get(place).into_iter();
+        below.find_map(|place| {
+            let mut all = children.iter_descendants(place);
+            all.find(|entity| ids.contains(*entity))
+        })
+    }));
+    if numbered.is_empty() && bared.is_empty() && lower.is_empty() {
         return;
     }
-    let mut all: Vec<(Entity, SceneId)> = ids.iter().map(|(entity, id)| (entity, *id)).collect();
-    all.sort_unstable_by_key(|(entity, _)| entity.index_u32());
 
-    let mut owners = HashMap::with_capacity(all.len());
-    for &(entity, id) in &all {
-        known.largest = known.largest.max(id.0);
-        if known.owners.get(&id.0) == Some(&entity) {
-            owners.insert(id.0, entity);
+    for &entity in numbered.iter().chain(&bared) {
+        let now = ids.get(entity).ok().map(|id| id.0);
+        if known.numbers.get(&entity).copied() != now {
+            known.free(entity);
         }
     }
-    let mut without: Vec<Entity> = missing.iter().collect();
+    numbered.retain(|entity| ids.contains(*entity));
+    numbered.sort_unstable_by_key(|entity| entity.index_u32());
+    numbered.dedup();
+    for &entity in &numbered {
+        let Ok(&id) = ids.get(entity) else { continue };
+        known.largest = known.largest.max(id.0);
+        let owner = known.owners.get(&id.0).copied();
+        if id.is_unassigned() || owner.is_some_and(|owner| owner != entity) {
+            without.push(entity);
+        } else {
+            known.give(id, entity);
+        }
+    }
     let mut above: HashSet<Entity> = HashSet::default();
-    for entity in all.iter().map(|(entity, _)| *entity).chain(&missing) {
+    for entity in numbered.into_iter().chain(lower) {
         // What is above one that was met already was met with it.
         let news = parents
             .iter_ancestors(entity)
             .take_while(|entity| above.insert(*entity));
         without.extend(news.filter(|entity| places.contains(*entity)));
     }
-    for (entity, id) in all {
-        if id.is_unassigned() || *owners.entry(id.0).or_insert(entity) != entity {
-            without.push(entity);
-        }
-    }
     without.sort_unstable_by_key(|entity| entity.index_u32());
     without.dedup();
     for entity in without {
-        let id = next(&mut known.largest, &owners);
-        owners.insert(id.0, entity);
+        let id = next(&mut known);
+        known.give(id, entity);
         commands.entity(entity).insert(id);
     }
-    known.owners = owners;
 }
 
-fn next(largest: &mut u64, owners: &HashMap<u64, Entity>) -> SceneId {
+fn next(known: &mut IdOwners) -> SceneId {
     // A file may say u64::MAX: then what comes next is whatever is free from 1 on.
     loop {
-        *largest = largest.wrapping_add(1).max(1);
-        if !owners.contains_key(largest) {
-            return SceneId(*largest);
+        known.largest = known.largest.wrapping_add(1).max(1);
+        if !known.owners.contains_key(&known.largest) {
+            return SceneId(known.largest);
         }
     }
 }

@@ -1,23 +1,24 @@
 use super::meshes::TracedMeshes;
 use super::motions::{WorldMotion, WorldMotions};
 use super::posed::{PosedMesh, traced_mesh};
-use super::problem::Fault;
+use super::problem::{Fault, SyncProblem};
 use super::reading::{Reader, Switched};
 use super::traced::Draft;
 use super::tree_building::{TopLevelThread, TreeBuilding};
 use crate::bvh::{Aggregate, BuildOptions, Instance};
-use crate::scene::SceneId;
+use crate::scene::{NotTraced, SceneId};
 use crate::trace;
 use bevy::camera::visibility::InheritedVisibility;
-use bevy::ecs::entity::Entity;
+use bevy::ecs::entity::{Entity, EntityHashMap};
 use bevy::ecs::lifecycle::RemovedComponents;
 use bevy::ecs::name::Name;
-use bevy::ecs::query::{Changed, Or, With};
+use bevy::ecs::query::{Added, Changed, Or, With, Without};
 use bevy::ecs::resource::Resource;
-use bevy::ecs::system::{Query, Res, ResMut};
+use bevy::ecs::system::{Query, Res, ResMut, SystemParam};
 use bevy::math::{Affine3A, Vec3};
 use bevy::mesh::Mesh3d;
 use bevy::transform::components::GlobalTransform;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -25,6 +26,9 @@ use std::time::Duration;
 #[derive(Resource, Default)]
 pub(super) struct TracedInstances {
     pub rows: Vec<Row>,
+    /// Which number each entity with a mesh had when it was read, whether it has a row or not.
+    numbers: EntityHashMap<SceneId>,
+    problems: BTreeMap<SceneId, Vec<SyncProblem>>,
     options: BuildOptions,
     /// Counts how often the objects were others, wherever they stood.
     objects: u64,
@@ -39,22 +43,88 @@ pub(super) struct TracedInstances {
     took: Duration,
 }
 
+/// What reading some entities again made another.
+#[derive(Default)]
+struct Difference {
+    /// Some row: a tree has to be built.
+    rows: bool,
+    /// Some object appeared, went, or is another one.
+    objects: bool,
+    problems: bool,
+}
+
 impl TracedInstances {
-    fn of(&self, id: SceneId, entity: Entity) -> Option<&Row> {
-        let place = self.rows.binary_search_by_key(&id, |row| row.id).ok()?;
-        Some(&self.rows[place]).filter(|row| row.entity == entity)
+    /// Where the row of a number is, or would be. Mostly they are asked for one after the other.
+    fn place(&self, id: SceneId, guess: usize) -> Result<usize, usize> {
+        if self.rows.get(guess).is_some_and(|row| row.id == id) {
+            return Ok(guess);
+        }
+        self.rows.binary_search_by_key(&id, |row| row.id)
     }
 
-    /// Takes these rows, and true where some object is another one.
-    fn take(&mut self, rows: Vec<Row>, options: BuildOptions) -> bool {
-        let mut pairs = rows.iter().zip(&self.rows);
-        let same_objects =
-            rows.len() == self.rows.len() && pairs.all(|(new, old)| new.same_object(old));
-        self.objects += u64::from(!same_objects);
-        self.rows = rows;
-        self.options = options;
-        self.stale = true;
-        !same_objects
+    /// Takes these entities, each once, as they are now.
+    fn read(&mut self, touched: &[Entity], scene: &Scene) -> Difference {
+        let mut difference = Difference::default();
+        // Numbers first, because one may have gone from an entity to another.
+        let mut goes: Vec<(SceneId, Entity)> = Vec::new();
+        for &entity in touched {
+            let now = scene.objects.get(entity).ok().map(|object| *object.1);
+            let before = match now {
+                Some(id) => self.numbers.insert(entity, id),
+                None => self.numbers.remove(&entity),
+            };
+            if let Some(before) = before {
+                difference.problems |= self.problems.remove(&before).is_some();
+                if now != Some(before) {
+                    goes.push((before, entity));
+                }
+            }
+        }
+        let mut comes: Vec<Row> = Vec::new();
+        let mut guess = 0;
+        for &entity in touched {
+            let Ok(object) = scene.objects.get(entity) else {
+                continue;
+            };
+            let id = *object.1;
+            let place = self.place(id, guess).ok();
+            let place = place.filter(|place| self.rows[*place].entity == entity);
+            guess = place.map_or(guess, |place| place + 1);
+            let before = place.map(|place| &self.rows[place]);
+            let mut problems = Vec::new();
+            let row = read(object, before, scene, &mut problems);
+            if !problems.is_empty() {
+                difference.problems = true;
+                self.problems.insert(id, problems);
+            }
+            match (row, place) {
+                (Some(row), Some(place)) => {
+                    let known = &mut self.rows[place];
+                    difference.objects |= !row.same_object(known);
+                    difference.rows |= !Arc::ptr_eq(&row.instance, &known.instance);
+                    *known = row;
+                }
+                (Some(row), None) => comes.push(row),
+                (None, Some(_)) => goes.push((id, entity)),
+                (None, None) => {}
+            }
+        }
+        goes.sort_unstable();
+        let goes_away = |row: &Row| {
+            let place = goes.binary_search_by_key(&row.id, |(id, _)| *id);
+            place.is_ok_and(|place| goes[place].1 == row.entity)
+        };
+        let before = self.rows.len();
+        if !goes.is_empty() {
+            self.rows.retain(|row| !goes_away(row));
+        }
+        difference.objects |= self.rows.len() < before || !comes.is_empty();
+        if !comes.is_empty() {
+            self.rows.append(&mut comes);
+            self.rows.sort_by_key(|row| row.id);
+        }
+        difference.rows |= difference.objects;
+        difference
     }
 
     /// Builds the tree over the rows, or goes on with it, and takes into the draft what is there.
@@ -71,9 +141,13 @@ impl TracedInstances {
         if self.stale && !thread.is_busy() {
             self.stale = false;
             self.begun_objects = self.objects;
-            let instances = self.rows.iter().map(|row| row.instance.clone()).collect();
+            let instances = self.rows.iter().map(|row| row.instance.clone());
+            let instances: Vec<Arc<Instance>> = instances.collect();
             let (objects, options) = (self.objects, self.options);
-            let work = move || (objects, Aggregate::build(instances, &options));
+            let work = move || {
+                let instances = instances.iter().map(|instance| (**instance).clone());
+                (objects, Aggregate::build(instances.collect(), &options))
+            };
             if at_once {
                 self.show(Some(work()), draft);
             } else {
@@ -118,8 +192,8 @@ pub(super) struct Row {
     pub mesh: Arc<trace::Mesh>,
     /// Samples that its motion asks for; 0 where it stands still.
     pub motion_samples: u32,
-    /// Where its mesh stands, and how it moves.
-    instance: Instance,
+    /// Where its mesh stands, and how it moves; shared with the thread that builds the tree over all.
+    instance: Arc<Instance>,
 }
 
 impl Row {
@@ -154,130 +228,157 @@ type Moved = (
         Changed<GlobalTransform>,
         Changed<InheritedVisibility>,
         Changed<SceneId>,
+        Changed<Name>,
     )>,
 );
 
-type ObjectQuery<'w, 's> = Query<
-    'w,
-    's,
-    (
-        Entity,
-        &'static SceneId,
-        (&'static Mesh3d, Option<&'static PosedMesh>),
-        &'static GlobalTransform,
-        Option<&'static InheritedVisibility>,
-        Option<&'static Name>,
-    ),
->;
+type Object = (
+    Entity,
+    &'static SceneId,
+    (&'static Mesh3d, Option<&'static PosedMesh>),
+    &'static GlobalTransform,
+    Option<&'static InheritedVisibility>,
+    Option<&'static Name>,
+);
+
+/// Whose row may be another one.
+#[derive(SystemParam)]
+pub(super) struct Edited<'w, 's> {
+    moved: Query<'w, 's, Entity, Moved>,
+    no_longer: Query<'w, 's, Entity, (With<Mesh3d>, Added<NotTraced>)>,
+    traced_again: RemovedComponents<'w, 's, NotTraced>,
+    no_mesh: RemovedComponents<'w, 's, Mesh3d>,
+    at_rest: RemovedComponents<'w, 's, PosedMesh>,
+    no_transform: RemovedComponents<'w, 's, GlobalTransform>,
+    no_visibility: RemovedComponents<'w, 's, InheritedVisibility>,
+    no_id: RemovedComponents<'w, 's, SceneId>,
+    no_name: RemovedComponents<'w, 's, Name>,
+    switched: Switched<'w, 's>,
+}
+
+impl Edited<'_, '_> {
+    fn read(&mut self) -> Vec<Entity> {
+        let gone = (self.traced_again.read())
+            .chain(self.no_mesh.read())
+            .chain(self.at_rest.read())
+            .chain(self.no_transform.read())
+            .chain(self.no_visibility.read())
+            .chain(self.no_id.read())
+            .chain(self.no_name.read());
+        let all = gone.chain(self.switched.read());
+        all.chain(&self.moved).chain(&self.no_longer).collect()
+    }
+}
+
+/// What rows are made of.
+#[derive(SystemParam)]
+pub(super) struct Scene<'w, 's> {
+    objects: Query<'w, 's, Object, Without<NotTraced>>,
+    meshes: Res<'w, TracedMeshes>,
+    motions: Res<'w, WorldMotions>,
+}
 
 /// Makes the tree over the objects again where one moved, appeared, went or has another mesh.
 pub(super) fn sync_instances(
-    moved: Query<(), Moved>,
-    mut no_mesh: RemovedComponents<Mesh3d>,
-    mut at_rest: RemovedComponents<PosedMesh>,
-    mut no_transform: RemovedComponents<GlobalTransform>,
-    mut no_visibility: RemovedComponents<InheritedVisibility>,
-    mut no_id: RemovedComponents<SceneId>,
-    mut switched: Switched,
-    motions: Res<WorldMotions>,
-    objects: ObjectQuery,
-    meshes: Res<TracedMeshes>,
+    mut edited: Edited,
+    scene: Scene,
     building: Res<TreeBuilding>,
     mut thread: ResMut<TopLevelThread>,
-    mut known: ResMut<TracedInstances>,
-    mut draft: ResMut<Draft>,
+    known: ResMut<TracedInstances>,
+    draft: ResMut<Draft>,
 ) {
-    // Not `||`: every reader has to be emptied.
-    let gone = no_mesh.read().count()
-        + at_rest.read().count()
-        + no_transform.read().count()
-        + no_visibility.read().count()
-        + no_id.read().count();
-    let switched = switched.any() || motions.changed();
-    let options_changed = known.options != *meshes.options();
-    let edited = gone > 0 || !moved.is_empty() || draft.changes.meshes;
-    if switched || options_changed || edited {
-        draft.problems.instances.clear();
-        draft.reread = true;
-        let (rows, moved) = read(&objects, &motions, &meshes, &known, &mut draft);
-        if moved || rows.len() != known.rows.len() || options_changed {
-            draft.other_objects |= known.take(rows, *meshes.options());
+    let (known, draft) = (known.into_inner(), draft.into_inner());
+    let mut touched = edited.read();
+    touched.extend(scene.motions.others());
+    let options = *scene.meshes.options();
+    let options_changed = known.options != options;
+    let news = scene.meshes.news();
+    if draft.anew || options_changed {
+        touched.extend(known.numbers.keys());
+        touched.extend(scene.objects.iter().map(|object| object.0));
+    } else if !news.is_empty() {
+        let objects = scene.objects.iter();
+        let wears = objects.filter(|object| news.contains(&traced_mesh(object.2)));
+        touched.extend(wears.map(|object| object.0));
+    }
+    if !touched.is_empty() || options_changed {
+        touched.sort_unstable();
+        touched.dedup();
+        let difference = known.read(&touched, &scene);
+        known.options = options;
+        known.stale |= difference.rows || options_changed;
+        known.objects += u64::from(difference.objects);
+        draft.other_objects |= difference.objects;
+        if difference.problems {
+            let problems = known.problems.values().flatten().cloned();
+            draft.problems.instances = problems.collect();
+            draft.reread = true;
         }
     }
     let at_once = *building == TreeBuilding::AtOnce;
-    known.build(&mut thread, at_once, &mut draft);
+    known.build(&mut thread, at_once, draft);
 }
 
-/// The objects as they are, and whether one of them is not as it is known.
+/// The row of an object, `before` where it is as it was; `None` where nothing of it is traced.
 fn read(
-    objects: &ObjectQuery,
-    motions: &WorldMotions,
-    meshes: &TracedMeshes,
-    known: &TracedInstances,
-    draft: &mut Draft,
-) -> (Vec<Row>, bool) {
-    let mut visible: Vec<_> = objects
-        .iter()
-        .filter(|(.., visibility, _)| visibility.is_none_or(|v| v.get()))
-        .collect();
-    visible.sort_unstable_by_key(|(_, id, ..)| **id);
-
-    let mut rows: Vec<Row> = Vec::with_capacity(visible.len());
-    let mut moved = false;
-    for (entity, &id, mesh, transform, _, name) in visible {
-        let mut reader = Reader {
-            kind: "object",
-            id,
-            name,
-            problems: &mut draft.problems.instances,
-        };
-        let mesh = match meshes.get(traced_mesh(mesh)) {
-            Some(Ok(mesh)) => mesh,
-            Some(Err(fault)) => {
-                reader.note(Fault::Mesh(fault));
-                continue;
-            }
-            // Its tree is being built.
-            None => match known.of(id, entity) {
-                Some(before) => &before.mesh,
-                None => continue,
-            },
-        };
-        let left_out = mesh.tree.triangles().left_out();
-        if left_out > 0 {
-            reader.note(Fault::TrianglesLeftOut { count: left_out });
-        }
-        let transform = transform.affine();
-        let motion = match motions.of(entity) {
-            Some(motion) => match reader.motion(motion) {
-                Some(motion) => motion,
-                None => continue,
-            },
-            None => WorldMotion::default(),
-        };
-        let velocity = motion.velocity;
-        // Most stand where they stood.
-        let before = known.rows.get(rows.len());
-        let before = before.filter(|before| before.stands(mesh, &transform, velocity));
-        let instance = match before {
-            Some(before) => Ok(before.instance.clone()),
-            None => Instance::new(mesh.tree.clone(), &transform)
-                .and_then(|instance| instance.moving(velocity)),
-        };
-        match instance {
-            Ok(instance) => {
-                let row = Row {
-                    id,
-                    entity,
-                    mesh: mesh.clone(),
-                    motion_samples: motion.samples,
-                    instance,
-                };
-                moved |= !before.is_some_and(|before| before.same_object(&row));
-                rows.push(row);
-            }
-            Err(fault) => reader.note(Fault::Transform(fault)),
-        }
+    (entity, &id, mesh, transform, visibility, name): (
+        Entity,
+        &SceneId,
+        (&Mesh3d, Option<&PosedMesh>),
+        &GlobalTransform,
+        Option<&InheritedVisibility>,
+        Option<&Name>,
+    ),
+    before: Option<&Row>,
+    scene: &Scene,
+    problems: &mut Vec<SyncProblem>,
+) -> Option<Row> {
+    if visibility.is_some_and(|visibility| !visibility.get()) {
+        return None;
     }
-    (rows, moved)
+    let mut reader = Reader {
+        kind: "object",
+        id,
+        name,
+        problems,
+    };
+    let mesh = match scene.meshes.get(traced_mesh(mesh)) {
+        Some(Ok(mesh)) => mesh,
+        Some(Err(fault)) => {
+            reader.note(Fault::Mesh(fault));
+            return None;
+        }
+        // Its tree is being built.
+        None => &before?.mesh,
+    };
+    let left_out = mesh.tree.triangles().left_out();
+    if left_out > 0 {
+        reader.note(Fault::TrianglesLeftOut { count: left_out });
+    }
+    let transform = transform.affine();
+    let motion = match scene.motions.of(entity) {
+        Some(motion) => reader.motion(motion)?,
+        None => WorldMotion::default(),
+    };
+    let velocity = motion.velocity;
+    let instance = match before.filter(|before| before.stands(mesh, &transform, velocity)) {
+        Some(before) => before.instance.clone(),
+        None => {
+            let instance = Instance::new(mesh.tree.clone(), &transform);
+            match instance.and_then(|instance| instance.moving(velocity)) {
+                Ok(instance) => Arc::new(instance),
+                Err(fault) => {
+                    reader.note(Fault::Transform(fault));
+                    return None;
+                }
+            }
+        }
+    };
+    Some(Row {
+        id,
+        entity,
+        mesh: mesh.clone(),
+        motion_samples: motion.samples,
+        instance,
+    })
 }

@@ -4,7 +4,7 @@ use super::reading::{Reader, Switched};
 use super::traced::Draft;
 use crate::scene::schema::quantity_of;
 use crate::scene::{
-    Cone, DirectionalLamp, ParallelogramLamp, PointLamp, Quantity, SceneId, SegmentLamp,
+    Cone, DirectionalLamp, NotTraced, ParallelogramLamp, PointLamp, Quantity, SceneId, SegmentLamp,
 };
 use crate::trace::{
     DirectionalLight, Lights, MovingLight, ParallelogramLight, PointLight, SegmentLight, SpotCone,
@@ -16,7 +16,7 @@ use bevy::ecs::component::Component;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::lifecycle::RemovedComponents;
 use bevy::ecs::name::Name;
-use bevy::ecs::query::{Changed, Or, With};
+use bevy::ecs::query::{Added, Changed, Or, With, Without};
 use bevy::ecs::system::{Query, Res, ResMut, SystemParam};
 use bevy::math::Vec3;
 use bevy::transform::components::GlobalTransform;
@@ -33,6 +33,7 @@ type LampQuery<'w, 's, L> = Query<
         Option<&'static InheritedVisibility>,
         Option<&'static Name>,
     ),
+    Without<NotTraced>,
 >;
 
 type Edited<L> = Or<(
@@ -40,6 +41,8 @@ type Edited<L> = Or<(
     Changed<GlobalTransform>,
     Changed<InheritedVisibility>,
     Changed<SceneId>,
+    Changed<Name>,
+    Added<NotTraced>,
 )>;
 
 /// The lamps of one kind, and whether any of them changed or went.
@@ -48,11 +51,18 @@ pub(super) struct Lamps<'w, 's, L: Component> {
     lamps: LampQuery<'w, 's, L>,
     edited: Query<'w, 's, (), (With<L>, Edited<L>)>,
     gone: RemovedComponents<'w, 's, L>,
+    no_name: RemovedComponents<'w, 's, Name>,
+    traced_again: RemovedComponents<'w, 's, NotTraced>,
 }
 
 impl<L: Component> Lamps<'_, '_, L> {
     fn changed(&mut self) -> bool {
-        self.gone.read().count() > 0 || !self.edited.is_empty()
+        // Of who is no lamp neither means anything.
+        let mut others = self.no_name.read().chain(self.traced_again.read());
+        let other = others.any(|entity| self.lamps.contains(entity));
+        self.no_name.clear();
+        self.traced_again.clear();
+        other | (self.gone.read().count() > 0) | !self.edited.is_empty()
     }
 
     /// The lights of the visible lamps, sorted by id, without those that `light` makes nothing of. Of

@@ -1,28 +1,73 @@
-use super::instances::TracedInstances;
-use super::problem::Fault;
-use super::reading::{Reader, Switched};
-use super::texture_data::TextureFault;
+use super::instances::{Row, TracedInstances};
+use super::material_data::{BoundTextures, MaterialData};
+use super::problem::{Fault, SyncProblem};
+use super::reading::Switched;
 use super::textures::TracedTextures;
 use super::traced::Draft;
-use crate::scene::schema::quantity_of;
-use crate::scene::{Alpha, Phong, PhongMap, PhongMaps, SceneId, UsesMaterial};
-use crate::trace::{Map, Material, Object, Texture};
-use bevy::asset::AssetId;
-use bevy::ecs::entity::Entity;
+use crate::scene::{Phong, PhongMaps, SceneId, UsesMaterial};
+use crate::trace::{Material, Object};
+use bevy::ecs::entity::{Entity, EntityHashSet};
 use bevy::ecs::lifecycle::RemovedComponents;
 use bevy::ecs::name::Name;
-use bevy::ecs::query::{Changed, Or};
-use bevy::ecs::system::{Query, Res, ResMut};
-use bevy::image::Image;
-use bevy::platform::collections::{HashMap, HashSet};
+use bevy::ecs::query::{Changed, Or, With};
+use bevy::ecs::resource::Resource;
+use bevy::ecs::system::{Query, Res, ResMut, SystemParam};
+use bevy::platform::collections::HashSet;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
-type Edited = Or<(
-    Changed<Phong>,
-    Changed<PhongMaps>,
-    Changed<UsesMaterial>,
-    Changed<SceneId>,
-)>;
+/// The materials that objects have, and which object has which.
+#[derive(Resource, Default)]
+pub(super) struct TracedMaterials {
+    /// Sorted by `SceneId`.
+    worn: Vec<Worn>,
+    /// One for each row of the objects, in their order.
+    wearers: Vec<Wearer>,
+    /// How many objects have no material.
+    without: u32,
+    /// Of objects that name a material which is gone.
+    nameless: BTreeMap<SceneId, SyncProblem>,
+}
+
+/// A material that objects have.
+struct Worn {
+    id: SceneId,
+    entity: Entity,
+    /// How many have it.
+    objects: u32,
+    stale: bool,
+    /// Whether it was ever.
+    is_read: bool,
+    data: MaterialData,
+}
+
+/// An object.
+struct Wearer {
+    id: SceneId,
+    entity: Entity,
+    wears: Wears,
+    stale: bool,
+}
+
+/// Which material an object has.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Wears {
+    /// It was not asked yet.
+    Unread,
+    /// None: it gets the default one.
+    Default,
+    /// That of the entity with this number.
+    Material(SceneId),
+}
+
+/// What was found when objects were given their materials.
+#[derive(Default)]
+struct Dressed {
+    /// A material came or went.
+    list: bool,
+    /// An object has another one.
+    wearers: bool,
+}
 
 type PhongQuery<'w, 's> = Query<
     'w,
@@ -35,105 +80,288 @@ type PhongQuery<'w, 's> = Query<
     ),
 >;
 
+type MaterialEdited = Or<(
+    Changed<Phong>,
+    Changed<PhongMaps>,
+    Changed<UsesMaterial>,
+    Changed<SceneId>,
+    Changed<Name>,
+)>;
+
+/// Whose material, or which material, may be another one.
+#[derive(SystemParam)]
+pub(super) struct Edited<'w, 's> {
+    changed: Query<'w, 's, Entity, (Or<(With<Phong>, With<UsesMaterial>)>, MaterialEdited)>,
+    no_phong: RemovedComponents<'w, 's, Phong>,
+    no_maps: RemovedComponents<'w, 's, PhongMaps>,
+    no_shared: RemovedComponents<'w, 's, UsesMaterial>,
+    no_id: RemovedComponents<'w, 's, SceneId>,
+    no_name: RemovedComponents<'w, 's, Name>,
+    switched: Switched<'w, 's>,
+}
+
+impl Edited<'_, '_> {
+    fn read(&mut self) -> EntityHashSet {
+        let gone = (self.no_phong.read())
+            .chain(self.no_maps.read())
+            .chain(self.no_shared.read())
+            .chain(self.no_id.read())
+            .chain(self.no_name.read());
+        let all = gone.chain(self.switched.read());
+        all.chain(&self.changed).collect()
+    }
+}
+
+/// What materials are read from.
+#[derive(SystemParam)]
+pub(super) struct Scene<'w, 's> {
+    numbers: Query<'w, 's, &'static SceneId>,
+    names: Query<'w, 's, &'static Name>,
+    sharing: Query<'w, 's, (Entity, &'static UsesMaterial)>,
+    materials: PhongQuery<'w, 's>,
+    textures: Res<'w, TracedTextures>,
+}
+
 /// Collects the materials that objects use, sorted by `SceneId`, and tells each object its own.
 /// An object without any gets the default one.
 pub(super) fn sync_materials(
-    edited: Query<(), Edited>,
-    mut no_phong: RemovedComponents<Phong>,
-    mut no_maps: RemovedComponents<PhongMaps>,
-    mut no_shared: RemovedComponents<UsesMaterial>,
-    mut switched: Switched,
-    sharing: Query<&UsesMaterial>,
-    materials: PhongQuery,
-    names: Query<&Name>,
+    mut edited: Edited,
+    scene: Scene,
     instances: Res<TracedInstances>,
-    textures: Res<TracedTextures>,
+    known: ResMut<TracedMaterials>,
     draft: ResMut<Draft>,
 ) {
-    // Not `||`: every reader has to be emptied.
-    let gone = no_phong.read().count() + no_maps.read().count() + no_shared.read().count();
-    let switched = switched.any();
-    let other = draft.other_objects || draft.changes.textures;
-    if gone == 0 && !switched && edited.is_empty() && !other {
+    let (known, draft) = (known.into_inner(), draft.into_inner());
+    let mut touched = edited.read();
+    touched.extend(scene.textures.users_of_news());
+    if draft.anew {
+        touched.extend(known.worn.iter().map(|worn| worn.entity));
+        touched.extend(instances.rows.iter().map(|row| row.entity));
+    }
+    if touched.is_empty() && !draft.other_objects {
         return;
     }
-    let draft = draft.into_inner();
-    let problems = &mut draft.problems.materials;
-    problems.clear();
-    draft.reread = true;
+    let sharing = scene.sharing.iter();
+    let naming = sharing.filter(|(_, shared)| touched.contains(&shared.0));
+    let naming: Vec<Entity> = naming.map(|(entity, _)| entity).collect();
+    touched.extend(naming);
 
-    // Whose Phong each object uses.
-    let mut users: Vec<Option<Entity>> = Vec::with_capacity(instances.rows.len());
-    for row in &instances.rows {
-        let shared = sharing.get(row.entity).ok().map(|shared| shared.0);
-        if shared.is_some_and(|shared| !materials.contains(shared)) {
-            Reader {
-                kind: "object",
-                id: row.id,
-                name: names.get(row.entity).ok(),
-                problems,
+    let had_default = known.without > 0;
+    if draft.other_objects {
+        known.follow(&instances.rows);
+    }
+    for &entity in &touched {
+        known.mark(entity, &scene);
+    }
+    let dressed = known.dress(&scene);
+    let other_looks = known.read(&scene);
+    if dressed.list || other_looks || had_default != (known.without > 0) {
+        known.show(draft);
+    }
+    if draft.other_objects || dressed.list || dressed.wearers {
+        known.show_objects(&instances.rows, draft);
+    }
+    let problems = known.problems();
+    if problems != draft.problems.materials {
+        draft.problems.materials = problems;
+        draft.reread = true;
+    }
+}
+
+impl TracedMaterials {
+    fn place(&self, id: SceneId) -> Result<usize, usize> {
+        self.worn.binary_search_by_key(&id, |worn| worn.id)
+    }
+
+    /// Makes the wearers those of these rows.
+    fn follow(&mut self, rows: &[Row]) {
+        let mut known = std::mem::take(&mut self.wearers).into_iter().peekable();
+        let mut wearers = Vec::with_capacity(rows.len());
+        for row in rows {
+            while let Some(gone) = known.next_if(|wearer| wearer.id < row.id) {
+                self.take_off(&gone);
             }
-            .note(Fault::NoMaterial);
+            match known.next_if(|wearer| wearer.id == row.id) {
+                Some(wearer) if wearer.entity == row.entity => {
+                    wearers.push(wearer);
+                    continue;
+                }
+                Some(gone) => self.take_off(&gone),
+                None => {}
+            }
+            wearers.push(Wearer {
+                id: row.id,
+                entity: row.entity,
+                wears: Wears::Unread,
+                stale: true,
+            });
         }
-        users.push(
-            shared
-                .filter(|&shared| materials.contains(shared))
-                .or(materials.contains(row.entity).then_some(row.entity)),
-        );
+        for gone in known {
+            self.take_off(&gone);
+        }
+        self.wearers = wearers;
     }
-    let mut used: Vec<(SceneId, Entity)> = users
-        .iter()
-        .flatten()
-        .filter_map(|&entity| materials.get(entity).ok().map(|(id, ..)| (*id, entity)))
-        .collect();
-    used.sort_unstable();
-    used.dedup();
 
-    let mut bound = BoundTextures::default();
-    let mut places = HashMap::with_capacity(used.len());
-    let mut list = Vec::with_capacity(used.len() + 1);
-    for (id, entity) in used {
-        let Ok((_, phong, maps, name)) = materials.get(entity) else {
-            continue;
-        };
-        let mut reader = Reader {
-            kind: "material",
-            id,
-            name,
-            problems,
-        };
-        places.insert(entity, list.len() as u32);
-        list.push(material(phong, maps, &mut reader, &textures, &mut bound));
+    /// One object less has the material.
+    fn take_off(&mut self, wearer: &Wearer) {
+        self.nameless.remove(&wearer.id);
+        match wearer.wears {
+            Wears::Unread => {}
+            Wears::Default => self.without -= 1,
+            Wears::Material(id) => {
+                if let Ok(place) = self.place(id) {
+                    self.worn[place].objects -= 1;
+                }
+            }
+        }
     }
-    if users.contains(&None) {
-        list.push(Material::default());
-    }
-    let default_place = list.len().saturating_sub(1) as u32;
-    let objects: Vec<Object> = instances
-        .rows
-        .iter()
-        .zip(users)
-        .map(|(row, user)| Object {
-            id: row.id.0,
-            material: user
-                .and_then(|entity| places.get(&entity).copied())
-                .unwrap_or(default_place),
-            motion_samples: row.motion_samples,
-            mesh: row.mesh.clone(),
-        })
-        .collect();
 
-    if list != *draft.world.materials {
-        draft.world.materials = Arc::new(list);
-        draft.changes.materials = true;
+    /// The entity is to be read again, as an object and as a material.
+    fn mark(&mut self, entity: Entity, scene: &Scene) {
+        let Ok(id) = scene.numbers.get(entity) else {
+            return;
+        };
+        let wearer = self.wearers.binary_search_by_key(id, |wearer| wearer.id);
+        if let Ok(wearer) = wearer.map(|place| &mut self.wearers[place]) {
+            wearer.stale |= wearer.entity == entity;
+        }
+        if let Ok(worn) = self.place(*id).map(|place| &mut self.worn[place]) {
+            worn.stale |= worn.entity == entity;
+        }
     }
-    if !same(&bound.list, &draft.world.textures, Arc::ptr_eq) {
-        draft.world.textures = Arc::new(bound.list);
-        draft.changes.textures = true;
+
+    /// Gives each object that may have another material the one that it has now.
+    fn dress(&mut self, scene: &Scene) -> Dressed {
+        let mut dressed = Dressed::default();
+        let mut comes: BTreeMap<SceneId, (Entity, u32)> = BTreeMap::new();
+        let mut wearers = std::mem::take(&mut self.wearers);
+        for wearer in wearers.iter_mut().filter(|wearer| wearer.stale) {
+            wearer.stale = false;
+            self.take_off(wearer);
+            let before = wearer.wears;
+            let is_material = |entity: &Entity| scene.materials.contains(*entity);
+            let shared = scene.sharing.get(wearer.entity);
+            let shared = shared.ok().map(|(_, shared)| shared.0);
+            if shared.is_some_and(|shared| !is_material(&shared)) {
+                let name = scene.names.get(wearer.entity).ok();
+                let problem = SyncProblem::new("object", wearer.id, name, Fault::NoMaterial);
+                self.nameless.insert(wearer.id, problem);
+            }
+            let own = Some(wearer.entity).filter(is_material);
+            let of = shared.filter(is_material).or(own);
+            let of = of.and_then(|of| Some((*scene.materials.get(of).ok()?.0, of)));
+            wearer.wears = of.map_or(Wears::Default, |(id, _)| Wears::Material(id));
+            dressed.wearers |= wearer.wears != before;
+            let Some((id, entity)) = of else {
+                self.without += 1;
+                continue;
+            };
+            if let Ok(place) = self.place(id) {
+                let worn = &mut self.worn[place];
+                worn.objects += 1;
+                // The number may have gone to another.
+                if worn.entity != entity {
+                    worn.entity = entity;
+                    worn.stale = true;
+                    worn.is_read = false;
+                }
+            } else {
+                comes.entry(id).or_insert((entity, 0)).1 += 1;
+            }
+        }
+        self.wearers = wearers;
+        let before = self.worn.len();
+        self.worn.retain(|worn| worn.objects > 0);
+        dressed.list = self.worn.len() < before || !comes.is_empty();
+        if !comes.is_empty() {
+            let comes = comes.into_iter().map(|(id, (entity, objects))| Worn {
+                id,
+                entity,
+                objects,
+                stale: true,
+                is_read: false,
+                data: MaterialData::default(),
+            });
+            self.worn.extend(comes);
+            self.worn.sort_by_key(|worn| worn.id);
+        }
+        dressed
     }
-    if !same(&objects, &draft.world.objects, same_object) {
-        draft.world.objects = Arc::new(objects);
-        draft.changes.objects = true;
+
+    /// Reads the materials that may be others, and says whether any looks different.
+    fn read(&mut self, scene: &Scene) -> bool {
+        let mut others = false;
+        for worn in self.worn.iter_mut().filter(|worn| worn.stale) {
+            worn.stale = false;
+            let Ok((id, phong, maps, name)) = scene.materials.get(worn.entity) else {
+                continue;
+            };
+            let data = MaterialData::of(*id, name, phong, maps, &scene.textures);
+            let is_new = !std::mem::replace(&mut worn.is_read, true);
+            if data.waits && !is_new {
+                // It stays as it was until its pictures are there, and is read again then.
+                continue;
+            }
+            others |= !data.looks_like(&worn.data);
+            worn.data = data;
+        }
+        others
+    }
+
+    /// The materials and their textures, as the world has them.
+    fn show(&self, draft: &mut Draft) {
+        let mut bound = BoundTextures::default();
+        let worn = self.worn.iter();
+        let mut list: Vec<Material> = worn.map(|worn| worn.data.bind(&mut bound)).collect();
+        if self.without > 0 {
+            list.push(Material::default());
+        }
+        if list != *draft.world.materials {
+            draft.world.materials = Arc::new(list);
+            draft.changes.materials = true;
+        }
+        if !same(&bound.list, &draft.world.textures, Arc::ptr_eq) {
+            draft.world.textures = Arc::new(bound.list);
+            draft.changes.textures = true;
+        }
+    }
+
+    /// Which object has which material, as the world has it.
+    fn show_objects(&self, rows: &[Row], draft: &mut Draft) {
+        let mut guess = 0;
+        let rows = rows.iter().zip(&self.wearers);
+        let objects: Vec<Object> = rows
+            .map(|(row, wearer)| {
+                let place = match wearer.wears {
+                    // Mostly each has its own.
+                    Wears::Material(id) => match self.worn.get(guess) {
+                        Some(worn) if worn.id == id => guess,
+                        _ => self.place(id).unwrap_or_default(),
+                    },
+                    _ => self.worn.len(),
+                };
+                guess = place + 1;
+                Object {
+                    id: row.id.0,
+                    material: place as u32,
+                    motion_samples: row.motion_samples,
+                    mesh: row.mesh.clone(),
+                }
+            })
+            .collect();
+        if !same(&objects, &draft.world.objects, same_object) {
+            draft.world.objects = Arc::new(objects);
+            draft.changes.objects = true;
+        }
+    }
+
+    fn problems(&self) -> Vec<SyncProblem> {
+        let mut met = HashSet::default();
+        let mut problems: Vec<SyncProblem> = self.nameless.values().cloned().collect();
+        for worn in &self.worn {
+            problems.extend(worn.data.problems(&mut met).cloned());
+        }
+        problems
     }
 }
 
@@ -144,146 +372,4 @@ fn same<T>(a: &[T], b: &[T], equal: impl Fn(&T, &T) -> bool) -> bool {
 fn same_object(a: &Object, b: &Object) -> bool {
     (a.id, a.material, a.motion_samples) == (b.id, b.material, b.motion_samples)
         && Arc::ptr_eq(&a.mesh, &b.mesh)
-}
-
-/// Textures in the order in which the sorted materials name them first.
-#[derive(Default)]
-struct BoundTextures {
-    list: Vec<Arc<Texture>>,
-    places: HashMap<*const Texture, u32>,
-    /// Pictures that a material uses, so that each is noted once.
-    met: HashSet<AssetId<Image>>,
-}
-
-impl BoundTextures {
-    fn place(&mut self, texture: &Arc<Texture>) -> u32 {
-        *self.places.entry(Arc::as_ptr(texture)).or_insert_with(|| {
-            self.list.push(texture.clone());
-            self.list.len() as u32 - 1
-        })
-    }
-}
-
-/// The material with every number inside its range.
-fn material(
-    phong: &Phong,
-    maps: Option<&PhongMaps>,
-    reader: &mut Reader,
-    textures: &TracedTextures,
-    bound: &mut BoundTextures,
-) -> Material {
-    let alpha = match phong.alpha {
-        Alpha::Mask { cutoff } => Alpha::Mask {
-            cutoff: reader
-                .number("alpha cutoff", cutoff, quantity_of::<Phong>("alpha.cutoff"))
-                .unwrap_or(0.5),
-        },
-        other => other,
-    };
-    let unused = PhongMaps::default();
-    let mut loaded = |of: PhongMap| {
-        let handle = of.loaded(maps.unwrap_or(&unused));
-        let fault = match (handle, of.source(phong)) {
-            (Some(handle), _) => match textures.get(handle.id()) {
-                Ok(map) => {
-                    if bound.met.insert(handle.id()) {
-                        reader.note_texels(of.name(), map.replaced);
-                    }
-                    return Some((handle.id(), map));
-                }
-                Err(fault) => fault,
-            },
-            (None, Some(source)) => TextureFault::Unresolved(source.path.clone()),
-            (None, None) => return None,
-        };
-        let field = of.name();
-        reader.note(Fault::Texture { field, fault });
-        None
-    };
-    let pictures = PhongMap::ALL.map(|of| (of, loaded(of)));
-    let opacity = pictures.iter().find(|(of, _)| *of == PhongMap::Opacity);
-    let opacity = opacity.and_then(|(_, picture)| *picture).map(|(id, _)| id);
-    let mut list = Vec::new();
-    for (of, picture) in pictures {
-        let Some((id, picture)) = picture else {
-            continue;
-        };
-        if of == PhongMap::Opacity && alpha == Alpha::Opaque {
-            continue;
-        }
-        let cuts_out = opacity.filter(|_| of.is_of_colors() && alpha != Alpha::Opaque);
-        let cut_out = cuts_out.and_then(|opacity| textures.cut_out(id, opacity));
-        let source = of.source(phong).unwrap_or(&picture.sampler);
-        list.push(Map {
-            of,
-            texture: bound.place(cut_out.unwrap_or(&picture.texture)),
-            wrap: [source.wrap_u, source.wrap_v],
-            filter: source.filter,
-            is_cut_out: cut_out.is_some(),
-        });
-    }
-    let of = quantity_of::<Phong>;
-    Material {
-        diffuse: reader.color("diffuse", phong.diffuse, of("diffuse")),
-        specular: reader.color("specular", phong.specular, of("specular")),
-        mirror: reader.color("mirror", phong.mirror, of("mirror")),
-        shininess: reader
-            .number("shininess", phong.shininess, of("shininess"))
-            .unwrap_or(1.0),
-        opacity: reader
-            .number("opacity", phong.opacity, of("opacity"))
-            .unwrap_or(1.0),
-        emission: reader.color("emission", phong.emission, of("emission")),
-        alpha,
-        normal_scale: reader
-            .number("normal scale", phong.normal_scale, of("normal_scale"))
-            .unwrap_or(1.0),
-        maps: list,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use bevy::color::LinearRgba;
-
-    #[test]
-    fn numbers_out_of_range_are_moved_into_it_and_named() {
-        let phong = Phong {
-            diffuse: LinearRgba::rgb(0.5, 2.0, 0.5),
-            specular: LinearRgba::rgb(f32::NAN, 0.0, 0.0),
-            mirror: LinearRgba::rgb(0.0, -1.0, 0.0),
-            shininess: 0.0,
-            opacity: -3.0,
-            emission: LinearRgba::rgb(9.0, 0.0, 0.0),
-            ..Phong::default()
-        };
-        let mut problems = Vec::new();
-        let mut reader = Reader {
-            kind: "material",
-            id: SceneId(4),
-            name: None,
-            problems: &mut problems,
-        };
-        let textures = TracedTextures::default();
-        let material = material(
-            &phong,
-            None,
-            &mut reader,
-            &textures,
-            &mut BoundTextures::default(),
-        );
-        assert_eq!(material.diffuse.to_array(), [0.5, 1.0, 0.5]);
-        assert_eq!(material.specular.to_array(), [0.0; 3]);
-        assert_eq!(material.mirror.to_array(), [0.0; 3]);
-        assert_eq!((material.shininess, material.opacity), (1.0, 0.0));
-        assert_eq!(material.emission.to_array(), [9.0, 0.0, 0.0]);
-        let named: Vec<String> = problems.iter().map(ToString::to_string).collect();
-        assert_eq!(named.len(), 5, "{named:#?}");
-        assert!(
-            named[0].starts_with("material 4: its diffuse is 2"),
-            "{}",
-            named[0]
-        );
-    }
 }

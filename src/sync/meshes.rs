@@ -2,16 +2,18 @@ use super::mesh_data::{MeshCopy, MeshFault, trace_mesh};
 use super::posed::{PosedMesh, traced_mesh};
 use super::reading::Switched;
 use super::traced::Draft;
-use super::tree_building::{Built, TreeBuilding, TreeThreads};
+use super::tree_building::{Built, Threads, TreeBuilding, build_tree};
+use super::uses::Uses;
 use crate::bvh::{self, BuildOptions, Builder, Levels};
 use crate::scene::{self, NotTraced, RenderSettings};
 use crate::trace;
 use bevy::asset::{AssetEvent, AssetId, Assets};
+use bevy::ecs::entity::Entity;
 use bevy::ecs::lifecycle::RemovedComponents;
 use bevy::ecs::message::MessageReader;
-use bevy::ecs::query::{Changed, Or, Without};
+use bevy::ecs::query::{Added, Changed, Or, With, Without};
 use bevy::ecs::resource::Resource;
-use bevy::ecs::system::{Query, Res, ResMut};
+use bevy::ecs::system::{Query, Res, ResMut, SystemParam};
 use bevy::mesh::{Mesh, Mesh3d};
 use bevy::platform::collections::{HashMap, HashSet};
 use rayon::prelude::*;
@@ -32,7 +34,11 @@ pub(super) struct TracedMeshes {
     ready: HashMap<AssetId<Mesh>, MeshResult>,
     /// What is being built, and whether it was edited since that began.
     building: HashMap<AssetId<Mesh>, bool>,
-    threads: TreeThreads,
+    threads: Threads<Built>,
+    /// Which mesh each object has.
+    uses: Uses<AssetId<Mesh>>,
+    /// What is shown since the last frame, or shown otherwise.
+    news: HashSet<AssetId<Mesh>>,
 }
 
 impl TracedMeshes {
@@ -40,6 +46,11 @@ impl TracedMeshes {
     pub fn get(&self, id: AssetId<Mesh>) -> Option<Result<&Arc<trace::Mesh>, MeshFault>> {
         let mesh = self.shown.get(&id)?;
         Some(mesh.as_ref().map_err(MeshFault::clone))
+    }
+
+    /// What is shown since the last frame, or shown otherwise.
+    pub fn news(&self) -> &HashSet<AssetId<Mesh>> {
+        &self.news
     }
 
     /// How all trees are built.
@@ -64,6 +75,9 @@ impl TracedMeshes {
         let mut again = Vec::new();
         for Built { id, options, mesh } in built {
             let edited = self.building.remove(&id).unwrap_or_default();
+            if !self.uses.is_used(id) {
+                continue;
+            }
             let outdated = options != self.mesh_options();
             if edited || outdated {
                 again.push(id);
@@ -84,11 +98,12 @@ impl TracedMeshes {
             }
             self.shown = std::mem::take(&mut self.ready);
             self.options = self.wanted;
+            self.news.extend(self.shown.keys());
             return true;
         }
-        let any = !self.ready.is_empty();
+        self.news.extend(self.ready.keys());
         self.shown.extend(self.ready.drain());
-        any
+        !self.news.is_empty()
     }
 }
 
@@ -100,21 +115,36 @@ impl TracedMeshes {
     }
 }
 
-/// What has another mesh now, or is posed as another.
-type Dressed = (
-    Or<(Changed<Mesh3d>, Changed<PosedMesh>)>,
-    Without<NotTraced>,
-);
+type Users<'w, 's> =
+    Query<'w, 's, (Entity, (&'static Mesh3d, Option<&'static PosedMesh>)), Without<NotTraced>>;
+
+/// Who may have another mesh now than before, or be posed as another.
+#[derive(SystemParam)]
+pub(super) struct Dressed<'w, 's> {
+    changed: Query<'w, 's, Entity, Or<(Changed<Mesh3d>, Changed<PosedMesh>)>>,
+    no_longer: Query<'w, 's, Entity, (With<Mesh3d>, Added<NotTraced>)>,
+    removed: RemovedComponents<'w, 's, Mesh3d>,
+    at_rest: RemovedComponents<'w, 's, PosedMesh>,
+    traced_again: RemovedComponents<'w, 's, NotTraced>,
+    switched: Switched<'w, 's>,
+}
+
+impl Dressed<'_, '_> {
+    fn read(&mut self) -> Vec<Entity> {
+        let gone = (self.removed.read())
+            .chain(self.at_rest.read())
+            .chain(self.traced_again.read());
+        let all = gone.chain(self.switched.read());
+        all.chain(&self.changed).chain(&self.no_longer).collect()
+    }
+}
 
 /// Makes the trees of meshes that are new, were edited, or whose settings changed, and drops those
 /// of meshes that no object uses any more.
 pub(super) fn sync_meshes(
     mut events: MessageReader<AssetEvent<Mesh>>,
-    mut removed: RemovedComponents<Mesh3d>,
-    mut at_rest: RemovedComponents<PosedMesh>,
-    mut switched: Switched,
-    changed: Query<(), Dressed>,
-    users: Query<(&Mesh3d, Option<&PosedMesh>), Without<NotTraced>>,
+    mut dressed: Dressed,
+    users: Users,
     assets: Res<Assets<Mesh>>,
     settings: Res<RenderSettings>,
     building: Res<TreeBuilding>,
@@ -122,6 +152,7 @@ pub(super) fn sync_meshes(
     mut draft: ResMut<Draft>,
 ) {
     let known = known.into_inner();
+    known.news.clear();
     let at_once = *building == TreeBuilding::AtOnce;
     let wanted = build_options(&settings.tree);
     let rebuild = wanted != known.wanted;
@@ -143,20 +174,38 @@ pub(super) fn sync_meshes(
     } else {
         known.threads.finished()
     };
-    // Not `&&`: every reader has to be emptied.
-    let gone = removed.read().count() + at_rest.read().count() > 0;
-    let users_changed = gone | switched.any() | !changed.is_empty();
-    let nothing = !users_changed && stale.is_empty() && built.is_empty() && !rebuild;
+    let mut dressed = dressed.read();
+    if draft.anew {
+        dressed.extend(known.uses.entities().chain(users.iter().map(|(e, _)| e)));
+        stale.extend(known.uses.things());
+    }
+    let nothing = dressed.is_empty() && stale.is_empty() && built.is_empty() && !rebuild;
     if nothing {
         return;
     }
+    let mut touched = HashSet::new();
+    for entity in dressed {
+        let mesh = users.get(entity).map(|(_, mesh)| traced_mesh(mesh));
+        let used = mesh.into_iter().collect();
+        known.uses.set(entity, used, &mut touched);
+    }
     stale.extend(known.take_built(built, &assets));
-    let used: HashSet<AssetId<Mesh>> = users.iter().map(traced_mesh).collect();
-    known.shown.retain(|id, _| used.contains(id));
-    known.ready.retain(|id, _| used.contains(id));
+    touched.extend(&stale);
+    if rebuild {
+        touched.extend(known.uses.things());
+    }
     let in_force = known.options == known.wanted;
     let mut to_build = Vec::new();
-    for id in used {
+    for id in touched {
+        if !known.uses.is_used(id) {
+            known.shown.remove(&id);
+            known.ready.remove(&id);
+            // Somebody may use it again before its tree is there.
+            if let Some(edited) = known.building.get_mut(&id) {
+                *edited |= stale.contains(&id);
+            }
+            continue;
+        }
         let is_there = known.ready.contains_key(&id) || in_force && known.shown.contains_key(&id);
         if is_there && !stale.contains(&id) {
             continue;
@@ -179,7 +228,7 @@ pub(super) fn sync_meshes(
             let mesh = assets.get(id).ok_or(MeshFault::Missing);
             match mesh.and_then(MeshCopy::of) {
                 Ok(copy) => {
-                    known.threads.build(id, copy, options);
+                    build_tree(&mut known.threads, id, copy, options);
                     known.building.insert(id, false);
                 }
                 Err(fault) => {

@@ -9,7 +9,7 @@
 //! | `sync_meshes` | `Mesh` assets that an object uses, or is posed as | that mesh's triangles and tree |
 //! | `sync_motions` | `Motion`, of entities and of all above them | how fast each moves in the world |
 //! | `sync_instances` | which mesh stands where, how it moves, and whether it is visible | the tree over the objects |
-//! | `sync_textures` | `Image` assets that a material or the environment uses | that texture |
+//! | `sync_textures` | `Image` assets that a material or the environment uses | that texture; large ones and skies on threads of their own |
 //! | `sync_materials` | `Phong`, `PhongMaps`, `UsesMaterial` | materials, and which object has which |
 //! | `sync_lights` | the four lamps | lights |
 //! | `sync_environment` | `Environment`, `EnvironmentMap`, a panorama or a cube | background and map |
@@ -17,14 +17,14 @@
 //! | `name_left_out` | [`LeftOut`] | what is named of it |
 //! | `publish_snapshot` | what the systems above redid | [`Traced`] |
 //!
-//! A system does its part again, in full, whenever something that it reads changed, appeared or
-//! went; what is expensive (textures, meshes and their trees) is kept per asset. A part that comes
-//! out as it was is not replaced, so a snapshot shares it with the one before. Because nothing but
-//! those caches is carried over from frame to frame, a world after a thousand edits equals one
-//! that is made from the same entities at once.
+//! A system reads again what changed, appeared or went, and nothing else of meshes, objects, textures
+//! and materials, of which there are thousands; lights, cameras and surroundings it reads again all at
+//! once. A part that comes out as it was is not replaced, so a snapshot shares it with the one before. A
+//! world after a thousand edits equals one that is made from the same entities at once, to the last bit:
+//! tests compare them. An app may give [`SyncSystems`] a run condition: after a rest all is read again.
 //!
-//! Trees of meshes are built on threads of their own, and what was there before is traced until they
-//! are done ([`TreeBuilding`]): no frame waits for them, and for the tree over the objects 2 ms at most.
+//! Trees of meshes are built and large pictures converted on threads of their own, and what was there before is traced
+//! until they are done ([`TreeBuilding`]): no frame waits for them, and for the tree over the objects 2 ms at most.
 //! [`finish`] waits for all.
 //!
 //! What cannot be traced is left out, and named in [`Traced::problems`]; the rest stays intact.
@@ -38,12 +38,14 @@
 )]
 
 mod cameras;
+mod conversions;
 mod environment;
 mod ids;
 mod image_sampler;
 mod instances;
 mod left_out;
 mod lights;
+mod material_data;
 mod materials;
 mod mesh_data;
 mod meshes;
@@ -52,10 +54,12 @@ mod panorama;
 mod posed;
 mod problem;
 mod reading;
+mod rest;
 mod texture_data;
 mod textures;
 mod traced;
 mod tree_building;
+mod uses;
 
 #[cfg(test)]
 mod tests;
@@ -70,7 +74,7 @@ pub use texture_data::TextureFault;
 pub use traced::{Changes, Traced};
 pub use tree_building::{TreeBuilding, finish};
 
-use bevy::app::{App, Plugin, PostUpdate};
+use bevy::app::{App, First, Plugin, PostUpdate};
 use bevy::asset::AssetEventSystems;
 use bevy::camera::visibility::VisibilitySystems;
 use bevy::ecs::schedule::{IntoScheduleConfigs, SystemSet};
@@ -92,12 +96,15 @@ impl Plugin for SyncPlugin {
             .init_resource::<TracedCameras>()
             .init_resource::<traced::Draft>()
             .init_resource::<LeftOut>()
+            .init_resource::<left_out::Named>()
+            .init_resource::<rest::Frames>()
             .init_resource::<ids::IdOwners>()
             .init_resource::<TreeBuilding>()
             .init_resource::<meshes::TracedMeshes>()
             .init_resource::<WorldMotions>()
             .init_resource::<textures::TracedTextures>()
             .init_resource::<instances::TracedInstances>()
+            .init_resource::<materials::TracedMaterials>()
             .init_resource::<tree_building::TopLevelThread>()
             .configure_sets(
                 PostUpdate,
@@ -106,9 +113,11 @@ impl Plugin for SyncPlugin {
                     .after(VisibilitySystems::VisibilityPropagate)
                     .after(AssetEventSystems),
             )
+            .add_systems(First, rest::count_frames)
             .add_systems(
                 PostUpdate,
                 (
+                    rest::notice_rest,
                     ids::assign_scene_ids,
                     meshes::sync_meshes,
                     motions::sync_motions,

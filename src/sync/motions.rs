@@ -33,8 +33,8 @@ pub struct WorldMotion {
 #[derive(Resource, Default)]
 pub struct WorldMotions {
     moving: EntityHashMap<WorldMotion>,
-    /// Whether this frame found others than the one before.
-    changed: bool,
+    /// Who moves otherwise than in the frame before.
+    others: Vec<Entity>,
 }
 
 impl WorldMotions {
@@ -49,9 +49,14 @@ impl WorldMotions {
         self.moving.len()
     }
 
+    /// Who moves otherwise than in the frame before, or moves no more.
+    pub(super) fn others(&self) -> &[Entity] {
+        &self.others
+    }
+
     /// True where this frame found others than the one before.
     pub(super) fn changed(&self) -> bool {
-        self.changed
+        !self.others.is_empty()
     }
 }
 
@@ -90,7 +95,7 @@ pub(super) fn sync_motions(
     let on = settings.features.motion && !movers.is_empty();
     let toggled = std::mem::replace(&mut *was_on, on) != on;
     let switched = switched.any();
-    motions.changed = false;
+    motions.others.clear();
     // Most scenes stand still: whose child somebody becomes matters to none of them.
     if !on && !toggled {
         return;
@@ -115,10 +120,18 @@ pub(super) fn sync_motions(
         }
         found.retain(|_, motion| motion.velocity != Vec3::ZERO);
     }
-    if found != motions.moving {
-        motions.moving = found;
-        motions.changed = true;
-    }
+    let motions = &mut *motions;
+    let before = std::mem::replace(&mut motions.moving, found);
+    let all = before.keys().chain(motions.moving.keys());
+    // NaN is no other than NaN: what cannot be traced is said once.
+    let bits = |motion: Option<&WorldMotion>| {
+        motion.map(|motion| (motion.velocity.to_array().map(f32::to_bits), motion.samples))
+    };
+    let others = all.filter(|entity| {
+        let [old, new] = [&before, &motions.moving].map(|motions| bits(motions.get(*entity)));
+        old != new
+    });
+    motions.others.extend(others);
 }
 
 /// Finds an entity's motion and that of all above it, each of them once however many hang below it.

@@ -3,13 +3,14 @@ use crate::bvh::SingularTransform;
 use crate::scene::{RangeProblem, RenderSettings, SceneId, range_problems};
 use bevy::ecs::name::Name;
 use bevy::math::Vec3;
+use std::sync::Arc;
 
 /// Something of the scene that cannot be traced as it is.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{subject}: {fault}")]
 pub struct SyncProblem {
     /// Whose it is: `light 7 "lamp"`, or `settings`.
-    pub subject: String,
+    pub subject: Arc<str>,
     /// The entity's number; unassigned where it is none's.
     pub id: SceneId,
     /// What is wrong, and what was done about it.
@@ -88,7 +89,7 @@ pub enum Fault {
     },
     /// Something of another program's component has nothing here that it could become.
     #[error("{0}")]
-    LeftOut(String),
+    LeftOut(Arc<str>),
     /// A render setting is out of range.
     #[error("{0}")]
     Setting(RangeProblem),
@@ -100,7 +101,11 @@ impl SyncProblem {
             Some(name) => format!("{kind} {} \"{}\"", id.0, name.as_str()),
             None => format!("{kind} {}", id.0),
         };
-        Self { subject, id, fault }
+        Self {
+            subject: subject.into(),
+            id,
+            fault,
+        }
     }
 
     pub(super) fn of_settings(settings: &RenderSettings) -> Vec<Self> {

@@ -7,6 +7,7 @@ use super::texture_data::Replaced;
 use crate::bvh::REACH;
 use crate::scene::{Quantity, SceneId};
 use bevy::color::LinearRgba;
+use bevy::ecs::entity::Entity;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::lifecycle::RemovedComponents;
 use bevy::ecs::name::Name;
@@ -17,15 +18,19 @@ use bevy::math::Vec3;
 /// Notices entities that vanish from queries, or come back, without losing a component.
 #[derive(SystemParam)]
 pub(super) struct Switched<'w, 's> {
-    disabled: Query<'w, 's, (), Added<Disabled>>,
+    disabled: Query<'w, 's, Entity, Added<Disabled>>,
     enabled: RemovedComponents<'w, 's, Disabled>,
 }
 
 impl Switched<'_, '_> {
+    /// Who was disabled or enabled since this was asked last.
+    pub fn read(&mut self) -> impl Iterator<Item = Entity> + '_ {
+        self.disabled.iter().chain(self.enabled.read())
+    }
+
     /// True where an entity was disabled or enabled since this was asked last.
     pub fn any(&mut self) -> bool {
-        let enabled = self.enabled.read().count() > 0;
-        enabled || !self.disabled.is_empty()
+        self.read().count() > 0
     }
 }
 

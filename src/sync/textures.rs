@@ -1,17 +1,19 @@
-use super::image_sampler::sampler_of;
-use super::panorama::{is_cube, trace_cube};
+use super::conversions::{AT_ONCE, Conversions, TextureResult, convert, cost};
+use super::panorama::is_cube;
 use super::reading::Switched;
-use super::texture_data::{Replaced, TextureFault, trace_texture};
+use super::texture_data::{Replaced, TextureFault};
 use super::traced::Draft;
+use super::tree_building::TreeBuilding;
+use super::uses::Uses;
 use crate::scene::{EnvironmentMap, PhongMap, PhongMaps, TextureSource};
 use crate::trace::Texture;
 use bevy::asset::{AssetEvent, AssetId, Assets};
-use bevy::ecs::change_detection::DetectChanges;
+use bevy::ecs::entity::Entity;
 use bevy::ecs::lifecycle::RemovedComponents;
 use bevy::ecs::message::MessageReader;
 use bevy::ecs::query::Changed;
 use bevy::ecs::resource::Resource;
-use bevy::ecs::system::{Query, Res, ResMut};
+use bevy::ecs::system::{Query, Res, ResMut, SystemParam};
 use bevy::image::Image;
 use bevy::platform::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -19,8 +21,17 @@ use std::sync::Arc;
 /// The pictures that materials and the environment use.
 #[derive(Resource, Default)]
 pub(super) struct TracedTextures {
-    by_asset: HashMap<AssetId<Image>, Result<TracedTexture, TextureFault>>,
+    by_asset: HashMap<AssetId<Image>, TextureResult>,
+    conversions: Conversions,
     cut_outs: HashMap<[AssetId<Image>; 2], CutOut>,
+    /// The pictures of each material.
+    uses: Uses<AssetId<Image>>,
+    /// And which of them stands as alpha in which.
+    pairs: Uses<[AssetId<Image>; 2]>,
+    /// The one that is all around.
+    around: Option<AssetId<Image>>,
+    /// What was converted in this frame, or found to be missing.
+    news: HashSet<AssetId<Image>>,
 }
 
 /// A picture that could be converted.
@@ -41,13 +52,16 @@ struct CutOut {
 }
 
 impl TracedTextures {
-    /// The texture of an asset.
-    pub fn get(&self, id: AssetId<Image>) -> Result<&TracedTexture, TextureFault> {
-        match self.by_asset.get(&id) {
-            Some(Ok(texture)) => Ok(texture),
-            Some(Err(fault)) => Err(fault.clone()),
-            None => Err(TextureFault::Missing),
-        }
+    /// The texture of an asset; `None` while it is converted for the first time.
+    pub fn get(&self, id: AssetId<Image>) -> Option<Result<&TracedTexture, TextureFault>> {
+        let texture = self.by_asset.get(&id)?;
+        Some(texture.as_ref().map_err(TextureFault::clone))
+    }
+
+    /// Takes a texture, or why there is none.
+    fn take(&mut self, id: AssetId<Image>, texture: TextureResult) {
+        self.by_asset.insert(id, texture);
+        self.news.insert(id);
     }
 
     /// A map of colours as an opacity map cuts it out; `None` where one of them is missing.
@@ -60,27 +74,37 @@ impl TracedTextures {
         Some(&cut_out.texture)
     }
 
-    /// Makes what is new among pairs of a map of colours and an opacity map, and drops the others.
-    fn cut_out_pairs(&mut self, pairs: impl Iterator<Item = [AssetId<Image>; 2]>) {
-        let mut known = std::mem::take(&mut self.cut_outs);
-        for pair in pairs {
-            let [Ok(colors), Ok(opacity)] = pair.map(|id| self.get(id)) else {
-                continue;
-            };
-            let of = [colors.texture.clone(), opacity.texture.clone()];
-            let same = |cut_out: &CutOut| (0..2).all(|i| Arc::ptr_eq(&cut_out.of[i], &of[i]));
-            if self.cut_outs.get(&pair).is_some_and(same) {
-                continue;
-            }
-            let cut_out = known.remove(&pair).filter(same).unwrap_or_else(|| CutOut {
-                texture: match of[0].cut_out_by(&of[1]) {
-                    Some(texture) => Arc::new(texture),
-                    None => of[0].clone(),
-                },
-                of,
-            });
-            self.cut_outs.insert(pair, cut_out);
+    /// Whose pictures this frame converted.
+    pub fn users_of_news(&self) -> impl Iterator<Item = Entity> + '_ {
+        self.uses.users_of(&self.news)
+    }
+
+    fn is_used(&self, id: AssetId<Image>) -> bool {
+        self.uses.is_used(id) || self.around == Some(id)
+    }
+
+    /// Makes the cut-out of a map of colours and an opacity map where it is another than it was, and drops it
+    /// where nobody uses it.
+    fn cut_out_pair(&mut self, pair: [AssetId<Image>; 2]) {
+        let both = pair.map(|id| Some(self.by_asset.get(&id)?.as_ref().ok()?.texture.clone()));
+        let [Some(colors), Some(opacity)] = both else {
+            self.cut_outs.remove(&pair);
+            return;
+        };
+        if !self.pairs.is_used(pair) {
+            self.cut_outs.remove(&pair);
+            return;
         }
+        let of = [colors, opacity];
+        let same = |cut_out: &CutOut| (0..2).all(|i| Arc::ptr_eq(&cut_out.of[i], &of[i]));
+        if self.cut_outs.get(&pair).is_some_and(same) {
+            return;
+        }
+        let texture = match of[0].cut_out_by(&of[1]) {
+            Some(texture) => Arc::new(texture),
+            None => of[0].clone(),
+        };
+        self.cut_outs.insert(pair, CutOut { of, texture });
     }
 }
 
@@ -88,81 +112,124 @@ impl TracedTextures {
 impl TracedTextures {
     /// How many are kept, and how many of them cut out.
     pub fn kept(&self) -> [usize; 2] {
-        [self.by_asset.len(), self.cut_outs.len()]
+        [
+            self.by_asset.len() + self.conversions.len(),
+            self.cut_outs.len(),
+        ]
+    }
+}
+
+/// Whose pictures may be others than before.
+#[derive(SystemParam)]
+pub(super) struct Edited<'w, 's> {
+    changed: Query<'w, 's, Entity, Changed<PhongMaps>>,
+    removed: RemovedComponents<'w, 's, PhongMaps>,
+    switched: Switched<'w, 's>,
+}
+
+impl Edited<'_, '_> {
+    fn read(&mut self) -> Vec<Entity> {
+        let gone = self.removed.read().chain(self.switched.read());
+        gone.chain(&self.changed).collect()
     }
 }
 
 /// Converts pictures that are new or were edited, and drops those that nothing uses any more.
 pub(super) fn sync_textures(
     mut events: MessageReader<AssetEvent<Image>>,
-    mut removed: RemovedComponents<PhongMaps>,
-    mut switched: Switched,
-    changed: Query<(), Changed<PhongMaps>>,
-    users: Query<&PhongMaps>,
+    mut edited: Edited,
+    users: Query<(Entity, &PhongMaps)>,
     environment: Res<EnvironmentMap>,
+    building: Res<TreeBuilding>,
     assets: Res<Assets<Image>>,
     known: ResMut<TracedTextures>,
     mut draft: ResMut<Draft>,
 ) {
     let known = known.into_inner();
-    // Not `||`: every reader has to be emptied.
-    let mut stale = (removed.read().count() > 0)
-        | switched.any()
-        | !changed.is_empty()
-        | environment.is_changed();
+    known.news.clear();
+    let mut edited = edited.read();
+    let mut touched = HashSet::new();
+    let mut stale = HashSet::new();
+    let mut pairs = HashSet::new();
+    if draft.anew {
+        edited.extend(known.uses.entities().chain(users.iter().map(|(e, _)| e)));
+        stale.extend(known.by_asset.keys().copied());
+    }
     for event in events.read() {
-        let (AssetEvent::Added { id } | AssetEvent::Modified { id } | AssetEvent::Removed { id }) =
+        if let AssetEvent::Added { id } | AssetEvent::Modified { id } | AssetEvent::Removed { id } =
             event
-        else {
-            continue;
-        };
-        known.by_asset.remove(id);
-        stale = true;
-    }
-    if !stale {
-        return;
-    }
-    if environment.is_changed()
-        && let Some(map) = &environment.0
-        && matches!(
-            known.by_asset.get(&map.id()),
-            Some(Err(TextureFault::NotFlat))
-        )
-    {
-        // A material has it too, and a cube is none for that.
-        known.by_asset.remove(&map.id());
-    }
-    let used: HashSet<AssetId<Image>> = users
-        .iter()
-        .flat_map(|maps| PhongMap::ALL.map(|map| map.loaded(maps)))
-        .chain([environment.0.as_ref()])
-        .flatten()
-        .map(|handle| handle.id())
-        .collect();
-    known.by_asset.retain(|id, _| used.contains(id));
-    for id in used {
-        if !known.by_asset.contains_key(&id) {
-            let image = assets.get(id).ok_or(TextureFault::Missing);
-            let is_around = environment.0.as_ref().is_some_and(|map| map.id() == id);
-            let texture = image.and_then(|image| {
-                let converted = if is_around && is_cube(image) {
-                    trace_cube(image)?
-                } else {
-                    trace_texture(image)?
-                };
-                Ok(TracedTexture {
-                    texture: Arc::new(converted.texture),
-                    sampler: sampler_of(image),
-                    replaced: converted.replaced,
-                })
-            });
-            known.by_asset.insert(id, texture);
-            draft.changes.textures = true;
+        {
+            stale.insert(*id);
         }
     }
-    let pairs = users.iter().flat_map(|maps| {
+    let around = environment.0.as_ref().map(|map| map.id());
+    if known.around != around {
+        // A cube that materials have too is a panorama all around, and no picture anywhere else.
+        for id in [known.around, around].into_iter().flatten() {
+            if assets.get(id).is_some_and(is_cube) {
+                stale.insert(id);
+                known.conversions.forget(id);
+            }
+            touched.insert(id);
+        }
+        known.around = around;
+    }
+    for entity in edited {
+        let maps = users.get(entity).ok().map(|(_, maps)| maps);
+        let loaded = |map: PhongMap| maps.and_then(|maps| Some(map.loaded(maps)?.id()));
+        let pictures = PhongMap::ALL.into_iter().filter_map(loaded).collect();
+        known.uses.set(entity, pictures, &mut touched);
+        let opacity = maps.and_then(|maps| Some(maps.opacity.as_ref()?.id()));
         let colors = PhongMap::ALL.into_iter().filter(|map| map.is_of_colors());
-        colors.filter_map(|map| Some([map.loaded(maps)?.id(), maps.opacity.as_ref()?.id()]))
-    });
-    known.cut_out_pairs(pairs);
+        let cut_out = colors.filter_map(|map| Some([loaded(map)?, opacity?]));
+        known.pairs.set(entity, cut_out.collect(), &mut pairs);
+    }
+    let at_once = *building == TreeBuilding::AtOnce;
+    if at_once {
+        // Nothing is waited for: what is under way is made here.
+        stale.extend(known.conversions.pictures());
+    } else {
+        for (id, texture, edited) in known.conversions.finished() {
+            if known.is_used(id) {
+                known.take(id, texture);
+            }
+            stale.extend(edited.then_some(id));
+        }
+    }
+    touched.extend(&stale);
+    let mut left = if at_once { usize::MAX } else { AT_ONCE };
+    for id in touched {
+        if !known.is_used(id) {
+            known.by_asset.remove(&id);
+            known.conversions.forget(id);
+            continue;
+        }
+        if known.by_asset.contains_key(&id) && !stale.contains(&id) {
+            continue;
+        }
+        let Some(image) = assets.get(id) else {
+            known.conversions.forget(id);
+            known.take(id, Err(TextureFault::Missing));
+            continue;
+        };
+        let is_around = around == Some(id);
+        let cost = cost(image, is_around);
+        if cost <= left {
+            left -= cost;
+            known.conversions.forget(id);
+            known.take(id, convert(image, is_around));
+        } else {
+            known.conversions.begin(id, is_around);
+        }
+    }
+    known.conversions.go_on(&assets);
+    if !known.news.is_empty() {
+        draft.changes.textures = true;
+        let is_new = |pair: &[AssetId<Image>; 2]| pair.iter().any(|id| known.news.contains(id));
+        pairs.extend(known.pairs.things().filter(is_new));
+    }
+    for pair in pairs {
+        known.cut_out_pair(pair);
+    }
+    draft.pending_textures = known.conversions.len();
 }

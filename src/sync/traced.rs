@@ -15,8 +15,8 @@ pub struct Traced {
     pub changes: Changes,
     /// What cannot be traced as it is, sorted by kind and `SceneId`.
     pub problems: Vec<SyncProblem>,
-    /// How many trees are being built: what uses a mesh that waits for its tree is traced with the mesh that it
-    /// had before, or not yet, and objects stand where they did. See [`TreeBuilding`](super::TreeBuilding).
+    /// How many trees are being built and textures converted: what uses a mesh that waits for its tree is traced with
+    /// the mesh that it had before, or not yet, and objects stand where they did; so with textures. See [`TreeBuilding`](super::TreeBuilding).
     pub pending: usize,
 }
 
@@ -64,6 +64,8 @@ pub(super) struct Draft {
     pub problems: Problems,
     /// Meshes whose tree is being built.
     pub pending: usize,
+    /// Pictures that are being converted.
+    pub pending_textures: usize,
     /// Whether the tree over the objects is being built.
     pub top_level_pending: bool,
     /// Its objects are not those of the tree over them, which is being built: no snapshot of it yet.
@@ -79,6 +81,8 @@ pub(super) struct Draft {
     pub other_objects: bool,
     /// Some part was read again, so that its problems may be others although nothing was redone.
     pub reread: bool,
+    /// These systems rested, and what they know may be of anything.
+    pub anew: bool,
 }
 
 /// One list per part: a part that is redone replaces its own.
@@ -123,7 +127,7 @@ pub(super) fn publish_snapshot(
         draft.reread = true;
     }
     draft.other_objects = false;
-    let pending = draft.pending + usize::from(draft.top_level_pending);
+    let pending = draft.pending + draft.pending_textures + usize::from(draft.top_level_pending);
     traced.bypass_change_detection().pending = pending;
     if draft.fits_pending {
         draft.fitting = Some(draft.world.clone());

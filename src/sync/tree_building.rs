@@ -14,11 +14,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::available_parallelism;
 use std::time::Duration;
 
-/// When trees are built.
+/// When trees are built, and large pictures made textures.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TreeBuilding {
-    /// On threads of their own; no frame waits but 2 ms for the tree over the objects. Objects keep the mesh that they
-    /// had until the new one's tree is there, and those that had none appear with it. What is edited while
+    /// On threads of their own; no frame waits but 2 ms for the tree over the objects. Objects keep the mesh, materials the
+    /// textures and the surroundings the sky that they had until the new one is there; objects that had no mesh appear with
+    /// it, and materials that are new are without their large textures until then. What is edited while
     /// the tree over the objects is built shows in a later frame: see [`Traced::pending`](super::Traced). Where
     /// objects come or go meanwhile, the scene is shown as it was when that tree was begun.
     #[default]
@@ -100,16 +101,32 @@ pub(super) struct Built {
     pub mesh: MeshResult,
 }
 
-/// The threads that build trees, once there is something to build. Of their own, because the
-/// tracer's are busy until a pass over the picture ends.
-pub(super) struct TreeThreads {
-    pool: Option<ThreadPool>,
-    sender: Sender<Built>,
-    /// One system uses it; the lock lets the resource be shared.
-    receiver: Mutex<Receiver<Built>>,
+/// Builds a mesh's tree: on one of the threads, or here where the system has none to give.
+pub(super) fn build_tree(
+    threads: &mut Threads<Built>,
+    id: AssetId<Mesh>,
+    copy: MeshCopy,
+    options: BuildOptions,
+) {
+    threads.run(move || {
+        // A panic would be a bug; it must not take the app with it, nor keep it waiting.
+        let built = catch_unwind(AssertUnwindSafe(|| copy.build(&options)));
+        let broken = |_| Err(MeshFault::Broken("its tree could not be built".into()));
+        let mesh = built.unwrap_or_else(broken).map(Arc::new);
+        Built { id, options, mesh }
+    });
 }
 
-impl Default for TreeThreads {
+/// Threads for what would hold a frame, once there is something to do. Of their own, because the
+/// tracer's are busy until a pass over the picture ends.
+pub(super) struct Threads<T> {
+    pool: Option<ThreadPool>,
+    sender: Sender<T>,
+    /// One system uses it; the lock lets the resource be shared.
+    receiver: Mutex<Receiver<T>>,
+}
+
+impl<T> Default for Threads<T> {
     fn default() -> Self {
         let (sender, receiver) = channel();
         Self {
@@ -120,24 +137,20 @@ impl Default for TreeThreads {
     }
 }
 
-impl TreeThreads {
-    /// Builds a mesh's tree: on one of the threads, or here where the system has none to give.
-    pub fn build(&mut self, id: AssetId<Mesh>, copy: MeshCopy, options: BuildOptions) {
+impl<T: Send + 'static> Threads<T> {
+    /// Does this on one of the threads, or here where the system has none to give.
+    pub fn run(&mut self, work: impl FnOnce() -> T + Send + 'static) {
         let sender = self.sender.clone();
         let work = move || {
-            // A panic would be a bug; it must not take the app with it, nor keep it waiting.
-            let built = catch_unwind(AssertUnwindSafe(|| copy.build(&options)));
-            let broken = |_| Err(MeshFault::Broken("its tree could not be built".into()));
-            let mesh = built.unwrap_or_else(broken).map(Arc::new);
             // Nobody receives it where the app has ended.
-            let _ = sender.send(Built { id, options, mesh });
+            let _ = sender.send(work());
         };
         if self.pool.is_none() {
             // Half of the cores: the picture goes on being traced meanwhile.
             let threads = available_parallelism().map_or(1, |n| n.get().div_ceil(2));
             let pool = ThreadPoolBuilder::new()
                 .num_threads(threads)
-                .thread_name(|i| format!("trees {i}"));
+                .thread_name(|i| format!("behind {i}"));
             self.pool = pool.build().ok();
         }
         match &self.pool {
@@ -146,17 +159,17 @@ impl TreeThreads {
         }
     }
 
-    /// What has been built since this was asked last.
-    pub fn finished(&self) -> Vec<Built> {
+    /// What has been done since this was asked last.
+    pub fn finished(&self) -> Vec<T> {
         self.receiver().try_iter().collect()
     }
 
-    /// Waits for `count` trees.
-    pub fn finish(&self, count: usize) -> Vec<Built> {
+    /// Waits for so many.
+    pub fn finish(&self, count: usize) -> Vec<T> {
         self.receiver().iter().take(count).collect()
     }
 
-    fn receiver(&self) -> std::sync::MutexGuard<'_, Receiver<Built>> {
+    fn receiver(&self) -> std::sync::MutexGuard<'_, Receiver<T>> {
         self.receiver.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -18,7 +18,7 @@ fn small() -> Small {
     small
 }
 
-fn pending(app: &App) -> usize {
+pub(super) fn pending(app: &App) -> usize {
     app.world().resource::<Traced>().pending
 }
 
@@ -34,7 +34,7 @@ fn edit_mesh(small: &mut Small, mesh: usize, sides: u32) {
 }
 
 /// Frames until this is so.
-fn until(app: &mut App, is_so: impl Fn(&App) -> bool) {
+pub(super) fn until(app: &mut App, is_so: impl Fn(&App) -> bool) {
     let mut frames = 0;
     while !is_so(app) {
         app.update();

@@ -6,14 +6,15 @@ use super::*;
 use crate::bvh::Ray;
 use crate::film;
 use crate::scene::{
-    Builder, DirectionalLamp, Environment, Levels, Motion, ParallelogramLamp, PhongMaps,
-    RenderSettings, SceneId, SegmentLamp, UsesMaterial,
+    Alpha, Builder, DirectionalLamp, Environment, Levels, Motion, NotTraced, ParallelogramLamp,
+    PhongMaps, RenderSettings, SceneId, SegmentLamp, UsesMaterial,
 };
 use crate::sync::{TracedCameras, finish};
 use bevy::camera::visibility::Visibility;
 use bevy::ecs::component::{Component, Mutable};
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::hierarchy::{ChildOf, Children};
+use bevy::ecs::name::Name;
 use bevy::math::{UVec2, Vec3};
 use bevy::platform::collections::HashMap;
 
@@ -149,9 +150,11 @@ impl Edited {
 
     fn edit(&mut self) {
         let image = self.images[self.dice.below(self.images.len())].clone();
+        let other = self.images[self.dice.below(self.images.len())].clone();
+        let fades = self.dice.below(2) == 0;
         let mesh = self.meshes[self.dice.below(self.meshes.len())].clone();
         let target = self.any();
-        match self.dice.below(21) {
+        match self.dice.below(26) {
             0 | 1 => self.spawn_object(),
             2 => self.spawn_other(),
             3 => {
@@ -193,8 +196,11 @@ impl Edited {
                         entity.remove::<PhongMaps>();
                     } else {
                         let diffuse = Some(image);
+                        // It cuts out what is not opaque.
+                        let opacity = Some(other).filter(|_| fades);
                         entity.insert(PhongMaps {
                             diffuse,
+                            opacity,
                             ..PhongMaps::default()
                         });
                     }
@@ -216,7 +222,49 @@ impl Edited {
                     }
                 }
             }
+            20 => {
+                let mut images = self.app.world_mut().resource_mut::<Assets<Image>>();
+                *images.get_mut(&image).unwrap() = self::image(self.dice.below(256) as u8);
+            }
+            21 => {
+                if let Some(entity) = target {
+                    let number = self.dice.below(9);
+                    let mut entity = self.app.world_mut().entity_mut(entity);
+                    match number {
+                        0 => entity.remove::<Name>(),
+                        _ => entity.insert(Name::new(format!("thing {number}"))),
+                    };
+                }
+            }
+            22 => self.exchange_numbers(),
+            23 => {
+                if let Some(entity) = target {
+                    let mut entity = self.app.world_mut().entity_mut(entity);
+                    if entity.contains::<NotTraced>() {
+                        entity.remove::<NotTraced>();
+                    } else if fades {
+                        entity.insert(NotTraced);
+                    }
+                }
+            }
+            24 => self.change::<Phong>(|phong, dice| {
+                phong.alpha = [Alpha::Opaque, Alpha::Blend][dice.below(2)];
+                phong.opacity = dice.number().abs();
+            }),
             _ => self.edit_settings(),
+        }
+    }
+
+    /// Of two entities each gets what the other had.
+    fn exchange_numbers(&mut self) {
+        let (Some(a), Some(b)) = (self.any(), self.any()) else {
+            return;
+        };
+        let world = self.app.world_mut();
+        let of = |entity: Entity| world.get::<SceneId>(entity).copied();
+        if let (Some(of_a), Some(of_b)) = (of(a), of(b)) {
+            world.entity_mut(a).insert(of_b);
+            world.entity_mut(b).insert(of_a);
         }
     }
 
@@ -253,6 +301,8 @@ impl Edited {
             copy::<ParallelogramLamp>(old, entity, world, twin);
             copy::<SceneCamera>(old, entity, world, twin);
             copy::<Motion>(old, entity, world, twin);
+            copy::<Name>(old, entity, world, twin);
+            copy::<NotTraced>(old, entity, world, twin);
             if old.get::<Disabled>(entity).is_some() {
                 world.entity_mut(twin).insert(Disabled);
             }
@@ -276,15 +326,17 @@ impl Edited {
                 world.entity_mut(twin).insert(Mesh3d(handle.clone()));
             }
             if let Some(maps) = old.get::<PhongMaps>(entity) {
-                let diffuse = maps.diffuse.as_ref().map(|image| {
+                let [diffuse, opacity] = [&maps.diffuse, &maps.opacity].map(|image| {
+                    let image = image.as_ref()?;
                     let twin = images.entry(image.id()).or_insert_with(|| {
                         let image = old.resource::<Assets<Image>>().get(image.id()).unwrap();
                         world.resource_mut::<Assets<Image>>().add(image.clone())
                     });
-                    twin.clone()
+                    Some(twin.clone())
                 });
                 world.entity_mut(twin).insert(PhongMaps {
                     diffuse,
+                    opacity,
                     ..PhongMaps::default()
                 });
             }

@@ -1,6 +1,7 @@
 //! Tests of the room as a whole: an app with nothing but what `SyncPlugin` needs.
 
 mod background;
+mod conversions;
 mod cut_outs;
 mod dice;
 mod domes;
@@ -9,6 +10,7 @@ mod kept;
 mod lights;
 mod motions;
 mod problems;
+mod rest;
 mod sharing;
 mod shown;
 

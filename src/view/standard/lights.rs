@@ -15,6 +15,7 @@ use bevy::prelude::{
     Commands, Component, DetectChanges, DetectChangesMut, Entity, IntoScheduleConfigs, Or, Query,
     Ref, RemovedComponents, Res, ResMut, Resource, With, Without,
 };
+use bevy::transform::components::GlobalTransform;
 use std::f32::consts::PI;
 
 /// What is left at the end of a light's range is named where it is more than this radiance of a white
@@ -65,8 +66,8 @@ trait Maps<Ours>: Component {
     /// Who has one of those that ours stands for.
     type Kept: QueryFilter + 'static;
 
-    /// With what light is multiplied by.
-    fn lamp(&self, exposure: f32) -> Ours;
+    /// With what light is multiplied by, and by how much its transform enlarges what lies in its XY plane.
+    fn lamp(&self, exposure: f32, enlarged: f32) -> Ours;
 
     /// What the tracer has nothing for.
     fn left_out(&self, exposure: f32) -> Vec<String>;
@@ -98,7 +99,7 @@ type PointOrSpot = Or<(With<PointLight>, With<SpotLight>)>;
 impl Maps<PointLamp> for PointLight {
     type Kept = PointOrSpot;
 
-    fn lamp(&self, exposure: f32) -> PointLamp {
+    fn lamp(&self, exposure: f32, _: f32) -> PointLamp {
         PointLamp {
             color: self.color.into(),
             intensity: intensity(self.intensity, exposure),
@@ -115,7 +116,7 @@ impl Maps<PointLamp> for PointLight {
 impl Maps<PointLamp> for SpotLight {
     type Kept = PointOrSpot;
 
-    fn lamp(&self, exposure: f32) -> PointLamp {
+    fn lamp(&self, exposure: f32, _: f32) -> PointLamp {
         PointLamp {
             color: self.color.into(),
             intensity: intensity(self.intensity, exposure),
@@ -135,7 +136,7 @@ impl Maps<PointLamp> for SpotLight {
 impl Maps<DirectionalLamp> for DirectionalLight {
     type Kept = With<Self>;
 
-    fn lamp(&self, exposure: f32) -> DirectionalLamp {
+    fn lamp(&self, exposure: f32, _: f32) -> DirectionalLamp {
         DirectionalLamp {
             color: self.color.into(),
             intensity: self.illuminance * exposure,
@@ -151,8 +152,9 @@ impl Maps<DirectionalLamp> for DirectionalLight {
 impl Maps<ParallelogramLamp> for RectLight {
     type Kept = With<Self>;
 
-    fn lamp(&self, exposure: f32) -> ParallelogramLamp {
-        let area = (self.width * self.height).max(f32::MIN_POSITIVE);
+    fn lamp(&self, exposure: f32, enlarged: f32) -> ParallelogramLamp {
+        // The lumens are those of the light as it stands, however large.
+        let area = (self.width * self.height * enlarged).max(f32::MIN_POSITIVE);
         // It faces -Z, and ours faces where the product of its edges points.
         ParallelogramLamp {
             corner: Vec3::new(0.5 * self.width, -0.5 * self.height, 0.0),
@@ -173,10 +175,22 @@ impl Maps<ParallelogramLamp> for RectLight {
 
 type Unmapped = (Without<RasterTwin>, Without<NotTraced>);
 
+type Lights<'w, 's, Theirs, Ours> = Query<
+    'w,
+    's,
+    (
+        Entity,
+        Ref<'static, Theirs>,
+        Option<Ref<'static, GlobalTransform>>,
+        Option<&'static Mapped<Ours>>,
+    ),
+    Unmapped,
+>;
+
 fn map_lights<Theirs: Maps<Ours>, Ours: Component + Clone + PartialEq>(
     mut commands: Commands,
     exposure: Res<ViewExposure>,
-    lights: Query<(Entity, Ref<Theirs>, Option<&Mapped<Ours>>), Unmapped>,
+    lights: Lights<Theirs, Ours>,
     mut gone: RemovedComponents<Theirs>,
     kept: Query<(), Or<(With<RasterTwin>, Theirs::Kept)>>,
     mut left_out: ResMut<LeftOut>,
@@ -190,12 +204,17 @@ fn map_lights<Theirs: Maps<Ours>, Ours: Component + Clone + PartialEq>(
             entity.try_remove::<(Ours, Mapped<Ours>)>();
         }
     }
-    for (entity, theirs, mapped) in &lights {
-        if !theirs.is_changed() && !exposure.is_changed() {
+    for (entity, theirs, place, mapped) in &lights {
+        let has_moved = place.as_ref().is_some_and(|place| place.is_changed());
+        if !theirs.is_changed() && !exposure.is_changed() && !has_moved {
             continue;
         }
         LeftOut::note(&mut left_out, "light", entity, theirs.left_out(exposure.0));
-        let ours = theirs.lamp(exposure.0);
+        let enlarged = place.map_or(1.0, |place| {
+            let axes = place.affine().matrix3;
+            axes.x_axis.length() * axes.y_axis.length()
+        });
+        let ours = theirs.lamp(exposure.0, enlarged);
         if mapped.is_none_or(|mapped| mapped.0 != ours) {
             commands.entity(entity).insert((ours.clone(), Mapped(ours)));
         }
@@ -208,7 +227,7 @@ mod tests {
     use super::*;
     use bevy::image::Image;
     use bevy::pbr::StandardMaterial;
-    use bevy::prelude::{App, ClearColor};
+    use bevy::prelude::{App, ClearColor, Transform};
 
     fn exposure() -> f32 {
         ViewExposure::default().0
@@ -222,7 +241,7 @@ mod tests {
             intensity: 600.0,
             ..RectLight::default()
         };
-        let lamp = light.lamp(exposure());
+        let lamp = light.lamp(exposure(), 1.0);
         let normal = lamp.edges[0].cross(lamp.edges[1]).normalize();
         assert_eq!(normal, Vec3::NEG_Z);
         let middle = lamp.corner + 0.5 * (lamp.edges[0] + lamp.edges[1]);
@@ -230,6 +249,28 @@ mod tests {
         // A cosine emitter's flux is π · radiance · area.
         let flux = PI * lamp.intensity * 6.0 / exposure();
         assert!((flux - 600.0).abs() < 1e-3, "{flux} lumens");
+    }
+
+    #[test]
+    fn a_rectangle_that_its_transform_enlarges_sends_out_the_same_lumens() {
+        let mut app = app();
+        app.add_plugins(bevy::transform::TransformPlugin);
+        let place = Transform::from_scale(Vec3::new(2.0, 3.0, 7.0));
+        let light = (RectLight::default(), place);
+        let light = app.world_mut().spawn(light).id();
+        app.update();
+        let strength = |app: &App| {
+            app.world()
+                .get::<ParallelogramLamp>(light)
+                .unwrap()
+                .intensity
+        };
+        let large = strength(&app);
+        let mut place = app.world_mut().get_mut::<Transform>(light).unwrap();
+        place.scale = Vec3::ONE;
+        app.update();
+        let ratio = strength(&app) / large;
+        assert!((ratio - 6.0).abs() < 1e-4, "{ratio} times as bright");
     }
 
     fn app() -> App {

@@ -31,7 +31,7 @@ pub(super) fn name_unknown(
     components: &Components,
     mut met: Local<usize>,
     mut unknown: Local<Vec<(ComponentId, String)>>,
-    mut named: Local<HashMap<Entity, String>>,
+    mut named: Local<HashMap<Entity, ComponentId>>,
     mut left_out: ResMut<LeftOut>,
 ) {
     // Kinds of components join, and never leave.
@@ -58,15 +58,15 @@ pub(super) fn name_unknown(
         components.component_id::<Phong>(),
         components.component_id::<UsesMaterial>(),
     ];
-    let mut now: HashMap<Entity, String> = HashMap::default();
+    let mut now: HashMap<Entity, ComponentId> = HashMap::default();
     for archetype in archetypes.iter() {
         let has = |id: ComponentId| archetype.contains(id);
         if !mesh.is_some_and(has) || others.into_iter().flatten().any(has) {
             continue;
         }
-        if let Some((_, of)) = unknown.iter().find(|(id, _)| has(*id)) {
+        if let Some((id, _)) = unknown.iter().find(|(id, _)| has(*id)) {
             let entities = archetype.entities().iter();
-            now.extend(entities.map(|entity| (entity.id(), of.clone())));
+            now.extend(entities.map(|entity| (entity.id(), *id)));
         }
     }
     if now == *named {
@@ -75,11 +75,18 @@ pub(super) fn name_unknown(
     for entity in named.keys().filter(|entity| !now.contains_key(*entity)) {
         LeftOut::note(&mut left_out, "mesh", *entity, Vec::new());
     }
-    for (entity, of) in &now {
-        let note = format!(
-            "its {of} is unknown, and it is traced as plain grey; say how to trace it with `app.add_traced_material::<{of}>(…)`"
-        );
-        LeftOut::note(&mut left_out, "mesh", *entity, vec![note]);
+    // Of thousands, mostly some come and go.
+    let news = now
+        .iter()
+        .filter(|(entity, id)| named.get(*entity) != Some(*id));
+    for (entity, id) in news {
+        let of = unknown.iter().find(|(other, _)| other == id);
+        let note = of.map(|(_, of)| {
+            format!(
+                "its {of} is unknown, and it is traced as plain grey; say how to trace it with `app.add_traced_material::<{of}>(…)`"
+            )
+        });
+        LeftOut::note(&mut left_out, "mesh", *entity, note.into_iter().collect());
     }
     *named = now;
 }

@@ -6,6 +6,7 @@ use bevy::asset::LoadState;
 use bevy::gltf::GltfAssetLabel;
 use bevy::prelude::*;
 use bevy::world_serialization::WorldAssetRoot;
+use glassbox::film::render as render_world;
 use glassbox::prelude::*;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -222,6 +223,29 @@ fn diffuse(world: &mut World) -> Vec<[f32; 3]> {
     colors
 }
 
+/// What is traced of a model that our reader has brought in, as the stage's camera sees it and in the stage's light,
+/// beside what is traced on the stage: how much of the picture is another.
+fn other_to_our_reader(stage: &mut Stage, file: &Path) -> f32 {
+    let (mut ours, _) = opened(file);
+    let camera = stage.camera;
+    let world = stage.world();
+    let mut lamps = world.query::<(&DirectionalLamp, &Transform)>();
+    for (lamp, place) in lamps.iter(world) {
+        ours.world_mut().spawn((lamp.clone(), *place));
+    }
+    ours.insert_resource(world.resource::<Environment>().clone());
+    ours.update();
+    let ours = ours.world().resource::<Traced>().world.clone();
+    let render = world.get::<TracedRender>(camera).expect("it is a view");
+    let (theirs, camera, settings) = render.subject().expect("it has rendered");
+    let picture = |world| render_world(world, camera, settings, &|_, _| {}).picture;
+    let [theirs, ours] = [theirs, &ours].map(|world| picture(world));
+    let pixels = theirs.pixels.iter().zip(&ours.pixels);
+    // Edges may be rounded another way.
+    let other = pixels.filter(|(a, b)| (**a - **b).abs().max_element() > 0.01);
+    other.count() as f32 / theirs.pixels.len() as f32
+}
+
 #[test]
 fn models_of_bevys_asset_server_look_as_bevy_draws_them_and_as_our_reader_reads_them() {
     let folder = tempfile::tempdir().unwrap();
@@ -259,6 +283,12 @@ fn models_of_bevys_asset_server_look_as_bevy_draws_them_and_as_our_reader_reads_
         let (theirs, ours) = (diffuse(stage.world()), diffuse(ours.world_mut()));
         if theirs != ours {
             faults.push(format!("{name}: {theirs:?} by Bevy, {ours:?} by ours"));
+        }
+        let other = other_to_our_reader(&mut stage, &folder.path().join(name));
+        if other > 0.01 {
+            faults.push(format!(
+                "{name}: {other} of the picture is another by our reader"
+            ));
         }
         stage.clear();
     }
