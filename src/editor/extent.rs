@@ -47,6 +47,14 @@ impl Extent {
         }
     }
 
+    /// The same elsewhere.
+    pub fn moved(self, by: Vec3) -> Self {
+        Self {
+            least: self.least + by,
+            most: self.most + by,
+        }
+    }
+
     /// Whether a point is in the box.
     pub fn contains(self, point: Vec3) -> bool {
         point.cmpge(self.least).all() && point.cmple(self.most).all()

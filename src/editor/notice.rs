@@ -5,6 +5,8 @@ use std::time::{Duration, Instant};
 
 /// How long a message without a fault stays.
 const STAY: Duration = Duration::from_secs(6);
+/// How many messages that matter are kept; the oldest goes then.
+const MOST_KEPT: usize = 200;
 
 /// One message.
 #[derive(Clone, Debug)]
@@ -21,15 +23,18 @@ pub struct Notice {
 }
 
 impl Notice {
-    /// Whether it waits until somebody has read it.
-    fn stays(&self) -> bool {
+    /// Whether it waits until somebody has read it, and is found again afterwards.
+    fn matters(&self) -> bool {
         self.is_fault || !self.lines.is_empty()
     }
 }
 
-/// The messages that are shown, oldest first.
+/// The messages that are shown, and those that can be read again, oldest first.
 #[derive(Resource, Default)]
-pub struct Notices(Vec<Notice>);
+pub struct Notices {
+    shown: Vec<Notice>,
+    kept: Vec<Notice>,
+}
 
 impl Notices {
     /// Says that something was done.
@@ -53,44 +58,61 @@ impl Notices {
     }
 
     fn push(&mut self, text: String, is_fault: bool, lines: Vec<String>) {
-        self.0.retain(|notice| notice.text != text);
-        self.0.push(Notice {
+        let notice = Notice {
             text,
             lines,
             shows_all: false,
             is_fault,
             since: Instant::now(),
-        });
+        };
+        if notice.matters() {
+            self.kept.retain(|other| other.text != notice.text);
+            let too_many = (self.kept.len() + 1).saturating_sub(MOST_KEPT);
+            self.kept.drain(..too_many);
+            self.kept.push(notice.clone());
+        }
+        self.shown.retain(|other| other.text != notice.text);
+        self.shown.push(notice);
+    }
+
+    /// What failed and what files left out, closed or not.
+    pub fn kept(&self) -> &[Notice] {
+        &self.kept
+    }
+
+    /// Forgets what was kept.
+    pub fn forget_kept(&mut self) {
+        self.kept.clear();
     }
 
     /// Nothing was said, or all of it was closed.
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.shown.is_empty()
     }
 
     /// What is to be shown now.
     pub fn shown(&mut self) -> &[Notice] {
-        self.0
-            .retain(|notice| notice.stays() || notice.since.elapsed() < STAY);
-        &self.0
+        self.shown
+            .retain(|notice| notice.matters() || notice.since.elapsed() < STAY);
+        &self.shown
     }
 
     /// Shows all lines of one, by its place in what is shown.
     pub fn show_all(&mut self, index: usize) {
-        if let Some(notice) = self.0.get_mut(index) {
+        if let Some(notice) = self.shown.get_mut(index) {
             notice.shows_all = true;
         }
     }
 
     /// Takes all away.
     pub fn close_all(&mut self) {
-        self.0.clear();
+        self.shown.clear();
     }
 
     /// Takes one away, by its place in what is shown.
     pub fn close(&mut self, index: usize) {
-        if index < self.0.len() {
-            self.0.remove(index);
+        if index < self.shown.len() {
+            self.shown.remove(index);
         }
     }
 }

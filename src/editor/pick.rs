@@ -9,18 +9,21 @@ use crate::scene::{
     DirectionalLamp, ParallelogramLamp, PointLamp, SceneCamera, SceneId, SegmentLamp,
 };
 use crate::sync::Traced;
-use crate::view::{self, DrawnLines, SymbolOf, nearest_symbol};
+use crate::view::{self, DrawnLines, Picked, SymbolOf, nearest_symbol};
 use bevy::camera::Camera;
 use bevy::camera::visibility::InheritedVisibility;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::query::{Or, With};
 use bevy::ecs::world::World;
-use bevy::math::{Ray3d, Vec2, Vec3};
+use bevy::math::{Dir3, Ray3d, Vec2, Vec3};
 use bevy::transform::components::{GlobalTransform, Transform};
+use bevy::window::{PrimaryWindow, Window};
 use bevy_egui::{EguiContext, PrimaryEguiContext, egui};
 
 /// How near to the lines of a symbol the pointer has to be, in logical pixels.
 const SYMBOL: f32 = 8.0;
+/// Surfaces that a ray passes over at most.
+const MOST_PASSED: usize = 256;
 
 /// What was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,6 +66,33 @@ pub(super) fn to_window(world: &mut World, point: Vec3) -> Option<Vec2> {
 pub(super) fn along(world: &World, from: Vec3, direction: Vec3) -> Option<Vec3> {
     let traced = world.resource::<Traced>();
     view::pick(&traced.world, &Ray::new(from, direction)).map(|picked| picked.point)
+}
+
+/// The same without what is to be passed over.
+pub(super) fn past(
+    world: &World,
+    from: Vec3,
+    direction: Dir3,
+    passes: impl Fn(SceneId) -> bool,
+) -> Option<Picked> {
+    let traced = &world.resource::<Traced>().world;
+    let mut from = from;
+    for _ in 0..MOST_PASSED {
+        let met = view::pick(traced, &Ray::new(from, *direction))?;
+        if !passes(met.id) {
+            return Some(met);
+        }
+        // Instances may share a surface's place: none of them is met twice.
+        let step = 1e-6 * (1.0 + met.point.abs().max_element().max(from.abs().max_element()));
+        from += direction * ((met.point - from).dot(*direction).max(0.0) + step);
+    }
+    None
+}
+
+/// Where the pointer is in the window, in logical pixels.
+pub(super) fn cursor(world: &mut World) -> Option<Vec2> {
+    let mut windows = world.query_filtered::<&Window, With<PrimaryWindow>>();
+    windows.single(world).ok()?.cursor_position()
 }
 
 /// What is there. Symbols come first: they are small, and drawn over everything.

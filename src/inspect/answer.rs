@@ -1,7 +1,8 @@
-//! Why a pixel has its value, in one sentence: what the camera meets there, and what is in the way
-//! of its light.
+//! Questions about a pixel, and their answers in one sentence. Why it is black is answered here: what the camera meets
+//! there, and what is in the way of its light.
 
 use super::document::named;
+use super::{mixture, noise};
 use crate::trace::{RayEnd, RayKind, RayTree, TracedRay};
 use glam::Vec3;
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,8 +10,32 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Mirrors that are followed before the sentence ends: more than two make it no clearer.
 const MIRRORS: usize = 2;
 
-/// One sentence on the first sample's camera ray: where its light is blocked, and through mirrors.
-pub fn answer(tree: &RayTree, names: &BTreeMap<u64, String>) -> String {
+/// What is asked of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Question {
+    /// What is in the way of its light.
+    Black,
+    /// What its samples differ in.
+    Noisy,
+    /// What its colour is mixed of.
+    Color,
+}
+
+/// One sentence, from the rays of a pixel: why it is black from those of the first sample, the rest from all that there
+/// are.
+pub fn answer(question: Question, tree: &RayTree, names: &BTreeMap<u64, String>) -> String {
+    if tree.samples.is_empty() {
+        return "Nothing was traced there.".into();
+    }
+    match question {
+        Question::Black => black(tree, names),
+        Question::Noisy => noise::sentence(tree, names),
+        Question::Color => mixture::sentence(tree, names),
+    }
+}
+
+/// Where the light of the first sample's camera ray is blocked, and through mirrors.
+pub(super) fn black(tree: &RayTree, names: &BTreeMap<u64, String>) -> String {
     let of = Tree { tree, names };
     let camera = (0..)
         .zip(&tree.rays)

@@ -56,8 +56,8 @@ impl Cause {
     }
 }
 
-/// The parts of a pixel's value, the largest spread first. Their means add up to the value.
-pub fn sources(tree: &RayTree) -> Vec<Source> {
+/// What each cause adds to each sample at its first hit, linear RGB: together the samples' values.
+pub(super) fn parts(tree: &RayTree) -> BTreeMap<Cause, Vec<DVec3>> {
     let samples = tree.samples.len();
     let mut parts: BTreeMap<Cause, Vec<DVec3>> = BTreeMap::new();
     let mut add = |cause, sample: u32, value: DVec3| {
@@ -75,6 +75,12 @@ pub fn sources(tree: &RayTree) -> Vec<Source> {
             Some(_) => {}
         }
     }
+    parts
+}
+
+/// The parts of a pixel's value, the largest spread first. Their means add up to the value.
+pub fn sources(tree: &RayTree) -> Vec<Source> {
+    let (samples, parts) = (tree.samples.len(), parts(tree));
     let count = samples.max(1) as f64;
     let mut sources: Vec<Source> = parts
         .into_iter()

@@ -18,14 +18,17 @@
 //! | motion | where moving things stand when the shutter opens and closes |
 //!
 //! Beside lines: [`pattern`], where the samples of a pixel lie; [`Traversal`], the way of a ray
-//! through the trees step by step; [`legend()`], what the colours of the lines mean; [`compare_builders`], each builder's tree in numbers;
+//! through the trees step by step, and [`Stepper`], which plays it; [`tell`], what a line stands for in words and numbers;
+//! [`answer()`], questions about a pixel in a sentence; [`Column`], rays as a table; [`Addition`], what they add up to; [`legend()`], what the colours of the lines mean; [`compare_builders`], each builder's tree in numbers;
 //! [`draw_over`], lines over a picture without a GPU; [`Document`], all of it as one file.
 
+mod addition;
 mod answer;
 mod box_range;
 mod boxes;
 mod builders;
 mod color;
+mod column;
 mod document;
 mod explain;
 mod legend;
@@ -33,7 +36,10 @@ mod lens;
 mod lights;
 mod line_set;
 mod lobes;
+mod mixture;
 mod motion;
+mod names;
+mod noise;
 mod normals;
 mod overlay;
 mod pattern;
@@ -41,25 +47,30 @@ mod pattern_inset;
 mod presets;
 mod rays;
 mod settings;
+mod stepper;
 mod subject;
 mod system;
 mod table;
+mod told;
 mod traversal;
 mod trees;
 mod visits;
 mod wide_boxes;
 
-pub use answer::answer;
+pub use addition::{Addition, Statement};
+pub use answer::{Question, answer};
 pub use box_range::BoxRange;
 pub(crate) use builders::corners;
 pub use builders::{
     BuilderFigures, BuilderRates, Tell, build_time, builder_name, compare_builders,
     compare_builders_told, csv, markdown, rebuilt, same_geometry,
 };
+pub use column::{COLUMNS, Column, Heading, color_text, metres, vector_text};
 pub use document::{Document, RayLine, named};
 pub use explain::{Cause, Source, explanation, sources};
 pub use legend::{Meaning, legend};
 pub use line_set::{CIRCLE_SEGMENTS, Dot, Label, LineSet, Panel, Segment, Stands, Thinned};
+pub use names::Names;
 pub use overlay::{FAINT, Overlay, draw_over};
 pub use pattern::{Pattern, pattern};
 pub use pattern_inset::draw_pattern;
@@ -69,9 +80,11 @@ pub use settings::{
     BoxChoice, BoxColor, BoxSettings, Dimension, InspectSettings, MissColor, NormalSettings,
     PairSettings, PatternSettings, RaySettings, TreeChoice, TreeForm,
 };
+pub use stepper::{Mark, Stepper};
 pub use subject::Subject;
 pub use system::{System, lines};
 pub use table::aligned;
+pub use told::{Told, node_told, tell, tree_name};
 pub use traversal::{StackEntry, Step, StepKind, Traversal};
 pub use trees::{NodeFacts, TreeView, trees};
 pub use visits::Visits;

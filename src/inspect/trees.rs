@@ -62,6 +62,11 @@ impl<'a> TreeView<'a> {
         Some(Self { name, tree, world })
     }
 
+    /// The tree of an instance's mesh; without one the top tree.
+    pub fn of(world: &'a World, instance: Option<u32>) -> Option<Self> {
+        Self::new(world, instance.map_or(TreeRef::Top, TreeRef::Mesh))
+    }
+
     /// The instance whose mesh's tree it is; `None` for the top tree.
     pub fn instance(&self) -> Option<(u32, &'a Instance)> {
         match self.name {

@@ -9,9 +9,10 @@ use crate::editor::command::{AddCommands, Command, Over, State, commands};
 use crate::editor::history::{Gesture, History, commit, redo, undo};
 use crate::editor::notice::Notices;
 use crate::editor::selection::{Escaped, Selection};
-use crate::scene::SceneId;
+use crate::scene::{SceneId, UsesMaterial};
 use bevy::app::{App, Plugin};
 use bevy::camera::visibility::Visibility;
+use bevy::ecs::entity::Entity;
 use bevy::ecs::world::World;
 
 /// Does what [`Action`](crate::editor::Action)s ask for that edit the scene or select in it. Needs
@@ -55,6 +56,8 @@ fn commands() -> Vec<Command> {
             => select_all; menu("Edit", 3); over(&[Over::Nothing]),
         "select.none" "Select nothing" ["Escape"] "Selects no entity, lets go of a chosen ray or box, and brings the panels back"
             => select_none; menu("Edit", 3),
+        "select.same-material" "Select what shares its material" [] "Selects all objects that have the material which is selected, or that of a selected object"
+            => select_sharing; menu("Edit", 3); over(&[Over::Entity]); state(is_any_selected),
         "add.point-light" "Point light" [] "Shines in all directions from one point; with a cone it is a spot"
             => |world| step_add(world, &Addition::PointLamp); menu("Add", 2),
         "add.directional-light" "Directional light" [] "Shines from infinitely far, like the sun"
@@ -249,6 +252,30 @@ fn step_hide(world: &mut World) -> Option<String> {
     let name = format!("{verb} {}", call(world, &ids));
     set_visible(world, &ids, show);
     Some(name)
+}
+
+/// Selects the objects that have the selected materials, or those of the selected objects.
+fn select_sharing(world: &mut World) {
+    let chosen = selected(world).into_iter();
+    let chosen = chosen
+        .filter_map(|id| scene_entity(world, id))
+        .map(|entity| {
+            let material = world.get::<UsesMaterial>(entity);
+            material.map_or(entity, |material| material.0)
+        });
+    let chosen: Vec<Entity> = chosen.collect();
+    let mut users = world.query::<(&SceneId, &UsesMaterial)>();
+    let users = users
+        .iter(world)
+        .filter(|(_, material)| chosen.contains(&material.0));
+    let mut users: Vec<SceneId> = users.map(|(id, _)| *id).collect();
+    users.sort_unstable();
+    if users.is_empty() {
+        let text = "No object shares the material of what is selected.";
+        world.resource_mut::<Notices>().tell(text);
+        return;
+    }
+    select(world, users);
 }
 
 /// Selects these, as far as they are entities of the scene, and no others.

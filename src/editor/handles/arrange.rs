@@ -4,20 +4,15 @@ use super::super::command::{Command, State};
 use super::super::edits::{name_of, roots_of, scene_entity, step};
 use super::super::extent::{Extent, extent_of, world_from_parent};
 use super::super::notice::Notices;
+use super::super::pick;
 use super::super::selection::Selection;
 use super::bodies::{Body, Change};
-use crate::bvh::Ray;
+use super::snap::hangs_on;
 use crate::scene::SceneId;
-use crate::sync::Traced;
-use crate::view;
 use bevy::ecs::entity::Entity;
-use bevy::ecs::hierarchy::ChildOf;
 use bevy::ecs::world::World;
-use bevy::math::Vec3;
+use bevy::math::{Dir3, Vec3};
 use bevy::transform::components::Transform;
-
-/// Surfaces of its own that an object may have between its middle and what is below it.
-const MOST_OWN: usize = 256;
 
 const AXES: [(&str, Vec3); 3] = [("x", Vec3::X), ("y", Vec3::Y), ("z", Vec3::Z)];
 
@@ -143,34 +138,10 @@ fn distribute(world: &mut World, name: &str, axis: Vec3) {
     shift_all(world, &format!("Distribute in {name}"), moves);
 }
 
-/// What hangs on an entity, and itself.
-fn is_below(world: &World, mut entity: Entity, root: Entity) -> bool {
-    loop {
-        if entity == root {
-            return true;
-        }
-        match world.get::<ChildOf>(entity) {
-            Some(parent) => entity = parent.parent(),
-            None => return false,
-        }
-    }
-}
-
 /// The height of what is below a point and is not of these.
 fn below(world: &World, from: Vec3, own: Entity) -> Option<f32> {
-    let traced = &world.resource::<Traced>().world;
-    let mut from = from;
-    // Instances may share a surface's height: none of them is met twice.
-    for _ in 0..MOST_OWN {
-        let met = view::pick(traced, &Ray::new(from, Vec3::NEG_Y))?;
-        let is_own = scene_entity(world, met.id).is_some_and(|entity| is_below(world, entity, own));
-        if !is_own {
-            return Some(met.point.y);
-        }
-        let step = 1e-6 * (1.0 + met.point.y.abs().max(from.y.abs()));
-        from.y = (met.point.y - step).min(from.y - step);
-    }
-    None
+    let met = pick::past(world, from, Dir3::NEG_Y, |id| hangs_on(world, id, &[own]))?;
+    Some(met.point.y)
 }
 
 fn put_down(world: &mut World) {

@@ -1,7 +1,7 @@
 //! Bevy's gizmo on a stand-in for the selection, and the selection after it.
 
 use super::super::edits::{roots_of, scene_entity};
-use super::super::extent::{own_extent, world_from_entity, world_from_parent};
+use super::super::extent::{extent_of, own_extent, world_from_entity, world_from_parent};
 use super::super::history::Gesture;
 use super::super::navigation::{Eye, LookThrough};
 use super::super::pick;
@@ -10,6 +10,7 @@ use super::super::selection::Selection;
 use super::super::viewport::Viewport;
 use super::bodies::{Body, Change};
 use super::grips::{self, Grip};
+use super::snap::{Mover, landing_at};
 use super::typed::{TypedDrag, typed_place};
 use super::{ActiveGrip, Tool, Tools};
 use crate::scene::SceneId;
@@ -58,6 +59,7 @@ struct Drag {
     carried: Transform,
     tool: Tool,
     moved: Moved,
+    mover: Mover,
 }
 
 /// What is moved.
@@ -113,7 +115,7 @@ pub(super) fn set_up(
     } else {
         TransformGizmoSpace::World
     };
-    settings.snap_translate = tools.snap.then_some(tools.move_step);
+    settings.snap_translate = tools.step();
     settings.snap_rotate = tools.snap.then_some(tools.turn_step);
     settings.snap_scale = tools.snap.then_some(tools.scale_step);
     settings.axis_hit_distance = REACH;
@@ -145,7 +147,7 @@ fn movable(world: &World) -> Vec<(SceneId, Entity)> {
 
 /// What an entity turns around: where it stands, or its middle where it lies elsewhere, as a wall
 /// does whose corners are given in the scene's space.
-fn pivot(world: &World, entity: Entity) -> Option<Vec3> {
+pub(super) fn pivot(world: &World, entity: Entity) -> Option<Vec3> {
     let place = world_from_entity(world, entity)?.translation();
     let Some(extent) = world.get_entity(entity).ok().and_then(own_extent) else {
         return Some(place);
@@ -237,7 +239,7 @@ pub(super) fn carry(world: &mut World) {
         let typed = world.resource::<TypedDrag>();
         typed_place(typed, drag.tool, axis, &drag.start, direction)
     });
-    let now = typed.unwrap_or(pointed);
+    let now = typed.or_else(|| snapped(world, &drag)).unwrap_or(pointed);
     if now != drag.carried {
         apply(world, &drag, &now);
         if let Some(drag) = &mut world.resource_mut::<GizmoDrag>().0 {
@@ -249,6 +251,17 @@ pub(super) fn carry(world: &mut World) {
         world.resource_mut::<TypedDrag>().clear();
         world.resource_mut::<Gesture>().end();
     }
+}
+
+/// Where other objects put the stand-in: anywhere, or along the arrow that is dragged.
+fn snapped(world: &mut World, drag: &Drag) -> Option<Transform> {
+    let (axis, direction) = drag.handle.filter(|_| drag.tool == Tool::Move)?;
+    let by = landing_at(world, &drag.mover)? - drag.start.translation;
+    let by = match axis {
+        TransformGizmoAxis::View => by,
+        _ => by.dot(direction) * direction,
+    };
+    Some(drag.start.with_translation(drag.start.translation + by))
 }
 
 /// The handle that is dragged, and its direction in the world.
@@ -271,8 +284,12 @@ fn begin(world: &mut World) -> Drag {
         Tool::Scale => "Scale",
     };
     let grip = active_grip(world, &tools);
-    let (moved, name) = match grip.and_then(|grip| Some((grip, grips::place(world, grip)?))) {
-        Some((grip, place)) => (Moved::Grip(grip, place), grips::step_name(world, grip)),
+    let (moved, mover, name) = match grip.and_then(|grip| Some((grip, grips::place(world, grip)?)))
+    {
+        Some((grip, place)) => {
+            let name = grips::step_name(world, grip);
+            (Moved::Grip(grip, place), grips::mover(world, grip), name)
+        }
         None => {
             let entities = movable(world);
             let name = match entities.as_slice() {
@@ -282,6 +299,12 @@ fn begin(world: &mut World) -> Drag {
                 },
                 several => format!("{verb} {} objects", several.len()),
             };
+            let ids: Vec<SceneId> = entities.iter().map(|(id, _)| *id).collect();
+            let room = extent_of(world, &ids).map(|room| room.moved(-start.translation));
+            let mover = Mover {
+                entities: entities.iter().map(|(_, entity)| *entity).collect(),
+                room,
+            };
             let bodies = entities.into_iter().filter_map(|(id, entity)| {
                 let body = Body {
                     own: *world.get::<Transform>(entity)?,
@@ -289,7 +312,7 @@ fn begin(world: &mut World) -> Drag {
                 };
                 Some((id, body))
             });
-            (Moved::Bodies(bodies.collect()), name)
+            (Moved::Bodies(bodies.collect()), mover, name)
         }
     };
     world.resource_mut::<Gesture>().begin(name);
@@ -299,6 +322,7 @@ fn begin(world: &mut World) -> Drag {
         carried: start,
         tool: tools.tool,
         moved,
+        mover,
     }
 }
 

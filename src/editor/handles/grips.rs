@@ -1,17 +1,21 @@
-//! Points that can be dragged: the ends of segment lights and the corners of parallelogram lights.
+//! Points that can be dragged: the ends of segment lights, the corners of parallelogram lights, and the tips of the arrows of
+//! what moves while the shutter is open.
 
 use super::super::edits::scene_entity;
-use super::super::extent::{lamp_points, world_from_entity};
+use super::super::extent::{lamp_points, world_from_entity, world_from_parent};
 use super::super::history::Gesture;
 use super::super::keys::Modifiers;
 use super::super::pick;
 use super::super::pointer::PointerUse;
 use super::super::selection::Selection;
 use super::super::viewport::Viewport;
+use super::gizmo::pivot;
+use super::snap::{Mover, landing_at};
 use super::surface::{Shaping, Surface, shaped};
 use super::{ActiveGrip, Tools};
-use crate::scene::{ParallelogramLamp, SceneId, SegmentLamp};
+use crate::scene::{Motion, ParallelogramLamp, SceneId, SegmentLamp};
 use bevy::ecs::change_detection::DetectChanges;
+use bevy::ecs::entity::Entity;
 use bevy::ecs::name::Name;
 use bevy::ecs::world::World;
 use bevy::math::{Vec2, Vec3};
@@ -22,16 +26,24 @@ const REACH: f32 = 7.0;
 /// Radius of a drawn point, in logical pixels.
 const RADIUS: f32 = 4.5;
 
-/// One point of a light.
+/// One point of an entity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in super::super) struct Grip {
     pub id: SceneId,
-    /// Which end, or which corner: that at `corner`, `corner + edges[0]`, `corner + edges[1]`, and
-    /// the one opposite.
-    pub index: usize,
+    pub part: Part,
 }
 
-/// Where the points of the selected lights are in the world.
+/// Which point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in super::super) enum Part {
+    /// Which end of a light, or which corner: that at `corner`, `corner + edges[0]`, `corner + edges[1]`, and the one
+    /// opposite.
+    Corner(usize),
+    /// Where its middle is at time 1, from where it is at time 0.
+    Motion,
+}
+
+/// Where the points of what is selected are in the world.
 pub(in super::super) fn grips_of_selection(world: &mut World) -> Vec<(Grip, Vec3)> {
     let ids = world.resource::<Selection>().ids().to_vec();
     let mut grips = Vec::new();
@@ -39,40 +51,72 @@ pub(in super::super) fn grips_of_selection(world: &mut World) -> Vec<(Grip, Vec3
         let Some(entity) = scene_entity(world, id) else {
             continue;
         };
-        let Some(place) = world_from_entity(world, entity) else {
-            continue;
-        };
-        let points = world.get_entity(entity).map(lamp_points);
-        for (index, point) in points.unwrap_or_default().into_iter().enumerate() {
-            grips.push((Grip { id, index }, place.transform_point(point)));
+        let corners = world
+            .get_entity(entity)
+            .map_or(0, |entity| lamp_points(entity).len());
+        let moves = world.get::<Motion>(entity).map(|_| Part::Motion);
+        for part in (0..corners).map(Part::Corner).chain(moves) {
+            let grip = Grip { id, part };
+            grips.extend(place(world, grip).map(|place| (grip, place)));
         }
     }
     grips
 }
 
 /// Where a point is in the world.
-pub(super) fn place(world: &mut World, grip: Grip) -> Option<Vec3> {
+pub(super) fn place(world: &World, grip: Grip) -> Option<Vec3> {
     let entity = scene_entity(world, grip.id)?;
-    let point = *lamp_points(world.get_entity(entity).ok()?).get(grip.index)?;
+    let Part::Corner(index) = grip.part else {
+        let velocity = world.get::<Motion>(entity)?.velocity;
+        let of_parent = world_from_parent(world, entity).affine();
+        return Some(pivot(world, entity)? + of_parent.transform_vector3(velocity));
+    };
+    let point = *lamp_points(world.get_entity(entity).ok()?).get(index)?;
     Some(world_from_entity(world, entity)?.transform_point(point))
 }
 
 /// Puts a point somewhere in the world; the rest of the light follows, a parallelogram as
 /// [`Shaping::Sides`] does.
 pub(super) fn put(world: &mut World, grip: Grip, to: Vec3) {
-    let Some(to) = in_own_space(world, grip, to) else {
-        return;
-    };
     let Some(entity) = scene_entity(world, grip.id) else {
         return;
     };
+    let Part::Corner(index) = grip.part else {
+        return put_motion(world, entity, to);
+    };
+    let Some(to) = in_own_space(world, grip, to) else {
+        return;
+    };
     if let Some(mut lamp) = world.get_mut::<SegmentLamp>(entity) {
-        if lamp.ends.get(grip.index).is_some_and(|end| *end != to) {
-            lamp.ends[grip.index] = to;
+        if lamp.ends.get(index).is_some_and(|end| *end != to) {
+            lamp.ends[index] = to;
         }
     } else if let Some(lamp) = world.get::<ParallelogramLamp>(entity) {
         let surface = (lamp.corner, lamp.edges);
-        set_surface(world, grip, shaped(surface, grip.index, to, Shaping::Sides));
+        set_surface(world, grip, shaped(surface, index, to, Shaping::Sides));
+    }
+}
+
+/// Gives it the velocity that brings its middle there.
+fn put_motion(world: &mut World, entity: Entity, to: Vec3) {
+    let Some(from) = pivot(world, entity) else {
+        return;
+    };
+    let parent_from_world = world_from_parent(world, entity).affine().inverse();
+    let velocity = parent_from_world.transform_vector3(to - from);
+    if let Some(mut motion) = world.get_mut::<Motion>(entity)
+        && velocity.is_finite()
+        && motion.velocity != velocity
+    {
+        motion.velocity = velocity;
+    }
+}
+
+/// What is dragged, for snapping to other things.
+pub(super) fn mover(world: &World, grip: Grip) -> Mover {
+    Mover {
+        entities: scene_entity(world, grip.id).into_iter().collect(),
+        room: None,
     }
 }
 
@@ -84,9 +128,12 @@ fn in_own_space(world: &World, grip: Grip, to: Vec3) -> Option<Vec3> {
 }
 
 /// The surface of a parallelogram light, in its entity's space.
-fn surface_of(world: &World, grip: Grip) -> Option<Surface> {
+fn surface_of(world: &World, grip: Grip) -> Option<(usize, Surface)> {
+    let Part::Corner(index) = grip.part else {
+        return None;
+    };
     let lamp = world.get::<ParallelogramLamp>(scene_entity(world, grip.id)?)?;
-    Some((lamp.corner, lamp.edges))
+    Some((index, (lamp.corner, lamp.edges)))
 }
 
 fn set_surface(world: &mut World, grip: Grip, (corner, edges): Surface) {
@@ -102,8 +149,9 @@ fn set_surface(world: &mut World, grip: Grip, (corner, edges): Surface) {
 /// What the step is called that moves this point.
 pub(super) fn step_name(world: &mut World, grip: Grip) -> String {
     let entity = scene_entity(world, grip.id);
-    let part = match entity {
-        Some(entity) if world.get::<SegmentLamp>(entity).is_some() => "an end",
+    let part = match (grip.part, entity) {
+        (Part::Motion, _) => "the motion",
+        (_, Some(entity)) if world.get::<SegmentLamp>(entity).is_some() => "an end",
         _ => "a corner",
     };
     match entity.and_then(|entity| world.get::<Name>(entity)) {
@@ -112,7 +160,7 @@ pub(super) fn step_name(world: &mut World, grip: Grip) -> String {
     }
 }
 
-/// The point of a selected light that is under the pointer.
+/// The point of what is selected that is under the pointer.
 pub(in super::super) fn grip_at(world: &mut World, at: Vec2) -> Option<Grip> {
     let near = grips_of_selection(world)
         .into_iter()
@@ -133,8 +181,8 @@ pub(in super::super) struct GripDrag {
     normal: Vec3,
     /// Where in that plane it was taken hold of.
     held_at: Vec3,
-    /// Of a parallelogram, as it was.
-    surface: Option<Surface>,
+    /// Of a parallelogram: which corner, and all of it as it was.
+    surface: Option<(usize, Surface)>,
     begun: bool,
 }
 
@@ -150,7 +198,7 @@ impl GripDrag {
         let surface = surface_of(world, grip);
         let entity = scene_entity(world, grip.id)?;
         let of_world = world_from_entity(world, entity)?.affine();
-        let plane = surface.map(|(_, edges)| {
+        let plane = surface.map(|(_, (_, edges))| {
             let [a, b] = edges.map(|edge| of_world.transform_vector3(edge));
             a.cross(b).normalize_or_zero()
         });
@@ -180,11 +228,13 @@ impl GripDrag {
             world.resource_mut::<Gesture>().begin(name);
         }
         let mut to = self.start + now - self.held_at;
-        let tools = world.resource::<Tools>();
-        if tools.snap && tools.move_step > 0.0 {
-            to = (to / tools.move_step).round() * tools.move_step;
+        let mover = mover(world, self.grip);
+        if let Some(step) = world.resource::<Tools>().step() {
+            to = (to / step).round() * step;
+        } else if let Some(landing) = landing_at(world, &mover) {
+            to = landing;
         }
-        let Some(surface) = self.surface else {
+        let Some((index, surface)) = self.surface else {
             return put(world, self.grip, to);
         };
         let how = match modifiers {
@@ -197,7 +247,7 @@ impl GripDrag {
             },
         };
         if let Some(to) = in_own_space(world, self.grip, to) {
-            set_surface(world, self.grip, shaped(surface, self.grip.index, to, how));
+            set_surface(world, self.grip, shaped(surface, index, to, how));
         }
     }
 
@@ -211,7 +261,7 @@ impl GripDrag {
     /// Puts the point back.
     pub fn cancel(self, world: &mut World) {
         match self.surface {
-            Some(surface) => set_surface(world, self.grip, surface),
+            Some((_, surface)) => set_surface(world, self.grip, surface),
             None => put(world, self.grip, self.start),
         }
         self.end(world);
@@ -263,6 +313,13 @@ pub(super) fn draw_grips(world: &mut World) {
             continue;
         };
         let at = pick::to_points(&context, at);
+        let entity = scene_entity(world, grip.id).filter(|_| grip.part == Part::Motion);
+        let from = entity.and_then(|entity| pivot(world, entity));
+        if let Some(from) = from.and_then(|from| pick::to_window(world, from)) {
+            let line = [pick::to_points(&context, from), at];
+            painter.line_segment(line, egui::Stroke::new(3.0, egui::Color32::BLACK));
+            painter.line_segment(line, egui::Stroke::new(1.5, egui::Color32::WHITE));
+        }
         let hovered = pointer.is_some_and(|pointer| pointer.distance(at) <= REACH);
         let fill = if held == Some(grip) || hovered || active == Some(grip) {
             egui::Color32::from_rgb(255, 190, 60)
@@ -292,11 +349,11 @@ mod tests {
             .with_rotation(bevy::math::Quat::from_rotation_y(1.0))
             .with_scale(Vec3::splat(2.0));
         world.spawn((SceneId(4), SegmentLamp::default(), turned));
-        let grip = Grip {
+        let of = |index| Grip {
             id: SceneId(4),
-            index: 1,
+            part: Part::Corner(index),
         };
-        let other = Grip { index: 0, ..grip };
+        let (grip, other) = (of(1), of(0));
         let stays = place(world, other).unwrap();
         let to = Vec3::new(0.4, 1.0, -2.0);
         put(world, grip, to);
@@ -304,5 +361,43 @@ mod tests {
         assert_eq!(place(world, other).unwrap(), stays);
         put(world, grip, Vec3::NAN);
         assert!((place(world, grip).unwrap() - to).length() < 1e-5);
+    }
+
+    #[test]
+    fn the_tip_of_a_motion_is_where_the_middle_will_be_whatever_it_hangs_on() {
+        use bevy::ecs::hierarchy::ChildOf;
+        use bevy::transform::components::{GlobalTransform, Transform};
+        let mut app = crate::editor::headless_editor();
+        let world = app.world_mut();
+        let turned = Transform::from_xyz(0.0, 3.0, 0.0)
+            .with_rotation(bevy::math::Quat::from_rotation_y(1.0))
+            .with_scale(Vec3::splat(2.0));
+        let parent = world.spawn((SceneId(3), turned)).id();
+        let own = Transform::from_xyz(1.0, 0.0, 0.0);
+        let lamp = crate::scene::PointLamp::default();
+        let motion = Motion {
+            velocity: Vec3::ZERO,
+            ..Motion::default()
+        };
+        let moved = world
+            .spawn((SceneId(4), lamp, motion, own, ChildOf(parent)))
+            .id();
+        app.update();
+        let world = app.world_mut();
+        world.resource_mut::<Selection>().set([SceneId(4)]);
+        let [(grip, tip)] = grips_of_selection(world)[..] else {
+            panic!("a lamp without corners has one point, that of its motion");
+        };
+        let middle = world.get::<GlobalTransform>(moved).unwrap().translation();
+        assert!(tip.distance(middle) < 1e-5, "{tip}, {middle}");
+        let to = Vec3::new(0.4, 1.0, -2.0);
+        put(world, grip, to);
+        assert!(place(world, grip).unwrap().distance(to) < 1e-5);
+        // Half of it, turned back: its parent scales by two.
+        let length = world.get::<Motion>(moved).unwrap().velocity.length();
+        let expected = 0.5 * to.distance(middle);
+        assert!((length - expected).abs() < 1e-5, "{length} of {expected} m");
+        put(world, grip, Vec3::NAN);
+        assert!(place(world, grip).unwrap().distance(to) < 1e-5);
     }
 }

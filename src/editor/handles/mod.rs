@@ -11,6 +11,7 @@ mod focus;
 mod gizmo;
 mod grips;
 mod hold;
+mod snap;
 mod surface;
 mod typed;
 
@@ -19,6 +20,7 @@ pub(super) use focus::{focus, new_lens};
 pub(super) use gizmo::cancel;
 pub(super) use grips::{Grip, GripDrag, grip_at, grips_of_selection};
 pub(super) use hold::take_hold;
+pub use snap::SnapTo;
 pub(super) use typed::{TypedDrag, type_into_drag};
 
 use super::command::{AddCommands, Command, Over, State, commands};
@@ -51,8 +53,10 @@ pub struct Tools {
     pub tool: Tool,
     /// The gizmo follows the active object's axes instead of the world's.
     pub local: bool,
-    /// Drags go in steps.
+    /// Drags go in steps, or to other objects.
     pub snap: bool,
+    /// What moves go by then; turning and scaling go in steps.
+    pub snap_to: SnapTo,
     /// Metres of a step.
     pub move_step: f32,
     /// Radians of a step.
@@ -71,6 +75,7 @@ impl Default for Tools {
             tool: Tool::Move,
             local: false,
             snap: false,
+            snap_to: SnapTo::Steps,
             move_step: 0.1,
             turn_step: PI / 12.0,
             scale_step: 0.1,
@@ -130,7 +135,7 @@ fn commands() -> Vec<Command> {
             => |world| world.resource_mut::<Tools>().tool = Tool::Scale; button("tools", "Scale"); state(|world| has(world, Tool::Scale)),
         "tool.local" "World or local axes" ["L"] "Whether handles follow the world's axes or the object's own"
             => |world| flip(&mut world.resource_mut::<Tools>().local); button("tools", "Local"); state(|world| State::switch(world.resource::<Tools>().local)),
-        "tool.snap" "Snap" ["N"] "Handles move in steps; right click on the button: how large"
+        "tool.snap" "Snap" ["N"] "Handles move in steps, or onto other objects; right click on the button: how large, or onto what"
             => |world| flip(&mut world.resource_mut::<Tools>().snap); button("tools", "Snap"); state(|world| State::switch(world.resource::<Tools>().snap)),
         "tool.aim" "Aim at…" [] "The next click in the view turns the selected lights and cameras to what is there"
             => aim::arm; menu("Edit", 2); over(&[Over::Entity]); state(aim::may_aim),

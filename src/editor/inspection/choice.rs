@@ -2,21 +2,21 @@
 
 use super::debug_ray::{DebugRay, NO_VIEW, Shot};
 use super::list::{Arrangement, List};
-use super::stepper::Stepper;
 use super::view_of;
 use crate::editor::command::{Command, Over, State, commands};
 use crate::editor::notice::Notices;
 use crate::editor::preferences::Preferences;
 use crate::editor::selection::Escaped;
-use crate::inspect::{InspectSettings, Stands, Traversal};
+use crate::inspect::{InspectSettings, Stands, Stepper, Traversal};
 use crate::sync::Traced;
 use crate::trace;
 use bevy::ecs::observer::On;
 use bevy::ecs::resource::Resource;
-use bevy::ecs::system::{Res, ResMut};
+use bevy::ecs::system::{Local, Res, ResMut};
 use bevy::ecs::world::World;
 use bevy::math::UVec2;
 use std::sync::Arc;
+use std::time::Instant;
 
 /// What stands beside the list of rays.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -246,6 +246,21 @@ fn keep_node(inspected: &mut Inspected, world: &Arc<trace::World>) {
         node.world = world.clone();
     } else {
         inspected.node = None;
+    }
+}
+
+/// Lets the time of a frame pass.
+pub(super) fn play(mut inspected: ResMut<Inspected>, mut last: Local<Option<Instant>>) {
+    let now = Instant::now();
+    let before = last.replace(now);
+    if !inspected.stepper.playing {
+        *last = None;
+        return;
+    }
+    if let Some(before) = before {
+        // A window that was not drawn for a while does not jump.
+        let seconds = (now - before).as_secs_f32().min(0.5);
+        inspected.stepper.pass(seconds);
     }
 }
 

@@ -1,21 +1,19 @@
 //! The debug ray: samples of one pixel, traced again by the very code that renders, with every ray
 //! written down. It stays where it is when the view moves, and is shot again when the scene changes.
 
-use super::addition::Addition;
-use super::names::Names;
 use super::view_of;
 use crate::editor::command::{Command, Over, State, commands};
 use crate::editor::notice::Notices;
+use crate::editor::pick;
 use crate::editor::viewport::Viewport;
+use crate::inspect::{Addition, Names};
 use crate::scene::{Output, RenderSettings};
 use crate::sync::Traced;
 use crate::trace::{Camera, RayTree, Samples, World, probe, samples_per_pixel};
-use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Res, ResMut};
 use bevy::ecs::world;
 use bevy::math::{UVec2, Vec2};
-use bevy::window::{PrimaryWindow, Window};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Arc, Mutex};
 use std::thread;
@@ -318,8 +316,7 @@ fn toggle_all_samples(world: &mut world::World) {
 
 /// The pixel under the pointer. Beside the picture it takes the rays away.
 fn shoot_at_pointer(world: &mut world::World) {
-    let mut windows = world.query_filtered::<&Window, With<PrimaryWindow>>();
-    let pointer = windows.single(world).ok().and_then(Window::cursor_position);
+    let pointer = pick::cursor(world);
     let viewport = world.resource::<Viewport>();
     match pointer.filter(|&at| is_inside(viewport.place(at))) {
         // A panel lies over that place of the picture.

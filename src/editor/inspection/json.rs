@@ -1,9 +1,9 @@
 //! The picked pixel as one JSON document: what `glassbox inspect --json` writes of it.
 
-use super::{DebugRay, Drawings, Inspected, Names};
+use super::{DebugRay, Drawings, Inspected};
 use crate::editor::document::Document;
 use crate::editor::navigation::LookThrough;
-use crate::inspect::{self, InspectSettings, LineSet, Traversal, pattern};
+use crate::inspect::{self, InspectSettings, LineSet, Names, Traversal, pattern};
 use crate::scene::RenderSettings;
 use crate::trace::samples_per_pixel;
 use bevy::ecs::world::World;

@@ -1,9 +1,7 @@
 //! The rays as rows: a tree with children below their parents, or sorted by a column; filtered by
 //! what is drawn and by a text; folded.
 
-use super::column::Column;
-use super::names::Names;
-use crate::inspect::RaySettings;
+use crate::inspect::{Column, Names, RaySettings};
 use crate::trace::{DOME, RayKind, RayTree, TracedRay};
 use bevy::platform::collections::HashSet;
 

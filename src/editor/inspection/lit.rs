@@ -3,12 +3,11 @@
 
 use super::choice::{Inspected, Side};
 use super::debug_ray::DebugRay;
-use super::stepper::Stepper;
 use super::{Seen, seen_from};
-use crate::bvh::{TreeRef, primitives_below};
+use crate::bvh::primitives_below;
 use crate::editor::preferences::Preferences;
 use crate::editor::viewport::EditorCamera;
-use crate::inspect::{InspectSettings, StepKind, TreeView};
+use crate::inspect::{InspectSettings, StepKind, Stepper, TreeView};
 use crate::trace::{RayEnd, TracedRay, World};
 use crate::view::{DrawnLines, Line, OVERLAY_LAYER};
 use bevy::camera::visibility::RenderLayers;
@@ -179,7 +178,7 @@ impl Lit {
 
     /// A node's box, those of its children, and what it holds.
     fn node(&mut self, world: &World, instance: Option<u32>, node: u32) {
-        let Some(view) = view(world, instance) else {
+        let Some(view) = TreeView::of(world, instance) else {
             return;
         };
         let Some(here) = view.tree.nodes.get(node as usize) else {
@@ -202,7 +201,7 @@ impl Lit {
             return;
         };
         for ((instance, node), mark) in stepper.stack() {
-            if let Some(view) = view(world, instance).filter(|v| has(v, node)) {
+            if let Some(view) = TreeView::of(world, instance).filter(|v| has(v, node)) {
                 let color = if mark.is_pruned { PRUNED } else { WAITING };
                 edges(&mut self.thin, &view.corners(node), color);
             }
@@ -212,7 +211,7 @@ impl Lit {
             StepKind::Missed => MISSED,
             StepKind::Pruned => PRUNED,
         };
-        if let Some(view) = view(world, step.instance).filter(|v| has(v, step.node)) {
+        if let Some(view) = TreeView::of(world, step.instance).filter(|v| has(v, step.node)) {
             edges(&mut self.thick, &view.corners(step.node), color);
         }
         if let Some([instance, triangle]) = step.triangle {
@@ -223,10 +222,6 @@ impl Lit {
             outline(&mut self.thick, world, instance, triangle, color);
         }
     }
-}
-
-pub(in crate::editor) fn view(world: &World, instance: Option<u32>) -> Option<TreeView<'_>> {
-    TreeView::new(world, instance.map_or(TreeRef::Top, TreeRef::Mesh))
 }
 
 fn has(view: &TreeView, node: u32) -> bool {
@@ -310,7 +305,7 @@ mod tests {
         let mut lit = Lit::default();
         lit.node(world, Some(instance), 0);
         assert_eq!(lit.thick.len(), 12);
-        let inner = !view(world, Some(instance)).unwrap().tree.nodes[0].is_leaf();
+        let inner = !TreeView::of(world, Some(instance)).unwrap().tree.nodes[0].is_leaf();
         let boxes = if inner { 24 } else { 0 };
         assert_eq!(lit.thin.len(), boxes + 3 * triangles);
         // One that is gone draws nothing.

@@ -7,19 +7,14 @@
 //! | [`draw`], [`drawn_set`] | each system's lines as one set of retained gizmos |
 //! | [`lit`] | what is selected, in front of them |
 //! | [`hover`] | which line is under the pointer |
-//! | [`tell`] | what a line stands for, in words and numbers |
-//! | [`list`], [`column`] | the rays as a table: sorted, filtered, folded |
-//! | [`names`] | what objects, lights and materials are called |
-//! | [`addition`] | what the rays add up to, against the film |
+//! | [`list`] | the rays as a table: sorted, filtered, folded |
+//! | [`names`] | learns what objects, lights and materials are called |
 //! | [`json`] | all of it as text |
-//! | [`stepper`] | plays a traversal forwards and back |
 //! | [`choice`] | which ray and which node are meant, and what keys do to them |
 //!
 //! Here are the facts and what is drawn in the view; the panels that show them are in `panels/rays`.
 
-pub(super) mod addition;
 pub(super) mod choice;
-pub(super) mod column;
 pub(super) mod debug_ray;
 mod draw;
 mod drawn_set;
@@ -27,22 +22,19 @@ pub(super) mod hover;
 pub(super) mod json;
 pub(super) mod list;
 pub(super) mod lit;
-pub(super) mod names;
-pub(super) mod stepper;
-pub(super) mod tell;
+mod names;
 
 pub(super) use choice::{Inspected, shoot_pixel};
 pub(super) use debug_ray::{DebugRay, Which};
 pub(super) use draw::Drawings;
 pub(super) use drawn_set::{DrawnSet, Source};
 pub(super) use hover::Hovered;
-pub(super) use names::Names;
 
 use super::command::AddCommands;
 use super::document::SceneOpened;
 use super::schedule::EditorUpdate;
 use super::viewport::EditorCamera;
-use crate::inspect::InspectSettings;
+use crate::inspect::{InspectSettings, Names};
 use crate::sync::SyncSystems;
 use crate::trace::Camera;
 use crate::view::{TracedRender, TracedView, traced_camera};
@@ -76,7 +68,7 @@ impl Plugin for RaysPlugin {
                     names::learn,
                     debug_ray::trace_again,
                     choice::follow,
-                    stepper::play,
+                    choice::play,
                 )
                     .chain()
                     .after(SyncSystems),
@@ -112,7 +104,7 @@ impl Plugin for InspectionPlugin {
                 PostUpdate,
                 (draw::draw_inspection, lit::draw_lit)
                     .chain()
-                    .after(stepper::play),
+                    .after(choice::play),
             );
     }
 }

@@ -1,6 +1,6 @@
 //! What objects, lights and materials are called.
 
-use crate::inspect::named;
+use crate::inspect::Names;
 use crate::scene::{SceneId, UsesMaterial};
 use crate::sync::Traced;
 use crate::trace::Object;
@@ -9,37 +9,10 @@ use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::lifecycle::RemovedComponents;
 use bevy::ecs::name::Name;
 use bevy::ecs::query::{Added, Changed, Or};
-use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Local, Query, Res, ResMut};
 use bevy::platform::collections::HashMap;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-/// Names by number; learnt again when one changes.
-#[derive(Resource, Default)]
-pub(in crate::editor) struct Names {
-    /// Of entities, by their `SceneId`.
-    pub things: BTreeMap<u64, String>,
-    /// Of materials that objects share, by their index in the traced world.
-    materials: HashMap<u32, String>,
-    /// Counts how often they were learnt.
-    pub version: u64,
-}
-
-impl Names {
-    /// A thing's name, or what to call it by its number.
-    pub fn of(&self, id: u64) -> String {
-        named(&self.things, id)
-    }
-
-    /// A material's name; an object's own has its number alone.
-    pub fn of_material(&self, index: u32) -> String {
-        match self.materials.get(&index) {
-            Some(name) => format!("{index} {name}"),
-            None => index.to_string(),
-        }
-    }
-}
 
 type Renamed = Or<(Changed<Name>, Changed<SceneId>)>;
 /// Components whose absence is another name.

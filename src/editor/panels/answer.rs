@@ -1,16 +1,16 @@
-//! Why a pixel has its value, in one sentence beside it; and what the pointer is waited for with.
+//! Why a pixel is as it is, in one sentence beside it; and what the pointer is waited for with.
 
 use super::says::Says;
 use crate::editor::action::Action;
 use crate::editor::document::SceneOpened;
-use crate::editor::inspection::{DebugRay, Names};
+use crate::editor::inspection::DebugRay;
 use crate::editor::pick::to_points;
 use crate::editor::pointer::{Armed, PixelAsked};
 use crate::editor::preferences::Preferences;
 use crate::editor::selection::Escaped;
 use crate::editor::trees::show_preset;
 use crate::editor::viewport::Viewport;
-use crate::inspect::{InspectPreset, answer};
+use crate::inspect::{InspectPreset, Names, Question, answer};
 use crate::scene::SceneId;
 use crate::trace::RayKind;
 use bevy::ecs::observer::On;
@@ -31,6 +31,7 @@ pub(super) struct Answer(Option<Asked>);
 
 /// A pixel that was asked about.
 struct Asked {
+    question: Question,
     /// Logical pixels of the window.
     at: Vec2,
     /// Which of the debug ray's shots it is.
@@ -39,13 +40,14 @@ struct Asked {
     known: Option<((u64, u64), String)>,
 }
 
-/// The next click in the view asks.
-pub(super) fn arm(world: &mut World) {
-    *world.resource_mut::<Armed>() = Armed::Why;
+/// The next click in the view asks this.
+pub(super) fn arm(world: &mut World, question: Question) {
+    *world.resource_mut::<Armed>() = Armed::Why(question);
 }
 
 pub(super) fn note_question(asked: On<PixelAsked>, ray: Res<DebugRay>, mut answer: ResMut<Answer>) {
     answer.0 = Some(Asked {
+        question: asked.question,
         at: asked.at,
         shots: ray.shots(),
         known: None,
@@ -64,7 +66,9 @@ pub(super) fn forget_scene(_: On<SceneOpened>, mut answer: ResMut<Answer>) {
 pub(super) fn armed_ui(context: &egui::Context, world: &World) {
     let text = match world.get_resource::<Armed>() {
         None | Some(Armed::No) => return,
-        Some(Armed::Why) => "Click a pixel: why has it its value? (Esc: none)",
+        Some(Armed::Why(Question::Black)) => "Click a pixel: why is it black? (Esc: none)",
+        Some(Armed::Why(Question::Noisy)) => "Click a pixel: why is it noisy? (Esc: none)",
+        Some(Armed::Why(Question::Color)) => "Click a pixel: why this colour? (Esc: none)",
         Some(Armed::Aim) => "Click what shall be aimed at (Esc: nothing)",
         Some(Armed::Focus) => "Click what shall be sharp (Esc: nothing)",
     };
@@ -99,11 +103,12 @@ pub(super) fn answer_ui(
     }
     let names = world.resource::<Names>();
     let of = (ray.number(), names.version);
-    let rays = ray.rays();
+    // Those of another question stand until all samples are there.
+    let rays = ray.rays().filter(|_| !ray.is_busy());
     if let Some(rays) = rays
         && asked.known.as_ref().is_none_or(|(known, _)| *known != of)
     {
-        asked.known = Some((of, answer(rays, &names.things)));
+        asked.known = Some((of, answer(asked.question, rays, &names.things)));
     }
     let text = asked.known.as_ref().map_or("…", |(_, text)| text);
     let camera = rays.and_then(|rays| rays.rays.iter().find(|ray| ray.kind == RayKind::Camera));
@@ -120,6 +125,10 @@ pub(super) fn answer_ui(
         (false, false) => Align2::RIGHT_BOTTOM,
     };
     let away = |far: bool| if far { 14.0 } else { -14.0 };
+    let preset = match asked.question {
+        Question::Noisy => InspectPreset::WhereIsTheNoiseFrom,
+        _ => InspectPreset::WhyBlack,
+    };
     let mut wish = None;
     let area = Area::new(Id::new("why a pixel is as it is"))
         .order(Order::Middle)
@@ -177,7 +186,7 @@ pub(super) fn answer_ui(
         }
     }
     match wish {
-        Some(Wish::Rays) => show_preset(world, InspectPreset::WhyBlack),
+        Some(Wish::Rays) => show_preset(world, preset),
         Some(Wish::Tree) => world.resource_mut::<Preferences>().show_rays = true,
         Some(Wish::Go(id)) => {
             world.write_message(Action::Select(vec![id]));

@@ -9,6 +9,7 @@ use crate::editor::command::{Command, Over, State, commands};
 use crate::editor::edits::name_of;
 use crate::editor::preferences::Preferences;
 use crate::editor::selection::{Escaped, Selection};
+use crate::inspect::Question;
 use crate::scene::RenderSettings;
 use bevy::ecs::observer::On;
 use bevy::ecs::system::ResMut;
@@ -32,8 +33,12 @@ pub(super) fn commands() -> Vec<Command> {
             => |world| flip(&mut world.resource_mut::<Preferences>().show_inspector); menu("View", 5); state(|world| State::switch(world.resource::<Preferences>().show_inspector)),
         "view.only-picture" "Only the picture" ["Ctrl+Space"] "Takes the panels away, so that the picture fills the window; again, or Escape, brings them back"
             => |world| flip(&mut world.resource_mut::<OnlyPicture>().0); menu("View", 5); over(&[Over::Nothing]),
-        "why.black" "Why is this pixel black?" ["Shift+W"] "The next click in the view answers in a sentence why the pixel there has its value"
-            => answer::arm; menu("View/Rays and trees", 1); button("questions", "Why black?"); over(&[Over::Nothing, Over::Entity]),
+        "why.black" "Why is this pixel black?" ["Shift+W"] "The next click in the view answers in a sentence what is in the way of the pixel's light"
+            => |world| answer::arm(world, Question::Black); menu("View/Rays and trees", 1); button("questions", "Why black?"); over(&[Over::Nothing, Over::Entity]),
+        "why.noisy" "Why is this pixel noisy?" [] "The next click in the view answers in a sentence what the pixel's samples differ in"
+            => |world| answer::arm(world, Question::Noisy); menu("View/Rays and trees", 1); over(&[Over::Nothing, Over::Entity]),
+        "why.color" "Why this colour?" [] "The next click in the view answers in a sentence what the pixel's colour is mixed of"
+            => |world| answer::arm(world, Question::Color); menu("View/Rays and trees", 1); over(&[Over::Nothing, Over::Entity]),
         "help.keys" "Keys and mouse" ["F1", "?"] "Shows every key, and changes them"
             => |world| toggle(world, Dialog::Keys); menu("Help", 0),
         "help.palette" "Find a command…" ["Ctrl+P"] "Lists all commands, to be found by a few letters of their names"

@@ -3,7 +3,7 @@
 
 use super::any_number::AnyNumber;
 use super::number_field::{MIXED, NumberField};
-use super::says::Says;
+use super::says::{Says, in_row};
 use crate::scene::schema::{Choice, MostPixels, Property, Quantity, Unit, keep_order};
 use bevy::color::LinearRgba;
 use bevy::math::UVec2;
@@ -25,7 +25,7 @@ pub(super) fn row<R>(ui: &mut Ui, label: &str, says: &str, value: impl FnOnce(&m
             ui.set_min_width(width);
             ui.add(Label::new(label).truncate()).says(says);
         });
-        value(ui)
+        in_row(ui, label, value)
     })
     .inner
 }
@@ -187,7 +187,8 @@ fn vector_ui(
         for axis in 0..count {
             let size = vec2(width.clamp(30.0, 110.0), ui.spacing().interact_size.y);
             ui.allocate_ui(size, |ui| {
-                if one(ui, axis) == Some(true) {
+                let called = format!("{label} {}", axis + 1);
+                if in_row(ui, &called, |ui| one(ui, axis)) == Some(true) {
                     changed = Some(axis);
                 }
             });

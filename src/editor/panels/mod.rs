@@ -52,6 +52,7 @@ mod pattern;
 mod rays;
 mod readout;
 mod reflected;
+mod save_form;
 mod says;
 mod several;
 mod state;

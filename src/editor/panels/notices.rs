@@ -1,12 +1,14 @@
-//! Messages over the picture.
+//! Messages: beside the picture where a panel is, so that they hide nothing of it.
 
 use super::says::Says;
 use crate::editor::notice::{Notice, Notices};
 use bevy::ecs::world::World;
 use bevy_egui::egui::{self, Align2, Id, Label, Rect, RichText, Ui, vec2};
 
-/// How many messages are shown at most: more would hide the picture.
+/// How many messages are shown at most: more would hide the panel.
 const MOST: usize = 4;
+/// Points that a panel is wide at least where messages stand over it.
+const LEAST_WIDTH: f32 = 100.0;
 /// Lines of a message that are shown until all are asked for.
 const FIRST_LINES: usize = 5;
 /// Points that all lines of a message take at most; the rest is scrolled to.
@@ -23,13 +25,14 @@ pub(super) fn notices_ui(context: &egui::Context, free: Rect, world: &mut World)
     if all.is_empty() {
         return false;
     }
-    let width = (free.width() - 40.0).clamp(120.0, 460.0);
-    let bottom = context.viewport_rect().max - free.max;
+    let room = room(context.viewport_rect(), free);
+    let width = (room.width() - 40.0).clamp(LEAST_WIDTH, 460.0);
     let earlier = all.len().saturating_sub(MOST);
     let mut closed = None;
     let mut expanded = None;
     let area = egui::Area::new(Id::new("notices"))
-        .anchor(Align2::RIGHT_BOTTOM, -bottom - vec2(12.0, 12.0))
+        .pivot(Align2::RIGHT_BOTTOM)
+        .fixed_pos(room.max - vec2(8.0, 8.0))
         .order(egui::Order::Foreground)
         .show(context, |ui| {
             ui.set_max_width(width);
@@ -53,6 +56,16 @@ pub(super) fn notices_ui(context: &egui::Context, free: Rect, world: &mut World)
         notices.show_all(i);
     }
     is_over(context, area.response.rect)
+}
+
+/// Where messages stand: over the panel on the left, whose lower part is free in most scenes, else over that on the right,
+/// and over the picture where there is nothing else.
+fn room(window: Rect, free: Rect) -> Rect {
+    let left = window.with_max_x(free.min.x);
+    let right = window.with_min_x(free.max.x);
+    let beside = [left, right].map(|side| side.with_min_y(free.min.y).with_max_y(free.max.y));
+    let wide = beside.into_iter().find(|side| side.width() >= LEAST_WIDTH);
+    wide.unwrap_or(free)
 }
 
 /// What a person has read.

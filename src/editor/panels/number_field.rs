@@ -3,7 +3,7 @@
 //! says why. Click it again to mend what was typed.
 
 use super::number_text::significant;
-use super::says::Says;
+use super::says::{Says, name_control};
 use crate::scene::schema::{Quantity, typed_number};
 use bevy_egui::egui::{
     self, Align2, Button, CursorIcon, Id, Key, Modifiers, Order, Response, RichText, Sense, Slider,
@@ -168,6 +168,7 @@ impl NumberField<'_> {
             .text_color(ink)
             .font(ui.style().drag_value_text_style.clone());
         let response = ui.add(field);
+        name_control(&response, self.says);
         if is_new {
             select_all(ui, id, &typing.text);
         }
@@ -264,6 +265,7 @@ impl NumberField<'_> {
                 node.add_action(action);
             }
         });
+        name_control(&response, self.says);
         response
     }
 

@@ -3,7 +3,7 @@
 
 use crate::scene::{
     DirectionalLamp, MeshSource, ParallelogramLamp, Phong, PointLamp, SceneCamera, SceneId,
-    SegmentLamp,
+    SegmentLamp, UsesMaterial,
 };
 use bevy::camera::visibility::Visibility;
 use bevy::ecs::entity::Entity;
@@ -95,6 +95,8 @@ pub(super) struct Item {
     pub hidden: bool,
     /// Hidden itself or by an ancestor.
     pub unseen: bool,
+    /// The shared material that it has.
+    pub material: Option<Entity>,
 }
 
 /// The scene's entities, children after their parents, siblings by their numbers.
@@ -102,6 +104,8 @@ pub(super) struct Item {
 pub(super) struct Outline {
     pub items: Vec<Item>,
     places: HashMap<SceneId, usize>,
+    /// By shared material: the objects that have it.
+    users: HashMap<Entity, Vec<usize>>,
     /// How often it was made: a test's proof that it is not made in every frame.
     pub versions: u64,
 }
@@ -110,6 +114,11 @@ impl Outline {
     /// Where in the list the entity of that number is.
     pub fn place(&self, id: SceneId) -> Option<usize> {
         self.places.get(&id).copied()
+    }
+
+    /// Where the objects are that have a shared material.
+    pub fn users(&self, material: &Item) -> &[usize] {
+        self.users.get(&material.entity).map_or(&[], Vec::as_slice)
     }
 
     /// Where the parent of an item is.
@@ -142,6 +151,7 @@ type ShowsChange = Or<(
     Changed<Name>,
     Changed<ChildOf>,
     Changed<Visibility>,
+    Changed<UsesMaterial>,
     OfKind,
 )>;
 
@@ -151,6 +161,7 @@ type Parts<'a> = (
     Option<&'a Name>,
     Option<&'a ChildOf>,
     Option<&'a Visibility>,
+    Option<&'a UsesMaterial>,
     (
         Has<Mesh3d>,
         Has<MeshSource>,
@@ -172,6 +183,7 @@ type Gone<'w, 's> = (
     RemovedComponents<'w, 's, Phong>,
     RemovedComponents<'w, 's, SceneCamera>,
     RemovedComponents<'w, 's, Disabled>,
+    RemovedComponents<'w, 's, UsesMaterial>,
 );
 
 /// Makes the list again where anything that it shows changed.
@@ -189,7 +201,8 @@ pub(super) fn outline_scene(
         + gone.3.read().count()
         + gone.4.read().count()
         + gone.5.read().count()
-        + gone.6.read().count();
+        + gone.6.read().count()
+        + gone.7.read().count();
     let is_same = changed.is_empty() && disabled.is_empty() && removed == 0;
     if is_same && outline.versions > 0 {
         return;
@@ -197,7 +210,7 @@ pub(super) fn outline_scene(
     let mut found: Vec<(Item, Option<Entity>)> = all
         .iter()
         .filter(|parts| !parts.1.is_unassigned())
-        .map(|(entity, id, name, parent, visibility, has)| {
+        .map(|(entity, id, name, parent, visibility, material, has)| {
             let kind = kind_of(has);
             let name = name.map_or_else(
                 || format!("{} {}", kind.name(), id.0),
@@ -214,6 +227,7 @@ pub(super) fn outline_scene(
                 end: 0,
                 hidden,
                 unseen: hidden,
+                material: material.map(|material| material.0),
             };
             (item, parent.map(ChildOf::parent))
         })
@@ -222,6 +236,13 @@ pub(super) fn outline_scene(
     outline.items = in_tree_order(found);
     let places = outline.items.iter().enumerate();
     outline.places = places.map(|(at, item)| (item.id, at)).collect();
+    let mut users: HashMap<Entity, Vec<usize>> = HashMap::default();
+    for (at, item) in outline.items.iter().enumerate() {
+        if let Some(material) = item.material {
+            users.entry(material).or_default().push(at);
+        }
+    }
+    outline.users = users;
     outline.versions += 1;
 }
 

@@ -1,5 +1,5 @@
 //! Which rows of the list are to be seen: what is folded away or not searched for is left out, and
-//! shared materials stand in a folder of their own, below the rest.
+//! shared materials stand in a folder of their own, below the rest, each a folder of the objects that have it.
 
 use super::outline::{Item, Kind, Outline, Shown};
 use crate::scene::SceneId;
@@ -13,14 +13,21 @@ pub(super) enum Row {
     Item(usize),
     /// The folder of so many materials.
     Materials(usize),
+    /// An object once more, below the material that it has: by their places.
+    User {
+        /// The object.
+        object: usize,
+        /// The material.
+        material: usize,
+    },
 }
 
 impl Row {
-    /// Its place in [`Outline::items`]; `None` for a folder.
+    /// Its place in [`Outline::items`], where it is the one row of an item.
     pub fn item(self) -> Option<usize> {
         match self {
             Self::Item(at) => Some(at),
-            Self::Materials(_) => None,
+            Self::Materials(_) | Self::User { .. } => None,
         }
     }
 }
@@ -76,11 +83,18 @@ impl Outline {
             }
             if filter.is_off() {
                 rows.push(Row::Item(at));
-                at = if folded.contains(&item.id) {
-                    item.end
+                let is_open = !folded.contains(&item.id);
+                if in_folder && item.depth == 0 {
+                    // Closed until it is opened: these rows are there once already.
+                    let users = self.users(item).iter().filter(|_| !is_open);
+                    rows.extend(users.map(|&object| Row::User {
+                        object,
+                        material: at,
+                    }));
+                    at += 1;
                 } else {
-                    at + 1
-                };
+                    at = if is_open { at + 1 } else { item.end };
+                }
                 continue;
             }
             ancestors.truncate(item.depth as usize);
@@ -98,7 +112,7 @@ impl Outline {
     }
 }
 
-/// Entities whose descendants the list does not show.
+/// Entities whose descendants the list does not show; shared materials whose objects it does.
 #[derive(Default)]
 pub(super) struct Folded {
     ids: HashSet<SceneId>,
@@ -110,8 +124,14 @@ pub(super) struct Folded {
 
 impl Folded {
     /// Whether what is below it is not shown.
-    pub fn contains(&self, id: SceneId) -> bool {
-        self.ids.contains(&id)
+    pub fn contains(&self, item: &Item) -> bool {
+        self.ids.contains(&item.id) != is_in_folder(item)
+    }
+
+    /// Whether nothing was folded or opened.
+    #[cfg(test)]
+    pub fn is_empty(&self) -> bool {
+        self.ids.is_empty()
     }
 
     /// Whether the materials are not shown.
@@ -148,10 +168,10 @@ impl Folded {
                 self.toggle_folder();
             }
             above = outline.parent(at);
-            if let Some(id) = above.map(|at| outline.items[at].id)
-                && self.contains(id)
+            if let Some(item) = above.map(|at| &outline.items[at])
+                && self.contains(item)
             {
-                self.toggle(id);
+                self.toggle(item.id);
             }
         }
     }
@@ -183,7 +203,7 @@ impl Rows {
 mod tests {
     use super::super::outline::tests::{spawn, village};
     use super::*;
-    use crate::scene::Phong;
+    use crate::scene::{Phong, UsesMaterial};
 
     fn names<'a>(outline: &'a Outline, rows: &[Row]) -> Vec<&'a str> {
         rows.iter()
@@ -281,6 +301,44 @@ mod tests {
     }
 
     #[test]
+    fn a_material_that_is_opened_shows_the_objects_that_have_it_until_that_changes() {
+        let mut app = village();
+        let world = app.world_mut();
+        let brick = spawn(world, 5, "Brick", None);
+        world.entity_mut(brick).insert(Phong::default());
+        let find = |world: &bevy::ecs::world::World, id| {
+            world
+                .resource::<Outline>()
+                .find(SceneId(id))
+                .unwrap()
+                .entity
+        };
+        for id in [11, 13] {
+            let entity = find(world, id);
+            world.entity_mut(entity).insert(UsesMaterial(brick));
+        }
+        app.update();
+        let mut folded = Folded::default();
+        let mut rows = Rows::default();
+        let mut users = |app: &bevy::app::App, folded: &Folded| {
+            let outline = app.world().resource::<Outline>();
+            let rows = rows.of(outline, folded, &text(""));
+            let users = rows.iter().filter_map(|row| match row {
+                Row::User { object, .. } => Some(outline.items[*object].name.clone()),
+                _ => None,
+            });
+            users.collect::<Vec<String>>()
+        };
+        assert_eq!(users(&app, &folded), [""; 0], "closed at first");
+        folded.toggle(SceneId(5));
+        assert_eq!(users(&app, &folded), ["Roof", "Door"]);
+        let roof = find(app.world(), 11);
+        app.world_mut().entity_mut(roof).remove::<UsesMaterial>();
+        app.update();
+        assert_eq!(users(&app, &folded), ["Door"]);
+    }
+
+    #[test]
     fn what_is_revealed_is_shown_with_all_that_it_is_below() {
         let app = village();
         let outline = app.world().resource::<Outline>();
@@ -289,7 +347,8 @@ mod tests {
             folded.toggle(SceneId(id));
         }
         folded.reveal(outline, outline.place(SceneId(12)).unwrap());
-        assert!(!folded.contains(SceneId(10)) && !folded.contains(SceneId(11)));
-        assert!(folded.contains(SceneId(20)));
+        let is_folded = |id| folded.contains(outline.find(SceneId(id)).unwrap());
+        assert!(!is_folded(10) && !is_folded(11));
+        assert!(is_folded(20));
     }
 }

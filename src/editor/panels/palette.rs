@@ -1,13 +1,13 @@
 //! The palette: all commands, found by a few letters of their names.
 
-use super::says::note_hint;
+use super::says::{name_control, note_hint};
 use crate::editor::action::Action;
 use crate::editor::command::{Command, CommandTable, State, shortcut};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{
     self, Align2, FontId, Id, Key, Modal, Modifiers, Rect, ScrollArea, Sense, TextEdit, TextStyle,
-    Ui, pos2, vec2,
+    Ui, WidgetInfo, WidgetType, pos2, vec2,
 };
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -64,6 +64,7 @@ fn body_ui(ui: &mut Ui, world: &World, palette: &mut Palette) -> Option<Cow<'sta
         .hint_text("Find a command")
         .desired_width(f32::INFINITY);
     let field = ui.add(field);
+    name_control(&field, "Finds a command by letters of its name");
     field.request_focus();
     if field.changed() {
         palette.chosen = 0;
@@ -110,6 +111,14 @@ fn row_ui(
     chosen: bool,
 ) -> egui::Response {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
+    response.widget_info(|| {
+        WidgetInfo::selected(
+            WidgetType::SelectableLabel,
+            state.why_not.is_none(),
+            chosen,
+            command.title(state),
+        )
+    });
     let visuals = ui.visuals();
     let (fill, ink) = match (chosen, response.hovered()) {
         (true, _) => (visuals.selection.bg_fill, visuals.selection.stroke.color),

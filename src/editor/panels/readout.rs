@@ -2,10 +2,9 @@
 
 use super::overlays::{UnderPointer, value_under_pointer};
 use super::says::note_hint;
-use crate::editor::inspection::Names;
-use crate::editor::inspection::column::{color_text, vector_text};
 use crate::editor::viewport::{EditorCamera, Viewport};
 use crate::film::views::View;
+use crate::inspect::{Names, color_text, vector_text};
 use crate::view::{TracedRender, TracedView};
 use bevy::ecs::query::With;
 use bevy::ecs::world::World;

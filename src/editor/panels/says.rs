@@ -1,6 +1,6 @@
-//! Every control says what it does: in a tooltip, and in the status bar while the pointer is over it.
+//! Every control says what it does: in a tooltip, in the status bar while the pointer is over it, and to screen readers.
 
-use bevy_egui::egui::{self, Id, Response};
+use bevy_egui::egui::{self, Id, Response, Ui};
 
 /// Adds the explanation to a control.
 pub(super) trait Says {
@@ -16,11 +16,40 @@ impl Says for Response {
         if self.hovered() {
             note_hint(&self.ctx, what.to_owned());
         }
+        name_control(&self, what);
         self.on_hover_ui(|ui| {
             ui.label(what);
         })
         .on_disabled_hover_text(what)
     }
+}
+
+/// Tells screen readers what a control does. One without a text of its own is called as the row that it stands in, or else
+/// by what it does.
+pub(super) fn name_control(control: &Response, what: &str) {
+    if !control.sense.interactive() {
+        return;
+    }
+    let context = &control.ctx;
+    let row: Option<String> = context.data(|data| data.get_temp(row_id()));
+    context.accesskit_node_builder(control.id, |node| {
+        if node.label().is_none_or(str::is_empty) {
+            node.set_label(row.as_deref().unwrap_or(what));
+        }
+        node.set_description(what);
+    });
+}
+
+/// Draws the controls of a row that is called so.
+pub(super) fn in_row<R>(ui: &mut Ui, label: &str, controls: impl FnOnce(&mut Ui) -> R) -> R {
+    ui.data_mut(|data| data.insert_temp(row_id(), label.to_owned()));
+    let result = controls(ui);
+    ui.data_mut(|data| data.remove::<String>(row_id()));
+    result
+}
+
+fn row_id() -> Id {
+    Id::new("label-of-the-row")
 }
 
 /// Puts a text into the status bar until the next frame.

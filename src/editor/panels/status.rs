@@ -2,6 +2,7 @@
 
 use super::dialogs::{Dialog, Dialogs};
 use super::says::{Says, take_hint};
+use crate::editor::notice::Notices;
 use crate::editor::render_job::RenderJob;
 use crate::editor::texts::counted;
 use crate::editor::viewport::EditorCamera;
@@ -13,12 +14,15 @@ use crate::view::TracedRender;
 use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
-use bevy_egui::egui::{self, Popup, RichText, Ui};
+use bevy_egui::egui::{self, Button, Label, Popup, PopupCloseBehavior, RichText, ScrollArea, Ui};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// How often the memory is asked for.
 const MEMORY_INTERVAL: Duration = Duration::from_secs(1);
+/// Points of the list of notes.
+const NOTES_WIDTH: f32 = 480.0;
+const NOTES_HEIGHT: f32 = 320.0;
 
 /// What the line remembers between two frames.
 #[derive(Resource, Default)]
@@ -33,10 +37,10 @@ pub(super) fn status_ui(ui: &mut Ui, world: &mut World, bar: &mut StatusBar) {
     let render = query.single(world).ok();
     let status = render.and_then(TracedRender::status);
     let shown = render.and_then(TracedRender::shown);
-    let traced = world.resource::<Traced>();
-    let mut opens = false;
+    let (mut opens, mut forgets) = (false, false);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 14.0;
+        forgets = notes_ui(ui, world);
         if let Some(status) = &status {
             let state = match status.state {
                 State::Running => "",
@@ -79,7 +83,7 @@ pub(super) fn status_ui(ui: &mut Ui, world: &mut World, bar: &mut StatusBar) {
                 "From the last edit to the first picture of it on the screen",
             );
         }
-        let numbers = bar.numbers.of(traced);
+        let numbers = bar.numbers.of(world.resource::<Traced>());
         figure(
             ui,
             &counted(numbers.triangles, "triangle"),
@@ -97,7 +101,6 @@ pub(super) fn status_ui(ui: &mut Ui, world: &mut World, bar: &mut StatusBar) {
                 "Memory of the whole program",
             );
         }
-        problems_ui(ui, world);
         opens = job_ui(ui, world);
         if let Some(hint) = hint {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -105,6 +108,9 @@ pub(super) fn status_ui(ui: &mut Ui, world: &mut World, bar: &mut StatusBar) {
             });
         }
     });
+    if forgets {
+        world.resource_mut::<Notices>().forget_kept();
+    }
     if opens {
         world.resource_mut::<Dialogs>().open = Some(Dialog::Render);
     }
@@ -127,32 +133,60 @@ fn job_ui(ui: &mut Ui, world: &World) -> bool {
     ui.add(egui::Button::new(text).small()).says(says).clicked()
 }
 
-/// What cannot be loaded or traced as it is.
-fn problems_ui(ui: &mut Ui, world: &World) {
+/// What cannot be loaded or traced as it is, and what was said and mattered: closed messages are found again here.
+///
+/// True where the latter are to be forgotten.
+fn notes_ui(ui: &mut Ui, world: &World) -> bool {
     let load = world.resource::<LoadProblems>().problems.iter();
     let sync = world.resource::<Traced>().problems.iter();
-    let lines: Vec<String> = load
+    let problems: Vec<String> = load
         .map(|problem| format!("{}: {}", problem.what, problem.error))
         .chain(sync.map(ToString::to_string))
         .collect();
-    if lines.is_empty() {
-        return;
+    let kept = world.resource::<Notices>().kept();
+    if problems.is_empty() && kept.is_empty() {
+        return false;
     }
-    let color = ui.visuals().warn_fg_color;
-    let text = format!("⚠ {}", counted(lines.len() as u64, "problem"));
-    let label = egui::Label::new(RichText::new(text).color(color)).sense(egui::Sense::click());
+    let warns = !problems.is_empty() || kept.iter().any(|notice| notice.is_fault);
+    let color = match warns {
+        true => ui.visuals().warn_fg_color,
+        false => ui.visuals().text_color(),
+    };
+    let count = (problems.len() + kept.len()) as u64;
+    let text = format!(
+        "{}{}",
+        if warns { "⚠ " } else { "" },
+        counted(count, "note")
+    );
+    let button = Button::new(RichText::new(text).color(color)).small();
     let response = ui
-        .add(label)
-        .says("What of the scene cannot be drawn as it is; click to read");
-    Popup::menu(&response).show(|ui| {
-        ui.set_max_width(480.0);
-        for line in lines.iter().take(30) {
-            ui.label(line);
-        }
-        if lines.len() > 30 {
-            ui.weak(format!("and {} more", lines.len() - 30));
-        }
-    });
+        .add(button)
+        .says("What cannot be drawn as it is, what failed, and what files left out; click to read");
+    let mut forgets = false;
+    Popup::menu(&response)
+        .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
+        .show(|ui| {
+            ui.set_width(NOTES_WIDTH.min(ui.ctx().content_rect().width() - 40.0));
+            let area = ScrollArea::vertical().max_height(NOTES_HEIGHT);
+            area.show(ui, |ui| {
+                for line in &problems {
+                    ui.add(Label::new(line).wrap().selectable(true));
+                }
+                for notice in kept.iter().rev() {
+                    let text = RichText::new(&notice.text).strong();
+                    ui.add(Label::new(text).wrap().selectable(true));
+                    for line in &notice.lines {
+                        ui.add(Label::new(line).wrap().selectable(true));
+                    }
+                }
+            });
+            if !kept.is_empty() {
+                let forget = ui.small_button("Forget what was said");
+                let says = "Empties this list but for what still cannot be drawn";
+                forgets = forget.says(says).clicked();
+            }
+        });
+    forgets
 }
 
 /// What is counted of a traced world; counted again only when it is another.

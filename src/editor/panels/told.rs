@@ -3,11 +3,9 @@
 use super::says::Says;
 use crate::bvh::primitives_below;
 use crate::editor::inspection::choice::Node;
-use crate::editor::inspection::lit::view;
-use crate::editor::inspection::tell::{Told, node_told, tell};
-use crate::editor::inspection::{DebugRay, Hovered, Inspected, Names};
+use crate::editor::inspection::{DebugRay, Hovered, Inspected};
 use crate::editor::pick::to_points;
-use crate::inspect::{InspectSettings, Stands, System};
+use crate::inspect::{InspectSettings, Names, Stands, System, Told, TreeView, node_told, tell};
 use crate::sync::Traced;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
@@ -164,7 +162,7 @@ fn node_ui(context: &egui::Context, free: Rect, world: &mut World, tales: &mut T
 }
 
 fn ways_ui(ui: &mut Ui, node: &Node, next: &mut Option<Node>) {
-    let Some(view) = view(&node.world, node.instance) else {
+    let Some(view) = TreeView::of(&node.world, node.instance) else {
         return;
     };
     let Some(here) = view.tree.nodes.get(node.node as usize) else {
@@ -200,7 +198,7 @@ fn ways_ui(ui: &mut Ui, node: &Node, next: &mut Option<Node>) {
     });
 }
 
-fn parent_of(view: &crate::inspect::TreeView, node: u32) -> Option<u32> {
+fn parent_of(view: &TreeView, node: u32) -> Option<u32> {
     let place = primitives_below(view.tree, node as usize).start;
     let path = view.path(place);
     let at = path.iter().position(|&known| known == node)?;
@@ -221,7 +219,7 @@ mod tests {
         app.update();
         let world = app.world().resource::<Traced>().world.clone();
         for instance in [None, Some(0)] {
-            let view = view(&world, instance).unwrap();
+            let view = TreeView::of(&world, instance).unwrap();
             assert_eq!(parent_of(&view, 0), None);
             for (index, node) in view.tree.nodes.iter().enumerate() {
                 if !node.is_leaf() {

@@ -7,7 +7,7 @@ use super::overlays::RegionDrag;
 use super::says::Says;
 use crate::editor::action::Action;
 use crate::editor::command::{CommandTable, tooltip};
-use crate::editor::handles::Tools;
+use crate::editor::handles::{SnapTo, Tools};
 use crate::editor::preferences::Preferences;
 use crate::editor::viewport::EditorCamera;
 use crate::film::views::View;
@@ -68,6 +68,17 @@ fn steps_ui(ui: &mut Ui, world: &mut World) {
     };
     let before = tools.clone();
     ui.set_width(250.0);
+    ui.horizontal(|ui| {
+        ui.label("Move to");
+        for (choice, name, says) in [
+            (SnapTo::Steps, "steps", "Moves are multiples of the step below"),
+            (SnapTo::Faces, "faces", "What is moved touches the face of another object that is under the pointer"),
+            (SnapTo::Vertices, "vertices", "The middle of what is moved goes to the nearest corner of the triangle under the pointer"),
+        ] {
+            ui.selectable_value(&mut tools.snap_to, choice, name)
+                .says(says);
+        }
+    });
     ui.label("Steps of snapping");
     let says = "How far one step moves";
     let steps = Quantity::within(1e-4, 1e4, "m");

@@ -3,13 +3,13 @@
 use super::super::action::Action;
 use super::super::command::Over;
 use super::super::extent::own_extent;
-use super::super::inspection::Inspected;
 use super::super::inspection::debug_ray::shoot_at;
 use super::super::inspection::hover::line_at;
+use super::super::inspection::{DebugRay, Inspected, Which};
 use super::super::selection::Selection;
 use super::super::{handles, pick};
 use super::{Armed, DOUBLE, PixelAsked, Pointer, RightClicked, STILL};
-use crate::inspect::Stands;
+use crate::inspect::{Question, Stands};
 use crate::scene::SceneId;
 use crate::sync::Traced;
 use bevy::ecs::entity::Entity;
@@ -53,9 +53,12 @@ pub(super) fn click(world: &mut World, at: Vec2) {
 pub(super) fn answer_target(world: &mut World, at: Vec2) {
     match std::mem::take(&mut *world.resource_mut::<Armed>()) {
         Armed::No => {}
-        Armed::Why => {
+        Armed::Why(question) => {
+            if question != Question::Black {
+                world.resource_mut::<DebugRay>().which = Which::All;
+            }
             if shoot_at(world, at) {
-                world.trigger(PixelAsked { at });
+                world.trigger(PixelAsked { question, at });
             }
         }
         Armed::Aim => handles::aim(world, at),

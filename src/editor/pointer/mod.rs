@@ -15,6 +15,7 @@ use super::pick;
 use super::schedule::{Dispatch, EditorUpdate};
 use super::selection::Selection;
 use super::viewport::Viewport;
+use crate::inspect::Question;
 use crate::view::{Outlined, Symbols};
 use bevy::app::{App, Plugin};
 use bevy::ecs::event::Event;
@@ -83,17 +84,18 @@ pub(super) enum PointerUse {
 pub(super) enum Armed {
     #[default]
     No,
-    /// Why a pixel has its value.
-    Why,
+    /// Of which pixel this is asked.
+    Why(Question),
     /// What the selected lights and cameras shall look at.
     Aim,
     /// What the selected cameras shall see sharp.
     Focus,
 }
 
-/// It was asked why the pixel there has its value; its rays are being traced.
+/// Something was asked of the pixel there; its rays are being traced.
 #[derive(Event, Clone, Copy, Debug)]
 pub(super) struct PixelAsked {
+    pub question: Question,
     /// Logical pixels of the window.
     pub at: Vec2,
 }

@@ -99,10 +99,10 @@ pub(super) fn place(world: &mut World, spot: &Spot) -> Result<Vec2, String> {
         }
         Spot::Grip(name, index) => {
             let id = named(world, name)?;
-            let grips = grips_of_selection(world);
+            let grips = grips_of_selection(world).into_iter();
             let (_, point) = grips
-                .into_iter()
-                .find(|(grip, _)| grip.id == id && grip.index == *index)
+                .filter(|(grip, _)| grip.id == id)
+                .nth(*index)
                 .ok_or(format!("{name:?} is not selected, or has no point {index}"))?;
             seen(world, point, name)
         }

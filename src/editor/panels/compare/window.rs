@@ -5,24 +5,26 @@ use super::difference::{Figures, How, difference};
 use super::histogram::histogram_ui;
 use super::zoom::{Zoom, channels};
 use super::{KeptPictures, PIXELS};
-use crate::editor::inspection::column::color_text;
 use crate::editor::panels::fields::number;
+use crate::editor::panels::save_form::{SaveForm, save_ui};
 use crate::editor::panels::says::Says;
 use crate::editor::trees::background::{Background, Outcome};
 use crate::editor::viewport::EditorCamera;
 use crate::film::Picture;
+use crate::inspect::color_text;
 use crate::scene::Quantity;
 use crate::view::TracedRender;
 use bevy::ecs::query::With;
 use bevy::ecs::world::{Mut, World};
 use bevy::math::{UVec2, Vec3};
 use bevy_egui::egui::{self, Color32, ColorImage, ComboBox, RichText, TextureHandle, Ui, vec2};
+use std::io::Cursor;
 use std::time::{Duration, Instant};
 
 /// How often the view's picture is looked at again: it is compared on one core for some hundredths of a second.
 const AGAIN: Duration = Duration::from_millis(400);
 /// Points of what stands below the picture.
-const BELOW: f32 = 90.0;
+const BELOW: f32 = 120.0;
 const GAIN: Quantity = Quantity::within(0.01, 10_000.0, "×").step(0.1);
 const INKS: [Color32; 2] = [
     Color32::from_rgb(240, 170, 60),
@@ -43,6 +45,7 @@ pub(super) struct Comparison {
     sides: [Side; 2],
     look: Look,
     zoom: Zoom,
+    save: SaveForm,
     drawn: Option<Drawn>,
     under_way: Option<Background<Drawn>>,
     /// When that which is under way, or drawn, was begun.
@@ -71,6 +74,7 @@ impl Comparison {
                 gain: 4.0,
             },
             zoom: Zoom::default(),
+            save: SaveForm::default(),
             drawn: None,
             under_way: None,
             begun: Instant::now(),
@@ -175,14 +179,14 @@ pub(in crate::editor::panels) fn window_ui(
             .max_size(most)
             .show(context, |ui| {
                 crate::editor::panels::contained(ui, |ui| {
-                    inner_ui(ui, &kept, &mut comparison);
+                    inner_ui(ui, world, &kept, &mut comparison);
                 });
             });
         kept.comparison = is_open.then_some(comparison);
     });
 }
 
-fn inner_ui(ui: &mut Ui, kept: &KeptPictures, comparison: &mut Comparison) {
+fn inner_ui(ui: &mut Ui, world: &mut World, kept: &KeptPictures, comparison: &mut Comparison) {
     choices_ui(ui, kept, comparison);
     let is_under_way = comparison.under_way.is_some();
     let Some(drawn) = &comparison.drawn else {
@@ -218,6 +222,38 @@ fn inner_ui(ui: &mut Ui, kept: &KeptPictures, comparison: &mut Comparison) {
     pixel_ui(ui, pixel, pair);
     let [a, b] = &drawn.pair.histograms;
     histogram_ui(ui, &[(a, INKS[0]), (b, INKS[1])]);
+    let seen = comparison.zoom.seen;
+    let kinds = ".png, the part that is seen, pixel by pixel";
+    save_ui(
+        ui,
+        world,
+        &mut comparison.save,
+        ("compared.png", kinds),
+        |file| {
+            let is_png = file
+                .extension()
+                .is_some_and(|extension| extension.eq_ignore_ascii_case("png"));
+            if !is_png {
+                return Err(format!("{}: call it .png", file.display()));
+            }
+            let image = drawn.pair.image(drawn.look).ok_or("there is no picture")?;
+            png_of(&image, seen)
+        },
+    );
+}
+
+/// A part of a picture, its first and its last pixel included, as a file.
+fn png_of(image: &ColorImage, [first, last]: [UVec2; 2]) -> Result<Vec<u8>, String> {
+    let size = last + UVec2::ONE - first;
+    let pixel = |x, y| {
+        let at = (first.y + y) as usize * image.size[0] + (first.x + x) as usize;
+        image::Rgba(image.pixels[at].to_srgba_unmultiplied())
+    };
+    let part = image::RgbaImage::from_fn(size.x, size.y, pixel);
+    let mut bytes = Vec::new();
+    part.write_to(&mut Cursor::new(&mut bytes), image::ImageFormat::Png)
+        .map_err(|why| why.to_string())?;
+    Ok(bytes)
 }
 
 /// Black outside of it.
@@ -383,6 +419,20 @@ mod tests {
         desk.settle();
         assert!(desk.find("Difference").is_none());
         assert!(desk.world().resource::<KeptPictures>().all.is_empty());
+    }
+
+    #[test]
+    fn what_is_seen_of_a_comparison_is_written_pixel_by_pixel() {
+        let level = |x: usize, y: usize| Color32::from_gray((10 * y + x) as u8);
+        let pixels = (0..6 * 4).map(|i| level(i % 6, i / 6)).collect();
+        let whole = ColorImage::new([6, 4], pixels);
+        let bytes = png_of(&whole, [UVec2::new(1, 2), UVec2::new(4, 3)]).unwrap();
+        let read = image::load_from_memory(&bytes).unwrap().to_rgba8();
+        assert_eq!(read.dimensions(), (4, 2));
+        for (x, y, pixel) in read.enumerate_pixels() {
+            let expected = level(x as usize + 1, y as usize + 2);
+            assert_eq!(pixel.0, expected.to_array(), "pixel {x}, {y}");
+        }
     }
 
     #[test]

@@ -19,6 +19,8 @@ const PER_POINT: f32 = 1.005;
 pub(super) struct Zoom {
     /// Points of a pixel's side, and the place in the picture, in pixels, that is in the middle; all of it, where there is none.
     near: Option<(f32, Pos2)>,
+    /// The first and the last pixel that are seen.
+    pub seen: [UVec2; 2],
 }
 
 impl Zoom {
@@ -56,12 +58,15 @@ impl Zoom {
             let inside = whole.contains(at);
             inside.then(|| UVec2::new(pixel.x as u32, pixel.y as u32).min(size - UVec2::ONE))
         };
-        if scale >= NUMBERS
-            && let (Some(first), Some(last)) = (
-                pixel_at(place.min.max(whole.min)),
-                pixel_at(place.max.min(whole.max - vec2(0.5, 0.5))),
-            )
-        {
+        let ends = (
+            pixel_at(place.min.max(whole.min)),
+            pixel_at(place.max.min(whole.max - vec2(0.5, 0.5))),
+        );
+        let (Some(first), Some(last)) = ends else {
+            return None;
+        };
+        self.seen = [first, last];
+        if scale >= NUMBERS {
             for y in first.y..=last.y {
                 for x in first.x..=last.x {
                     let at = corner + scale * vec2(x as f32 + 0.5, y as f32 + 0.5);
@@ -91,6 +96,7 @@ impl Zoom {
             let below = middle + offset / scale;
             let closer = Self {
                 near: Some((scale * PER_POINT.powf(scrolled), middle)),
+                ..*self
             };
             let (scale, _) = closer.of(size, place.size());
             // What is below the pointer stays there.
@@ -162,6 +168,7 @@ mod tests {
         assert_eq!(Zoom::default().of(size, room), (2.0, pos2(100.0, 50.0)));
         let far = Zoom {
             near: Some((0.01, pos2(3.0, 3.0))),
+            ..Zoom::default()
         };
         assert_eq!(far.of(size, room).0, 2.0);
     }

@@ -12,7 +12,10 @@ use crate::sync::{Traced, TracedCameras};
 use bevy::ecs::world::World;
 use bevy::math::UVec2;
 use bevy::platform::cell::SyncCell;
-use bevy_egui::egui::{self, Color32, ColorImage, Sense, TextureHandle, TextureOptions, Ui, vec2};
+use bevy_egui::egui::{
+    self, Color32, ColorImage, Sense, TextureHandle, TextureOptions, Ui, WidgetInfo, WidgetType,
+    vec2,
+};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 
@@ -98,6 +101,7 @@ pub(super) fn scenes_ui(ui: &mut Ui, world: &mut World, dialogs: &mut Dialogs) {
         for (scene, picture) in SCENES.iter().zip(pictures) {
             let size = vec2(SHOWN[0] + 8.0, SHOWN[1] + 26.0);
             let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+            response.widget_info(|| WidgetInfo::labeled(WidgetType::Button, true, scene.name));
             let response = response.says(scene.sentence);
             let visuals = ui.style().interact(&response);
             let (fill, ink) = (visuals.weak_bg_fill, visuals.fg_stroke.color);

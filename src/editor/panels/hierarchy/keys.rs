@@ -2,7 +2,7 @@
 //! until Escape or a click elsewhere gives the letters back to the commands.
 
 use super::super::outline::Outline;
-use super::super::outline_rows::Row;
+use super::super::outline_rows::{Row, is_in_folder};
 use super::super::says::note_hint;
 use super::{Hierarchy, ROW, click};
 use crate::editor::selection::Selection;
@@ -111,19 +111,20 @@ fn arrow(world: &mut World, panel: &mut Hierarchy, rows: &[Row], key: Key, shift
             };
             let outline = world.resource::<Outline>();
             let item = &outline.items[at];
-            let has_children = item.end > at + 1;
-            let folded = panel.folded.contains(item.id);
+            let below = item.end > at + 1;
+            let has_children = below || is_in_folder(item) && !outline.users(item).is_empty();
+            let folded = panel.folded.contains(item);
             match key {
                 Key::ArrowLeft if has_children && !folded => {
                     panel.folded.toggle(item.id);
                     None
                 }
                 Key::ArrowLeft => outline.parent(at),
-                _ if folded => {
+                _ if folded && has_children => {
                     panel.folded.toggle(item.id);
                     None
                 }
-                _ => has_children.then_some(at + 1),
+                _ => below.then_some(at + 1),
             }
         }
     };

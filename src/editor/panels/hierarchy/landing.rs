@@ -75,7 +75,7 @@ fn landing(outline: &Outline, rows: &[Row], ids: &[SceneId], target: Option<usiz
     let place = later.unwrap_or(to);
     let shown = rows.iter().position(|row| match row {
         Row::Item(at) => *at >= place,
-        Row::Materials(_) => true,
+        Row::Materials(_) | Row::User { .. } => true,
     });
     shown.unwrap_or(rows.len())
 }

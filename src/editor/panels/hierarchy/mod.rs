@@ -15,7 +15,7 @@ use keys::ListKeys;
 use super::kind_icons::{SIDE, draw_kind};
 use super::outline::{Kind, Outline, Shown};
 use super::outline_rows::{Filter, Folded, Row, Rows};
-use super::says::Says;
+use super::says::{Says, name_control};
 use super::state::Renaming;
 use super::theme::accent;
 use crate::editor::action::Action;
@@ -125,6 +125,7 @@ pub(super) fn hierarchy_ui(ui: &mut Ui, world: &mut World, panel: &mut Hierarchy
     );
     if below.height() > 1.0 {
         let response = ui.interact(below, ui.id().with("below"), Sense::click());
+        name_control(&response, "Below the list: a click selects nothing");
         if response.clicked() {
             deeds.push(Deed::Nothing);
         }

@@ -8,8 +8,8 @@ use super::super::state::Renaming;
 use super::{Deed, EYE, Hierarchy, INDENT, ROW, landing};
 use crate::editor::selection::Selection;
 use bevy_egui::egui::{
-    self, Color32, Pos2, Rect, Response, Sense, TextEdit, TextStyle, TextWrapMode, Ui, WidgetText,
-    pos2, vec2,
+    self, Color32, Pos2, Rect, Response, Sense, TextEdit, TextStyle, TextWrapMode, Ui, WidgetInfo,
+    WidgetText, WidgetType, pos2, vec2,
 };
 
 /// What the rows are drawn of.
@@ -24,6 +24,29 @@ impl List<'_> {
         match self.rows[index] {
             Row::Item(at) => self.item_ui(ui, index, at, panel, deeds),
             Row::Materials(count) => folder_ui(ui, count, panel, deeds),
+            Row::User { object, material } => self.user_ui(ui, object, material, deeds),
+        }
+    }
+
+    /// An object below the material that it has: to be seen and chosen.
+    fn user_ui(&self, ui: &mut Ui, object: usize, material: usize, deeds: &mut Vec<Deed>) {
+        let item = &self.outline.items[object];
+        let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
+        let of = self.outline.items[material].id.0;
+        let response = ui.interact(rect, ui.id().with(("user", item.id.0, of)), Sense::click());
+        let selected = self.selection.contains(item.id);
+        name_row(&response, item, selected);
+        let (ink, icon_ink) = inks(ui, rect, &response, selected, item.unseen);
+        let x = rect.min.x + 2.0 + 3.0 * INDENT;
+        let y = rect.center().y;
+        draw_kind(ui.painter(), pos2(x + 8.0, y), item.kind, icon_ink);
+        let field = Rect::from_min_max(pos2(x + 19.0, rect.min.y), rect.max);
+        name_ui(ui, field, &item.name, ink);
+        if response.clicked() {
+            deeds.push(Deed::Click(object));
+        }
+        if response.secondary_clicked() {
+            deeds.push(Deed::Menu(object));
         }
     }
 
@@ -41,13 +64,15 @@ impl List<'_> {
         let id = ui.id().with(("row", item.id.0));
         let response = ui.interact(body, id, Sense::click_and_drag());
         let selected = self.selection.contains(item.id);
+        name_row(&response, item, selected);
         let (ink, icon_ink) = inks(ui, rect, &response, selected, item.unseen);
         let depth = item.depth + u32::from(is_in_folder(item));
         let x = rect.min.x + 2.0 + INDENT * depth as f32;
         let y = rect.center().y;
-        if item.end > at + 1 {
-            let folded = panel.folded.contains(item.id) && panel.filter.is_off();
-            if fold_ui(ui, pos2(x, y), item.id.0, folded) {
+        let is_shared = is_in_folder(item) && !self.outline.users(item).is_empty();
+        if item.end > at + 1 || is_shared && panel.filter.is_off() {
+            let folded = panel.folded.contains(item) && panel.filter.is_off();
+            if fold_ui(ui, pos2(x, y), item, folded) {
                 deeds.push(Deed::Fold(item.id));
             }
         }
@@ -74,6 +99,13 @@ impl List<'_> {
         }
         deeds.extend(landing::drag_ui(ui, self, index, at, body, &response));
     }
+}
+
+fn name_row(response: &Response, item: &Item, selected: bool) {
+    response.widget_info(|| {
+        let what = format!("{}, {}", item.name, item.kind.name());
+        WidgetInfo::selected(WidgetType::SelectableLabel, true, selected, what)
+    });
 }
 
 /// Fills the row; the colours of text and icon.
@@ -120,9 +152,12 @@ fn name_ui(ui: &Ui, rect: Rect, name: &str, ink: Color32) {
 fn folder_ui(ui: &mut Ui, count: usize, panel: &Hierarchy, deeds: &mut Vec<Deed>) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
     let response = response.says("Materials that several objects can use; a click folds them away");
+    let name = format!("Materials ({count})");
+    let folded = panel.folded.folder() && panel.filter.is_off();
+    response
+        .widget_info(|| WidgetInfo::selected(WidgetType::CollapsingHeader, true, !folded, &name));
     let (ink, icon_ink) = inks(ui, rect, &response, false, false);
     let (x, y) = (rect.min.x + 2.0, rect.center().y);
-    let folded = panel.folded.folder() && panel.filter.is_off();
     draw_fold(ui.painter(), pos2(x + 5.0, y), folded, icon_ink);
     draw_kind(
         ui.painter(),
@@ -131,16 +166,20 @@ fn folder_ui(ui: &mut Ui, count: usize, panel: &Hierarchy, deeds: &mut Vec<Deed>
         icon_ink,
     );
     let field = Rect::from_min_max(pos2(x + INDENT + 19.0, rect.min.y), rect.max);
-    name_ui(ui, field, &format!("Materials ({count})"), ink);
+    name_ui(ui, field, &name, ink);
     if response.clicked() {
         deeds.push(Deed::FoldMaterials);
     }
 }
 
 /// The triangle that folds; true where it was clicked.
-fn fold_ui(ui: &Ui, left: Pos2, id: u64, folded: bool) -> bool {
+fn fold_ui(ui: &Ui, left: Pos2, item: &Item, folded: bool) -> bool {
     let rect = Rect::from_center_size(left + vec2(5.0, 0.0), vec2(14.0, ROW));
-    let response = ui.interact(rect, ui.id().with(("fold", id)), Sense::click());
+    let response = ui.interact(rect, ui.id().with(("fold", item.id.0)), Sense::click());
+    response.widget_info(|| {
+        let what = format!("What is below {}", item.name);
+        WidgetInfo::selected(WidgetType::CollapsingHeader, true, !folded, what)
+    });
     let ink = ui.style().interact(&response).fg_stroke.color;
     draw_fold(ui.painter(), rect.center(), folded, ink);
     response.clicked()
@@ -149,9 +188,13 @@ fn fold_ui(ui: &Ui, left: Pos2, id: u64, folded: bool) -> bool {
 /// The eye that hides; true where it was clicked.
 fn eye_ui(ui: &Ui, item: &Item, row: Rect, selected: bool) -> bool {
     let rect = Rect::from_min_max(pos2(row.max.x - EYE, row.min.y), row.max);
-    let response = ui
-        .interact(rect, ui.id().with(("eye", item.id.0)), Sense::click())
-        .says("Hides or shows it and what is below it; what is hidden is not traced");
+    let response = ui.interact(rect, ui.id().with(("eye", item.id.0)), Sense::click());
+    response.widget_info(|| {
+        let what = format!("{} is shown", item.name);
+        WidgetInfo::selected(WidgetType::Checkbox, true, !item.hidden, what)
+    });
+    let response =
+        response.says("Hides or shows it and what is below it; what is hidden is not traced");
     let strength = match (item.hidden, response.hovered()) {
         (_, true) => 1.0,
         (true, _) => 0.6,

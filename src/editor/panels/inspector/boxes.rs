@@ -3,11 +3,13 @@
 use super::super::fields::{chosen_ui, properties_ui, row, whole_row};
 use super::super::says::Says;
 use crate::editor::action::Action;
-use crate::editor::inspection::{DebugRay, Names};
+use crate::editor::inspection::DebugRay;
 use crate::editor::selection::Selection;
 use crate::editor::texts::grouped;
 use crate::editor::trees::BoxRanges;
-use crate::inspect::{BoxChoice, BoxColor, BoxRange, BoxSettings, InspectSettings, TreeForm};
+use crate::inspect::{
+    BoxChoice, BoxColor, BoxRange, BoxSettings, InspectSettings, Names, TreeForm,
+};
 use crate::scene::{Property, Quantity, SceneId};
 use crate::sync::Traced;
 use crate::trace::RayHit;

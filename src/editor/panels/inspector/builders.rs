@@ -1,9 +1,9 @@
 //! The builders compared: each one's tree over the scene in numbers and histograms, side by side.
 
-use super::super::says::Says;
+use super::super::save_form::{SaveForm, TABLES, is_csv, save_ui};
+use super::super::says::{Says, name_control};
 use super::figure_table::{Cell, Row, color, figure_table_ui, short};
 use super::measuring::{measure_ui, switch_builder};
-use super::save_text::{SaveText, save_text_ui};
 use super::still_plot::still_plot;
 use crate::bvh::{Builder, LARGEST_LEAF_BIN};
 use crate::editor::trees::measure::{BUILDERS, Measurements, compare};
@@ -18,7 +18,7 @@ use egui_plot::{Line, PlotPoints};
 /// What the panel keeps of it.
 #[derive(Resource, Default)]
 pub(in super::super) struct Builders {
-    save: SaveText,
+    save: SaveForm,
 }
 
 pub(super) fn builders_ui(ui: &mut Ui, world: &mut World, form: &mut Builders) {
@@ -58,16 +58,13 @@ pub(super) fn builders_ui(ui: &mut Ui, world: &mut World, form: &mut Builders) {
         &rows,
         |row| &row.depths,
     );
-    save_text_ui(
-        ui,
-        world,
-        &mut form.save,
-        "builders.md",
-        |is_csv| match is_csv {
+    save_ui(ui, world, &mut form.save, ("builders.md", TABLES), |file| {
+        let text = match is_csv(file)? {
             true => csv(&rows),
             false => markdown(&rows),
-        },
-    );
+        };
+        Ok(text.into_bytes())
+    });
 }
 
 fn builder_of(row: &BuilderFigures) -> Option<Builder> {
@@ -219,7 +216,7 @@ fn histogram_ui(
     ui.weak(title).says(
         "A line for each builder, in the colour of its heading; a tree that is one leaf is left out",
     );
-    still_plot(id, 90.0)
+    let shown = still_plot(id, 90.0)
         .include_y(0.0)
         .label_formatter(|name, at| {
             let bin = at.x.round();
@@ -235,6 +232,7 @@ fn histogram_ui(
                 plot.line(line);
             }
         });
+    name_control(&shown.response, title);
 }
 
 /// Percent of the leaves in each bin from the first to the last that has any, with an empty one on

@@ -2,7 +2,7 @@
 //! traced are like.
 
 use super::super::fields::{properties_ui, section};
-use super::super::says::Says;
+use super::super::says::{Says, name_control};
 use super::super::state::with;
 use super::super::status::memory_text;
 use super::super::theme::accent;
@@ -256,9 +256,10 @@ fn histogram_ui(ui: &mut Ui, id: &str, axis: &str, counts: &[u32], is_clipped: b
         let more = if more { " or more" } else { "" };
         format!("{}{more}: {} leaves", bar.argument, bar.value)
     };
-    still_plot(id, 90.0).include_y(0.0).show(ui, |plot| {
+    let shown = still_plot(id, 90.0).include_y(0.0).show(ui, |plot| {
         plot.bar_chart(BarChart::new(axis, bars).element_formatter(Box::new(label)));
     });
+    name_control(&shown.response, axis);
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! How the error of the running render falls: error against time, both by their logarithms, where
 //! a straight line is a power law and its slope the exponent.
 
-use super::super::says::Says;
+use super::super::says::{Says, name_control};
 use super::super::status::{error_text, percent};
 use super::super::theme::accent;
 use super::still_plot::still_plot;
@@ -51,7 +51,7 @@ pub(super) fn error_plot_ui(ui: &mut Ui, status: Option<&Status>, curve: &mut Er
         let start = places[0][0];
         vec![[start, error + 0.5 * (time - start)], [time, error]]
     });
-    still_plot("error-of-time", 170.0)
+    let shown = still_plot("error-of-time", 170.0)
         .show_axes([true, true])
         .x_grid_spacer(decades)
         .y_grid_spacer(decades)
@@ -79,6 +79,10 @@ pub(super) fn error_plot_ui(ui: &mut Ui, status: Option<&Status>, curve: &mut Er
                     .radius(2.5),
             );
         });
+    name_control(
+        &shown.response,
+        "The picture's error against time, both as powers of ten",
+    );
     ui.horizontal(|ui| {
         let says = "Keeps this curve, to compare with other settings";
         if ui.small_button("Keep").says(says).clicked() {

@@ -21,7 +21,6 @@ mod pair;
 mod performance;
 mod presets;
 mod render;
-mod save_text;
 mod shape;
 mod still_plot;
 mod switches;

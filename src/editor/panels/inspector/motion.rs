@@ -5,7 +5,7 @@ use super::super::says::Says;
 use super::camera::optional_ui;
 use super::switches::switches_ui;
 use crate::editor::extent::{extent_of, scene_extent, world_from_parent};
-use crate::editor::inspection::column::vector_text;
+use crate::inspect::vector_text;
 use crate::scene::{
     DirectionalLamp, MeshSource, Motion, ParallelogramLamp, Phong, PointLamp, SceneCamera, SceneId,
     SegmentLamp,

@@ -1,10 +1,10 @@
 //! The performance test: the view rendered several times with each builder's trees.
 
 use super::super::fields::whole_row;
+use super::super::save_form::{SaveForm, TABLES, is_csv, save_ui};
 use super::super::says::Says;
 use super::figure_table::{Cell, Row, figure_table_ui, short};
 use super::measuring::{measure_ui, switch_builder};
-use super::save_text::{SaveText, save_text_ui};
 use crate::bvh::Builder;
 use crate::editor::trees::measure::{Measurements, test_performance};
 use crate::editor::trees::of_setting;
@@ -19,7 +19,7 @@ use bevy_egui::egui::{Label, RichText, Ui};
 pub(in super::super) struct PerformanceForm {
     runs: u32,
     spp: u32,
-    save: SaveText,
+    save: SaveForm,
 }
 
 impl Default for PerformanceForm {
@@ -27,7 +27,7 @@ impl Default for PerformanceForm {
         Self {
             runs: 5,
             spp: 1,
-            save: SaveText::default(),
+            save: SaveForm::default(),
         }
     }
 }
@@ -65,14 +65,17 @@ pub(super) fn performance_ui(ui: &mut Ui, world: &mut World, form: &mut Performa
         ui.add(Label::new(RichText::new(format!("{why}.")).weak()).wrap())
             .says("glassbox bench SCENE --with-none measures it all the same");
     }
-    save_text_ui(
+    save_ui(
         ui,
         world,
         &mut form.save,
-        "performance.md",
-        |is_csv| match is_csv {
-            true => done.csv(),
-            false => done.markdown(),
+        ("performance.md", TABLES),
+        |file| {
+            let text = match is_csv(file)? {
+                true => done.csv(),
+                false => done.markdown(),
+            };
+            Ok(text.into_bytes())
         },
     );
 }

@@ -3,8 +3,8 @@
 use super::super::says::Says;
 use super::none_chosen_ui;
 use crate::editor::action::Action;
-use crate::editor::inspection::column::{color_text, metres};
-use crate::editor::inspection::{Inspected, Names};
+use crate::editor::inspection::Inspected;
+use crate::inspect::{Names, color_text, metres};
 use crate::scene::SceneId;
 use crate::trace::{LightSample, RayHit, RayTree, TracedRay};
 use bevy::ecs::world::World;

@@ -2,10 +2,10 @@
 
 use super::super::says::Says;
 use crate::editor::inspection::DebugRay;
-use crate::editor::inspection::addition::Statement;
 use crate::editor::inspection::debug_ray::Shot;
 use crate::editor::viewport::EditorCamera;
 use crate::film::Sum;
+use crate::inspect::Statement;
 use crate::scene::{Output, RenderSettings};
 use crate::trace::{self, RayTree};
 use crate::view::TracedRender;

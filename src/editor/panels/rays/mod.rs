@@ -22,9 +22,9 @@ mod tests;
 
 use super::says::Says;
 use crate::editor::inspection::choice::Side;
-use crate::editor::inspection::{DebugRay, Inspected, Names};
+use crate::editor::inspection::{DebugRay, Inspected};
 use crate::editor::preferences::Preferences;
-use crate::inspect::InspectSettings;
+use crate::inspect::{InspectSettings, Names};
 use crate::scene::RenderSettings;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::{Mut, World};

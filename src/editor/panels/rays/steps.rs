@@ -4,16 +4,15 @@ use super::super::fields::number;
 use super::super::says::Says;
 use super::none_chosen_ui;
 use crate::editor::command::tooltip;
-use crate::editor::inspection::tell::tree_name;
-use crate::editor::inspection::{DebugRay, Inspected, Names};
-use crate::inspect::{Step, StepKind};
+use crate::editor::inspection::{DebugRay, Inspected};
+use crate::inspect::{Names, Step, StepKind, tree_name};
 use crate::scene::Quantity;
 use crate::sync::Traced;
 use crate::trace::{RayTree, World};
 use bevy::ecs::world;
 use bevy_egui::egui::{
-    Align2, Button, Color32, FontFamily, FontId, Grid, Rect, RichText, Sense, Slider, Ui, pos2,
-    vec2,
+    Align2, Button, Color32, FontFamily, FontId, Grid, Rect, RichText, Sense, Slider, Ui,
+    WidgetInfo, WidgetType, pos2, vec2,
 };
 
 /// Points.
@@ -211,6 +210,10 @@ fn list_ui(ui: &mut Ui, inspected: &mut Inspected, tell: &Tell) {
         }
         let response = ui.interact(seen, ui.id().with(("step", at)), Sense::click());
         let here = at == inspected.stepper.at();
+        response.widget_info(|| {
+            let name = format!("Step {at}");
+            WidgetInfo::selected(WidgetType::SelectableLabel, true, here, name)
+        });
         let fill = match (here, response.hovered()) {
             (true, _) => visuals.selection.bg_fill,
             (_, true) => visuals.widgets.noninteractive.bg_stroke.color,

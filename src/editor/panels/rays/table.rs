@@ -3,14 +3,12 @@
 use super::super::says::Says;
 use super::super::theme::accent;
 use crate::editor::inspection::Inspected;
-use crate::editor::inspection::Names;
-use crate::editor::inspection::column::{COLUMNS, Column, Heading};
 use crate::editor::inspection::list::Row;
-use crate::inspect::RaySettings;
+use crate::inspect::{COLUMNS, Column, Heading, Names, RaySettings};
 use crate::trace::{RayEnd, RayTree, TracedRay, srgb};
 use bevy_egui::egui::{
     self, Align, Align2, Color32, FontFamily, FontId, Pos2, Rect, ScrollArea, Sense, Stroke, Ui,
-    pos2, vec2,
+    WidgetInfo, WidgetType, pos2, vec2,
 };
 use glam::Vec3;
 
@@ -204,6 +202,10 @@ fn row_ui(
     let response = ui.interact(seen, ui.id().with(("ray", at)), Sense::click());
     let visuals = ui.visuals();
     let is_chosen = inspected.ray() == Some(row.ray);
+    response.widget_info(|| {
+        let name = format!("{} ray {}", ray.kind.name(), row.ray);
+        WidgetInfo::selected(WidgetType::SelectableLabel, true, is_chosen, name)
+    });
     let fill = match (is_chosen, response.hovered(), at % 2) {
         (true, ..) => visuals.selection.bg_fill,
         (_, true, _) => visuals.widgets.noninteractive.bg_stroke.color,
@@ -302,6 +304,10 @@ fn fold_ui(ui: &Ui, ray: u32, left: Pos2, inspected: &Inspected, ink: Color32) -
     }
     let response = ui.interact(seen, ui.id().with(("fold ray", ray)), Sense::click());
     let folded = inspected.arrangement.folded.contains(&ray);
+    response.widget_info(|| {
+        let name = format!("What ray {ray} leads to");
+        WidgetInfo::selected(WidgetType::CollapsingHeader, true, !folded, name)
+    });
     let c = rect.center();
     let triangle = if folded {
         [vec2(-2.0, -3.5), vec2(3.0, 0.0), vec2(-2.0, 3.5)]

@@ -2,9 +2,7 @@
 
 use super::super::says::Says;
 use super::super::status::percent;
-use crate::editor::inspection::Names;
-use crate::editor::inspection::column::color_text;
-use crate::inspect::{Source, explanation, sources};
+use crate::inspect::{Names, Source, color_text, explanation, sources};
 use crate::trace::RayTree;
 use bevy_egui::egui::{Grid, Label, RichText, Ui};
 

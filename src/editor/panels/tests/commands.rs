@@ -4,15 +4,15 @@ use super::super::dialogs::{Dialog, Dialogs};
 use super::super::palette::OpenPalette;
 use super::Desk;
 use crate::editor::command::{AddCommands, Command, CommandTable, Over, State};
+use crate::editor::inspection::DebugRay;
 use crate::editor::inspection::debug_ray::Shot;
-use crate::editor::inspection::{DebugRay, Names};
 use crate::editor::keys::Keys;
 use crate::editor::notice::Notices;
 use crate::editor::pointer::{PixelAsked, RightClicked};
 use crate::editor::preferences::Preferences;
 use crate::editor::selection::Selection;
 use crate::editor::{Action, edits};
-use crate::inspect::{InspectPreset, InspectSettings, answer};
+use crate::inspect::{InspectPreset, InspectSettings, Names, Question, answer};
 use crate::scene::SceneId;
 use crate::sync::TracedCameras;
 use bevy::ecs::resource::Resource;
@@ -227,7 +227,10 @@ fn a_pixel_that_was_asked_about_is_answered_in_a_sentence_until_another_is_shot(
     };
     desk.world().resource_mut::<DebugRay>().shoot(shot);
     let at = Vec2::new(600.0, 300.0);
-    desk.world().trigger(PixelAsked { at });
+    desk.world().trigger(PixelAsked {
+        question: Question::Black,
+        at,
+    });
     let start = Instant::now();
     while desk.world().resource::<DebugRay>().is_busy() {
         assert!(start.elapsed().as_secs() < 60, "no rays came");
@@ -235,7 +238,11 @@ fn a_pixel_that_was_asked_about_is_answered_in_a_sentence_until_another_is_shot(
     }
     desk.settle();
     let rays = desk.world().resource::<DebugRay>().rays().unwrap().clone();
-    let sentence = answer(&rays, &desk.world().resource::<Names>().things);
+    let sentence = answer(
+        Question::Black,
+        &rays,
+        &desk.world().resource::<Names>().things,
+    );
     desk.place_of(&sentence);
     desk.click_on("Ray tree");
     assert!(desk.world().resource::<Preferences>().show_rays);

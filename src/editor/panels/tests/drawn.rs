@@ -7,13 +7,14 @@ use super::super::inspector::{Inspector, Tab};
 use super::super::outline::Outline;
 use super::desk::{Desk, LARGE, SMALL, USUAL};
 use crate::editor::notice::Notices;
+use crate::editor::preferences::Preferences;
 use crate::editor::selection::Selection;
 use crate::editor::viewport::{Show, Viewport};
 use crate::io::builtin::SCENES;
 use crate::scene::{PointLamp, SceneId};
 use bevy::ecs::name::Name;
 use bevy::math::Vec2;
-use bevy_egui::egui::{Id, Rect, Shape};
+use bevy_egui::egui::{Id, Pos2, Rect, Shape, vec2};
 
 #[test]
 fn every_scene_is_drawn_in_every_tab_at_every_size_and_nothing_of_it_counts_as_changed() {
@@ -113,28 +114,46 @@ fn every_dialog_is_drawn_at_every_size() {
 }
 
 #[test]
-fn a_message_stays_within_the_picture_and_can_be_closed() {
-    let mut desk = Desk::empty(SMALL);
+fn a_message_hides_nothing_of_the_picture_and_is_found_again_once_it_is_closed() {
     let text = "the file cannot be written: ".to_owned() + &"very long ".repeat(30);
-    desk.world().resource_mut::<Notices>().fault(text.clone());
-    desk.settle();
-    let rect = desk.world().resource::<Viewport>().rect;
-    let at = desk.place_of(&text);
-    assert!(rect.contains(Vec2::new(at.x, at.y)), "{at:?} in {rect:?}");
-    // The first ✖ is that of the search field.
-    let close = desk
-        .output
-        .shapes
-        .iter()
-        .filter_map(|clipped| match &clipped.shape {
-            Shape::Text(shape) if shape.galley.text() == "✖" => {
-                Some(shape.pos + 0.5 * shape.galley.size())
+    for hidden in [false, true] {
+        let mut desk = Desk::empty(SMALL);
+        desk.world().resource_mut::<Preferences>().show_hierarchy = !hidden;
+        let lines = vec![
+            "a camera is left out".to_owned(),
+            "two lamps are".to_owned(),
+        ];
+        let mut notices = desk.world().resource_mut::<Notices>();
+        notices.notes("house.glb", lines);
+        notices.fault(text.clone());
+        notices.tell("It was saved.");
+        desk.settle();
+        let picture = desk.world().resource::<Viewport>().rect;
+        for (said, place, _) in texts(&desk) {
+            if said == text || said.starts_with("house.glb") || said == "It was saved." {
+                let middle = Vec2::new(place.center().x, place.center().y);
+                assert!(
+                    !picture.contains(middle),
+                    "{said:?} at {place:?} in {picture:?}"
+                );
+                let window = Rect::from_min_size(Pos2::ZERO, vec2(SMALL[0], SMALL[1]));
+                assert!(window.contains_rect(place), "{said:?} at {place:?}");
             }
-            _ => None,
-        });
-    let close = close.collect::<Vec<_>>().pop().unwrap();
-    desk.click(close);
-    assert!(desk.world().resource::<Notices>().is_empty());
+        }
+        desk.place_of("It was saved.");
+        desk.world().resource_mut::<Notices>().close_all();
+        desk.settle();
+        assert!(desk.find(&text).is_none());
+        desk.click_on("⚠ 2 notes");
+        desk.settle();
+        for said in [text.as_str(), "house.glb: 2 notes", "two lamps are"] {
+            desk.place_of(said);
+        }
+        assert!(desk.find("It was saved.").is_none(), "that does not matter");
+        desk.click_on("Forget what was said");
+        desk.settle();
+        assert!(desk.find("⚠ 2 notes").is_none());
+    }
 }
 
 /// The places of all texts, with what they are cut off at.
@@ -185,7 +204,7 @@ fn many_messages_leave_the_picture_free_and_go_all_at_once() {
     assert!(desk.find("message 25").is_none());
     let first = desk.place_of("message 26");
     let rect = desk.world().resource::<Viewport>().rect;
-    assert!(first.y > rect.center().y, "{first:?} in {rect:?}");
+    assert!(first.y > rect.center().y, "{first:?} beside {rect:?}");
     desk.click_on("Close all");
     assert!(desk.world().resource::<Notices>().is_empty());
 }

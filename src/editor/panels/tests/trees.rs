@@ -23,7 +23,7 @@ const COMPARE: &str = "Compare the builders";
 
 impl Desk {
     /// With all trees built.
-    fn with_trees(scene: &str) -> Self {
+    pub(super) fn with_trees(scene: &str) -> Self {
         let mut desk = Self::open(scene);
         desk.until("built", |world| {
             let traced = world.resource::<Traced>();

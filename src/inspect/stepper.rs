@@ -1,17 +1,14 @@
 //! A ray's way through the trees, played step by step, forwards and back.
 
-use super::choice::Inspected;
-use crate::inspect::{Step, StepKind, Traversal};
-use bevy::ecs::system::{Local, ResMut};
+use super::{Step, StepKind, Traversal};
 use bevy::platform::collections::HashMap;
-use std::time::Instant;
 
 /// Steps a second, at first.
 const SPEED: f32 = 4.0;
 
 /// The traversal, and how far it was played.
 #[derive(Clone, Debug)]
-pub(in crate::editor) struct Stepper {
+pub struct Stepper {
     traversal: Traversal,
     /// What is known of each entry of [`Traversal::stack`].
     marks: Vec<Mark>,
@@ -39,7 +36,7 @@ impl Default for Stepper {
 
 /// What becomes of a node that is put off.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(in crate::editor) struct Mark {
+pub struct Mark {
     /// Where the ray enters its box; `None` where its turn never comes.
     pub t: Option<f32>,
     /// A hit that is known by now is nearer: it will not be entered.
@@ -196,98 +193,4 @@ fn marks(traversal: &Traversal) -> Vec<Mark> {
         }
     }
     marks
-}
-
-/// Lets the time of a frame pass.
-pub(super) fn play(mut inspected: ResMut<Inspected>, mut last: Local<Option<Instant>>) {
-    let now = Instant::now();
-    let before = last.replace(now);
-    if !inspected.stepper.playing {
-        *last = None;
-        return;
-    }
-    if let Some(before) = before {
-        // A window that was not drawn for a while does not jump.
-        let seconds = (now - before).as_secs_f32().min(0.5);
-        inspected.stepper.pass(seconds);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::tests::stepper_of;
-    use super::*;
-
-    #[test]
-    fn steps_are_played_forwards_and_back_within_their_ends() {
-        let (mut stepper, cost) = stepper_of("cornell-box", [300, 240], 0);
-        let count = stepper.len();
-        assert!(count > 5);
-        stepper.back();
-        assert_eq!(stepper.at(), 0);
-        stepper.forward();
-        stepper.forward();
-        assert_eq!(stepper.at(), 2);
-        stepper.back();
-        assert_eq!(stepper.at(), 1);
-        stepper.go(usize::MAX);
-        assert_eq!(stepper.at(), count - 1);
-        // What was counted on the way is what the ray cost.
-        let [entered, missed, pruned, triangles] = stepper.counts();
-        assert_eq!(entered as u64, cost.nodes);
-        assert_eq!((entered + missed + pruned) as u64, cost.boxes);
-        assert_eq!(triangles as u64, cost.triangles);
-    }
-
-    #[test]
-    fn playing_takes_its_time_stops_at_the_end_and_begins_anew_from_there() {
-        let (mut stepper, _) = stepper_of("cornell-box", [300, 240], 0);
-        stepper.speed = 2.0;
-        stepper.toggle();
-        stepper.pass(0.4);
-        assert_eq!(stepper.at(), 0);
-        stepper.pass(0.2);
-        assert_eq!(stepper.at(), 1, "1.2 steps have passed");
-        stepper.pass(1e6);
-        assert_eq!(stepper.at(), stepper.len() - 1);
-        assert!(!stepper.playing);
-        stepper.toggle();
-        assert_eq!((stepper.at(), stepper.playing), (0, true));
-    }
-
-    #[test]
-    fn a_stack_entry_tells_where_it_is_entered_and_is_pruned_only_once_a_nearer_hit_is_known() {
-        let mut pruned = 0;
-        for pixel in [[300, 240], [260, 200], [340, 260], [300, 300]] {
-            let (mut stepper, _) = stepper_of("knot", pixel, 0);
-            for at in 0..stepper.len() {
-                stepper.go(at);
-                for (node, mark) in stepper.stack() {
-                    let rest = &stepper.steps()[at + 1..];
-                    let turn = rest
-                        .iter()
-                        .position(|s| s.triangle.is_none() && (s.instance, s.node) == node);
-                    let Some(turn) = turn else { continue };
-                    assert_eq!(mark.t, rest[turn].t, "step {at}");
-                    let hit_first = rest[..turn].iter().any(|s| s.kind == StepKind::Hit);
-                    let is = rest[turn].kind == StepKind::Pruned && !hit_first;
-                    assert_eq!(mark.is_pruned, is, "step {at}, {node:?}");
-                    pruned += usize::from(is);
-                }
-            }
-        }
-        assert!(pruned > 0, "nothing was ever pruned");
-    }
-
-    #[test]
-    fn nothing_to_play_is_no_fault() {
-        let mut stepper = Stepper::default();
-        stepper.toggle();
-        stepper.forward();
-        stepper.back();
-        stepper.pass(1.0);
-        assert_eq!((stepper.at(), stepper.len()), (0, 0));
-        assert!(stepper.step().is_none());
-        assert_eq!(stepper.stack().count(), 0);
-    }
 }

@@ -1,6 +1,6 @@
-//! Saving a table: as Markdown or as comma-separated values, by the file's name.
+//! Saving what a panel shows, by a path and a button: a table as Markdown or as comma-separated values, a picture.
 
-use super::super::says::Says;
+use super::says::Says;
 use crate::editor::notice::Notices;
 use crate::editor::texts::path_text;
 use crate::io::{check_not_read, replace_file};
@@ -9,17 +9,20 @@ use bevy_egui::egui::{Button, Key, TextEdit, Ui};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+/// The kinds of a table's file.
+pub(super) const TABLES: &str = ".md for Markdown, .csv for a spreadsheet";
+
 /// What is entered.
 #[derive(Default)]
-pub(super) struct SaveText {
+pub(super) struct SaveForm {
     path: Option<String>,
     /// Written by this panel, or meant to be replaced.
     known: Option<PathBuf>,
     refused: Option<String>,
 }
 
-/// What a file's name asks for.
-fn is_csv(path: &Path) -> Result<bool, String> {
+/// What the name of a table's file asks for.
+pub(super) fn is_csv(path: &Path) -> Result<bool, String> {
     let extension = path.extension().map(|e| e.to_ascii_lowercase());
     match extension.as_deref().and_then(|e| e.to_str()) {
         Some("csv") => Ok(true),
@@ -31,13 +34,13 @@ fn is_csv(path: &Path) -> Result<bool, String> {
     }
 }
 
-/// A path and a button; `text` is asked for what to write, as CSV or as Markdown.
-pub(super) fn save_text_ui(
+/// A path and a button; `bytes` is asked for what to write into a file of that name, and `kinds` tells which there are.
+pub(super) fn save_ui(
     ui: &mut Ui,
     world: &mut World,
-    form: &mut SaveText,
-    suggestion: &str,
-    text: impl Fn(bool) -> String,
+    form: &mut SaveForm,
+    (suggestion, kinds): (&str, &str),
+    bytes: impl FnOnce(&Path) -> Result<Vec<u8>, String>,
 ) {
     let path = form.path.get_or_insert_with(|| suggestion.to_owned());
     ui.add_space(4.0);
@@ -48,13 +51,13 @@ pub(super) fn save_text_ui(
         let name = if replaces { "Replace" } else { "Save" };
         let width = (ui.available_width() - 76.0).max(60.0);
         let field = ui.add(TextEdit::singleline(path).desired_width(width));
-        let field = field.says(
-            "Where this table is written: .md for Markdown, .csv for a spreadsheet; relative paths begin in the working folder",
-        );
+        let says =
+            format!("Where this is written: {kinds}; relative paths begin in the working folder");
+        let field = field.says(&says);
         wanted = field.lost_focus() && !replaces && ui.input(|input| input.key_pressed(Key::Enter));
         let says = match replaces {
-            true => "The file is there already: it is replaced by this table",
-            false => "Writes this table",
+            true => "The file is there already: it is replaced",
+            false => "Writes this",
         };
         let button = ui.add_enabled(!file.as_os_str().is_empty(), Button::new(name));
         wanted |= button.says(says).clicked();
@@ -65,10 +68,9 @@ pub(super) fn save_text_ui(
     if !wanted || file.as_os_str().is_empty() {
         return;
     }
-    let written = is_csv(&file).and_then(|is_csv| {
-        let text = text(is_csv);
+    let written = bytes(&file).and_then(|bytes| {
         check_not_read(world, &file)
-            .and_then(|()| replace_file(&file, |out| out.write_all(text.as_bytes())))
+            .and_then(|()| replace_file(&file, |out| out.write_all(&bytes)))
             .map_err(|why| why.to_string())
     });
     form.refused = written.as_ref().err().cloned();

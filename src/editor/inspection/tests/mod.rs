@@ -1,13 +1,16 @@
 //! What the tests of this folder share: an editor without a window, and rays of its scenes.
 
+mod addition;
+mod answers;
+mod stepper;
+mod told;
+
 use super::choice::Inspected;
 use super::debug_ray::{DebugRay, Shot};
-use super::names::Names;
-use super::stepper::Stepper;
 use super::{RaysPlugin, Which};
 use crate::editor::action::Action;
 use crate::editor::headless_editor;
-use crate::inspect::{Traversal, answer};
+use crate::inspect::{Names, Stepper, Traversal};
 use crate::io::builtin;
 use crate::io::{OpenOptions, SceneSource, open};
 use crate::scene::{RenderSettings, SceneId};
@@ -161,40 +164,4 @@ pub(super) fn stepper_of(scene: &str, pixel: [u32; 2], ray: u32) -> (Stepper, Ra
     let mut stepper = Stepper::default();
     stepper.load(Traversal::of(world, settings, rays, ray), false);
     (stepper, rays.rays[ray as usize].cost)
-}
-
-#[test]
-fn one_sentence_says_what_a_pixel_shows_and_agrees_with_its_value() {
-    let mut found = [0; 3];
-    let mut read = |scene: &str, pixels: &[[u32; 2]]| {
-        let mut bench = Bench::open(scene);
-        bench.ray().which = Which::First;
-        for &pixel in pixels {
-            bench.shoot(pixel);
-            bench.wait();
-            let rays = bench.ray().rays().unwrap().clone();
-            let names = bench.app.world().resource::<Names>().things.clone();
-            let text = answer(&rays, &names);
-            let value = rays.samples[0].value;
-            // Beside what the surface has of its own, ambient light included.
-            let by_light = (value - rays.rays[0].added).max_element();
-            let goes_on = text.contains("is transparent, and behind it");
-            if text.contains("is a mirror that sees") {
-                found[2] += 1;
-            } else if text.contains(" is lit by ") && !text.contains("none of that") {
-                found[1] += 1;
-                assert!(by_light > 0.0, "{scene} {pixel:?}, {value}: {text}");
-            } else if text.contains(" is in the shadow of ") && !goes_on {
-                found[0] += 1;
-                assert!(by_light < 1e-6, "{scene} {pixel:?}, {value}: {text}");
-            }
-            assert!(text.ends_with('.') && !text.contains('#'), "{text}");
-        }
-    };
-    let pixel = |i: u32| [30 + 60 * (i % 10), 40 + 75 * (i / 10)];
-    let pixels: Vec<[u32; 2]> = (0..60).map(pixel).collect();
-    for scene in ["cornell-box", "spheres"] {
-        read(scene, &pixels);
-    }
-    assert!(found.iter().all(|&count| count > 0), "{found:?}");
 }

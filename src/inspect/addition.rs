@@ -9,7 +9,7 @@ use glam::Vec3;
 
 /// What was found when the rays were traced.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(in crate::editor) struct Addition {
+pub struct Addition {
     /// The first sample whose rays add up to something else than its value, with the sum.
     unequal: Option<(u64, Vec3)>,
     /// The first sample that is another one when nobody watches, with its value then.
@@ -18,7 +18,8 @@ pub(in crate::editor) struct Addition {
 
 /// What stands below the list.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::editor) struct Statement {
+pub struct Statement {
+    /// One line.
     pub text: String,
     /// Two numbers that ought to be the same are not.
     pub is_fault: bool,
@@ -154,82 +155,4 @@ const ROUNDING: f32 = 1e-6;
 /// Bit for bit, so that what is not a number is itself.
 fn is_same(a: Vec3, b: Vec3) -> bool {
     a.to_array().map(f32::to_bits) == b.to_array().map(f32::to_bits)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::tests::{Bench, SIZE};
-    use super::*;
-    use crate::editor::inspection::Which;
-    use crate::film::render;
-    use bevy::math::UVec2;
-
-    #[test]
-    fn the_rays_add_up_to_what_the_film_added_bit_for_bit() {
-        for scene in ["cornell-box", "spheres", "showcase"] {
-            let mut bench = Bench::open(scene);
-            let pixel = [SIZE.x / 2, SIZE.y / 2];
-            for which in [Which::First, Which::All] {
-                bench.ray().which = which;
-                bench.shoot(pixel);
-                bench.wait();
-                let ray = bench.ray();
-                let rays = ray.rays().unwrap();
-                let addition = ray.addition();
-                let said = addition.says_of_rays(rays);
-                assert!(
-                    !said.is_fault && said.text.contains("bit for bit"),
-                    "{said:?}"
-                );
-                let film = film_of(rays);
-                let said = addition.says_of_film(rays, Some(film));
-                assert!(
-                    !said.is_fault && said.text.contains("bit for bit"),
-                    "{said:?}"
-                );
-            }
-        }
-    }
-
-    fn film_of(rays: &RayTree) -> (Sum, u32) {
-        let mut sum = Sum::default();
-        for sample in &rays.samples {
-            sum.add(sample.value);
-        }
-        (sum, rays.samples.len() as u32)
-    }
-
-    #[test]
-    fn a_picture_of_one_pixel_has_the_sum_that_the_rays_have() {
-        let mut bench = Bench::open("cornell-box");
-        bench.ray().which = Which::All;
-        bench.shoot([300, 240]);
-        bench.wait();
-        let ray = bench.ray();
-        let (world, settings) = ray.traced_with().unwrap();
-        let shot = ray.shot().unwrap();
-        let film = render(world, &shot.camera, settings, &|_, _| {}).film;
-        let pixel = UVec2::new(300, 240);
-        let sum = film.sum(pixel.x, pixel.y);
-        let count = film.count(pixel.x, pixel.y);
-        let rays = ray.rays().unwrap();
-        let said = ray.addition().says_of_film(rays, Some((sum, count)));
-        assert!(said.text.starts_with("the film added the same"), "{said:?}");
-        // One more would not be.
-        let mut other = sum;
-        other.add(Vec3::X);
-        let said = ray.addition().says_of_film(rays, Some((other, count)));
-        assert!(
-            said.is_fault && said.text.contains("ANOTHER SUM"),
-            "{said:?}"
-        );
-        for (film, part) in [
-            (None, "another picture"),
-            (Some((Sum::default(), 0)), "no sample"),
-            (Some((sum, rays.samples.len() as u32 + 1)), "their mean"),
-        ] {
-            let said = ray.addition().says_of_film(rays, film);
-            assert!(!said.is_fault && said.text.contains(part), "{said:?}");
-        }
-    }
 }

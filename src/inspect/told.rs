@@ -1,17 +1,17 @@
 //! What a line stands for, in words and numbers.
 
 use super::column::{color_text, meets, metres, vector_text};
-use super::lit::view;
-use super::names::Names;
+use super::{InspectSettings, Names, NodeFacts, Stands, System, TreeForm, TreeView};
 use crate::bvh::Levels;
-use crate::inspect::{InspectSettings, NodeFacts, Stands, System, TreeForm};
 use crate::trace::{RayTree, World};
-use bevy::math::Vec3;
+use glam::Vec3;
 
 /// A heading, and figures with what they are called.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(in crate::editor) struct Told {
+pub struct Told {
+    /// What it is.
     pub title: String,
+    /// What is known of it.
     pub figures: Vec<(&'static str, String)>,
 }
 
@@ -38,7 +38,7 @@ impl Told {
 }
 
 /// What is known of what a line of a system stands for; `None` where it is gone.
-pub(in crate::editor) fn tell(
+pub fn tell(
     (stands, system): (Stands, System),
     world: &World,
     rays: Option<&RayTree>,
@@ -81,11 +81,7 @@ pub(in crate::editor) fn tell(
 }
 
 /// Of which tree a node is, in words.
-pub(in crate::editor) fn tree_name(
-    world: &World,
-    instance: Option<u32>,
-    names: &Names,
-) -> Option<String> {
+pub fn tree_name(world: &World, instance: Option<u32>, names: &Names) -> Option<String> {
     Some(match instance {
         None if world.aggregate.options().levels == Levels::One => {
             "the tree of all triangles".into()
@@ -96,13 +92,8 @@ pub(in crate::editor) fn tree_name(
 }
 
 /// Everything about a node. Looks at the whole tree: not for every frame.
-pub(in crate::editor) fn node_told(
-    world: &World,
-    instance: Option<u32>,
-    node: u32,
-    names: &Names,
-) -> Option<Told> {
-    let facts = view(world, instance)?.facts(node)?;
+pub fn node_told(world: &World, instance: Option<u32>, node: u32, names: &Names) -> Option<Told> {
+    let facts = TreeView::of(world, instance)?.facts(node)?;
     let NodeFacts {
         depth,
         bounds: [min, max],
@@ -170,60 +161,4 @@ fn ray_told(rays: &RayTree, index: u32, names: &Names) -> Option<Told> {
                 ),
             ),
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::tests::Bench;
-    use super::*;
-    use crate::bvh::node_cost;
-    use crate::sync::Traced;
-
-    #[test]
-    fn a_node_is_told_with_the_figures_of_its_tree() {
-        let bench = Bench::open("cornell-box");
-        let world = &bench.app.world().resource::<Traced>().world;
-        let names = bench.app.world().resource::<Names>();
-        let top = world.aggregate.tree();
-        let told = node_told(world, None, 0, names).unwrap();
-        let figure = |name: &str| {
-            let found = told.figures.iter().find(|(known, _)| *known == name);
-            found.map(|(_, value)| value.as_str()).unwrap_or_default()
-        };
-        assert_eq!(told.title, "Node 0");
-        assert_eq!(figure("level"), "0");
-        assert_eq!(figure("holds"), format!("{} objects", world.objects.len()));
-        let part = 100.0 * node_cost(top, 0) / crate::bvh::sah_cost(top);
-        assert!(figure("SAH").starts_with(&format!("{part:.2} %")));
-        assert_eq!(node_told(world, None, u32::MAX, names), None);
-        assert_eq!(node_told(world, Some(u32::MAX), 0, names), None);
-    }
-
-    #[test]
-    fn whatever_is_drawn_can_be_told_of_and_what_is_gone_cannot() {
-        let mut bench = Bench::open("cornell-box");
-        bench.shoot([300, 240]);
-        let rays = bench.ray().rays().unwrap().clone();
-        let world = bench.app.world();
-        let (traced, names) = (world.resource::<Traced>(), world.resource::<Names>());
-        let inspect = InspectSettings::default();
-        let told = |stands| {
-            let stands = (stands, System::Rays);
-            tell(stands, &traced.world, Some(&rays), &inspect, names)
-        };
-        for index in 0..rays.rays.len() as u32 {
-            let told = told(Stands::Ray(index)).unwrap();
-            assert!(
-                told.figures.iter().any(|(name, _)| *name == "cost"),
-                "{told:?}"
-            );
-        }
-        let triangle = |instance, triangle| Stands::Triangle { instance, triangle };
-        assert!(told(triangle(0, 0)).is_some());
-        assert_eq!(told(triangle(0, u32::MAX)), None);
-        assert_eq!(told(triangle(u32::MAX, 0)), None);
-        assert_eq!(told(Stands::Ray(u32::MAX)), None);
-        let lamp = traced.world.lights.points[0].id;
-        assert_eq!(told(Stands::Light(lamp)).unwrap().title, names.of(lamp));
-    }
 }

@@ -1,40 +1,62 @@
 //! The columns of the list of rays: what each says, how wide it is, and how it sorts.
 
-use super::names::Names;
+use super::Names;
 use crate::trace::{RayEnd, TracedRay};
 use glam::Vec3;
 use std::cmp::Ordering;
 
 /// What is known of a ray, a column each: [`COLUMNS`] says what.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(in crate::editor) enum Column {
+pub enum Column {
+    /// Its kind and number.
     Ray,
+    /// Surfaces before it.
     Depth,
+    /// The object that it leaves.
     From,
+    /// What became of it.
     End,
+    /// What it met.
     Hit,
+    /// Its index in the mesh.
     Triangle,
+    /// Metres.
     Distance,
+    /// Where in the triangle.
     Barycentric,
+    /// The triangle's normal.
     Geometric,
+    /// The normal that shading used.
     Normal,
+    /// The material that it met.
     Material,
+    /// What comes back along it.
     In,
+    /// Its part of what comes back along its parent.
     Out,
+    /// What it put into the sample.
     Adds,
+    /// The part of a light that arrives.
     Transmittance,
+    /// Nodes entered.
     Nodes,
+    /// Boxes tested.
     Boxes,
+    /// Triangles tested.
     Triangles,
 }
 
-/// A column, its heading, its width in points, whether its numbers stand to the right, and what it
-/// holds.
-pub(in crate::editor) struct Heading {
+/// A column as a table has it.
+pub struct Heading {
+    /// Which one.
     pub column: Column,
+    /// What stands above it.
     pub name: &'static str,
+    /// In points, as wide as its widest usual text.
     pub width: f32,
+    /// Its numbers stand to the right.
     pub right: bool,
+    /// What it holds.
     pub says: &'static str,
 }
 
@@ -55,7 +77,7 @@ const fn heading(
 }
 
 /// All columns, from the left.
-pub(in crate::editor) const COLUMNS: [Heading; 18] = [
+pub const COLUMNS: [Heading; 18] = [
     heading(
         Column::Ray,
         "ray",
@@ -310,13 +332,13 @@ impl Key {
 }
 
 /// Metres to where a ray ended; `None` for what has no end.
-pub(in crate::editor) fn metres(ray: &TracedRay) -> Option<f32> {
+pub fn metres(ray: &TracedRay) -> Option<f32> {
     let metres = ray.t * ray.direction.length();
     metres.is_finite().then_some(metres)
 }
 
 /// What a ray ended at, by name.
-pub(in crate::editor) fn meets(ray: &TracedRay, names: &Names) -> String {
+pub fn meets(ray: &TracedRay, names: &Names) -> String {
     let hit = ray.hit.map(|hit| names.of(hit.object));
     match (&ray.light, hit, ray.met_light) {
         (Some(light), Some(hit), _) if ray.end == RayEnd::Blocked => {
@@ -330,7 +352,7 @@ pub(in crate::editor) fn meets(ray: &TracedRay, names: &Names) -> String {
 }
 
 /// Four decimals, and a zero that is exactly one is written as such.
-pub(in crate::editor) fn color_text(v: Vec3) -> String {
+pub fn color_text(v: Vec3) -> String {
     if v == Vec3::ZERO {
         return "0".into();
     }
@@ -344,7 +366,8 @@ pub(in crate::editor) fn color_text(v: Vec3) -> String {
     format!("{r} {g} {b}")
 }
 
-pub(in crate::editor) fn vector_text(v: Vec3) -> String {
+/// Three decimals.
+pub fn vector_text(v: Vec3) -> String {
     // No minus before a zero.
     let [x, y, z] = v.to_array().map(|c| if c.abs() < 5e-4 { 0.0 } else { c });
     format!("{x:.3} {y:.3} {z:.3}")

@@ -1,0 +1,117 @@
+//! What can be clicked has a name, so that it can be told aloud.
+
+use super::super::commands::commands;
+use super::super::dialogs::{Dialog, Dialogs};
+use super::super::hierarchy::Hierarchy;
+use super::super::inspector::{Inspector, Tab};
+use super::super::outline_rows::Filter;
+use super::super::palette::{OpenPalette, Palette};
+use super::desk::{Desk, LARGE};
+use crate::editor::action::Action;
+use crate::editor::inspection::{DebugRay, debug_ray::Shot};
+use crate::editor::notice::Notices;
+use crate::editor::preferences::Preferences;
+use crate::io::builtin::SCENES;
+use crate::sync::TracedCameras;
+use bevy::math::UVec2;
+use bevy_egui::egui::accesskit::{Action as Request, Role};
+use std::collections::BTreeSet;
+
+/// What can be clicked and has no name, with where it was seen.
+fn note_unnamed(desk: &mut Desk, place: &str, unnamed: &mut BTreeSet<String>) -> usize {
+    desk.settle();
+    let update = desk
+        .output
+        .platform_output
+        .accesskit_update
+        .as_ref()
+        .unwrap();
+    let mut count = 0;
+    for (_, node) in &update.nodes {
+        // What is read, and can be marked for copying, is its own name.
+        let is_control = !matches!(node.role(), Role::Label | Role::ScrollBar);
+        if !is_control || !node.supports_action(Request::Click) {
+            continue;
+        }
+        count += 1;
+        let named = node.label().is_some_and(|label| !label.trim().is_empty());
+        if !named && node.labelled_by().is_empty() {
+            unnamed.insert(format!(
+                "{place}: {:?} of value {:?} at {:?}",
+                node.role(),
+                node.value(),
+                node.bounds()
+            ));
+        }
+    }
+    count
+}
+
+#[test]
+fn whatever_can_be_clicked_in_any_panel_has_a_name() {
+    let (mut unnamed, mut count) = (BTreeSet::new(), 0);
+    for scene in SCENES {
+        let mut desk = Desk::open(scene.name);
+        desk.size = LARGE;
+        desk.context.enable_accesskit();
+        let ids = desk.ids();
+        for tab in [Tab::Object, Tab::Render, Tab::Debug, Tab::Bvh] {
+            desk.world().resource_mut::<Inspector>().tab = tab;
+            let choices = ids
+                .iter()
+                .map(|&id| vec![id])
+                .chain([ids.clone(), Vec::new()]);
+            for selected in choices.take(if tab == Tab::Object { 60 } else { 1 }) {
+                desk.select(selected);
+                count += note_unnamed(&mut desk, &format!("{} {tab:?}", scene.name), &mut unnamed);
+            }
+        }
+    }
+    let mut desk = Desk::with_trees("cornell-box");
+    desk.size = LARGE;
+    desk.context.enable_accesskit();
+    let camera = desk.world().resource::<TracedCameras>().0[0].camera.clone();
+    let (pixel, size) = (UVec2::new(300, 400), UVec2::new(600, 480));
+    desk.world().resource_mut::<DebugRay>().shoot(Shot {
+        pixel,
+        camera,
+        size,
+    });
+    desk.world().resource_mut::<Preferences>().show_rays = true;
+    desk.world().resource_mut::<Preferences>().hint_seen = false;
+    let lines = (0..9).map(|i| format!("line {i}")).collect();
+    desk.world()
+        .resource_mut::<Notices>()
+        .notes("house.glb", lines);
+    count += note_unnamed(&mut desk, "rays", &mut unnamed);
+    for id in ["lights.mixer"] {
+        desk.world().write_message(Action::run(id));
+        count += note_unnamed(&mut desk, id, &mut unnamed);
+    }
+    desk.world().resource_mut::<Hierarchy>().filter = Filter {
+        text: "a".into(),
+        ..Filter::default()
+    };
+    for dialog in [
+        Dialog::Keys,
+        Dialog::About,
+        Dialog::Preferences,
+        Dialog::Scenes,
+        Dialog::History,
+        Dialog::Render,
+    ] {
+        desk.world().resource_mut::<Dialogs>().open = Some(dialog);
+        count += note_unnamed(&mut desk, &format!("{dialog:?}"), &mut unnamed);
+    }
+    desk.world().resource_mut::<Dialogs>().open = None;
+    desk.world().resource_mut::<OpenPalette>().0 = Some(Palette::default());
+    count += note_unnamed(&mut desk, "palette", &mut unnamed);
+    assert!(count > 10 * commands().len(), "{count} controls");
+    let list: Vec<String> = unnamed.into_iter().collect();
+    assert!(
+        list.is_empty(),
+        "{} of {count} controls have no name:\n{}",
+        list.len(),
+        list.join("\n")
+    );
+}
