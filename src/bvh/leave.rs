@@ -32,6 +32,14 @@ impl Aggregate {
         }
     }
 
+    /// A ray in a direction, without an end, that leaves a surface at time 0.
+    pub fn leaving(&self, point: &SurfacePoint, direction: Vec3) -> Ray {
+        Ray {
+            starts_on: point.triangle,
+            ..Ray::new(self.leave(point, direction), direction)
+        }
+    }
+
     #[cold]
     fn leave_near_edge(
         &self,

@@ -9,7 +9,7 @@ use super::queue::Queue;
 use super::sample_chunk::{BatchSize, Scratch, Subject, with_scratch};
 use super::status::{Ending, State, Status, TrendPoint, seconds_left};
 use super::tile_planes::{BLEND_BYTES, PLANE_BYTES};
-use super::tile_state::{Chunk, TileState};
+use super::tile_state::TileState;
 use super::tiles::{Tile, TileGrid};
 use super::unmet::Unmet;
 use super::{FilmMemory, lock};

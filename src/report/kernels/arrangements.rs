@@ -87,11 +87,11 @@ fn rays(scene: &Aggregate, options: &Options) -> [Vec<Ray>; 3] {
         let point = scene.instances()[hit.instance as usize].surface_point(&hit, 0.0);
         let outwards = -point.normal * ray.direction.dot(point.normal).signum();
         let scattered = outwards + 0.999 * random.direction();
-        diffuse.push(Ray::new(scene.leave(&point, outwards), scattered));
+        diffuse.push(scene.leaving(&point, scattered));
         let to_light = light - point.position;
         shadow.push(Ray {
             t_max: 0.9999,
-            ..Ray::new(scene.leave(&point, to_light), to_light)
+            ..scene.leaving(&point, to_light)
         });
     }
     [primary, diffuse, shadow]

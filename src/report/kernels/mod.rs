@@ -195,7 +195,8 @@ fn method(candidates: &[Candidate], options: &Options) -> Vec<String> {
             "Every kernel gets the scene's triangles baked into the world, and the same rays, {} of each kind, on one thread, \
              in batches through calls that return t, triangle and barycentrics. Primary rays go through the middles of the \
              camera's pixels; mirror, diffuse (cosine-distributed) and shadow rays (to the lights; without lights, to a point \
-             above) start where those hit. Kernels take turns; medians of {} rounds. `all` is the harmonic mean of the kinds.",
+             above) start where those hit, and say on which triangle: Glassbox does not test that one; the others have no such \
+             question. Kernels take turns; medians of {} rounds. `all` is the harmonic mean of the kinds.",
             rays::count(options),
             speed::rounds(options),
         ),

@@ -63,10 +63,10 @@ impl RaySets {
                 point.normal
             };
             let reflected = ray.direction - 2.0 * ray.direction.dot(normal) * normal;
-            mirror.push(Ray::new(aggregate.leave(&point, normal), reflected));
+            mirror.push(aggregate.leaving(&point, reflected));
             // A point of the sphere that touches the surface: Lambert's cosine.
             let scattered = (normal + 0.999 * random.direction()).normalize();
-            diffuse.push(Ray::new(aggregate.leave(&point, normal), scattered));
+            diffuse.push(aggregate.leaving(&point, scattered));
             let (to_light, t_max) = match random.of(&places) {
                 Place::At(place) => (place - point.position, BEFORE_THE_LIGHT),
                 Place::Along(direction) => (direction, f32::INFINITY),
@@ -74,7 +74,7 @@ impl RaySets {
             if to_light != Vec3::ZERO {
                 self.shadow.push(Ray {
                     t_max,
-                    ..Ray::new(aggregate.leave(&point, to_light), to_light)
+                    ..aggregate.leaving(&point, to_light)
                 });
             }
         }
