@@ -6,7 +6,9 @@ use bevy::asset::LoadState;
 use bevy::gltf::GltfAssetLabel;
 use bevy::prelude::*;
 use bevy::world_serialization::WorldAssetRoot;
+use glassbox::app::headless_app;
 use glassbox::film::render as render_world;
+use glassbox::io::{OpenOptions, SceneSource, open};
 use glassbox::prelude::*;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -226,7 +228,15 @@ fn diffuse(world: &mut World) -> Vec<[f32; 3]> {
 /// What is traced of a model that our reader has brought in, as the stage's camera sees it and in the stage's light,
 /// beside what is traced on the stage: how much of the picture is another.
 fn other_to_our_reader(stage: &mut Stage, file: &Path) -> f32 {
-    let (mut ours, _) = opened(file);
+    let mut ours = headless_app();
+    let source = SceneSource::File(file.to_path_buf());
+    open(ours.world_mut(), &source, OpenOptions::default()).expect("a model");
+    // What our reader lights a model by that has no light.
+    let mut lamps = (ours.world_mut()).query_filtered::<Entity, With<DirectionalLamp>>();
+    let lamps: Vec<Entity> = lamps.iter(ours.world()).collect();
+    for lamp in lamps {
+        ours.world_mut().despawn(lamp);
+    }
     let camera = stage.camera;
     let world = stage.world();
     let mut lamps = world.query::<(&DirectionalLamp, &Transform)>();
