@@ -57,6 +57,11 @@ impl Stepper {
         self.passed = 0.0;
     }
 
+    /// Whether there is no step.
+    pub fn is_empty(&self) -> bool {
+        self.traversal.steps.is_empty()
+    }
+
     /// How many steps there are.
     pub fn len(&self) -> usize {
         self.traversal.steps.len()

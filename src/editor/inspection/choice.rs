@@ -282,10 +282,10 @@ mod tests {
         let steps = bench.inspected().stepper.len();
         bench.move_something();
         assert_eq!(bench.inspected().ray(), Some(1));
-        assert!(steps > 0 && bench.inspected().stepper.len() > 0);
+        assert!(steps > 0 && !bench.inspected().stepper.is_empty());
         bench.shoot([10, 10]);
         assert_eq!(bench.inspected().ray(), None);
-        assert_eq!(bench.inspected().stepper.len(), 0);
+        assert!(bench.inspected().stepper.is_empty());
     }
 
     #[test]

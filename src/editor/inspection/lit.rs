@@ -76,7 +76,7 @@ pub(super) fn draw_lit(
     let seen = seen_from(render, seen, camera, place, projection);
     let eye = seen.map_or(Vec3::ZERO, |(camera, _)| camera.position);
     let is_open = preferences.is_none_or(|preferences| preferences.show_rays);
-    let steps = is_open && inspected.side == Side::Steps && inspected.stepper.len() > 0;
+    let steps = is_open && inspected.side == Side::Steps && !inspected.stepper.is_empty();
     // The master switch hides what is chosen too.
     let chosen = inspected.ray().filter(|_| inspect.on).and_then(|index| {
         let rays = ray.rays()?;

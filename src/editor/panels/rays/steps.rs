@@ -33,7 +33,7 @@ pub(super) fn steps_ui(
         none_chosen_ui(ui);
         return;
     };
-    if inspected.stepper.len() == 0 {
+    if inspected.stepper.is_empty() {
         ui.weak("This ray was not traced, so it went through no tree.");
         return;
     }
