@@ -25,8 +25,9 @@
 //! passed the edge functions pay for it, one or two a ray.
 //!
 //! # What need not be asked for its box
-//! Nearly every ray from a surface crosses that surface again, just behind its origin. For such a triangle the box decides
-//! nothing, and most of the work is saved. Where the edge functions see a crossing, some point of the ray at `s` is within
+//! A ray that leaves a surface crosses it again, just behind its origin, and often those that lie in it or behind it: the
+//! triangle itself is not tested ([`Ray::starts_on`](super::Ray::starts_on)), and for the others the box decides nothing, so
+//! most of the work is saved. Where the edge functions see a crossing, some point of the ray at `s` is within
 //! 6uM of the triangle along each axis, u and M as in [`super::slab`], and s lies between `entry` and `exit`. With the plane
 //! n · (x - a) = 0, H = n · (a - o) and R = n · d that says |R s - H| <= 6uM |n|₁. The crossing with the plane is at H / R,
 //! so `t`, that clamped to the box, is between the two: |R t - H| <= 6uM |n|₁ too. If |H| is more than that and the sign
