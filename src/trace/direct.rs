@@ -12,7 +12,7 @@ use super::recorder::{Adding, LitPoint, Recorder};
 use super::replies::Replies;
 use super::sampler::Purpose;
 use super::shading::reflected;
-use super::shadow_rays::{Reply, SHORT_OF_THE_LIGHT, Shadow, ShadowRays, shadow_ray};
+use super::shadow_rays::{SHORT_OF_THE_LIGHT, Shadow, ShadowRays, shadow_ray};
 use super::transmittance::through;
 use super::vectors::{Vectors, column_vector};
 use super::vertices::Vertices;
@@ -140,7 +140,8 @@ impl<R: Recorder> Batch<'_, R> {
             matt,
             glossy,
             others,
-            replies,
+            values,
+            rays,
             ..
         } = shadow_rays;
         let t_max = if source.is_far() {
@@ -175,15 +176,13 @@ impl<R: Recorder> Batch<'_, R> {
                         others.push(question as u32);
                         continue;
                     }
-                    replies[question] = Reply {
-                        value: column_vector(&value, lane),
-                        ray: Ray {
-                            origin: column_vector(&origin, lane),
-                            direction: column_vector(&along, lane),
-                            t_max,
-                            time: vertices.times[vertex],
-                            starts_on: vertices.hits[vertex].id(),
-                        },
+                    values[question] = column_vector(&value, lane);
+                    rays[question] = Ray {
+                        origin: column_vector(&origin, lane),
+                        direction: column_vector(&along, lane),
+                        t_max,
+                        time: vertices.times[vertex],
+                        starts_on: vertices.hits[vertex].id(),
                     };
                 }
             }
@@ -198,7 +197,8 @@ impl<R: Recorder> Batch<'_, R> {
             askers,
             numbers,
             others,
-            replies,
+            values,
+            rays,
             ..
         } = shadow_rays;
         let lighting = self.settings.lighting;
@@ -211,10 +211,8 @@ impl<R: Recorder> Batch<'_, R> {
             if let Some(point) = asked.point(&surface, from, numbers, lighting) {
                 let reflected = reflected(&surface, &point, lighting);
                 let time = vertices.times[vertex];
-                replies[question] = Reply {
-                    value: weights.get(vertex) / counts[vertex] as f32 * reflected,
-                    ray: shadow_ray(&self.world.aggregate, &surface, &point, time),
-                };
+                values[question] = weights.get(vertex) / counts[vertex] as f32 * reflected;
+                rays[question] = shadow_ray(&self.world.aggregate, &surface, &point, time);
             }
         }
     }
@@ -238,15 +236,14 @@ impl<R: Recorder> Batch<'_, R> {
             askers,
             counts,
             numbers,
-            replies,
+            values,
             points,
             rays,
             shadows,
             ..
         } = shadow_rays;
-        rays.clear();
         shadows.clear();
-        for (question, (asker, reply)) in askers.iter().zip(&*replies).enumerate() {
+        for (question, (asker, &value)) in askers.iter().zip(&*values).enumerate() {
             let vertex = *asker as usize;
             let number = *points;
             *points += 1;
@@ -269,7 +266,6 @@ impl<R: Recorder> Batch<'_, R> {
                     self.recorder.light_sample(number, &lit);
                 }
             }
-            let Reply { value, ray } = *reply;
             if value == Vec3::ZERO {
                 continue;
             }
@@ -278,8 +274,9 @@ impl<R: Recorder> Batch<'_, R> {
                 self.add_to(row, sample, Adding::Light(number), value);
                 continue;
             }
+            let ray = rays[question];
             self.recorder.shadow_ray(number, &ray);
-            rays.push(ray);
+            rays[shadows.len()] = ray;
             shadows.push(Shadow {
                 sample,
                 value,
@@ -297,6 +294,7 @@ impl<R: Recorder> Batch<'_, R> {
             passing,
             ..
         } = shadow_rays;
+        let rays = &rays[..shadows.len()];
         self.counts.shadow += rays.len() as u64;
         if self.settings.features.transparency && self.world.needs.transparency {
             let (world, settings) = (self.world, self.settings);

@@ -5,7 +5,7 @@ use super::numbers::{Asking, Pairs};
 use super::vectors::Vectors;
 use super::vertices::Vertices;
 use super::{SampleId, Surface};
-use crate::bvh::{Aggregate, Ray, Transmittances, TriangleId};
+use crate::bvh::{Aggregate, Ray, Transmittances};
 use glam::Vec3;
 
 /// A shadow ray ends this much before its light, as a fraction of the distance: a light that lies
@@ -29,24 +29,17 @@ pub(super) struct ShadowRays {
     pub matt: Vec<u32>,
     pub glossy: Vec<u32>,
     pub others: Vec<u32>,
-    /// The answers to all.
-    pub replies: Vec<Reply>,
+    /// The answers to all: what each point adds if nothing is in the way, zero where nothing comes from there, and else the ray
+    /// that finds out. Later the rays in front are those that are traced.
+    pub values: Vec<Vec3>,
+    pub rays: Vec<Ray>,
     /// Points of lights so far at this bounce, those that nothing comes from included: what tells them apart.
     pub points: u32,
-    pub rays: Vec<Ray>,
-    /// What each ray adds to which sample, if the light arrives, and the number of its point.
+    /// What each of the rays that are traced adds to which sample, if the light arrives, and the number of its point.
     pub shadows: Vec<Shadow>,
     pub occluded: Vec<bool>,
     /// How much of the light passes what lies on each ray, where anything lets light through.
     pub passing: Transmittances,
-}
-
-/// What a point of a light adds if nothing is in the way, and the ray that finds out.
-#[derive(Clone, Copy)]
-pub(super) struct Reply {
-    /// Zero where nothing comes from there.
-    pub value: Vec3,
-    pub ray: Ray,
 }
 
 /// What a shadow ray adds to which sample, if the light arrives.
@@ -58,24 +51,15 @@ pub(super) struct Shadow {
     pub point: u32,
 }
 
-impl Reply {
-    pub const NOTHING: Self = Self {
-        value: Vec3::ZERO,
-        ray: Ray {
-            origin: Vec3::ZERO,
-            direction: Vec3::ZERO,
-            t_max: 0.0,
-            time: 0.0,
-            starts_on: TriangleId::NONE,
-        },
-    };
-}
-
 impl ShadowRays {
     /// No question has an answer yet.
     pub fn begin_replies(&mut self) {
-        self.replies.clear();
-        self.replies.resize(self.askers.len(), Reply::NOTHING);
+        let count = self.askers.len();
+        self.values.clear();
+        self.values.resize(count, Vec3::ZERO);
+        if self.rays.len() < count {
+            self.rays.resize(count, Ray::new(Vec3::ZERO, Vec3::ZERO));
+        }
         self.matt.clear();
         self.glossy.clear();
         self.others.clear();
