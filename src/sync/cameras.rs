@@ -70,7 +70,7 @@ pub(super) fn sync_cameras(
     // Not `||`: every reader has to be emptied.
     let unnamed = no_name.read().filter(|entity| cameras.contains(*entity));
     let gone = no_camera.read().count() + no_lens.read().count() + unnamed.count();
-    let switched = switched.any() || motions.changed();
+    let switched = switched.any() || motions.changed() || draft.anew;
     if gone == 0 && !switched && edited.is_empty() && !settings.is_changed() {
         return;
     }

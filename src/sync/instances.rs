@@ -241,6 +241,16 @@ type Object = (
     Option<&'static Name>,
 );
 
+/// The same as it is given.
+type Known<'a> = (
+    Entity,
+    &'a SceneId,
+    (&'a Mesh3d, Option<&'a PosedMesh>),
+    &'a GlobalTransform,
+    Option<&'a InheritedVisibility>,
+    Option<&'a Name>,
+);
+
 /// Whose row may be another one.
 #[derive(SystemParam)]
 pub(super) struct Edited<'w, 's> {
@@ -321,14 +331,7 @@ pub(super) fn sync_instances(
 
 /// The row of an object, `before` where it is as it was; `None` where nothing of it is traced.
 fn read(
-    (entity, &id, mesh, transform, visibility, name): (
-        Entity,
-        &SceneId,
-        (&Mesh3d, Option<&PosedMesh>),
-        &GlobalTransform,
-        Option<&InheritedVisibility>,
-        Option<&Name>,
-    ),
+    (entity, &id, mesh, transform, visibility, name): Known,
     before: Option<&Row>,
     scene: &Scene,
     problems: &mut Vec<SyncProblem>,

@@ -59,10 +59,12 @@ pub(super) struct Named {
     keys: EntityHashMap<Vec<(&'static str, SceneId)>>,
 }
 
+type OtherName = Or<(Changed<SceneId>, Changed<Name>)>;
+
 /// Who may be called otherwise, or be there no more.
 #[derive(SystemParam)]
 pub(super) struct Renamed<'w, 's> {
-    changed: Query<'w, 's, Entity, Or<(Changed<SceneId>, Changed<Name>)>>,
+    changed: Query<'w, 's, Entity, OtherName>,
     no_id: RemovedComponents<'w, 's, SceneId>,
     no_name: RemovedComponents<'w, 's, Name>,
     switched: Switched<'w, 's>,

@@ -126,6 +126,7 @@ pub(super) fn sync_lights(
         segments.changed(),
         parallelograms.changed(),
         switched.any(),
+        draft.anew,
     ]
     .contains(&true);
     if !edited && !motions.changed() {

@@ -80,7 +80,8 @@ type PhongQuery<'w, 's> = Query<
     ),
 >;
 
-type MaterialEdited = Or<(
+type OtherMaterial = (Or<(With<Phong>, With<UsesMaterial>)>, OtherPart);
+type OtherPart = Or<(
     Changed<Phong>,
     Changed<PhongMaps>,
     Changed<UsesMaterial>,
@@ -91,7 +92,7 @@ type MaterialEdited = Or<(
 /// Whose material, or which material, may be another one.
 #[derive(SystemParam)]
 pub(super) struct Edited<'w, 's> {
-    changed: Query<'w, 's, Entity, (Or<(With<Phong>, With<UsesMaterial>)>, MaterialEdited)>,
+    changed: Query<'w, 's, Entity, OtherMaterial>,
     no_phong: RemovedComponents<'w, 's, Phong>,
     no_maps: RemovedComponents<'w, 's, PhongMaps>,
     no_shared: RemovedComponents<'w, 's, UsesMaterial>,

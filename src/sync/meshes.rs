@@ -118,10 +118,12 @@ impl TracedMeshes {
 type Users<'w, 's> =
     Query<'w, 's, (Entity, (&'static Mesh3d, Option<&'static PosedMesh>)), Without<NotTraced>>;
 
+type OtherMesh = Or<(Changed<Mesh3d>, Changed<PosedMesh>)>;
+
 /// Who may have another mesh now than before, or be posed as another.
 #[derive(SystemParam)]
 pub(super) struct Dressed<'w, 's> {
-    changed: Query<'w, 's, Entity, Or<(Changed<Mesh3d>, Changed<PosedMesh>)>>,
+    changed: Query<'w, 's, Entity, OtherMesh>,
     no_longer: Query<'w, 's, Entity, (With<Mesh3d>, Added<NotTraced>)>,
     removed: RemovedComponents<'w, 's, Mesh3d>,
     at_rest: RemovedComponents<'w, 's, PosedMesh>,

@@ -9,6 +9,7 @@
 //! entity has the sum over itself and its ancestors, those along which Bevy carries transforms.
 
 use super::reading::Switched;
+use super::traced::Draft;
 use crate::scene::{Motion, RenderSettings};
 use bevy::ecs::change_detection::{DetectChanges, Ref};
 use bevy::ecs::entity::{Entity, EntityHashMap};
@@ -87,6 +88,7 @@ pub(super) fn sync_motions(
     below: Query<Entity, Carried>,
     chain: Chain,
     settings: Res<RenderSettings>,
+    draft: Res<Draft>,
     mut was_on: Local<bool>,
     mut motions: ResMut<WorldMotions>,
 ) {
@@ -94,7 +96,7 @@ pub(super) fn sync_motions(
     let gone = no_motion.read().count() + no_parent.read().count() + no_transform.read().count();
     let on = settings.features.motion && !movers.is_empty();
     let toggled = std::mem::replace(&mut *was_on, on) != on;
-    let switched = switched.any();
+    let switched = switched.any() || draft.anew;
     motions.others.clear();
     // Most scenes stand still: whose child somebody becomes matters to none of them.
     if !on && !toggled {
@@ -179,6 +181,7 @@ mod tests {
         // Bevy's own systems are left out: they may not come to theirs.
         let mut app = App::new();
         app.init_resource::<WorldMotions>()
+            .init_resource::<Draft>()
             .init_resource::<RenderSettings>()
             .add_systems(Update, sync_motions);
         let [a, b, c] = [Vec3::X, Vec3::Y, Vec3::Z].map(|velocity| {

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::scene::{PhongMaps, SceneId};
-use crate::sync::SyncSystems;
+use crate::sync::{SyncSystems, TracedCameras};
 use bevy::app::PostUpdate;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::schedule::IntoScheduleConfigs;
@@ -44,6 +44,8 @@ fn what_went_and_what_was_edited_during_a_rest_is_known_after_it() {
         .world_mut()
         .entity_mut(small.objects[2])
         .remove::<Phong>();
+    small.app.world_mut().despawn(small.light);
+    small.app.world_mut().despawn(small.camera);
     rest(&mut small);
     let world_mut = small.app.world_mut();
     *world_mut
@@ -66,6 +68,8 @@ fn what_went_and_what_was_edited_during_a_rest_is_known_after_it() {
         .collect();
     assert_eq!(found, [(1, 8), (3, 5)]);
     assert_eq!(world.aggregate.instances().len(), 2);
+    assert_eq!(world.lights.points.len(), 0);
+    assert_eq!(small.app.world().resource::<TracedCameras>().0, []);
     assert_eq!(world.textures[0].texel(0, 0, true).x, 77.0 / 255.0);
     let material = |i: usize| &world.materials[world.objects[i].material as usize];
     assert_eq!(*material(1), trace::Material::default());
