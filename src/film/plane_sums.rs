@@ -35,8 +35,8 @@ impl PlaneSums {
         }
     }
 
-    /// The sums, to be added to: of nothing where it has nothing.
-    pub fn to_be_added_to(&mut self) -> &mut SumColumns {
+    /// The sums, for what is added to them: of nothing where it has nothing.
+    pub fn as_sums(&mut self) -> &mut SumColumns {
         if self.sums.is_empty() {
             self.sums.reset(TILE_PIXELS);
             if !self.first.is_empty() {
@@ -143,7 +143,7 @@ mod tests {
                 assert_eq!(means[0], means[1], "times {factor:e}");
                 assert_eq!(means[0], blended[0].all().means([3, 0]), "times {factor:e}");
             }
-            let more = first.to_be_added_to().clone();
+            let more = first.as_sums().clone();
             assert_eq!(more, sums);
             assert!(first.first.is_empty());
         }

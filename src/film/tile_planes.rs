@@ -68,7 +68,7 @@ impl Plane {
         if self.sums.is_empty() && pixels == Pixels::All {
             return self.sums.begin(sums, count);
         }
-        let own = self.sums.to_be_added_to();
+        let own = self.sums.as_sums();
         for places in pixels.runs() {
             own.merge(places.start, sums.part(places));
         }
@@ -137,7 +137,7 @@ impl TilePlanes {
                         }
                         _ => &mut alone,
                     };
-                    let own = plane.sums.to_be_added_to();
+                    let own = plane.sums.as_sums();
                     moves_with(own.all(), sums, Pixels::Half(half), count, moved);
                 }
             }
