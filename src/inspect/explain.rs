@@ -133,10 +133,7 @@ pub fn explanation(tree: &RayTree, names: &BTreeMap<u64, String>) -> Vec<String>
     }
     let mut lights: BTreeMap<u64, Fate> = BTreeMap::new();
     for ray in &tree.rays {
-        let at_first_hit = ray
-            .parent
-            .is_some_and(|parent| tree.rays[parent as usize].parent.is_none());
-        if let (true, Some(light)) = (at_first_hit, ray.light) {
+        if let (true, Some(light)) = (tree.leaves_first(ray), ray.light) {
             lights.entry(light.id).or_default().count(ray);
         }
     }

@@ -24,7 +24,14 @@ pub(super) fn sentence(tree: &RayTree, names: &BTreeMap<u64, String>) -> String 
     let mut parts = sources(tree);
     parts.retain(|part| part.mean.element_sum() >= LEAST * sum);
     parts.sort_by(|a, b| b.mean.element_sum().total_cmp(&a.mean.element_sum()));
-    let of = Mixture { tree, names };
+    let cameras = tree.rays.iter().filter(|ray| ray.parent.is_none());
+    let met: BTreeSet<String> = cameras.map(|ray| met_name(ray, names)).collect();
+    let is_one = met.len() == 1;
+    let of = Mixture {
+        tree,
+        names,
+        is_one,
+    };
     let clauses = parts.iter().map(|part| {
         let share = percent(f64::from(part.mean.element_sum() / sum));
         format!("{} ({share})", of.clause(part))
@@ -41,6 +48,8 @@ pub(super) fn sentence(tree: &RayTree, names: &BTreeMap<u64, String>) -> String 
 struct Mixture<'a> {
     tree: &'a RayTree,
     names: &'a BTreeMap<u64, String>,
+    /// Whether all samples see the same.
+    is_one: bool,
 }
 
 impl Mixture<'_> {
@@ -56,10 +65,9 @@ impl Mixture<'_> {
             of.0 += camera.hit.map_or(Vec3::ZERO, |hit| hit.diffuse);
             of.1 += 1.0;
         }
-        let is_one = met.len() == 1;
         let described = met.into_iter().map(|(name, (diffuse, count))| {
             let share = percent(f64::from(count / self.tree.samples.len() as f32));
-            let seen = if is_one {
+            let seen = if self.is_one {
                 name
             } else {
                 format!("{name} ({share} of the pixel)")
@@ -74,25 +82,29 @@ impl Mixture<'_> {
 
     fn clause(&self, part: &Source) -> String {
         let seen_by = |kinds: [RayKind; 2]| {
-            let rays = &self.tree.rays;
-            let second = |ray: &&TracedRay| {
-                ray.parent
-                    .is_some_and(|p| rays[p as usize].parent.is_none())
-            };
+            let rays = self.tree.rays.iter();
             let rays = rays
-                .iter()
-                .filter(second)
+                .filter(|ray| self.tree.leaves_first(ray))
                 .filter(|ray| kinds.contains(&ray.kind));
             let seen: BTreeSet<String> = rays.map(|ray| met_name(ray, self.names)).collect();
             seen.into_iter().collect::<Vec<_>>().join(" and ")
         };
         match part.cause {
-            Cause::Seen => "is seen as it is".into(),
-            Cause::Light(id) => format!("is lit by {}{}", named(self.names, id), self.tint(id)),
-            Cause::Reflection => format!("reflects {}", seen_by([RayKind::Mirror, RayKind::Gloss])),
+            Cause::Seen if self.is_one => "is seen as it is".into(),
+            Cause::Seen => "are seen as they are".into(),
+            Cause::Light(id) => {
+                let is = if self.is_one { "is" } else { "are" };
+                format!("{is} lit by {}{}", named(self.names, id), self.tint(id))
+            }
+            Cause::Reflection => {
+                let reflects = if self.is_one { "reflects" } else { "reflect" };
+                let seen = seen_by([RayKind::Mirror, RayKind::Gloss]);
+                format!("{reflects} {seen}")
+            }
             Cause::Transmission => {
+                let lets = if self.is_one { "lets" } else { "let" };
                 let behind = seen_by([RayKind::Transmission, RayKind::Translucency]);
-                format!("lets {behind} through")
+                format!("{lets} {behind} through")
             }
         }
     }
@@ -103,7 +115,8 @@ impl Mixture<'_> {
             .tree
             .rays
             .iter()
-            .filter(|ray| ray.end == RayEnd::Arrived);
+            .filter(|ray| matches!(ray.end, RayEnd::Arrived | RayEnd::Unshadowed))
+            .filter(|ray| self.tree.leaves_first(ray));
         let arriving = lights.filter_map(|ray| {
             let light = ray.light.filter(|light| light.id == id)?;
             Some(light.arriving * ray.transmittance)
@@ -117,7 +130,7 @@ impl Mixture<'_> {
     }
 }
 
-/// Linear RGB, two digits.
+/// Linear RGB.
 fn color(color: Vec3) -> String {
-    format!("({:.2}, {:.2}, {:.2})", color.x, color.y, color.z)
+    format!("({})", super::color_text(color).replace(' ', ", "))
 }

@@ -15,9 +15,10 @@ use std::collections::{BTreeMap, BTreeSet};
 const LITTLE: f64 = 0.01;
 /// Parts of the shutter that samples are sorted into.
 const TIMES: usize = 4;
-/// Share of the variance from which on time or lens count as what it goes with: with 16 samples chance alone reaches it
-/// once in some fifty pixels.
+/// Share of the variance from which on time or lens count as what it goes with: with as many samples chance alone reaches it
+/// once in some fifty pixels, and with fewer too often.
 const GOES_WITH: f64 = 0.4;
+const ENOUGH: usize = 16;
 /// Share from which on a second cause is named.
 const SECOND: f64 = 0.2;
 
@@ -94,13 +95,20 @@ impl<'a> Samples<'a> {
         let cameras = tree.rays.iter().filter(|ray| ray.parent.is_none());
         let cameras: Vec<&TracedRay> = cameras.collect();
         let mut met: Vec<(String, usize)> = Vec::new();
+        // Two things may have the same name.
+        let mut known = Vec::new();
         let mut groups = Vec::with_capacity(cameras.len());
         for camera in &cameras {
-            let name = met_name(camera, names);
-            let group = match met.iter().position(|(known, _)| *known == name) {
-                Some(known) => known,
+            let what = (
+                camera.end,
+                camera.met_light,
+                camera.hit.map(|hit| hit.object),
+            );
+            let group = match known.iter().position(|known| *known == what) {
+                Some(group) => group,
                 None => {
-                    met.push((name, 0));
+                    known.push(what);
+                    met.push((met_name(camera, names), 0));
                     met.len() - 1
                 }
             };
@@ -130,7 +138,7 @@ impl<'a> Samples<'a> {
             // What as many degrees of freedom reach by chance is taken off.
             let free = count.saturating_sub(degrees + 1);
             let share = 1.0 - (1.0 - share) * (count - 1) as f64 / free as f64;
-            if free > 0 && share >= GOES_WITH {
+            if count >= ENOUGH && share >= GOES_WITH {
                 all.push((share, what));
             }
         }
@@ -161,8 +169,12 @@ impl<'a> Samples<'a> {
         bins
     }
 
-    /// The share of the variance that a plane over the lens accounts for; 0 for a pinhole.
+    /// The share of the variance that a plane over the lens accounts for; 0 without one: then rays start at different places
+    /// because they are parallel, or because the camera moves.
     fn explained_by_lens(&self, total: f64) -> f64 {
+        if !self.tree.has_lens {
+            return 0.0;
+        }
         let origins: Vec<DVec3> = self
             .cameras
             .iter()
@@ -214,10 +226,10 @@ impl<'a> Samples<'a> {
                 format!("the lens: {which} depends on where it passes the aperture")
             }
             Difference::Edge => {
-                let counts = self
-                    .met
-                    .iter()
-                    .map(|(name, count)| format!("{count} samples see {name}"));
+                let counts = self.met.iter().map(|(name, count)| match count {
+                    1 => format!("1 sample sees {name}"),
+                    _ => format!("{count} samples see {name}"),
+                });
                 format!(
                     "an edge within the pixel: {}",
                     list(&mut counts.into_iter())
@@ -238,10 +250,7 @@ impl<'a> Samples<'a> {
     /// Rays that leave the first surfaces.
     fn seconds(&self) -> impl Iterator<Item = &'a TracedRay> {
         let rays = &self.tree.rays;
-        rays.iter().filter(|ray| {
-            ray.parent
-                .is_some_and(|parent| rays[parent as usize].parent.is_none())
-        })
+        rays.iter().filter(|ray| self.tree.leaves_first(ray))
     }
 
     fn light(&self, id: u64) -> String {
@@ -250,19 +259,32 @@ impl<'a> Samples<'a> {
             .seconds()
             .filter(|ray| ray.light.is_some_and(|light| light.id == id) && ray.end.is_traced());
         let (mut all, mut blocked, mut blockers) = (0, 0, BTreeSet::new());
+        let mut has_points = false;
         for ray in rays {
             all += 1;
+            has_points |= ray.kind == RayKind::LightSample;
             if ray.end == RayEnd::Blocked {
                 blocked += 1;
                 blockers.extend(ray.hit.map(|hit| hit.object));
             }
         }
         if blocked == 0 || blocked == all {
-            return format!("the light {name}: its points differ in distance and angle");
+            return match has_points {
+                true => format!(
+                    "the light {name}: its points, or the surface's colour and slope, differ"
+                ),
+                false => {
+                    format!("the light {name}: the surface's colour or slope under it differs")
+                }
+            };
         }
+        let shadow = match has_points {
+            true => "the soft shadow",
+            false => "the edge of the shadow",
+        };
         let blockers: Vec<String> = blockers.iter().map(|id| named(self.names, *id)).collect();
         let blockers = blockers.join(" and ");
-        format!("the soft shadow of {blockers}: {blocked} of {all} rays to {name} are blocked")
+        format!("{shadow} of {blockers}: {blocked} of {all} rays to {name} are blocked")
     }
 
     /// What rays of these kinds see that leave the first surfaces.

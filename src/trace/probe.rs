@@ -73,6 +73,7 @@ pub fn probe(
     let mut workspace = Workspace::default();
     let mut tree = RayTree {
         pixel,
+        has_lens: camera.has_lens(),
         ..RayTree::default()
     };
     for index in indices.clone() {

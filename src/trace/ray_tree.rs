@@ -20,6 +20,9 @@ use serde::Serialize;
 pub struct RayTree {
     /// (0, 0) is the top left pixel.
     pub pixel: UVec2,
+    /// Whether the camera has a lens.
+    #[serde(skip)]
+    pub has_lens: bool,
     /// The samples that were evaluated.
     pub samples: Vec<ProbedSample>,
     /// Samples of the pixel that were asked for and left out, because there would have been more
@@ -359,6 +362,11 @@ impl RayTree {
             u,
             v,
         })
+    }
+
+    /// Whether a ray of it leaves the first surface.
+    pub fn leaves_first(&self, ray: &TracedRay) -> bool {
+        (ray.parent).is_some_and(|parent| self.rays[parent as usize].parent.is_none())
     }
 
     /// The children of a ray.

@@ -14,6 +14,7 @@ use bevy::app::{App, Plugin};
 use bevy::camera::visibility::Visibility;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::world::World;
+use std::collections::HashSet;
 
 /// Does what [`Action`](crate::editor::Action)s ask for that edit the scene or select in it. Needs
 /// [`HistoryPlugin`](crate::editor::history::HistoryPlugin).
@@ -263,7 +264,7 @@ fn select_sharing(world: &mut World) {
             let material = world.get::<UsesMaterial>(entity);
             material.map_or(entity, |material| material.0)
         });
-    let chosen: Vec<Entity> = chosen.collect();
+    let chosen: HashSet<Entity> = chosen.collect();
     let mut users = world.query::<(&SceneId, &UsesMaterial)>();
     let users = users
         .iter(world)

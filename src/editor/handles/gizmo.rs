@@ -66,7 +66,8 @@ struct Drag {
 #[derive(Clone)]
 enum Moved {
     Bodies(Vec<(SceneId, Body)>),
-    Grip(Grip, Vec3),
+    /// Where it was, and how fast what it is the motion of.
+    Grip(Grip, Vec3, Option<Vec3>),
 }
 
 pub(super) fn spawn_stand_in(mut commands: Commands) {
@@ -288,7 +289,8 @@ fn begin(world: &mut World) -> Drag {
     {
         Some((grip, place)) => {
             let name = grips::step_name(world, grip);
-            (Moved::Grip(grip, place), grips::mover(world, grip), name)
+            let moved = Moved::Grip(grip, place, grips::velocity_of(world, grip));
+            (moved, grips::mover(world, grip), name)
         }
         None => {
             let entities = movable(world);
@@ -340,7 +342,7 @@ fn apply(world: &mut World, drag: &Drag, now: &Transform) {
         },
     };
     match &drag.moved {
-        Moved::Grip(grip, place) => {
+        Moved::Grip(grip, place, _) => {
             if let Change::Move(by) = change {
                 grips::put(world, *grip, *place + by);
             }
@@ -384,7 +386,8 @@ pub(in super::super) fn cancel(world: &mut World) -> bool {
         return false;
     };
     match drag.moved {
-        Moved::Grip(grip, place) => grips::put(world, grip, place),
+        Moved::Grip(grip, place, None) => grips::put(world, grip, place),
+        Moved::Grip(grip, _, Some(velocity)) => grips::set_velocity(world, grip, velocity),
         Moved::Bodies(bodies) => {
             for (id, body) in bodies {
                 set_transform(world, id, body.own);

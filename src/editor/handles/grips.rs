@@ -112,6 +112,22 @@ fn put_motion(world: &mut World, entity: Entity, to: Vec3) {
     }
 }
 
+/// The velocity of what moves, where the point is its tip.
+pub(super) fn velocity_of(world: &World, grip: Grip) -> Option<Vec3> {
+    let entity = scene_entity(world, grip.id).filter(|_| grip.part == Part::Motion)?;
+    world.get::<Motion>(entity).map(|motion| motion.velocity)
+}
+
+/// Gives it a velocity to the last bit: from where the tip is it could only be found with a rounding.
+pub(super) fn set_velocity(world: &mut World, grip: Grip, velocity: Vec3) {
+    let entity = scene_entity(world, grip.id);
+    if let Some(mut motion) = entity.and_then(|entity| world.get_mut::<Motion>(entity))
+        && motion.velocity != velocity
+    {
+        motion.velocity = velocity;
+    }
+}
+
 /// What is dragged, for snapping to other things.
 pub(super) fn mover(world: &World, grip: Grip) -> Mover {
     Mover {
@@ -183,6 +199,8 @@ pub(in super::super) struct GripDrag {
     held_at: Vec3,
     /// Of a parallelogram: which corner, and all of it as it was.
     surface: Option<(usize, Surface)>,
+    /// Of the tip of a motion: the velocity as it was.
+    velocity: Option<Vec3>,
     begun: bool,
 }
 
@@ -213,6 +231,7 @@ impl GripDrag {
             normal,
             held_at,
             surface,
+            velocity: velocity_of(world, grip),
             begun: false,
         })
     }
@@ -260,9 +279,13 @@ impl GripDrag {
 
     /// Puts the point back.
     pub fn cancel(self, world: &mut World) {
-        match self.surface {
-            Some((_, surface)) => set_surface(world, self.grip, surface),
-            None => put(world, self.grip, self.start),
+        if !self.begun {
+            return;
+        }
+        match (self.surface, self.velocity) {
+            (Some((_, surface)), _) => set_surface(world, self.grip, surface),
+            (_, Some(velocity)) => set_velocity(world, self.grip, velocity),
+            _ => put(world, self.grip, self.start),
         }
         self.end(world);
     }

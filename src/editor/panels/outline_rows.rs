@@ -83,18 +83,17 @@ impl Outline {
             }
             if filter.is_off() {
                 rows.push(Row::Item(at));
-                let is_open = !folded.contains(&item.id);
-                if in_folder && item.depth == 0 {
-                    // Closed until it is opened: these rows are there once already.
-                    let users = self.users(item).iter().filter(|_| !is_open);
-                    rows.extend(users.map(|&object| Row::User {
+                let is_turned = folded.contains(&item.id);
+                // A material is closed until it is opened: those that have it are rows already.
+                let is_material = in_folder && item.depth == 0;
+                let is_open = is_turned == is_material;
+                if is_material && is_open {
+                    rows.extend(self.users(item).iter().map(|&object| Row::User {
                         object,
                         material: at,
                     }));
-                    at += 1;
-                } else {
-                    at = if is_open { at + 1 } else { item.end };
                 }
+                at = if is_open { at + 1 } else { item.end };
                 continue;
             }
             ancestors.truncate(item.depth as usize);

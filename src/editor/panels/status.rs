@@ -23,6 +23,8 @@ const MEMORY_INTERVAL: Duration = Duration::from_secs(1);
 /// Points of the list of notes.
 const NOTES_WIDTH: f32 = 480.0;
 const NOTES_HEIGHT: f32 = 320.0;
+/// Lines of one kind that are laid out in every frame while the list is open.
+const MOST_LINES: usize = 200;
 
 /// What the line remembers between two frames.
 #[derive(Resource, Default)]
@@ -147,7 +149,8 @@ fn notes_ui(ui: &mut Ui, world: &World) -> bool {
     if problems.is_empty() && kept.is_empty() {
         return false;
     }
-    let warns = !problems.is_empty() || kept.iter().any(|notice| notice.is_fault);
+    // What was said may be of another scene by now.
+    let warns = !problems.is_empty();
     let color = match warns {
         true => ui.visuals().warn_fg_color,
         false => ui.visuals().text_color(),
@@ -169,15 +172,11 @@ fn notes_ui(ui: &mut Ui, world: &World) -> bool {
             ui.set_width(NOTES_WIDTH.min(ui.ctx().content_rect().width() - 40.0));
             let area = ScrollArea::vertical().max_height(NOTES_HEIGHT);
             area.show(ui, |ui| {
-                for line in &problems {
-                    ui.add(Label::new(line).wrap().selectable(true));
-                }
+                lines_ui(ui, &problems);
                 for notice in kept.iter().rev() {
                     let text = RichText::new(&notice.text).strong();
                     ui.add(Label::new(text).wrap().selectable(true));
-                    for line in &notice.lines {
-                        ui.add(Label::new(line).wrap().selectable(true));
-                    }
+                    lines_ui(ui, &notice.lines);
                 }
             });
             if !kept.is_empty() {
@@ -187,6 +186,16 @@ fn notes_ui(ui: &mut Ui, world: &World) -> bool {
             }
         });
     forgets
+}
+
+/// Lines to be read, as many as somebody reads.
+fn lines_ui(ui: &mut Ui, lines: &[String]) {
+    for line in lines.iter().take(MOST_LINES) {
+        ui.add(Label::new(line).wrap().selectable(true));
+    }
+    if let Some(more) = lines.len().checked_sub(MOST_LINES).filter(|more| *more > 0) {
+        ui.weak(format!("and {more} more"));
+    }
 }
 
 /// What is counted of a traced world; counted again only when it is another.

@@ -29,7 +29,7 @@ pub(super) fn toolbar_ui(ui: &mut Ui, world: &mut World) {
             menu_ui(ui, world, "View/Rays and trees");
         })
         .response
-        .says("What is drawn of the tracer's rays and trees, and ready answers to three questions");
+        .says("What is drawn of the tracer's rays and trees, and questions about them and about pixels");
         group_ui(ui, world, "questions");
         ui.separator();
         exposure_ui(ui, world);

@@ -54,10 +54,10 @@ pub(super) fn answer_target(world: &mut World, at: Vec2) {
     match std::mem::take(&mut *world.resource_mut::<Armed>()) {
         Armed::No => {}
         Armed::Why(question) => {
-            if question != Question::Black {
-                world.resource_mut::<DebugRay>().which = Which::All;
-            }
             if shoot_at(world, at) {
+                if question != Question::Black {
+                    world.resource_mut::<DebugRay>().which = Which::All;
+                }
                 world.trigger(PixelAsked { question, at });
             }
         }

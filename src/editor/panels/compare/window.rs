@@ -237,7 +237,7 @@ fn inner_ui(ui: &mut Ui, world: &mut World, kept: &KeptPictures, comparison: &mu
                 return Err(format!("{}: call it .png", file.display()));
             }
             let image = drawn.pair.image(drawn.look).ok_or("there is no picture")?;
-            png_of(&image, seen)
+            png_of(&image, seen.ok_or("nothing of the picture is seen")?)
         },
     );
 }

@@ -19,8 +19,8 @@ const PER_POINT: f32 = 1.005;
 pub(super) struct Zoom {
     /// Points of a pixel's side, and the place in the picture, in pixels, that is in the middle; all of it, where there is none.
     near: Option<(f32, Pos2)>,
-    /// The first and the last pixel that are seen.
-    pub seen: [UVec2; 2],
+    /// The first and the last pixel that are seen; `None` where the picture is out of the room.
+    pub seen: Option<[UVec2; 2]>,
 }
 
 impl Zoom {
@@ -58,15 +58,12 @@ impl Zoom {
             let inside = whole.contains(at);
             inside.then(|| UVec2::new(pixel.x as u32, pixel.y as u32).min(size - UVec2::ONE))
         };
-        let ends = (
-            pixel_at(place.min.max(whole.min)),
-            pixel_at(place.max.min(whole.max - vec2(0.5, 0.5))),
-        );
-        let (Some(first), Some(last)) = ends else {
-            return None;
-        };
-        self.seen = [first, last];
-        if scale >= NUMBERS {
+        let first = pixel_at(place.min.max(whole.min));
+        let last = pixel_at(place.max.min(whole.max - vec2(0.5, 0.5)));
+        self.seen = first.zip(last).map(|(first, last)| [first, last]);
+        if let Some([first, last]) = self.seen
+            && scale >= NUMBERS
+        {
             for y in first.y..=last.y {
                 for x in first.x..=last.x {
                     let at = corner + scale * vec2(x as f32 + 0.5, y as f32 + 0.5);
