@@ -3,7 +3,7 @@
 //! The walk meets crossings in no particular order, and a product of rounded numbers depends on theirs. So they are kept
 //! until the walk is over, and multiplied nearest first, equal `t` by (instance, triangle): the product is the same to the
 //! last bit for every tree, and that of going from crossing to crossing ([`Aggregate::next_crossing`]). What nothing passes
-//! ends the walk, since the product is zero whatever else there is; so do so many layers that an `f32` has nothing left.
+//! ends the walk, since the product is zero whatever else there is; so do so many layers that an `f32` has no digits left.
 
 use glam::{DVec3, Vec3};
 
@@ -98,8 +98,9 @@ impl<'a> Transmit<'a> {
             last = Some(*hit);
             if !again {
                 product *= *part;
-                if product == Vec3::ZERO {
-                    break;
+                // Below it a product may stay what it is for ever.
+                if product.max_element() < f32::MIN_POSITIVE {
+                    return Vec3::ZERO;
                 }
             }
         }

@@ -10,7 +10,7 @@ use super::sample_chunk::{BatchSize, Scratch, Subject, with_scratch};
 use super::status::{Ending, State, Status, TrendPoint, seconds_left};
 use super::tile_planes::{BLEND_BYTES, PLANE_BYTES};
 use super::tile_state::TileState;
-use super::tiles::{Tile, TileGrid};
+use super::tiles::{TILE_PIXELS, Tile, TileGrid};
 use super::unmet::Unmet;
 use super::{FilmMemory, lock};
 use crate::scene::RenderSettings;
@@ -84,7 +84,7 @@ fn next_number() -> u64 {
     COUNT.fetch_add(1, Ordering::Relaxed) + 1
 }
 
-/// Small chunks are taken as so many samples at once: some tenths of a millisecond.
+/// Small chunks are taken as so many samples at once: some tenths of a millisecond in a plain scene.
 const SAMPLES_AT_ONCE: u64 = 2048;
 
 /// How long a render may take; `None` is for ever.
@@ -327,7 +327,12 @@ impl Engine {
     /// more often than they have to. False where nothing was done.
     fn run_some(&self, scratch: &mut Scratch) -> bool {
         let mut waiting = std::mem::take(&mut scratch.chunks);
-        lock(&self.queue).pop(&self.grid, SAMPLES_AT_ONCE, &mut waiting);
+        {
+            let mut queue = lock(&self.queue);
+            // Of a few, some are left for every thread.
+            let share = queue.len() * TILE_PIXELS / (2 * rayon::current_num_threads());
+            queue.pop(&self.grid, SAMPLES_AT_ONCE.min(share as u64), &mut waiting);
+        }
         if waiting.is_empty() {
             scratch.chunks = waiting;
             return false;

@@ -41,7 +41,7 @@ impl PlaneSums {
             self.sums.reset(TILE_PIXELS);
             if !self.first.is_empty() {
                 self.sums.add(0, bytemuck::cast_slice(&self.first));
-                self.first.clear();
+                self.first = Vec::new();
             }
         }
         &mut self.sums

@@ -237,6 +237,7 @@ impl Scratch {
     ) -> Option<RayCounts> {
         let mut rays = RayCounts::default();
         self.sums.truncate(0);
+        let octaves = self.octaves;
         let mut places = std::mem::take(&mut self.places);
         places.clear();
         places.extend(tile.places(chunk.pixels));
@@ -258,6 +259,8 @@ impl Scratch {
         self.places = places;
         self.met = self.workspace.take_met();
         if !complete {
+            // It is done again.
+            self.octaves = octaves;
             return None;
         }
         Some(rays)
@@ -421,5 +424,36 @@ fn folded<'a>(folded: &'a [Vec3], values: &'a [Vec3], samples: usize) -> &'a [Ve
         &values[..samples]
     } else {
         folded
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_scene;
+    use super::super::tile_state::Pixels;
+    use super::*;
+
+    #[test]
+    fn a_chunk_that_stops_is_not_said_to_have_met_anything() {
+        let settings = test_scene::settings(UVec2::new(16, 16), 4);
+        let subject = Subject::new(test_scene::world(), test_scene::camera(), settings, false);
+        let tile = TileGrid::new(subject.settings.size).tile(0);
+        let chunk = Chunk {
+            tile: 0,
+            pixels: Pixels::All,
+            planes: PlaneSet::ALL,
+            range: 0..4,
+            of: 4,
+        };
+        let batch = BatchSize::new(&subject);
+        let mut scratch = Scratch::default();
+        let mut sum = |stops: bool| {
+            let done = scratch.sum_chunk(&subject, tile, &chunk, &batch, &|| stops);
+            (done.is_some(), scratch.octaves.iter().sum::<u32>())
+        };
+        assert_eq!(sum(true), (false, 0));
+        assert_eq!(sum(false), (true, 4 * TILE_PIXELS as u32));
+        assert_eq!(sum(true), (false, 4 * TILE_PIXELS as u32));
+        assert_eq!(sum(false), (true, 8 * TILE_PIXELS as u32));
     }
 }

@@ -60,6 +60,8 @@ pub(super) fn sync_cameras(
     mut no_camera: RemovedComponents<SceneCamera>,
     mut no_lens: RemovedComponents<Lens>,
     mut no_name: RemovedComponents<Name>,
+    mut no_place: RemovedComponents<GlobalTransform>,
+    all: Query<(), With<SceneCamera>>,
     mut switched: Switched,
     settings: Res<RenderSettings>,
     cameras: CameraQuery,
@@ -69,7 +71,8 @@ pub(super) fn sync_cameras(
 ) {
     // Not `||`: every reader has to be emptied.
     let unnamed = no_name.read().filter(|entity| cameras.contains(*entity));
-    let gone = no_camera.read().count() + no_lens.read().count() + unnamed.count();
+    let bare = no_place.read().filter(|entity| all.contains(*entity));
+    let gone = no_camera.read().count() + no_lens.read().count() + unnamed.count() + bare.count();
     let switched = switched.any() || motions.changed() || draft.anew;
     if gone == 0 && !switched && edited.is_empty() && !settings.is_changed() {
         return;

@@ -53,6 +53,9 @@ pub(super) struct Lamps<'w, 's, L: Component> {
     gone: RemovedComponents<'w, 's, L>,
     no_name: RemovedComponents<'w, 's, Name>,
     traced_again: RemovedComponents<'w, 's, NotTraced>,
+    no_place: RemovedComponents<'w, 's, GlobalTransform>,
+    no_visibility: RemovedComponents<'w, 's, InheritedVisibility>,
+    all: Query<'w, 's, (), With<L>>,
 }
 
 impl<L: Component> Lamps<'_, '_, L> {
@@ -62,7 +65,11 @@ impl<L: Component> Lamps<'_, '_, L> {
         let other = others.any(|entity| self.lamps.contains(entity));
         self.no_name.clear();
         self.traced_again.clear();
-        other | (self.gone.read().count() > 0) | !self.edited.is_empty()
+        let mut bare = self.no_place.read().chain(self.no_visibility.read());
+        let bare = bare.any(|entity| self.all.contains(entity));
+        self.no_place.clear();
+        self.no_visibility.clear();
+        other | bare | (self.gone.read().count() > 0) | !self.edited.is_empty()
     }
 
     /// The lights of the visible lamps, sorted by id, without those that `light` makes nothing of. Of

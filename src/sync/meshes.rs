@@ -8,6 +8,7 @@ use crate::bvh::{self, BuildOptions, Builder, Levels};
 use crate::scene::{self, NotTraced, RenderSettings};
 use crate::trace;
 use bevy::asset::{AssetEvent, AssetId, Assets};
+use bevy::ecs::change_detection::DetectChanges;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::lifecycle::RemovedComponents;
 use bevy::ecs::message::MessageReader;
@@ -179,7 +180,10 @@ pub(super) fn sync_meshes(
     let mut dressed = dressed.read();
     if draft.anew {
         dressed.extend(known.uses.entities().chain(users.iter().map(|(e, _)| e)));
-        stale.extend(known.uses.things());
+        // What was edited meanwhile may have left no word.
+        if assets.is_changed() {
+            stale.extend(known.uses.things());
+        }
     }
     let nothing = dressed.is_empty() && stale.is_empty() && built.is_empty() && !rebuild;
     if nothing {

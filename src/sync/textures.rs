@@ -7,7 +7,8 @@ use super::tree_building::TreeBuilding;
 use super::uses::Uses;
 use crate::scene::{EnvironmentMap, PhongMap, PhongMaps, TextureSource};
 use crate::trace::Texture;
-use bevy::asset::{AssetEvent, AssetId, Assets};
+use bevy::asset::{AssetEvent, AssetId, Assets, RenderAssetUsages};
+use bevy::ecs::change_detection::DetectChanges;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::lifecycle::RemovedComponents;
 use bevy::ecs::message::MessageReader;
@@ -153,7 +154,11 @@ pub(super) fn sync_textures(
     let mut pairs = HashSet::new();
     if draft.anew {
         edited.extend(known.uses.entities().chain(users.iter().map(|(e, _)| e)));
-        stale.extend(known.by_asset.keys().copied());
+        // What was edited meanwhile may have left no word.
+        if assets.is_changed() {
+            stale.extend(known.by_asset.keys().copied());
+            stale.extend(known.conversions.pictures());
+        }
     }
     for event in events.read() {
         if let AssetEvent::Added { id } | AssetEvent::Modified { id } | AssetEvent::Removed { id } =
@@ -168,6 +173,7 @@ pub(super) fn sync_textures(
         for id in [known.around, around].into_iter().flatten() {
             if assets.get(id).is_some_and(is_cube) {
                 stale.insert(id);
+                known.by_asset.remove(&id);
                 known.conversions.forget(id);
             }
             touched.insert(id);
@@ -214,8 +220,10 @@ pub(super) fn sync_textures(
         };
         let is_around = around == Some(id);
         let cost = cost(image, is_around);
-        if cost <= left {
-            left -= cost;
+        // Bevy's renderer takes the pixels of these away at the end of the frame, and says nothing.
+        let goes = image.asset_usage == RenderAssetUsages::RENDER_WORLD;
+        if cost <= left || goes {
+            left = left.saturating_sub(cost);
             known.conversions.forget(id);
             known.take(id, convert(image, is_around));
         } else {

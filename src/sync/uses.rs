@@ -65,8 +65,11 @@ impl<K: Copy + Eq + Hash> Uses<K> {
 
     /// Who uses any of these.
     pub fn users_of<'a>(&'a self, things: &'a HashSet<K>) -> impl Iterator<Item = Entity> + 'a {
-        let uses = self.of.iter().filter(|_| !things.is_empty());
-        let uses = uses.filter(|(_, used)| used.iter().any(|thing| things.contains(thing)));
+        let uses = (!things.is_empty()).then(|| self.of.iter());
+        let uses = uses
+            .into_iter()
+            .flatten()
+            .filter(|(_, used)| used.iter().any(|thing| things.contains(thing)));
         uses.map(|(entity, _)| *entity)
     }
 }

@@ -28,7 +28,7 @@ pub(super) fn crossings(
         let surface = Surface::at(world, settings, ray, 0.0, &hit);
         left *= surface.lets_through();
         crossings.push((hit, surface));
-        if left == Vec3::ZERO {
+        if left.max_element() < f32::MIN_POSITIVE {
             break;
         }
     }

@@ -74,3 +74,29 @@ fn what_went_and_what_was_edited_during_a_rest_is_known_after_it() {
     let material = |i: usize| &world.materials[world.objects[i].material as usize];
     assert_eq!(*material(1), trace::Material::default());
 }
+
+#[test]
+fn a_rest_in_which_nothing_happened_replaces_nothing() {
+    let mut small = Small::new();
+    let picture = add_image(&mut small.app, 10);
+    let maps = PhongMaps {
+        diffuse: Some(picture),
+        ..PhongMaps::default()
+    };
+    let object = small.objects[0];
+    small.app.world_mut().entity_mut(object).insert(maps);
+    let awake = |rests: Res<Rests>| !rests.0;
+    small
+        .app
+        .insert_resource(Rests(false))
+        .configure_sets(PostUpdate, SyncSystems.run_if(awake));
+    small.app.update();
+    let before = world(&small.app).clone();
+    for rests in [true, true, true, true, false, false] {
+        small.app.insert_resource(Rests(rests)).update();
+    }
+    let after = world(&small.app);
+    assert!(Arc::ptr_eq(&before.aggregate, &after.aggregate));
+    assert!(Arc::ptr_eq(&before.objects, &after.objects));
+    assert!(Arc::ptr_eq(&before.textures, &after.textures));
+}

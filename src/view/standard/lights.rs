@@ -212,7 +212,7 @@ fn map_lights<Theirs: Maps<Ours>, Ours: Component + Clone + PartialEq>(
         LeftOut::note(&mut left_out, "light", entity, theirs.left_out(exposure.0));
         let enlarged = place.map_or(1.0, |place| {
             let axes = place.affine().matrix3;
-            axes.x_axis.length() * axes.y_axis.length()
+            axes.x_axis.cross(axes.y_axis).length()
         });
         let ours = theirs.lamp(exposure.0, enlarged);
         if mapped.is_none_or(|mapped| mapped.0 != ours) {
