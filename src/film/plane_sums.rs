@@ -26,9 +26,9 @@ impl PlaneSums {
         self.sums.truncate(0);
     }
 
-    /// Takes sums, of so many samples each, where it has none.
-    pub fn begin(&mut self, sums: Sums, count: u32) {
-        if count == 1 {
+    /// Takes sums where it has none, of one sample each where `is_one`.
+    pub fn begin(&mut self, sums: Sums, is_one: bool) {
+        if is_one {
             self.first.extend_from_slice(&sums.means([1; 2]));
         } else {
             self.sums.copy_from(sums);
@@ -121,8 +121,8 @@ mod tests {
             sums.reset(TILE_PIXELS);
             sums.add(0, bytemuck::cast_slice(&tile));
             let [mut first, mut more] = [PlaneSums::default(), PlaneSums::default()];
-            first.begin(sums.all(), 1);
-            more.begin(sums.all(), 2);
+            first.begin(sums.all(), true);
+            more.begin(sums.all(), false);
             assert!(!first.first.is_empty() && first.sums.is_empty() && more.first.is_empty());
             assert_eq!(first.to_columns(), sums);
             assert_eq!(first.means([1; 2]), more.means([1; 2]));

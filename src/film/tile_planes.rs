@@ -63,10 +63,10 @@ impl Plane {
         self.moved = None;
     }
 
-    /// Adds `count` samples to these pixels.
-    fn add(&mut self, pixels: Pixels, sums: Sums, count: u32) {
+    /// Adds to these pixels: one sample, and no more for now, where `is_one`.
+    fn add(&mut self, pixels: Pixels, sums: Sums, is_one: bool) {
         if self.sums.is_empty() && pixels == Pixels::All {
-            return self.sums.begin(sums, count);
+            return self.sums.begin(sums, is_one);
         }
         let own = self.sums.as_sums();
         for places in pixels.runs() {
@@ -110,15 +110,17 @@ impl TilePlanes {
         self.counts[OWN]
     }
 
-    /// Adds `count` samples to these planes of these pixels. The sums are of the planes `of`, those among them: `TILE_PIXELS`
-    /// for each.
+    /// Adds `count` samples of a pass of so many to these planes of these pixels. The sums are of the planes `of`, those among
+    /// them: `TILE_PIXELS` for each.
     pub fn add(
         &mut self,
         pixels: Pixels,
         planes: PlaneSet,
         (of, sums): (PlaneSet, Sums),
         count: u32,
+        pass: u64,
     ) {
+        let is_one = pass == 1;
         self.update_past();
         let before = self.counts();
         let is_more = planes.has(OWN);
@@ -141,7 +143,7 @@ impl TilePlanes {
                     moves_with(own.all(), sums, Pixels::Half(half), count, moved);
                 }
             }
-            plane.add(pixels, sums, count);
+            plane.add(pixels, sums, is_one);
             pixels.halves().for_each(|half| counts[half] += count);
             self.changed = self.changed.with(number);
         }
@@ -420,7 +422,7 @@ mod tests {
                 ..TilePlanes::default()
             };
             let all = PlaneSet::ALL;
-            tile.add(Pixels::All, all, (all, sums(PLANES, 0.7).all()), 1);
+            tile.add(Pixels::All, all, (all, sums(PLANES, 0.7).all()), 1, 1);
             for step in steps {
                 let count = tile.counts()[0];
                 match step {
@@ -430,7 +432,7 @@ mod tests {
                         tile.retint(&tints);
                     }
                     Step::Samples if count < 1 << 20 => {
-                        tile.add(Pixels::All, all, (all, sums(PLANES, 0.3).all()), count);
+                        tile.add(Pixels::All, all, (all, sums(PLANES, 0.3).all()), count, 2);
                     }
                     Step::Moved(plane, value) => {
                         let mut from: Vec<_> = (0..PLANES).map(Some).collect();
@@ -438,7 +440,7 @@ mod tests {
                         tile.rearrange(&from);
                         prop_assert!(tile.lacks_light());
                         let plane = PlaneSet::NONE.with(plane);
-                        tile.add(Pixels::All, plane, (plane, sums(1, value).all()), count);
+                        tile.add(Pixels::All, plane, (plane, sums(1, value).all()), count, u64::from(count));
                     }
                     Step::Swapped(a, b) if a != OWN && b != OWN => {
                         let mut from: Vec<_> = (0..PLANES).map(Some).collect();

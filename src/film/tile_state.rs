@@ -184,7 +184,7 @@ impl TileState {
             self.planes = TilePlanes::of(subject);
         }
         let sums = (of, sums);
-        (self.planes).add(chunk.pixels, chunk.planes, sums, count as u32);
+        (self.planes).add(chunk.pixels, chunk.planes, sums, count as u32, chunk.of);
     }
 
     /// The pixels are what they are with the subject's tints.
