@@ -90,8 +90,16 @@ impl Mixture<'_> {
             seen.into_iter().collect::<Vec<_>>().join(" and ")
         };
         match part.cause {
-            Cause::Seen if self.is_one => "is seen as it is".into(),
-            Cause::Seen => "are seen as they are".into(),
+            Cause::Seen => {
+                let is_surface = |ray: &TracedRay| ray.hit.is_some() && ray.met_light.is_none();
+                let text = match (self.cameras().all(is_surface), self.is_one) {
+                    (true, true) => "shines by itself",
+                    (true, false) => "shine by themselves",
+                    (false, true) => "is seen as it is",
+                    (false, false) => "are seen as they are",
+                };
+                text.into()
+            }
             Cause::Light(id) => {
                 let is = if self.is_one { "is" } else { "are" };
                 format!("{is} lit by {}{}", named(self.names, id), self.tint(id))

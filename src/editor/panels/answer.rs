@@ -29,6 +29,17 @@ const WIDTH: f32 = 300.0;
 #[derive(Resource, Default)]
 pub(super) struct Answer(Option<Asked>);
 
+/// Logical pixels around the asked place in which the answer alone is read.
+const BESIDE: f32 = 12.0;
+
+impl Answer {
+    /// Whether a question was asked there, and its answer is open.
+    pub fn is_asked_at(&self, at: Vec2) -> bool {
+        let asked = self.0.as_ref();
+        asked.is_some_and(|asked| asked.at.distance(at) <= BESIDE)
+    }
+}
+
 /// A pixel that was asked about.
 struct Asked {
     question: Question,

@@ -1,5 +1,6 @@
 //! What the lines over the picture stand for: beside the pointer, and of the chosen node in a corner.
 
+use super::answer::Answer;
 use super::says::Says;
 use crate::bvh::primitives_below;
 use crate::editor::inspection::choice::Node;
@@ -50,8 +51,10 @@ fn hovered_ui(context: &egui::Context, free: Rect, world: &World, tales: &mut Ta
         }
         _ => false,
     };
-    if is_chosen(stands.0) {
-        // Its figures stand in the corner.
+    let answer = world.get_resource::<Answer>();
+    let is_asked = answer.is_some_and(|answer| answer.is_asked_at(hovered.at));
+    if is_chosen(stands.0) || is_asked {
+        // Its figures stand in the corner, or would lie over the answer.
         return;
     }
     let traced = &world.resource::<Traced>().world;
