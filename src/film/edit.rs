@@ -7,7 +7,7 @@
 
 use super::engine::Engine;
 use super::lock;
-use super::sample_chunk::{MOST_APART, Subject};
+use super::subject::{MOST_APART, Subject};
 use crate::scene::Lighting;
 use crate::trace::planes::OWN;
 use crate::trace::{Gains, Lamp, Lights, MaterialSet, World, samples_per_pixel};

@@ -6,14 +6,14 @@ use super::past_moves::PAST_BYTES;
 use super::pool::{SharedPool, Turn};
 use super::preview::Preview;
 use super::queue::Queue;
-use super::sample_chunk::{BatchSize, Scratch, Subject, with_scratch};
+use super::sample_chunk::{BatchSize, Scratch, with_scratch};
 use super::status::{Ending, State, Status, TrendPoint, seconds_left};
+use super::subject::Subject;
 use super::tile_planes::{BLEND_BYTES, PLANE_BYTES};
 use super::tile_state::TileState;
 use super::tiles::{TILE_PIXELS, Tile, TileGrid};
 use super::unmet::Unmet;
 use super::{FilmMemory, lock};
-use crate::scene::RenderSettings;
 use crate::trace::RayCounts;
 use crate::trace::planes::OWN;
 use bevy::math::URect;
@@ -87,12 +87,6 @@ fn next_number() -> u64 {
 /// Small chunks are taken as so many samples at once: some tenths of a millisecond in a plain scene.
 const SAMPLES_AT_ONCE: u64 = 2048;
 
-/// How long a render may take; `None` is for ever.
-fn time_limit(settings: &RenderSettings) -> Option<Duration> {
-    let seconds = settings.sampling.time;
-    (seconds > 0.0).then(|| Duration::try_from_secs_f32(seconds).unwrap_or(Duration::MAX))
-}
-
 /// What the threads report.
 #[derive(Clone, Debug, Default)]
 struct Progress {
@@ -119,7 +113,7 @@ impl Engine {
             progress: Mutex::default(),
             ended: Condvar::new(),
             done: AtomicU64::new(0),
-            limit: time_limit(&subject.settings),
+            limit: subject.time_limit(),
             number: AtomicU64::new(next_number()),
             rendered,
             area,

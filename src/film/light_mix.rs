@@ -35,7 +35,7 @@ pub struct FilmMemory {
 
 #[cfg(test)]
 mod tests {
-    use super::super::sample_chunk::Subject;
+    use super::super::subject::Subject;
     use super::super::test_scene::{camera, edited, lit, many, settings};
     use super::super::{Ending, LightMix, Picture, Progressive};
     use crate::trace::{Gains, World};

@@ -2,7 +2,7 @@
 
 use super::engine::{Engine, Mode};
 use super::render::{Rendered, finish};
-use super::sample_chunk::Subject;
+use super::subject::Subject;
 use super::tiles::place_in_tile;
 use super::{Picture, Status, TILE, lock};
 use crate::scene::RenderSettings;

@@ -47,6 +47,7 @@ mod render;
 mod sample_chunk;
 mod snapshot;
 mod status;
+mod subject;
 mod sum;
 mod sum_columns;
 #[cfg(test)]

@@ -3,7 +3,8 @@
 //! sample of all. The film takes them again: it keeps lights apart, and sums each sample exactly.
 
 use super::TILE;
-use super::sample_chunk::{BatchSize, Subject, with_scratch};
+use super::sample_chunk::{BatchSize, with_scratch};
+use super::subject::Subject;
 use super::tiles::Tile;
 use crate::trace::{PlaneSet, SampleId};
 use glam::{UVec2, Vec2, Vec3};

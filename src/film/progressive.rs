@@ -3,7 +3,7 @@
 use super::control::Signal;
 use super::engine::{Engine, Mode};
 use super::pool::{Purpose, shared_pool};
-use super::sample_chunk::Subject;
+use super::subject::Subject;
 use super::{Ending, Film, FilmMemory, LightMix, LightPictures, PixelError, Snapshot, Status, Sum};
 use crate::scene::RenderSettings;
 use crate::trace::{Camera, Gains, World, samples_per_pixel};

@@ -1,6 +1,6 @@
 use super::control::Signal;
 use super::engine::{Engine, Mode};
-use super::sample_chunk::Subject;
+use super::subject::Subject;
 use super::{Ending, Film, Picture, Status};
 use crate::scene::RenderSettings;
 use crate::trace::{Camera, RayCounts, World, samples_per_pixel};

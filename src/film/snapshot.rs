@@ -199,7 +199,7 @@ fn draw_nearest(preview: &Preview, square: Tile, rows: &mut [Vec3], width: usize
 #[cfg(test)]
 mod tests {
     use super::super::engine::Mode;
-    use super::super::sample_chunk::Subject;
+    use super::super::subject::Subject;
     use super::super::{lock, test_scene};
     use super::*;
     use crate::trace::Gains;

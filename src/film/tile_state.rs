@@ -3,7 +3,7 @@
 
 use super::error::Moves;
 use super::means::Means;
-use super::sample_chunk::Subject;
+use super::subject::Subject;
 use super::sum_columns::{SumColumns, Sums, TileColors};
 use super::tile_planes::TilePlanes;
 use super::tiled_film::FilmTile;

@@ -19,7 +19,7 @@
 //! that a picture knows.
 
 use super::lock;
-use super::sample_chunk::Subject;
+use super::subject::Subject;
 use super::tiles::TILE_PIXELS;
 use crate::instruction_sets::vectorized;
 use crate::trace::emitters;

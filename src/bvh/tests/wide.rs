@@ -102,6 +102,17 @@ fn bundles(count: usize, places: &[Affine3A]) -> Vec<Ray> {
         .collect()
 }
 
+/// A mesh at each of these places.
+fn repeated(mesh: &Triangles, places: &[Affine3A], levels: Levels) -> Aggregate {
+    let options = BuildOptions {
+        levels,
+        ..BuildOptions::default()
+    };
+    let meshes: Vec<(Triangles, Affine3A)> =
+        places.iter().map(|&place| (mesh.clone(), place)).collect();
+    placed(&meshes, &options)
+}
+
 /// Every third ray starts on the triangle that it hits; how many do.
 fn start_on_what_they_hit(scene: &Aggregate, rays: &mut [Ray]) -> usize {
     let some = rays.iter_mut().step_by(3);
@@ -119,13 +130,7 @@ fn a_ray_meets_everything_but_the_triangle_that_it_starts_on() {
     let turned: Vec<Affine3A> = (0..5).map(|_| any_transform(&mut random)).collect();
     for places in [vec![Affine3A::IDENTITY], turned] {
         for levels in [Levels::One, Levels::Two] {
-            let options = BuildOptions {
-                levels,
-                ..BuildOptions::default()
-            };
-            let meshes: Vec<(Triangles, Affine3A)> =
-                places.iter().map(|&place| (mesh.clone(), place)).collect();
-            let scene = placed(&meshes, &options);
+            let scene = repeated(&mesh, &places, levels);
             let mut rays = rays(10_000, &places);
             rays.extend(bundles(10_000, &places));
             let plain = rays.clone();
@@ -166,13 +171,7 @@ fn every_instruction_set_and_every_order_finds_the_same_bits() {
     let turned: Vec<Affine3A> = (0..12).map(|_| any_transform(&mut random)).collect();
     for places in [vec![Affine3A::IDENTITY], turned] {
         for levels in [Levels::One, Levels::Two] {
-            let options = BuildOptions {
-                levels,
-                ..BuildOptions::default()
-            };
-            let meshes: Vec<(Triangles, Affine3A)> =
-                places.iter().map(|&place| (mesh.clone(), place)).collect();
-            let scene = placed(&meshes, &options);
+            let scene = repeated(&mesh, &places, levels);
             // A million over the four scenes.
             let mut rays = rays(100_000, &places);
             rays.extend(bundles(150_000, &places));

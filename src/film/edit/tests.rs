@@ -1,5 +1,5 @@
 use super::super::engine::{Engine, Mode};
-use super::super::sample_chunk::Subject;
+use super::super::subject::Subject;
 use super::super::test_scene::{camera, edited, lit, many, repainted, settings};
 use super::super::{Ending, Progressive, Snapshot};
 use crate::trace::{Gains, Lights, PointLight, Untinted, World};

@@ -11,25 +11,28 @@ use bevy::ecs::system::Res;
 #[derive(Resource)]
 struct Rests(bool);
 
-#[test]
-fn what_went_and_what_was_edited_during_a_rest_is_known_after_it() {
+/// A scene with a picture, whose systems rest where [`Rests`] says so; they do not yet.
+fn that_may_rest() -> (Small, Handle<Image>) {
     let mut small = Small::new();
     let picture = add_image(&mut small.app, 10);
     let maps = PhongMaps {
         diffuse: Some(picture.clone()),
         ..PhongMaps::default()
     };
-    small
-        .app
-        .world_mut()
-        .entity_mut(small.objects[0])
-        .insert(maps);
+    let object = small.objects[0];
+    small.app.world_mut().entity_mut(object).insert(maps);
     let awake = |rests: Res<Rests>| !rests.0;
     small
         .app
         .insert_resource(Rests(false))
         .configure_sets(PostUpdate, SyncSystems.run_if(awake));
     small.app.update();
+    (small, picture)
+}
+
+#[test]
+fn what_went_and_what_was_edited_during_a_rest_is_known_after_it() {
+    let (mut small, picture) = that_may_rest();
     assert_eq!(world(&small.app).objects.len(), 3);
     small.app.insert_resource(Rests(true));
     let rest = |small: &mut Small| {
@@ -77,20 +80,7 @@ fn what_went_and_what_was_edited_during_a_rest_is_known_after_it() {
 
 #[test]
 fn a_rest_in_which_nothing_happened_replaces_nothing() {
-    let mut small = Small::new();
-    let picture = add_image(&mut small.app, 10);
-    let maps = PhongMaps {
-        diffuse: Some(picture),
-        ..PhongMaps::default()
-    };
-    let object = small.objects[0];
-    small.app.world_mut().entity_mut(object).insert(maps);
-    let awake = |rests: Res<Rests>| !rests.0;
-    small
-        .app
-        .insert_resource(Rests(false))
-        .configure_sets(PostUpdate, SyncSystems.run_if(awake));
-    small.app.update();
+    let (mut small, _) = that_may_rest();
     let before = world(&small.app).clone();
     for rests in [true, true, true, true, false, false] {
         small.app.insert_resource(Rests(rests)).update();
