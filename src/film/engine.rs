@@ -2,11 +2,12 @@
 
 use super::control::{Control, Signal};
 use super::edit::Edit;
+use super::kept_hits::KeptHits;
 use super::past_moves::PAST_BYTES;
 use super::pool::{SharedPool, Turn};
 use super::preview::Preview;
 use super::queue::Queue;
-use super::sample_chunk::{BatchSize, Scratch, with_scratch};
+use super::sample_chunk::{BatchSize, Scratch, Work, with_scratch};
 use super::status::{Ending, State, Status, TrendPoint, seconds_left};
 use super::subject::Subject;
 use super::tile_planes::{BLEND_BYTES, PLANE_BYTES};
@@ -50,6 +51,7 @@ pub(super) struct Engine {
     pub(super) queue: Mutex<Queue>,
     pub(super) batch: BatchSize,
     pub(super) unmet: Unmet,
+    kept: KeptHits,
     pub control: Control,
     /// The picture is complete at every such pixel of every such row; 0 before the first picture.
     divider: AtomicU32,
@@ -108,6 +110,7 @@ impl Engine {
             queue: Mutex::default(),
             batch: BatchSize::new(&subject),
             unmet: Unmet::default(),
+            kept: KeptHits::new(&grid),
             control: Control::new(),
             divider: AtomicU32::new(0),
             progress: Mutex::default(),
@@ -172,7 +175,8 @@ impl Engine {
         FilmMemory {
             planes: if subject.stays_apart { planes } else { 0 },
             plane,
-            total: pixels * (PAST_BYTES + rest) as u64 + planes as u64 * plane,
+            hits: self.kept.bytes(),
+            total: pixels * (PAST_BYTES + rest) as u64 + planes as u64 * plane + self.kept.bytes(),
         }
     }
 
@@ -334,10 +338,15 @@ impl Engine {
         let (number, subject) = (self.number(), self.subject());
         scratch.octaves.fill(0);
         let (mut rays, mut samples, mut done) = (RayCounts::default(), 0, 0);
+        let work = Work {
+            subject: &subject,
+            batch: &self.batch,
+            kept: (subject.edit > 0).then_some(&self.kept),
+            stopped: &|| self.must_stop(),
+        };
         for chunk in &waiting {
             let tile = self.grid.tile(chunk.tile);
-            let stopped = || self.must_stop();
-            let taken = scratch.sum_chunk(&subject, tile, chunk, &self.batch, &stopped);
+            let taken = scratch.sum_chunk(&work, tile, chunk);
             let Some(taken) = taken else { break };
             rays += taken;
             done += 1;

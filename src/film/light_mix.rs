@@ -29,7 +29,9 @@ pub struct FilmMemory {
     pub planes: usize,
     /// Of one of them.
     pub plane: u64,
-    /// Of all of it: the planes, and what the others are together while one is edited.
+    /// What camera rays hit, which is kept while lights and materials are edited.
+    pub hits: u64,
+    /// Of all of it: the planes, what the others are together while one is edited, and those hits.
     pub total: u64,
 }
 
@@ -104,12 +106,12 @@ mod tests {
 
     #[test]
     fn a_light_that_is_edited_has_a_plane_of_its_own_however_many_there_are() {
-        let world = many(1..41);
+        let world = many(1..25);
         let render = start(&world, 4);
         render.wait();
         let edit = |render: &Progressive, red: f32| {
             let before = render.status().rays.total();
-            let world = edited(&world, |lights| lights.points[36].color.x = red);
+            let world = edited(&world, |lights| lights.points[20].color.x = red);
             assert!(render.edit(world.clone(), &Gains::default()));
             render.wait();
             (world, render.status().rays.total() - before)

@@ -31,6 +31,7 @@ mod estimate;
 mod first_hits;
 mod fixed_point;
 mod gaussian;
+mod kept_hits;
 mod light_mix;
 mod light_pictures;
 mod means;

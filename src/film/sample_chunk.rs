@@ -1,5 +1,6 @@
 //! The samples of a chunk: batch by batch, so that a render can stop between two of them.
 
+use super::kept_hits::{KeptHits, Run};
 use super::subject::Subject;
 use super::sum_columns::SumColumns;
 use super::tile_state::Chunk;
@@ -7,7 +8,7 @@ use super::tiles::{TILE_PIXELS, Tile, pixel_in_tile};
 use super::unmet::{NO_OCTAVES, Octaves, count_octaves};
 use crate::trace::planes::OWN;
 use crate::trace::{
-    MaterialSet, PlaneSet, RayCounts, SampleId, Untinted, Workspace, radiance_in_planes,
+    FEW_LIGHTS, MaterialSet, PlaneSet, RayCounts, SampleId, Untinted, Workspace, radiance_in_planes,
 };
 use glam::Vec3;
 use std::cell::Cell;
@@ -59,6 +60,9 @@ impl BatchSize {
     }
 }
 
+/// Looking how much so many points of lights would add takes as long as a shadow ray.
+const FAINT_POINTS_A_RAY: u64 = 8;
+
 /// Rays that a sample sends out where it first hits something, at most.
 fn rays_of_first_hit(subject: &Subject) -> u64 {
     let Subject {
@@ -66,9 +70,14 @@ fn rays_of_first_hit(subject: &Subject) -> u64 {
     } = subject;
     let features = &settings.features;
     let lamps = world.lamps(settings);
-    let mut rays = 1 + lamps
+    let points = lamps
         .map(|lamp| u64::from(lamp.samples(settings).unwrap_or(1)))
         .sum::<u64>();
+    let mut rays = 1 + if world.needs.faint > 0.0 {
+        FEW_LIGHTS as u64 + points / FAINT_POINTS_A_RAY
+    } else {
+        points
+    };
     if features.glossy {
         rays += u64::from(settings.gloss_samples);
     }
@@ -87,6 +96,8 @@ pub(super) struct Scratch {
     places: Vec<usize>,
     columns: SumColumns,
     samples: Vec<SampleId>,
+    /// The pieces of which a batch of a chunk is made.
+    runs: Vec<Run>,
     /// Plane by plane of those that were asked for.
     values: Vec<Vec3>,
     /// The values of the samples, all those planes together, where they are more than what shines by itself.
@@ -109,6 +120,7 @@ impl Default for Scratch {
             places: Vec::new(),
             columns: SumColumns::default(),
             samples: Vec::new(),
+            runs: Vec::new(),
             values: Vec::new(),
             folded: Vec::new(),
             workspace: Workspace::default(),
@@ -133,16 +145,20 @@ pub(super) fn with_scratch<R>(work: impl FnOnce(&mut Scratch) -> R) -> R {
     result
 }
 
+/// What the samples of chunks are taken with.
+pub(super) struct Work<'a> {
+    pub subject: &'a Subject,
+    pub batch: &'a BatchSize,
+    /// Where the hits of camera rays are kept, and read.
+    pub kept: Option<&'a KeptHits>,
+    /// Whether to leave it.
+    pub stopped: &'a dyn Fn() -> bool,
+}
+
 impl Scratch {
-    /// Sums the chunk's samples into [`Self::sums`]. `None` where `stopped` became true.
-    pub fn sum_chunk(
-        &mut self,
-        subject: &Subject,
-        tile: Tile,
-        chunk: &Chunk,
-        batch: &BatchSize,
-        stopped: &dyn Fn() -> bool,
-    ) -> Option<RayCounts> {
+    /// Sums the chunk's samples into [`Self::sums`]. `None` where it was stopped.
+    pub fn sum_chunk(&mut self, work: &Work, tile: Tile, chunk: &Chunk) -> Option<RayCounts> {
+        let subject = work.subject;
         let mut rays = RayCounts::default();
         self.sums.truncate(0);
         let octaves = self.octaves;
@@ -153,14 +169,7 @@ impl Scratch {
         let rows = chunk.planes.rows(subject.planes());
         let complete = chunk.segments().all(|segment| {
             self.sums.extend(rows * TILE_PIXELS);
-            let sampled = self.sum_segment(
-                subject,
-                (tile, &places),
-                segment,
-                chunk.planes,
-                batch,
-                stopped,
-            );
+            let sampled = self.sum_segment(work, (tile, &places), chunk, segment);
             rays += sampled.unwrap_or_default();
             sampled.is_some()
         });
@@ -174,16 +183,21 @@ impl Scratch {
         Some(rays)
     }
 
-    /// Adds these samples of these pixels to the segment's sums, which are the last ones.
+    /// Adds these samples of the chunk, whose pixels lie at these places, to the segment's sums, which are the last ones.
     fn sum_segment(
         &mut self,
-        subject: &Subject,
+        work: &Work,
         (tile, places): (Tile, &[usize]),
+        chunk: &Chunk,
         segment: Range<u64>,
-        wanted: PlaneSet,
-        batch: &BatchSize,
-        stopped: &dyn Fn() -> bool,
     ) -> Option<RayCounts> {
+        let Work {
+            subject,
+            batch,
+            kept,
+            stopped,
+        } = *work;
+        let wanted = chunk.planes;
         let mut rays = RayCounts::default();
         let planes = wanted.of(subject.planes());
         let rows = wanted.rows(subject.planes());
@@ -199,24 +213,39 @@ impl Scratch {
             let count = (batch.get() as u64).min(left);
             let first_place = place;
             self.samples.clear();
+            self.runs.clear();
             while self.samples.len() < count as usize {
                 let more = places.len() - place;
                 let more = more.min(count as usize - self.samples.len());
                 let pixels = (places[place..place + more].iter())
                     .map(|place| tile.origin + pixel_in_tile(*place));
                 (self.samples).extend(pixels.map(|pixel| SampleId { pixel, index }));
+                self.runs.push((index, place..place + more));
                 place += more;
                 if place == places.len() {
                     (place, index) = (0, index + 1);
                 }
             }
-            rays += self.evaluate_samples(subject, wanted, batch);
+            if let Some(kept) = kept {
+                let runs = &self.runs;
+                (self.workspace).know_camera_hits(|hits| {
+                    kept.read(chunk.tile, chunk.pixels, places, runs, hits)
+                });
+            }
+            let taken = self.evaluate_samples(subject, wanted, batch);
+            if let Some(kept) = kept.filter(|_| taken.camera > 0) {
+                kept.write(chunk.tile, places, &self.runs, self.workspace.camera_hits());
+            }
+            rays += taken;
             let whole = is_whole.then_some(first);
             self.sum_batch(planes.clone(), places.len(), first_place, whole);
             left -= count;
             if stopped() {
                 return None;
             }
+        }
+        if let Some(kept) = kept {
+            kept.complete(chunk.tile, chunk.pixels, segment);
         }
         for row in (0..rows).filter(|_| !is_whole) {
             for (i, at) in places.iter().enumerate() {
@@ -358,7 +387,13 @@ mod tests {
         let batch = BatchSize::new(&subject);
         let mut scratch = Scratch::default();
         let mut sum = |stops: bool| {
-            let done = scratch.sum_chunk(&subject, tile, &chunk, &batch, &|| stops);
+            let work = Work {
+                subject: &subject,
+                batch: &batch,
+                kept: None,
+                stopped: &|| stops,
+            };
+            let done = scratch.sum_chunk(&work, tile, &chunk);
             (done.is_some(), scratch.octaves.iter().sum::<u32>())
         };
         assert_eq!(sum(true), (false, 0));

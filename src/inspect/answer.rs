@@ -109,6 +109,7 @@ impl Tree<'_> {
         let mut arriving = BTreeSet::new();
         let mut blocked: BTreeMap<u64, BTreeSet<u64>> = BTreeMap::new();
         let (mut behind, mut unlit) = (BTreeSet::new(), BTreeSet::new());
+        let mut faint = false;
         let mut carried = Vec3::ZERO;
         for (_, ray) in self.children(index) {
             let Some(light) = ray.light else {
@@ -125,6 +126,7 @@ impl Tree<'_> {
                 RayEnd::Unlit => {
                     unlit.insert(light.id);
                 }
+                RayEnd::LeftOut => faint = true,
                 _ => {
                     arriving.insert(light.id);
                     carried += ray.carried;
@@ -158,6 +160,8 @@ impl Tree<'_> {
             }
         } else if !shadows.is_empty() {
             format!("is {}", shadows.join(" and "))
+        } else if faint {
+            "is lit by lights so faint that this sample asked for none of them".into()
         } else if !behind.is_empty() {
             format!("is turned away from {}", list(&mut behind.iter().copied()))
         } else if !unlit.is_empty() {

@@ -156,6 +156,7 @@ struct Fate {
     arrived: u32,
     tinted: u32,
     unlit: u32,
+    left_out: u32,
     behind: u32,
     blocked: u32,
     blockers: BTreeSet<u64>,
@@ -174,6 +175,7 @@ impl Fate {
                 let behind = ray.light.is_some_and(|light| light.n_dot_l <= 0.0);
                 self.behind += u32::from(behind);
             }
+            RayEnd::LeftOut => self.left_out += 1,
             _ => {
                 self.arrived += 1;
                 self.tinted += u32::from(ray.transmittance != Vec3::ONE);
@@ -211,6 +213,14 @@ impl Fate {
         if self.unlit > self.behind {
             let others = self.unlit - self.behind;
             parts.push(format!("{others} are of a colour that the surface does not reflect, or from behind its triangle"));
+        }
+        if self.left_out > 0 {
+            parts.push(format!(
+                "{} {} so faint that chance left {} out",
+                self.left_out,
+                if self.left_out == 1 { "is" } else { "are" },
+                if self.left_out == 1 { "it" } else { "them" },
+            ));
         }
         let plural = if self.samples == 1 { "" } else { "s" };
         format!(

@@ -20,7 +20,8 @@ pub fn is_shown(settings: &RaySettings, ray: &TracedRay) -> bool {
         RayKind::Shadow => settings.shadow,
         RayKind::LightSample => settings.light_samples,
     };
-    kind && ray.depth <= settings.max_depth && ray.end != RayEnd::Unlit
+    let is_drawn = !matches!(ray.end, RayEnd::Unlit | RayEnd::LeftOut);
+    kind && ray.depth <= settings.max_depth && is_drawn
 }
 
 /// Rays as lines, with what they hit.
@@ -104,7 +105,7 @@ fn draw(set: &mut LineSet, subject: &Subject, index: u32, ray: &TracedRay) {
             set.line([blocker, end(ray.t_max)], DARK, stands);
             set.dot(blocker, RED, stands);
         }
-        RayEnd::Unlit => {}
+        RayEnd::Unlit | RayEnd::LeftOut => {}
     }
     let Some(hit) = &ray.hit else { return };
     if settings.hit_triangles && ray.end != RayEnd::Arrived {

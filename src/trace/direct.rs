@@ -1,6 +1,7 @@
 //! Direct light, one light after another: points of it for all vertices of a batch, shadow rays there, and what arrives.
 
 use super::Surface;
+use super::faint::mean;
 use super::lamp::Lamp;
 use super::light_columns::Source;
 use super::light_frames::Frame;
@@ -27,6 +28,8 @@ struct Asked<'a> {
     frame: Option<&'a Frame>,
     /// Whether more than its middle is asked for.
     has_extent: bool,
+    /// What adds less is asked for by chance; 0 where nothing is.
+    faint: f32,
 }
 
 impl<R: Recorder> Batch<'_, R> {
@@ -87,6 +90,7 @@ impl<R: Recorder> Batch<'_, R> {
             lamp,
             frame,
             has_extent,
+            faint: self.faint(lamp),
         };
         shadow_rays.ask(vertices, at_first_hits, self.samples, self.pixels);
         if has_extent {
@@ -95,8 +99,25 @@ impl<R: Recorder> Batch<'_, R> {
             } = &mut *shadow_rays;
             numbers.draw(asking, Purpose::Light(lamp.id()), self.settings);
         }
+        if asked.faint > 0.0 {
+            let ShadowRays {
+                asking, chances, ..
+            } = &mut *shadow_rays;
+            chances.draw(asking, Purpose::Faint(lamp.id()), self.settings);
+        }
         self.answer(&asked, vertices, shadow_rays);
         self.collect(&asked, row, vertices, shadow_rays);
+    }
+
+    /// What a point of a light has to add so that it is always asked for. A dome is one light, and Classic light has no
+    /// noise that it does not have to have.
+    fn faint(&self, lamp: Lamp) -> f32 {
+        let is_physical = self.settings.lighting == Lighting::Physical;
+        if is_physical && !matches!(lamp, Lamp::Dome(_)) {
+            self.world.needs.faint
+        } else {
+            0.0
+        }
     }
 
     /// Answers all questions for points of a light.
@@ -236,6 +257,7 @@ impl<R: Recorder> Batch<'_, R> {
             askers,
             counts,
             numbers,
+            chances,
             values,
             points,
             rays,
@@ -244,6 +266,7 @@ impl<R: Recorder> Batch<'_, R> {
         } = shadow_rays;
         shadows.clear();
         for (question, (asker, &value)) in askers.iter().zip(&*values).enumerate() {
+            let mut value = value;
             let vertex = *asker as usize;
             let number = *points;
             *points += 1;
@@ -268,6 +291,16 @@ impl<R: Recorder> Batch<'_, R> {
             }
             if value == Vec3::ZERO {
                 continue;
+            }
+            let brightness = mean(value);
+            if brightness < asked.faint {
+                let chance = brightness / asked.faint;
+                let is_asked = chances.u[question] < chance;
+                self.recorder.left_to_chance(number, chance, is_asked);
+                if !is_asked {
+                    continue;
+                }
+                value /= chance;
             }
             let sample = vertices.path(vertex).sample;
             if !self.settings.features.shadows {

@@ -1,10 +1,11 @@
+use super::faint::faint;
 use super::{Camera, MaterialSet, Object, World};
 use crate::scene::{Alpha, RenderSettings};
 use glam::Vec3;
 use std::sync::Arc;
 
 /// What of the model a world uses at all. What it does not use is not computed, drawn or asked for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Needs {
     /// Some object lets light through: shadow rays must look at what they cross.
     pub transparency: bool,
@@ -14,6 +15,10 @@ pub struct Needs {
     pub emission: bool,
     /// Samples of a pixel that moving objects and lights ask for; 0 where none moves.
     pub motion_samples: u32,
+    /// What a point of a light has to add so that it is asked for in any case, linear, the mean of its channels: where there
+    /// are more than [`FEW_LIGHTS`](super::FEW_LIGHTS) lights, fainter ones are asked for by chance. 0 where there are no
+    /// more.
+    pub faint: f32,
 }
 
 impl Needs {
@@ -26,6 +31,7 @@ impl Needs {
             visible_lights: world.lights.parallelograms.iter().any(|l| l.visible),
             emission: (world.materials.iter()).any(|material| material.emission != Vec3::ZERO),
             motion_samples: objects.chain(lights).max().unwrap_or(0),
+            faint: faint(world),
         }
     }
 }

@@ -150,19 +150,20 @@ impl Untinted {
 
     /// Takes the tints off the lights of a world that get a plane each ([`Planes::of`]). The tint of a light that is of one
     /// colour is that colour. Of one with a gradient it is a power of two, so that what is left of it is the same gradient,
-    /// digit for digit, and chooses the same places. A light that shares a plane shines with its gain by itself.
+    /// digit for digit, and chooses the same places. A light that shares a plane shines with its gain by itself, and so does
+    /// each of many: how often one of those is asked for hangs on how bright it is.
     pub fn of(world: &World, own: usize, first: &[u64], gains: &Gains) -> Self {
         let planes = Planes::of(&world.lights, own, first);
         let mut taken = vec![Vec3::ONE; planes.count()];
         let mut tints = taken.clone();
         let mut lights = (*world.lights).clone();
         let gains: Vec<Vec3> = lights.all().map(|light| gains.of(light.id())).collect();
-        let is_alone: Vec<bool> = (0..planes.count())
-            .map(|plane| planes.is_of_one(plane))
+        let is_tinted: Vec<bool> = (0..planes.count())
+            .map(|plane| world.needs.faint == 0.0 && planes.is_of_one(plane))
             .collect();
         for (light, colors) in lights.colors_mut().enumerate() {
             let (plane, gain) = (planes.of_light(light), gains[light]);
-            if !is_alone[plane] {
+            if !is_tinted[plane] {
                 for color in colors {
                     *color = times(*color, gain);
                 }

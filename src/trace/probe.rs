@@ -331,6 +331,16 @@ impl Recorder for Recording<'_> {
         self.points.push(index);
     }
 
+    fn left_to_chance(&mut self, point: u32, chance: f32, is_asked: bool) {
+        let ray = self.ray_of(Adding::Light(point));
+        if is_asked {
+            ray.chance = chance;
+            ray.weight /= chance;
+        } else {
+            ray.end = RayEnd::LeftOut;
+        }
+    }
+
     fn shadow_ray(&mut self, point: u32, shadow: &Ray) {
         let ray = self.ray_of(Adding::Light(point));
         ray.origin = shadow.origin;

@@ -39,13 +39,29 @@ pub struct Workspace {
     /// Of this bounce, and of the next one.
     paths: Paths,
     next: Paths,
+    /// Of the camera rays, and of those of later bounces.
+    camera_hits: Vec<Option<Hit>>,
     hits: Vec<Option<Hit>>,
+    /// The camera's are known.
+    is_known: bool,
     behind: Behind,
     vertices: Vertices,
     shadow_rays: ShadowRays,
 }
 
 impl Workspace {
+    /// What the camera rays of the last batch hit, one for each sample.
+    pub fn camera_hits(&self) -> &[Option<Hit>] {
+        &self.camera_hits
+    }
+
+    /// `fill` may put what the camera rays of the next batch hit into an empty list, one for each sample, where it is known
+    /// from before: true where it did. They are not traced then.
+    pub fn know_camera_hits(&mut self, fill: impl FnOnce(&mut Vec<Option<Hit>>) -> bool) {
+        self.camera_hits.clear();
+        self.is_known = fill(&mut self.camera_hits);
+    }
+
     /// The materials that paths have met since this was asked last. The values of samples depend on no other material, those
     /// apart that let light through.
     pub fn take_met(&mut self) -> MaterialSet {
@@ -156,11 +172,14 @@ fn evaluate<R: Recorder>(
         camera_rays,
         paths,
         next,
+        camera_hits,
         hits,
+        is_known,
         behind,
         vertices,
         shadow_rays,
     } = workspace;
+    let mut is_known = std::mem::take(is_known) && camera_hits.len() == samples.len();
     let cone = Cone::of_pixel(camera, settings.size);
     paths.clear();
     let image_plane = camera.image_plane(settings.size);
@@ -176,19 +195,25 @@ fn evaluate<R: Recorder>(
         counts: RayCounts::default(),
         recorder,
     };
-    batch.counts.camera += samples.len() as u64;
+    if !is_known {
+        batch.counts.camera += samples.len() as u64;
+    }
     for ray in &paths.rays {
         batch.recorder.camera_ray(ray);
     }
+    let mut hits_now = camera_hits;
     while !paths.rays.is_empty() {
-        batch.find_nearest(paths, hits, behind);
+        if !std::mem::take(&mut is_known) {
+            batch.find_nearest(paths, hits_now, behind);
+        }
         next.clear();
-        batch.find_vertices(paths, cone, hits, vertices);
+        batch.find_vertices(paths, cone, hits_now, vertices);
         if settings.features.shading {
             batch.add_direct_light(vertices, shadow_rays);
         }
         batch.continue_paths(vertices, paths, next);
         std::mem::swap(paths, next);
+        hits_now = &mut *hits;
         batch.recorder.next_bounce();
     }
     batch.counts

@@ -86,7 +86,7 @@ pub struct TracedRay {
     /// As many rays share what arrives at the surface where this one starts.
     pub count: u32,
     /// The probability with which the path went this way: 1, but for a choice between reflection
-    /// and transmission.
+    /// and transmission, and for faint light where there is much of it.
     pub chance: f32,
     /// What its radiance is multiplied by on its way into its parent's. For light: the part of the
     /// light's samples and of the surface's opacity alone; `light.reflected` has the rest.
@@ -171,6 +171,8 @@ pub enum RayEnd {
     /// Not traced, because the surface reflects nothing of that light: it stands behind the surface,
     /// or is black, or the surface is.
     Unlit,
+    /// Not traced, because there are many lights and this one adds so little: chance asks for it now and then.
+    LeftOut,
 }
 
 impl RayEnd {
@@ -184,12 +186,13 @@ impl RayEnd {
             Self::Blocked => "blocked",
             Self::Unshadowed => "unshadowed",
             Self::Unlit => "unlit",
+            Self::LeftOut => "left-out",
         }
     }
 
     /// Whether there is a ray at all.
     pub fn is_traced(self) -> bool {
-        !matches!(self, Self::Unshadowed | Self::Unlit)
+        !matches!(self, Self::Unshadowed | Self::Unlit | Self::LeftOut)
     }
 }
 

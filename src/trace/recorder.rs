@@ -76,6 +76,9 @@ pub(super) trait Recorder {
     /// A point of a light that may shine on a surface.
     #[inline(always)]
     fn light_sample(&mut self, _point: u32, _lit: &LitPoint) {}
+    /// So little comes from it that it gets a shadow ray with this probability, and whether it does.
+    #[inline(always)]
+    fn left_to_chance(&mut self, _point: u32, _chance: f32, _is_asked: bool) {}
     /// It gets a shadow ray.
     #[inline(always)]
     fn shadow_ray(&mut self, _point: u32, _ray: &Ray) {}

@@ -31,6 +31,8 @@ pub enum Purpose {
     Translucency,
     /// One: which way a ray goes on that could go two.
     Branch,
+    /// One: whether a faint point of the light with this id is asked for.
+    Faint(u64),
 }
 
 impl Purpose {
@@ -42,6 +44,7 @@ impl Purpose {
             Self::Translucency => 4,
             Self::Branch => 5,
             Self::Light(id) => mix(mix(6, id as u32), (id >> 32) as u32),
+            Self::Faint(id) => mix(mix(7, id as u32), (id >> 32) as u32),
         }
     }
 }

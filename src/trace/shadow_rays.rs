@@ -24,6 +24,8 @@ pub(super) struct ShadowRays {
     pub askers: Vec<u32>,
     pub asking: Asking,
     pub numbers: Pairs,
+    /// Where there are many lights, the number of each question that decides whether it is asked if it is faint.
+    pub chances: Pairs,
     /// The vertices whose questions are answered in columns, matt ones and those with a highlight, and the questions that
     /// are answered one by one.
     pub matt: Vec<u32>,

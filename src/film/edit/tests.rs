@@ -299,3 +299,61 @@ fn a_light_that_moves_among_many_takes_a_part_of_a_sample() {
     };
     assert_eq!(part(&two), 3.0 / 6.0);
 }
+
+#[test]
+fn camera_rays_are_traced_once_however_often_lights_and_materials_are_edited() {
+    let world = lit();
+    let render = start(&world, 4);
+    render.wait();
+    let camera = |render: &Progressive| render.status().rays.camera;
+    let each = u64::from(SIZE.element_product()) * 4;
+    assert_eq!((camera(&render), render.memory().hits), (each, 0));
+    let mut now = world;
+    for step in 0..4 {
+        now = match step {
+            2 => repainted(&now, 1, Vec3::new(0.2, 0.7, 0.2)),
+            _ => edited(&now, |lights| lights.points[0].position.x += 0.1),
+        };
+        assert!(render.edit(now.clone(), &Gains::default()));
+        render.wait();
+        assert_eq!(
+            camera(&render),
+            2 * each,
+            "step {step}: those of the first edit are kept"
+        );
+        let fresh = start(&now, 4);
+        fresh.wait();
+        assert_eq!(render.snapshot().picture, fresh.snapshot().picture);
+    }
+    assert!(render.memory().hits > 0);
+}
+
+#[test]
+fn one_of_many_lights_that_is_edited_takes_its_own_rays_and_no_other_s() {
+    let mut now = many(1..101);
+    let render = start(&now, 4);
+    render.wait();
+    let mut before = render.status().rays.total();
+    for step in 0..4 {
+        now = edited(&now, |lights| match step {
+            // The first edit gives it a plane of its own.
+            0 | 1 => lights.points[70].color *= 1.5,
+            2 => lights.points[70].position.y += 0.2,
+            _ => lights.points[70].color = Vec3::ZERO,
+        });
+        assert!(render.edit(now.clone(), &Gains::default()));
+        render.wait();
+        let fresh = start(&now, 4);
+        fresh.wait();
+        let all = fresh.status().rays.total();
+        let more = render.status().rays.total() - before;
+        assert!(step == 0 || 4 * more < all, "step {step}: {more} of {all}");
+        before += more;
+        let pictures = [&render, &fresh].map(|render| render.snapshot().picture);
+        for (one, other) in pictures[0].pixels.iter().zip(&pictures[1].pixels) {
+            // Lights that share a plane are added in f32.
+            let difference = (*one - *other).abs().max_element();
+            assert!(difference <= 1e-5 * other.max_element(), "{one} {other}");
+        }
+    }
+}

@@ -151,6 +151,12 @@ fn film_ui(ui: &mut Ui, world: &mut World) {
             planes => format!("{planes} × {}", Size(film.plane)),
         };
         row(ui, "Planes", says, |ui| ui.label(planes).says(says));
+        if film.hits > 0 {
+            let says = "What camera rays hit, kept since lights or materials were edited: they are not traced again. Of each pixel's first samples, as far as 256 MB go";
+            row(ui, "First hits", says, |ui| {
+                ui.label(Size(film.hits).to_string()).says(says)
+            });
+        }
         row(ui, "Whole film", says, |ui| {
             ui.label(Size(film.total).to_string()).says(says)
         });

@@ -216,7 +216,7 @@ fn row_ui(
     let ink = match (is_chosen, ray.end) {
         (true, _) => visuals.selection.stroke.color,
         // What was never traced is there, and pale.
-        (_, RayEnd::Unlit) => visuals.weak_text_color(),
+        (_, RayEnd::Unlit | RayEnd::LeftOut) => visuals.weak_text_color(),
         _ => visuals.widgets.inactive.fg_stroke.color,
     };
     let mut deed = None;
