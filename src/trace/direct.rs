@@ -35,7 +35,7 @@ struct Asked<'a> {
 impl<R: Recorder> Batch<'_, R> {
     /// Adds what arrives at the vertices from the lights.
     pub(super) fn add_direct_light(&mut self, vertices: &Vertices, shadow_rays: &mut ShadowRays) {
-        shadow_rays.points = 0;
+        shadow_rays.begin();
         if vertices.len() == 0 {
             return;
         }
@@ -130,7 +130,7 @@ impl<R: Recorder> Batch<'_, R> {
         shadow_rays.begin_replies();
         match source {
             Some(source) => {
-                shadow_rays.sort(vertices);
+                shadow_rays.set_apart();
                 for is_glossy in [false, true] {
                     self.answer_in_columns(asked, &source, is_glossy, vertices, shadow_rays);
                 }

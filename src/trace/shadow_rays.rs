@@ -17,6 +17,9 @@ pub(super) const SHORT_OF_THE_LIGHT: f32 = 1.0 - 64.0 * f32::EPSILON;
 pub(super) struct ShadowRays {
     /// What each vertex's reflected radiance is multiplied by.
     pub weights: Vectors,
+    /// How many points a first hit asked for when the vertices were last looked through: the next light that asks for as many
+    /// has the same questions.
+    asked: Option<u32>,
     /// How many points of the light each vertex asks for, which share what it reflects, and the first of its questions.
     pub counts: Vec<u32>,
     pub firsts: Vec<u32>,
@@ -26,10 +29,12 @@ pub(super) struct ShadowRays {
     pub numbers: Pairs,
     /// Where there are many lights, the number of each question that decides whether it is asked if it is faint.
     pub chances: Pairs,
-    /// The vertices whose questions are answered in columns, matt ones and those with a highlight, and the questions that
-    /// are answered one by one.
+    /// The vertices whose questions are answered in columns, matt ones and those with a highlight, and the questions of those
+    /// beside edges.
     pub matt: Vec<u32>,
     pub glossy: Vec<u32>,
+    beside_edges: Vec<u32>,
+    /// The questions that are answered one by one.
     pub others: Vec<u32>,
     /// The answers to all: what each point adds if nothing is in the way, zero where nothing comes from there, and else the ray
     /// that finds out. Later the rays in front are those that are traced.
@@ -62,25 +67,37 @@ impl ShadowRays {
         if self.rays.len() < count {
             self.rays.resize(count, Ray::new(Vec3::ZERO, Vec3::ZERO));
         }
-        self.matt.clear();
-        self.glossy.clear();
         self.others.clear();
     }
 
-    /// Which vertices are answered in columns, and which questions one by one.
-    pub fn sort(&mut self, vertices: &Vertices) {
+    /// What vertices beside edges ask is answered one by one.
+    pub fn set_apart(&mut self) {
+        self.others.extend(&self.beside_edges);
+    }
+
+    /// Which vertices are answered in columns, and which questions are of those beside edges.
+    fn sort(&mut self, vertices: &Vertices) {
+        self.matt.clear();
+        self.glossy.clear();
+        self.beside_edges.clear();
         for (vertex, (&count, &first)) in self.counts.iter().zip(&self.firsts).enumerate() {
             if count == 0 {
                 continue;
             }
             if vertices.is_near_edge[vertex] {
-                self.others.extend(first..first + count);
+                self.beside_edges.extend(first..first + count);
             } else if vertices.has_highlight(vertex) {
                 self.glossy.push(vertex as u32);
             } else {
                 self.matt.push(vertex as u32);
             }
         }
+    }
+
+    /// Other vertices ask from now on.
+    pub fn begin(&mut self) {
+        self.points = 0;
+        self.asked = None;
     }
 
     /// Every vertex that light can add something to asks for so many points at a first hit, and for one later: their numbers
@@ -92,6 +109,9 @@ impl ShadowRays {
         samples: &[SampleId],
         pixels: &[u32],
     ) {
+        if self.asked.replace(at_first_hits) == Some(at_first_hits) {
+            return;
+        }
         self.asking.clear();
         self.askers.clear();
         self.counts.clear();
@@ -114,6 +134,7 @@ impl ShadowRays {
                 self.asking.push(pixels[sample], path.name, index);
             }
         }
+        self.sort(vertices);
     }
 }
 

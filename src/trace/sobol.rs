@@ -32,16 +32,14 @@ const DIRECTIONS: [[u32; LENGTH_BITS as usize]; 2] = [
 /// The seed of a block: of a pixel's numbers, what they are for, and the path that asks. A run that is longer than the
 /// sequence goes on with another seed.
 #[inline(always)]
-fn block_seed(pixel: u32, key: u32, path: u32, index: u64) -> u32 {
+fn block_seed(pixel: u32, key: u32, path: u32, beyond: u32) -> u32 {
     let seed = mix(mix(pixel, key), path);
-    let beyond = (index >> LENGTH_BITS) as u32;
     if beyond == 0 { seed } else { mix(seed, beyond) }
 }
 
 /// The place of a point in the sequence that the seed shuffles, as bits of which the first counts least.
 #[inline(always)]
-fn shuffled(index: u64, seed: u32) -> u32 {
-    let within = index as u32 & ((1 << LENGTH_BITS) - 1);
+fn shuffled(within: u32, seed: u32) -> u32 {
     let order = owen_scramble_rev(within.reverse_bits(), hash(seed ^ 0x79c6_8e4a));
     order.reverse_bits() & ((1 << LENGTH_BITS) - 1)
 }
@@ -73,7 +71,28 @@ fn scrambled(reversed: u32, seed: u32, key: u32) -> f32 {
     u32_to_f32_norm(owen_scramble_rev(reversed, scramble).reverse_bits())
 }
 
-/// Two numbers of a block, the last or the first: of `pixels` their seeds, of `indices` the points.
+/// Two numbers of a block, the last or the first, for the point `within` the sequence.
+#[inline(always)]
+fn two<const LAST: bool>(seed: u32, within: u32) -> (f32, f32) {
+    let place = shuffled(within, seed);
+    if LAST {
+        (
+            scrambled(by_directions(place, &DIRECTIONS[0]), seed, KEYS[2]),
+            scrambled(by_directions(place, &DIRECTIONS[1]), seed, KEYS[3]),
+        )
+    } else {
+        (
+            scrambled(place, seed, KEYS[0]),
+            scrambled(second(place), seed, KEYS[1]),
+        )
+    }
+}
+
+/// Points that are looked at together.
+const LANES: usize = 64;
+
+/// The same of columns: of `pixels` their seeds, of `indices` the points. Their indices become numbers of 32 bits first:
+/// beside wider ones a register holds half as many.
 #[inline(always)]
 fn fill<const LAST: bool>(
     key: u32,
@@ -83,23 +102,30 @@ fn fill<const LAST: bool>(
     u: &mut [f32],
     v: &mut [f32],
 ) {
-    let count = u.len();
-    let (pixels, paths, indices) = (&pixels[..count], &paths[..count], &indices[..count]);
-    let v = &mut v[..count];
-    for i in 0..count {
-        let seed = block_seed(pixels[i], key, paths[i], indices[i]);
-        let place = shuffled(indices[i], seed);
-        (u[i], v[i]) = if LAST {
-            (
-                scrambled(by_directions(place, &DIRECTIONS[0]), seed, KEYS[2]),
-                scrambled(by_directions(place, &DIRECTIONS[1]), seed, KEYS[3]),
-            )
+    let mut first = 0;
+    let (mut within, mut beyond) = ([0; LANES], [0; LANES]);
+    for (u, v) in u.chunks_mut(LANES).zip(v.chunks_mut(LANES)) {
+        let count = u.len();
+        let some = first..first + count;
+        first += count;
+        let (pixels, paths) = (&pixels[some.clone()], &paths[some.clone()]);
+        let mut last = 0;
+        for (i, index) in indices[some].iter().enumerate() {
+            within[i] = *index as u32 & ((1 << LENGTH_BITS) - 1);
+            beyond[i] = (*index >> LENGTH_BITS) as u32;
+            last |= beyond[i];
+        }
+        if last == 0 {
+            for i in 0..count {
+                let seed = block_seed(pixels[i], key, paths[i], 0);
+                (u[i], v[i]) = two::<LAST>(seed, within[i]);
+            }
         } else {
-            (
-                scrambled(place, seed, KEYS[0]),
-                scrambled(second(place), seed, KEYS[1]),
-            )
-        };
+            for i in 0..count {
+                let seed = block_seed(pixels[i], key, paths[i], beyond[i]);
+                (u[i], v[i]) = two::<LAST>(seed, within[i]);
+            }
+        }
     }
 }
 
