@@ -23,6 +23,9 @@ const LONGEST_SAMPLE: Duration = Duration::from_millis(100);
 /// render of its own is as soon complete, and shows what it has tile by tile.
 const LARGEST_PART: f64 = 0.8;
 
+/// What the way to where lights are asked for takes, as a part of what asking for a light takes.
+const WAY: f64 = 0.5;
+
 /// What a render shall be of, and of each of its planes the number of the one that has the same light now.
 pub(super) struct Edit {
     subject: Subject,
@@ -85,15 +88,15 @@ impl Edit {
         self.from.contains(&None) || self.materials != MaterialSet::NONE
     }
 
-    /// About which part of a whole sample that takes which has to be rendered, where that part of all tiles is emptied: every
-    /// light as much as the way to where it is asked for.
+    /// About which part of a whole sample that takes which has to be rendered, where that part of all tiles is emptied: the way
+    /// to where lights are asked for, whose first hits are kept, half as much as a light.
     fn part_of_sample(&self, emptied: f64) -> f64 {
         let planes = &self.subject.light.planes;
         let lights = self.subject.world.lights.count();
         let stale = (0..lights).filter(|light| self.from[planes.of_light(*light)].is_none());
         let of_others = match stale.count() {
             0 => 0.0,
-            stale => (1 + stale) as f64 / (1 + lights) as f64,
+            stale => (WAY + stale as f64) / (WAY + lights as f64),
         };
         emptied + (1.0 - emptied) * of_others
     }

@@ -5,7 +5,7 @@ use super::numbers::{Asking, Pairs};
 use super::sampler::Purpose;
 use super::vectors::Vectors;
 use super::{SampleId, World};
-use crate::bvh::Ray;
+use crate::bvh::{Ray, TriangleId};
 use crate::instruction_sets::vectorized;
 use crate::scene::{PixelSampling, RenderSettings};
 use glam::{Vec2, Vec3};
@@ -26,7 +26,7 @@ pub(super) struct CameraRays {
 
 impl CameraRays {
     /// Of each sample its ray: through its place in the pixel, from its place on the lens, at its shutter time where
-    /// anything moves. Directions have unit length. `rays` is cleared first.
+    /// anything moves. Directions have unit length. Of what `rays` had before nothing is left.
     pub fn of(
         &mut self,
         world: &World,
@@ -80,7 +80,6 @@ impl CameraRays {
                 directions.slices(),
             );
         }
-        rays.clear();
         rays.resize(count, Ray::new(Vec3::ZERO, Vec3::ZERO));
         to_rays(
             self.origins.columns(),
@@ -106,14 +105,15 @@ fn place(i: usize, [x, y]: [&[u32]; 2], [u, v]: [&[f32]; 2]) -> Vec2 {
 const ROWS: usize = 64;
 
 vectorized! {
-    /// Sets rays without an end, of columns; they start on no triangle as before.
+    /// Sets rays without an end, of columns; they start on no triangle.
     fn to_rays(origins: [&[f32]; 3], directions: [&[f32]; 3], times: &[f32], rays: &mut [Ray]) {
         let count = rays.len();
         let [ox, oy, oz] = origins.map(|column| &column[..count]);
         let [dx, dy, dz] = directions.map(|column| &column[..count]);
         let times = &times[..count];
+        let nowhere: [f32; 2] = bytemuck::cast(TriangleId::NONE);
         for start in (0..count).step_by(ROWS) {
-            // Rows of eight are a transposition in registers; a ray has ten numbers, of which the last two stay.
+            // Rows of eight are a transposition in registers; a ray has ten numbers, of which the last two are the same in all.
             let some = ROWS.min(count - start);
             let mut rows = [[0.0; 8]; ROWS];
             let [ox, oy, oz] = [ox, oy, oz].map(|column| &column[start..start + some]);
@@ -125,6 +125,7 @@ vectorized! {
             let rays: &mut [[f32; 10]] = bytemuck::cast_slice_mut(&mut rays[start..start + some]);
             for (ray, row) in rays.iter_mut().zip(&rows) {
                 ray[..8].copy_from_slice(row);
+                ray[8..].copy_from_slice(&nowhere);
             }
         }
     }

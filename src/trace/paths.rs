@@ -21,6 +21,13 @@ impl Paths {
         self.straight.clear();
     }
 
+    /// All leave the camera, along the rays that are put in place of those there are.
+    pub fn from_camera(&mut self) -> &mut Vec<Ray> {
+        self.states.clear();
+        self.straight.clear();
+        &mut self.rays
+    }
+
     pub fn push(&mut self, ray: Ray, path: Path) {
         if path.after.is_some() {
             self.straight.push(self.rays.len() as u32);

@@ -181,9 +181,12 @@ fn evaluate<R: Recorder>(
     } = workspace;
     let mut is_known = std::mem::take(is_known) && camera_hits.len() == samples.len();
     let cone = Cone::of_pixel(camera, settings.size);
-    paths.clear();
+    if next.rays.len() > paths.rays.len() {
+        // Written over: to make them anew takes as long.
+        std::mem::swap(paths, next);
+    }
     let image_plane = camera.image_plane(settings.size);
-    camera_rays.of(world, &image_plane, settings, samples, &mut paths.rays);
+    camera_rays.of(world, &image_plane, settings, samples, paths.from_camera());
     let mut batch = Batch {
         world,
         settings,
