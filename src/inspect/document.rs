@@ -38,6 +38,8 @@ pub struct Document<'a> {
     pub lights: &'a Lights,
     /// What a ray carries that meets nothing, where there is no map.
     pub background: Vec3,
+    /// What the camera's own rays carry instead, where the environment is hidden from it.
+    pub backdrop: Option<Vec3>,
     /// Whether the environment lights, as the light number 0.
     pub environment_lights: bool,
     /// Names of objects and lights, by their `SceneId`.
@@ -76,6 +78,7 @@ impl<'a> Document<'a> {
             sources: sources(rays),
             lights: &world.lights,
             background: world.environment.background,
+            backdrop: world.environment.backdrop,
             environment_lights: Dome::of(&world.environment, settings).is_some(),
             names,
             lines: &[],

@@ -41,6 +41,10 @@ documented! {
         /// Shadow rays to it at the first hit of each pixel, shared by the pixel's samples: more makes its light less noisy.
         #[reflect(@Quantity::SAMPLES, @Needs::on("lights"))]
         pub samples: u32,
+        /// The camera sees black where there is nothing, or the background's colour where there is a picture. Mirrors show
+        /// what is around all the same, and so does its light.
+        #[reflect(@Label("Hidden from the camera"))]
+        pub hidden: bool,
     }
 }
 
@@ -53,6 +57,7 @@ impl Default for Environment {
             intensity: 1.0,
             lights: false,
             samples: 1,
+            hidden: false,
         }
     }
 }

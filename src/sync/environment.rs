@@ -8,6 +8,7 @@ use crate::scene::{Environment, EnvironmentMap, RenderSettings, SceneId};
 use crate::trace;
 use bevy::ecs::change_detection::DetectChanges;
 use bevy::ecs::system::{Res, ResMut};
+use bevy::math::Vec3;
 use std::sync::Arc;
 
 /// Takes over the background and its map.
@@ -31,6 +32,7 @@ pub(super) fn sync_environment(
         // All stays as it was until its map is converted.
         return;
     }
+    let has_picture = map.0.is_some() || environment.map.is_some();
     draft.problems.environment.clear();
     draft.reread = true;
     let mut reader = Reader {
@@ -64,8 +66,9 @@ pub(super) fn sync_environment(
         map.texture.clone()
     });
     let of = quantity_of::<Environment>;
+    let background = reader.color("background", environment.background, of("background"));
     let new = trace::Environment {
-        background: reader.color("background", environment.background, of("background")),
+        background,
         map,
         rotation: reader
             .number("rotation", environment.rotation, of("rotation"))
@@ -75,22 +78,12 @@ pub(super) fn sync_environment(
             .unwrap_or(1.0),
         lights: environment.lights,
         samples: reader.samples(environment.samples),
+        backdrop: environment
+            .hidden
+            .then_some(if has_picture { background } else { Vec3::ZERO }),
     };
-    if !same(&new, &draft.world.environment) {
+    if !new.is_same(&draft.world.environment) {
         draft.world.environment = new;
         draft.changes.environment = true;
     }
-}
-
-fn same(a: &trace::Environment, b: &trace::Environment) -> bool {
-    let same_map = match (&a.map, &b.map) {
-        (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-        (None, None) => true,
-        _ => false,
-    };
-    same_map
-        && a.background == b.background
-        && a.rotation == b.rotation
-        && a.intensity == b.intensity
-        && (a.lights, a.samples) == (b.lights, b.samples)
 }

@@ -59,6 +59,9 @@ pub fn digest(world: &World, camera: &Camera, settings: &RenderSettings) -> Dige
     if environment.lights {
         hash.text(&("dome", environment.samples));
     }
+    if let Some(backdrop) = environment.backdrop {
+        hash.text(&("backdrop", backdrop));
+    }
     if let Some(map) = &environment.map {
         hash.texture(map);
     }

@@ -9,7 +9,8 @@
 //! gives to a matt surface in the open is the same from every direction.
 //!
 //! # What sees it besides
-//! Camera, mirror and transmitted rays that meet nothing carry its radiance, whether it lights or not. kd and ks get
+//! Camera, mirror and transmitted rays that meet nothing carry its radiance, whether it lights or not; of one that is hidden
+//! from the camera mirrored ones alone, the others what is to be seen in its place. kd and ks get
 //! theirs from here alone and km its from mirrored rays alone, as of every other light: nothing is counted twice.
 
 use super::disc::concentric;

@@ -32,7 +32,11 @@ pub fn emitters(world: &World, camera: &Camera, settings: &RenderSettings) -> Ve
             radiance * mirror
         }
     };
-    let mut found = vec![world.environment.brightest(features.environment)];
+    let around = world.environment.brightest(features.environment);
+    let mut found = match world.environment.backdrop {
+        Some(backdrop) => vec![backdrop, around * mirror],
+        None => vec![around],
+    };
     if physical && world.needs.visible_lights {
         let visible = world.lights.parallelograms.iter().filter(|l| l.visible);
         found.extend(visible.map(|light| seen_as(light.brightest(), &light.corners())));

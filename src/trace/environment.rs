@@ -18,6 +18,9 @@ pub struct Environment {
     pub lights: bool,
     /// Shadow rays at the first hit, where it lights.
     pub samples: u32,
+    /// What is seen of it from the camera, also through what lets light pass, in its place; `None` of one that is seen
+    /// itself. Mirrors show it all the same.
+    pub backdrop: Option<Vec3>,
 }
 
 impl Environment {
@@ -44,9 +47,11 @@ impl Environment {
                 intensity,
                 lights,
                 samples,
+                backdrop,
                 ..
             } = *environment;
-            (background, rotation, intensity, lights, samples)
+            let light = (lights, samples);
+            (background, rotation, intensity, light, backdrop)
         };
         maps && of(self) == of(other)
     }

@@ -303,7 +303,7 @@ impl<R: Recorder> Batch<'_, R> {
                 if let Some(hit) = hit {
                     vertices.push_from_camera(number, *hit);
                 } else if self.wants_own() {
-                    let background = self.background(ray.direction);
+                    let background = self.background(ray.direction, 0);
                     self.recorder.met_background(number, background);
                     self.add(number, OWN, Adding::Path(number), background);
                 }
@@ -355,7 +355,7 @@ impl<R: Recorder> Batch<'_, R> {
             }
             let Some(hit) = *hit else {
                 if self.wants_own() {
-                    let background = self.background(ray.direction);
+                    let background = self.background(ray.direction, path.bounces);
                     self.recorder.met_background(number, background);
                     let value = path.throughput * background;
                     self.add(path.sample, OWN, Adding::Path(number), value);
@@ -399,11 +399,13 @@ impl<R: Recorder> Batch<'_, R> {
         self.recorder.added(by, value);
     }
 
-    fn background(&self, direction: Vec3) -> Vec3 {
-        if self.settings.features.environment {
-            self.world.environment.radiance(direction)
-        } else {
-            self.world.environment.background
+    /// What a ray carries that meets nothing, after so many mirror bounces.
+    fn background(&self, direction: Vec3, bounces: u32) -> Vec3 {
+        let environment = &self.world.environment;
+        match environment.backdrop {
+            Some(backdrop) if bounces == 0 => backdrop,
+            _ if self.settings.features.environment => environment.radiance(direction),
+            _ => environment.background,
         }
     }
 

@@ -333,3 +333,41 @@ fn a_samples_value_does_not_depend_on_what_else_is_in_the_batch() {
         assert_eq!(alone, [value], "{sample:?}");
     }
 }
+
+#[test]
+fn a_dome_that_is_hidden_from_the_camera_lights_and_is_mirrored_all_the_same() {
+    let hidden = Environment {
+        backdrop: Some(Vec3::X),
+        ..even(0.5)
+    };
+    let (world, camera) = floor(hidden.clone(), 0.8);
+    let (found, _) = central_radiance(&world, &camera, &settings(4));
+    assert!((found - 0.4).abs().max_element() < 1e-5, "lit: {found}");
+    let away = Camera::looking_at(Vec3::Y, 2.0 * Vec3::Y, Vec3::Z, 0.5);
+    let (found, _) = central_radiance(&world, &away, &settings(4));
+    assert_eq!(found, Vec3::X, "beside it");
+    let mirror = Material {
+        diffuse: Vec3::ZERO,
+        mirror: Vec3::splat(0.5),
+        ..Material::default()
+    };
+    let pane = Material {
+        diffuse: Vec3::ZERO,
+        opacity: 0.25,
+        ..Material::default()
+    };
+    for (material, scatters, expected) in [
+        (mirror, true, Vec3::splat(0.25)),
+        (pane.clone(), false, 0.75 * Vec3::X),
+        (pane, true, 0.75 * Vec3::X),
+    ] {
+        let (mut world, _) = floor(hidden.clone(), 0.0);
+        world.materials = Arc::new(vec![material]);
+        let world = world.with_needs();
+        let mut settings = settings(4);
+        settings.features.translucency = scatters;
+        let (found, _) = central_radiance(&world, &camera, &settings);
+        let off = (found - expected).abs().max_element();
+        assert!(off < 1e-5, "{expected}, not {found}");
+    }
+}

@@ -37,7 +37,7 @@
 //! |---|---|
 //! | `ClearColor`, or the first view's own | the background, where the app has set no other |
 //! | a view's `Skybox` | the map of [`Environment`](crate::scene::Environment), of brightness · E, where the app has set no other |
-//! | a view's `EnvironmentMapLight` (its specular map) or `GeneratedEnvironmentMapLight` | its light, with shadows; without a skybox it is seen behind the scene, too, and named; one that is another than the skybox is named |
+//! | a view's `EnvironmentMapLight` (its specular map) or `GeneratedEnvironmentMapLight` | its light, with shadows; without a skybox mirrors show it, and the camera sees the background; one that is another than the skybox is named |
 //! | skies turned otherwise than about the vertical axis, or of another view than the first | named |
 //! | `GlobalAmbientLight`, a camera's `AmbientLight`, light probes, fog, atmospheres | named |
 //! | `NotShadowCaster`, `NotShadowReceiver`, `RenderLayers`, `Lightmap` of objects | named |

@@ -21,6 +21,8 @@ pub(super) struct Sky {
     rotation: f32,
     intensity: f32,
     lights: bool,
+    /// Bevy's card shows the clear colour in its place.
+    hidden: bool,
 }
 
 /// A cube of pictures around a view, what multiplies it in cd/m², and how it is turned.
@@ -84,6 +86,7 @@ pub(super) fn map_sky(
         none.intensity
     };
     environment.lights = wanted.lights;
+    environment.hidden = wanted.hidden;
     *last = wanted;
 }
 
@@ -117,16 +120,14 @@ fn sky(
     }));
     let light = light.filter(|light| light.luminance > 0.0 && !of_atmosphere);
     let mut notes = Vec::new();
-    match (&seen, &light) {
-        (Some(seen), Some(light)) if seen != light => notes.push(
+    if let (Some(seen), Some(light)) = (&seen, &light)
+        && seen != light
+    {
+        notes.push(
             "its environment map is left out: the skybox lights the scene, as bright as it is seen",
-        ),
-        (None, Some(_)) => notes.push(
-            "its environment map is seen behind the scene, too, where Bevy shows the clear colour",
-        ),
-        _ => {}
+        );
     }
-    let lights = light.is_some();
+    let (lights, hidden) = (light.is_some(), seen.is_none());
     let Some(cube) = seen.or(light) else {
         return (Sky::default(), notes);
     };
@@ -139,6 +140,7 @@ fn sky(
         rotation: 2.0 * y.atan2(w),
         intensity: cube.luminance * exposure,
         lights,
+        hidden,
     };
     (sky, notes)
 }

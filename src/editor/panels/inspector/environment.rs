@@ -31,6 +31,7 @@ pub(super) fn environment_ui(ui: &mut Ui, world: &mut World, thumbnails: &mut Th
         if environment.lights {
             properties_ui(ui, &mut environment, &["samples"]);
         }
+        properties_ui(ui, &mut environment, &["hidden"]);
     });
     if environment != before {
         *world.resource_mut::<Environment>() = environment;
