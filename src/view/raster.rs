@@ -7,6 +7,7 @@
 //! | [`DirectionalLamp`] | `DirectionalLight` of I/E lux |
 //! | [`SegmentLamp`] | `PointLight` in its middle, of all its strength |
 //! | [`ParallelogramLamp`] | `SpotLight` in its middle along the normal, or `PointLight` where it has two sides |
+//! | [`Environment`] of one colour that lights | `AmbientLight` of its cameras |
 //!
 //! There are no shadows, no reflections and no background picture. A camera shows it right where
 //! its `Exposure` is [`exposure`], which multiplies light by E. It is Bevy's own, so that an app's
@@ -15,8 +16,8 @@
 //! Everything that is drawn so lies in one layer, which a camera can leave out.
 
 use crate::scene::{
-    Alpha, DirectionalLamp, ParallelogramLamp, Phong, PhongMap, PhongMaps, PointLamp, SegmentLamp,
-    UsesMaterial,
+    Alpha, DirectionalLamp, Environment, ParallelogramLamp, Phong, PhongMap, PhongMaps, PointLamp,
+    SegmentLamp, UsesMaterial,
 };
 use bevy::asset::{Asset, Assets, Handle};
 use bevy::camera::Exposure;
@@ -31,9 +32,9 @@ use bevy::pbr::{
 };
 use bevy::platform::collections::HashMap;
 use bevy::prelude::{
-    Added, AlphaMode, App, Changed, Commands, Component, DetectChanges, DetectChangesMut, Entity,
-    IntoScheduleConfigs, Or, Plugin, PostUpdate, Query, Ref, RemovedComponents, ResMut, Resource,
-    With, Without,
+    Added, AlphaMode, App, Bundle, Changed, Commands, Component, DetectChanges, DetectChangesMut,
+    Entity, IntoScheduleConfigs, Or, Plugin, PostUpdate, Query, Ref, RemovedComponents, Res,
+    ResMut, Resource, With, Without,
 };
 use bevy::reflect::TypePath;
 use bevy::render::render_resource::AsBindGroup;
@@ -59,7 +60,7 @@ impl Plugin for RasterPlugin {
         app.add_plugins(MaterialPlugin::<RasterMaterial>::default());
         app.init_resource::<RasterMaterials>().add_systems(
             PostUpdate,
-            (give_materials, give_lights, move_lights)
+            (give_materials, give_lights, move_lights, give_ambient)
                 .chain()
                 .after(TransformSystems::Propagate)
                 .after(crate::sync::SyncSystems),
@@ -72,11 +73,41 @@ pub fn exposure() -> Exposure {
     Exposure::default()
 }
 
-/// The light that is everywhere in the raster view, for its camera.
-pub(super) fn ambient() -> AmbientLight {
+/// The light that is everywhere in the raster view, for its camera: the scene's dome from now on.
+pub(super) fn ambient() -> impl Bundle {
+    (HasSceneAmbient, ambient_of(&Environment::default()))
+}
+
+/// On cameras whose ambient light is the scene's.
+#[derive(Component, Clone)]
+struct HasSceneAmbient;
+
+fn ambient_of(environment: &Environment) -> AmbientLight {
+    let is_dome = environment.lights && environment.map.is_none();
+    let dome = match is_dome {
+        true => environment.background,
+        false => LinearRgba::BLACK,
+    };
+    let [red, green, blue] = dome.to_f32_array_no_alpha().map(|c| c.max(AMBIENT));
     AmbientLight {
-        brightness: AMBIENT / exposure().exposure(),
+        color: Color::linear_rgb(red, green, blue),
+        brightness: exposure().exposure().recip(),
         ..AmbientLight::default()
+    }
+}
+
+/// What is the same from all around lights the raster view too, if without shadows.
+fn give_ambient(
+    environment: Option<Res<Environment>>,
+    mut cameras: Query<(Ref<HasSceneAmbient>, &mut AmbientLight)>,
+) {
+    let Some(environment) = environment else {
+        return;
+    };
+    for (has, mut ambient) in &mut cameras {
+        if environment.is_changed() || has.is_added() {
+            *ambient = ambient_of(&environment);
+        }
     }
 }
 
@@ -387,5 +418,35 @@ fn move_lights(
         if transform.set_if_neq(moved) {
             *global = GlobalTransform::from(moved);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_dome_of_one_colour_is_the_ambient_light_of_the_scenes_cameras_alone() {
+        let mut app = App::new();
+        app.insert_resource(Environment {
+            background: LinearRgba::rgb(0.5, 0.25, 0.0),
+            ..Environment::default()
+        })
+        .add_systems(PostUpdate, give_ambient);
+        let world = app.world_mut();
+        let [ours, other] = [
+            world.spawn(ambient()).id(),
+            world.spawn(AmbientLight::default()).id(),
+        ];
+        let color = |app: &App, camera| {
+            let ambient = app.world().get::<AmbientLight>(camera).unwrap();
+            LinearRgba::from(ambient.color).to_f32_array_no_alpha()
+        };
+        app.update();
+        assert_eq!(color(&app, ours), [AMBIENT; 3], "it does not light");
+        app.world_mut().resource_mut::<Environment>().lights = true;
+        app.update();
+        assert_eq!(color(&app, ours), [0.5, 0.25, AMBIENT]);
+        assert_eq!(color(&app, other), [1.0; 3], "an app's own");
     }
 }

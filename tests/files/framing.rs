@@ -46,15 +46,34 @@ fn notes<'a>(opened: &'a Opened, what: &str) -> Vec<&'a str> {
 }
 
 #[test]
-fn a_model_without_lights_gets_three_that_can_be_edited_and_says_so_in_one_note() {
+fn a_model_without_lights_gets_two_and_a_dome_that_can_be_edited_and_says_so_in_one_note() {
     let (mut app, opened) = open("a.obj", &cube([0; 3], 1, 1));
     let names = lamps(app.world_mut());
-    assert_eq!(names, ["Key light", "Fill light", "Back light"]);
+    assert_eq!(names, ["Key light", "Back light"]);
     assert_eq!(opened.notes.len(), 2, "{:?}", opened.notes);
     assert_eq!(notes(&opened, "has no light").len(), 1);
     assert_eq!(notes(&opened, "has no camera").len(), 1);
     let environment = app.world().resource::<Environment>();
-    assert_eq!(environment.background, LinearRgba::BLACK);
+    let LinearRgba {
+        red, green, blue, ..
+    } = environment.background;
+    assert!(
+        red > 0.1 && red == green && green == blue,
+        "neutral as they are"
+    );
+    assert!(environment.lights && environment.hidden, "before black");
+}
+
+#[test]
+fn the_dome_of_a_model_without_lights_is_saved_and_opens_as_it_was() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut app, _) = opened(&write(folder.path(), "a.obj", cube([0; 3], 1, 1)));
+    let file = folder.path().join("a.scn.ron");
+    glassbox::io::save(app.world_mut(), &file).unwrap();
+    let (again, _) = super::app::opened(&file);
+    let dome = |app: &App| app.world().resource::<Environment>().clone();
+    assert_eq!(dome(&again), dome(&app));
+    assert!(dome(&again).lights);
 }
 
 #[test]
@@ -66,11 +85,12 @@ fn what_is_dark_itself_stands_before_grey() {
         write(folder.path(), "a.mtl", mtl);
         let text = format!("mtllib a.mtl\nusemtl soot\n{}", cube([0; 3], 1, 1));
         let (app, opened) = opened(&write(folder.path(), "a.obj", text));
-        let background = app.world().resource::<Environment>().background;
+        let environment = app.world().resource::<Environment>();
+        let background = environment.background;
         let is_grey = background.red > 0.1 && background.red == background.blue;
-        assert!(is_grey, "{shine}: {background:?}");
+        assert!(is_grey && !environment.hidden, "{shine}: {environment:?}");
         let said = notes(&opened, "has no light");
-        assert!(said[0].contains("grey background"), "{:?}", opened.notes);
+        assert!(said[0].contains("as the background"), "{:?}", opened.notes);
     }
 }
 

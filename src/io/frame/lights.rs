@@ -1,6 +1,7 @@
 //! Lights as photographers set them up for a thing that has none.
 
-use crate::scene::{DirectionalLamp, Phong, UsesMaterial};
+use crate::scene::{DirectionalLamp, Environment, Phong, UsesMaterial};
+use bevy::color::LinearRgba;
 use bevy::math::{Quat, Vec3};
 use bevy::mesh::Mesh3d;
 use bevy::prelude::{With, World};
@@ -13,15 +14,15 @@ const KEY_FROM: Vec3 = Vec3::new(-0.5, 1.0, 0.8);
 const BACK_FROM: Vec3 = Vec3::new(0.3, 0.6, -1.0);
 /// Together they leave a white surface that faces the key light a radiance below 1.
 const KEY: f32 = 0.6 * PI;
-/// Less than half of the key, so that shapes are told by both, and what the key does not reach can be seen.
-const FILL: f32 = 0.25 * PI;
 const BACK: f32 = 0.2 * PI;
+/// Of the dome, and of a white surface in the open that nothing else reaches. Less than half of the key, so that shapes are
+/// told by both, and what the key does not reach can be seen.
+const DOME: f32 = 0.25;
+/// Shadow rays to the dome at a first hit. Of one, what is half in the open is speckled in the first picture.
+const DOME_SAMPLES: u32 = 2;
 
-/// The lights for what a camera looks at: names, places, lamps.
-///
-/// The fill comes from where the camera is: all that is seen has some of it, and its shadows fall behind what casts
-/// them. Wide lamps would be softer, and need many samples on whatever shines.
-pub(super) fn studio(eye: Transform) -> [(&'static str, Transform, DirectionalLamp); 3] {
+/// The lamps for what a camera looks at: names, places, lamps.
+pub(super) fn studio(eye: Transform) -> [(&'static str, Transform, DirectionalLamp); 2] {
     let turn = heading(eye);
     let lamp = |intensity| DirectionalLamp {
         intensity,
@@ -29,9 +30,20 @@ pub(super) fn studio(eye: Transform) -> [(&'static str, Transform, DirectionalLa
     };
     [
         ("Key light", from(turn * KEY_FROM), lamp(KEY)),
-        ("Fill light", from(*eye.back()), lamp(FILL)),
         ("Back light", from(turn * BACK_FROM), lamp(BACK)),
     ]
+}
+
+/// The light from all around that fills what the lamps leave dark: neutral as they are, and less in creases. It is itself
+/// seen, behind what is shown, where that `is_dark` and would not stand out from black.
+pub(super) fn dome(is_dark: bool) -> Environment {
+    Environment {
+        background: LinearRgba::rgb(DOME, DOME, DOME),
+        lights: true,
+        samples: DOME_SAMPLES,
+        hidden: !is_dark,
+        ..Environment::default()
+    }
 }
 
 /// The only light of a scene: a white surface that faces it has a radiance of 1.

@@ -3,7 +3,7 @@
 //! | what is missing | what is added |
 //! |---|---|
 //! | a camera | one that sees as much as can be seen at once: [`viewpoint`] |
-//! | lights | a key, a soft fill and one from behind; grey behind what is dark: [`lights`] |
+//! | lights | a key, one from behind and a soft dome around, which is seen behind what is dark: [`lights`] |
 //! | light enough | exposure, where the file's own lights leave nearly all of it black, or more of them, where something glows that exposure would wash out: [`exposure`] |
 //!
 //! All of it are ordinary entities and settings of the scene.
@@ -18,10 +18,9 @@ use super::ids::assign_ids;
 use super::notes::Notes;
 use super::place::world_from;
 use crate::scene::{
-    DirectionalLamp, Environment, ParallelogramLamp, PointLamp, Projection, RenderSettings,
-    SceneCamera, SegmentLamp,
+    DirectionalLamp, ParallelogramLamp, PointLamp, Projection, RenderSettings, SceneCamera,
+    SegmentLamp,
 };
-use bevy::color::LinearRgba;
 use bevy::ecs::name::Name;
 use bevy::ecs::query::QueryFilter;
 use bevy::math::Vec3;
@@ -67,11 +66,13 @@ pub(crate) fn frame(world: &mut World, file: &Path, notes: &mut Notes) {
         for (name, transform, lamp) in lights::studio(eye) {
             added.push(spawn(world, name, transform, lamp));
         }
-        let mut instead = "a key light, a fill light and one from behind were added";
-        if lights::is_dark(world) {
-            world.resource_mut::<Environment>().background = LinearRgba::rgb(0.2, 0.2, 0.2);
-            instead = "a key light, a fill light, one from behind and a grey background were added";
-        }
+        let is_dark = lights::is_dark(world);
+        world.insert_resource(lights::dome(is_dark));
+        let instead = if is_dark {
+            "a key light, one from behind and a soft grey dome, seen as the background, were added"
+        } else {
+            "a key light, one from behind and a soft dome around it were added"
+        };
         note("has no light", instead);
     } else if let Some(stops) = exposure::missing(world, &surface) {
         let glows = exposure::glows(world);
