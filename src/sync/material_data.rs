@@ -23,7 +23,7 @@ pub(super) struct MaterialData {
     /// Which of the problems are of a picture's texels, and of which picture: they are said once of each,
     /// however many materials have it.
     texels: Vec<(usize, AssetId<Image>)>,
-    /// Whether it is without a picture that is still being converted.
+    /// Whether it is without a picture that is still being converted or cut out.
     pub waits: bool,
 }
 
@@ -132,7 +132,12 @@ impl MaterialData {
                 continue;
             }
             let cuts_out = opacity.filter(|_| of.is_of_colors() && alpha != Alpha::Opaque);
-            let cut_out = cuts_out.and_then(|opacity| textures.cut_out(id, opacity));
+            let pair = cuts_out.map(|opacity| [id, opacity]);
+            if pair.is_some_and(|pair| textures.is_being_cut_out(pair)) {
+                waits = true;
+                continue;
+            }
+            let cut_out = pair.and_then(|pair| textures.cut_out(pair));
             let source = of.source(phong).unwrap_or(&picture.sampler);
             bound.push(cut_out.unwrap_or(&picture.texture).clone());
             list.push(Map {

@@ -9,7 +9,7 @@
 //! | `sync_meshes` | `Mesh` assets that an object uses, or is posed as | that mesh's triangles and tree |
 //! | `sync_motions` | `Motion`, of entities and of all above them | how fast each moves in the world |
 //! | `sync_instances` | which mesh stands where, how it moves, and whether it is visible | the tree over the objects |
-//! | `sync_textures` | `Image` assets that a material or the environment uses | that texture; large ones and skies on threads of their own |
+//! | `sync_textures` | `Image` assets that a material or the environment uses | that texture, and colours that an opacity map cuts out; large ones and skies on threads of their own |
 //! | `sync_materials` | `Phong`, `PhongMaps`, `UsesMaterial` | materials, and which object has which |
 //! | `sync_lights` | the four lamps | lights |
 //! | `sync_environment` | `Environment`, `EnvironmentMap`, a panorama or a cube | background and map |
@@ -23,7 +23,7 @@
 //! world after a thousand edits equals one that is made from the same entities at once, to the last bit:
 //! tests compare them. An app may give [`SyncSystems`] a run condition: after a rest all is read again.
 //!
-//! Trees of meshes are built and large pictures converted on threads of their own, and what was there before is traced
+//! Trees of meshes are built, large pictures converted and cut out on threads of their own, and what was there before is traced
 //! until they are done ([`TreeBuilding`]): no frame waits for them, and for the tree over the objects 2 ms at most.
 //! [`finish`] waits for all.
 //!
@@ -39,6 +39,7 @@
 
 mod cameras;
 mod conversions;
+mod cut_outs;
 mod environment;
 mod ids;
 mod image_sampler;

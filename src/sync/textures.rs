@@ -1,4 +1,5 @@
 use super::conversions::{AT_ONCE, Conversions, TextureResult, convert, cost};
+use super::cut_outs::{self, CutOuts, Pair};
 use super::panorama::is_cube;
 use super::reading::Switched;
 use super::texture_data::{Replaced, TextureFault};
@@ -24,14 +25,14 @@ use std::sync::Arc;
 pub(super) struct TracedTextures {
     by_asset: HashMap<AssetId<Image>, TextureResult>,
     conversions: Conversions,
-    cut_outs: HashMap<[AssetId<Image>; 2], CutOut>,
+    cut_outs: CutOuts,
     /// The pictures of each material.
     uses: Uses<AssetId<Image>>,
     /// And which of them stands as alpha in which.
-    pairs: Uses<[AssetId<Image>; 2]>,
+    pairs: Uses<Pair>,
     /// The one that is all around.
     around: Option<AssetId<Image>>,
-    /// What was converted in this frame, or found to be missing.
+    /// What was converted or cut out in this frame, or found to be missing.
     news: HashSet<AssetId<Image>>,
 }
 
@@ -42,14 +43,6 @@ pub(super) struct TracedTexture {
     pub sampler: TextureSource,
     /// Texels that could not be taken as they were.
     pub replaced: Replaced,
-}
-
-/// A map of colours with an opacity map as its alpha.
-struct CutOut {
-    /// The two that it was made of.
-    of: [Arc<Texture>; 2],
-    /// The map of colours itself where that is the alpha that it has.
-    texture: Arc<Texture>,
 }
 
 impl TracedTextures {
@@ -65,17 +58,18 @@ impl TracedTextures {
         self.news.insert(id);
     }
 
-    /// A map of colours as an opacity map cuts it out; `None` where one of them is missing.
-    pub fn cut_out(
-        &self,
-        colors: AssetId<Image>,
-        opacity: AssetId<Image>,
-    ) -> Option<&Arc<Texture>> {
-        let cut_out = self.cut_outs.get(&[colors, opacity])?;
-        Some(&cut_out.texture)
+    /// A map of colours as an opacity map cuts it out; `None` where one of them is missing, and while it is cut out for the
+    /// first time.
+    pub fn cut_out(&self, pair: Pair) -> Option<&Arc<Texture>> {
+        self.cut_outs.get(pair)
     }
 
-    /// Whose pictures this frame converted.
+    /// Whether it is cut out for the first time.
+    pub fn is_being_cut_out(&self, pair: Pair) -> bool {
+        self.cut_outs.is_awaited(pair)
+    }
+
+    /// Whose pictures this frame converted or cut out.
     pub fn users_of_news(&self) -> impl Iterator<Item = Entity> + '_ {
         self.uses.users_of(&self.news)
     }
@@ -85,27 +79,15 @@ impl TracedTextures {
     }
 
     /// Makes the cut-out of a map of colours and an opacity map where it is another than it was, and drops it
-    /// where nobody uses it.
-    fn cut_out_pair(&mut self, pair: [AssetId<Image>; 2]) {
+    /// where nobody uses it; `left` is what may still be cut out in this frame.
+    fn cut_out_pair(&mut self, pair: Pair, left: &mut u64) {
         let both = pair.map(|id| Some(self.by_asset.get(&id)?.as_ref().ok()?.texture.clone()));
-        let [Some(colors), Some(opacity)] = both else {
-            self.cut_outs.remove(&pair);
-            return;
-        };
-        if !self.pairs.is_used(pair) {
-            self.cut_outs.remove(&pair);
-            return;
+        match both {
+            [Some(colors), Some(opacity)] if self.pairs.is_used(pair) => {
+                self.cut_outs.make(pair, [colors, opacity], left);
+            }
+            _ => self.cut_outs.forget(pair),
         }
-        let of = [colors, opacity];
-        let same = |cut_out: &CutOut| (0..2).all(|i| Arc::ptr_eq(&cut_out.of[i], &of[i]));
-        if self.cut_outs.get(&pair).is_some_and(same) {
-            return;
-        }
-        let texture = match of[0].cut_out_by(&of[1]) {
-            Some(texture) => Arc::new(texture),
-            None => of[0].clone(),
-        };
-        self.cut_outs.insert(pair, CutOut { of, texture });
     }
 }
 
@@ -115,7 +97,7 @@ impl TracedTextures {
     pub fn kept(&self) -> [usize; 2] {
         [
             self.by_asset.len() + self.conversions.len(),
-            self.cut_outs.len(),
+            self.cut_outs.kept(),
         ]
     }
 }
@@ -194,7 +176,12 @@ pub(super) fn sync_textures(
     if at_once {
         // Nothing is waited for: what is under way is made here.
         stale.extend(known.conversions.pictures());
+        let under_way = known.cut_outs.stop();
+        known.news.extend(under_way.iter().map(|pair| pair[0]));
     } else {
+        for pair in known.cut_outs.finished() {
+            known.news.insert(pair[0]);
+        }
         for (id, texture, edited) in known.conversions.finished() {
             if known.is_used(id) {
                 known.take(id, texture);
@@ -236,8 +223,9 @@ pub(super) fn sync_textures(
         let is_new = |pair: &[AssetId<Image>; 2]| pair.iter().any(|id| known.news.contains(id));
         pairs.extend(known.pairs.things().filter(is_new));
     }
+    let mut left = if at_once { u64::MAX } else { cut_outs::AT_ONCE };
     for pair in pairs {
-        known.cut_out_pair(pair);
+        known.cut_out_pair(pair, &mut left);
     }
-    draft.pending_textures = known.conversions.len();
+    draft.pending_textures = known.conversions.len() + known.cut_outs.len();
 }

@@ -64,7 +64,7 @@ pub(super) struct Draft {
     pub problems: Problems,
     /// Meshes whose tree is being built.
     pub pending: usize,
-    /// Pictures that are being converted.
+    /// Pictures that are being converted or cut out.
     pub pending_textures: usize,
     /// Whether the tree over the objects is being built.
     pub top_level_pending: bool,

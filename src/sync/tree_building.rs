@@ -17,8 +17,7 @@ use std::time::Duration;
 /// When trees are built, and large pictures made textures.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TreeBuilding {
-    /// On threads of their own; no frame waits but 2 ms for the tree over the objects, and for colours that an opacity map cuts
-    /// out, which are put together when both are there. Objects keep the mesh, materials the
+    /// On threads of their own; no frame waits but 2 ms for the tree over the objects. Objects keep the mesh, materials the
     /// textures and the surroundings the sky that they had until the new one is there; objects that had no mesh appear with
     /// it, and materials that are new are without their large textures until then. What is edited while
     /// the tree over the objects is built shows in a later frame: see [`Traced::pending`](super::Traced). Where
