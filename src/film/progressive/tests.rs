@@ -105,6 +105,39 @@ fn of_two_views_neither_waits_for_a_pass_of_the_other() {
 }
 
 #[test]
+fn views_that_are_rendered_at_the_same_time_get_on_as_fast_as_each_other() {
+    let start = |side| {
+        let endless = settings(UVec2::splat(side), 1 << 16);
+        Progressive::start(world(), camera(), endless).unwrap()
+    };
+    // Passes of the large one have become long when the small ones begin.
+    let large = start(384);
+    wait_for(&large, |status| status.samples >= 4.0);
+    let views = [large, start(48), start(96)];
+    for view in &views {
+        wait_for(view, |status| status.samples >= 1.0);
+    }
+    let rays = || views.each_ref().map(|view| view.status().rays.total());
+    let mut all = [0; 3];
+    for window in 0..6 {
+        let before = rays();
+        thread::sleep(Duration::from_millis(400));
+        let now = rays();
+        let traced: [u64; 3] = std::array::from_fn(|i| now[i] - before[i]);
+        let of_window: u64 = traced.iter().sum();
+        // A turn is a fourteenth of this while.
+        let starves = traced.iter().any(|&rays| rays < of_window / 20);
+        assert!(!starves, "window {window}: {traced:?} rays");
+        all = std::array::from_fn(|i| all[i] + traced[i]);
+    }
+    let [least, most] = [all.iter().min(), all.iter().max()].map(|rays| rays.copied().unwrap());
+    assert!(most < 3 * least, "{all:?} rays");
+    for view in views {
+        assert_eq!(view.status().state, State::Running);
+    }
+}
+
+#[test]
 fn a_cancelled_render_keeps_whole_passes_of_tiles_only() {
     let mut passes = BTreeMap::new();
     let cancelled = start(1 << 12);
