@@ -200,6 +200,50 @@ fn rest_cameras(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bevy::app::Update;
+    use bevy::ecs::event::Event;
+    use bevy::ecs::observer::{ObserverSystemExt, On};
+    use bevy::ecs::schedule::common_conditions::not;
+
+    /// Who has heard of a frame, or of a signal.
+    #[derive(Resource, Default, Debug, PartialEq)]
+    struct Heard(Vec<&'static str>);
+
+    #[derive(Event)]
+    struct Signal;
+
+    #[test]
+    fn systems_and_observers_run_or_rest_while_the_editor_is_on_as_the_run_condition_says() {
+        let mut app = App::new();
+        let hears = |name| move |mut heard: ResMut<Heard>| heard.0.push(name);
+        app.init_resource::<Heard>()
+            .add_systems(
+                Update,
+                (
+                    hears("editor's").run_if(in_editor),
+                    hears("game's").run_if(not(in_editor)),
+                )
+                    .chain(),
+            )
+            .add_observer(
+                (|_: On<Signal>, mut heard: ResMut<Heard>| heard.0.push("game's observer"))
+                    .run_if(not(in_editor)),
+            );
+        let mut frame = |editing: Option<bool>| {
+            if let Some(editing) = editing {
+                app.insert_resource(Editing(editing));
+            }
+            app.update();
+            app.world_mut().trigger(Signal);
+            std::mem::take(&mut app.world_mut().resource_mut::<Heard>().0)
+        };
+        let of_game = ["game's", "game's observer"];
+        assert_eq!(frame(None), of_game, "there is no editor");
+        for _ in 0..2 {
+            assert_eq!(frame(Some(true)), ["editor's"]);
+            assert_eq!(frame(Some(false)), of_game);
+        }
+    }
 
     #[test]
     fn the_apps_picking_rests_while_the_editor_is_on_and_is_what_it_was_after() {
