@@ -169,7 +169,9 @@ impl Maps<ParallelogramLamp> for RectLight {
     fn left_out(&self, exposure: f32) -> Vec<String> {
         // A cosine emitter is π times as strong along its axis as its flux says.
         let end = (self.range, self.intensity / PI * exposure);
-        named(true, Some(end))
+        let mut named = named(true, Some(end));
+        named.push("Bevy draws its light without shadows: here everything casts them".into());
+        named
     }
 }
 
@@ -341,5 +343,14 @@ mod tests {
             ..DirectionalLight::default()
         };
         assert_eq!(shadowless.left_out(exposure()).len(), 1);
+        let rectangle = RectLight {
+            intensity: 100.0,
+            ..RectLight::default()
+        };
+        let named = rectangle.left_out(exposure());
+        assert!(
+            named.len() == 1 && named[0].contains("shadows"),
+            "{named:?}"
+        );
     }
 }

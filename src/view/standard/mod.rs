@@ -26,7 +26,7 @@
 //! | `PointLight` | [`PointLamp`](crate::scene::PointLamp) of lumens / 4π · E |
 //! | `SpotLight` | the same, with its cone, which fades smoothly at both ends (Bevy's as a square) |
 //! | `DirectionalLight` | [`DirectionalLamp`](crate::scene::DirectionalLamp) of lux · E |
-//! | `RectLight` | [`ParallelogramLamp`](crate::scene::ParallelogramLamp) of lumens / (π · area) · E, unseen by the camera. Bevy draws it with its feature `area_light_luts` alone, which this crate leaves off, and without shadows |
+//! | `RectLight` | [`ParallelogramLamp`](crate::scene::ParallelogramLamp) of lumens / (π · area) · E, unseen by the camera. Bevy draws it with its feature `area_light_luts` alone, which this crate leaves off, and never with shadows, which is named |
 //! | no shadows; a range at which light would still be seen | named: everything casts shadows, and light has no end |
 //!
 //! E = 1 / (1.2 · 2^ev100) is what a camera multiplies light by: that of the first view's `Exposure`. A
