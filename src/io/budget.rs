@@ -178,7 +178,7 @@ pub(crate) fn picture_bytes(width: u32, height: u32, channel_bytes: u64) -> u64 
 /// again afterwards, and pixels of three floats before and after they are developed. Measured: 125 to 152 bytes a pixel.
 pub(crate) fn film_bytes(size: UVec2) -> u64 {
     const PIXEL: u64 = 160;
-    u64::from(size.x) * u64::from(size.y) * PIXEL
+    (u64::from(size.x) * u64::from(size.y)).saturating_mul(PIXEL)
 }
 
 /// What the meshes and pictures of the open scene take.

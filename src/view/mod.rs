@@ -25,6 +25,7 @@ mod adapter;
 mod cameras;
 mod darkroom;
 mod darkroom_threads;
+mod film_size;
 mod handle_camera;
 pub mod lines;
 mod pick;

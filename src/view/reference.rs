@@ -1,6 +1,7 @@
 //! Pictures for code: what a view shows now, and a reference picture beside a running game.
 
 use super::Failed;
+use super::film_size;
 use super::traced::traced_camera;
 use crate::film::{Ending, Picture, Progressive, State, develop_rgba8};
 use crate::scene::{Output, RenderSettings};
@@ -190,6 +191,9 @@ fn begin(
     let camera = traced_camera(transform, projection, None)
         .ok_or("the camera's place or projection cannot be traced")?;
     let settings = reference.settings.clone();
+    if let Some(refusal) = film_size::refusal(settings.size, None) {
+        return Err(refusal);
+    }
     Progressive::start_for_file((*traced.world).clone(), camera, settings)
         .map_err(|problem| problem.to_string())
 }

@@ -5,14 +5,16 @@
 //! one, but for one of the lights alone, which the render takes as an edit; exposure, view transform, bloom and the view are only developed again. The render it
 //! replaces is cancelled and left to the developing thread to end: nothing here waits.
 
+use super::adapter::Adapter;
 use super::darkroom::{Darkroom, Order, Print};
+use super::film_size;
 use super::render::{PrintInfo, TracedRender, Wanted};
 use super::screen::{Screen, depth_image, depth_numbers, no_depth, picture_image};
 use super::surfaces::Surfaces;
 use crate::film::views::View;
 use crate::film::{Ending, LightMix};
 use crate::scene::{self, Output, RenderSettings, Sampling, SceneId};
-use crate::sync::{SyncSystems, Traced, TracedCameras};
+use crate::sync::{LeftOut, SyncSystems, Traced, TracedCameras};
 use crate::trace;
 use bevy::asset::{AssetEventSystems, Assets};
 use bevy::camera::{Camera, Camera3d, Projection};
@@ -65,7 +67,8 @@ pub struct TracedView {
     /// What of the film is shown.
     #[reflect(ignore)]
     pub view: View,
-    /// The values at the ends of a heatmap's palette; `None` takes them from the picture.
+    /// The values at the ends of a heatmap's palette, the smaller one first; `None`, and what is no such pair, takes them from
+    /// the picture.
     pub range: Option<[f32; 2]>,
     /// Screen pixels along each side of one of the film's: 1, 2, 4 …
     pub pixel_size: u32,
@@ -210,6 +213,8 @@ fn follow(
     traced: Res<Traced>,
     cameras: Res<TracedCameras>,
     settings: Res<RenderSettings>,
+    adapter: Adapter,
+    mut left_out: ResMut<LeftOut>,
     mut commands: Commands,
     mut views: Query<(
         Entity,
@@ -232,8 +237,15 @@ fn follow(
         });
         let seen_from = traced_camera(transform, projection, optics);
         let own = own.cloned().unwrap_or_default();
+        let refusal = own
+            .size
+            .and_then(|size| film_size::refusal(size, adapter.largest_side()));
         let size = seen_size(view, camera).map(|size| own.size.unwrap_or(size));
-        if seen_from.is_none() && render.shown.take().is_some() {
+        let size = size.filter(|_| refusal.is_none());
+        let has_picture = seen_from.is_some() && refusal.is_none();
+        let refusal = refusal.into_iter().collect();
+        LeftOut::note(&mut left_out, "film of view", entity, refusal);
+        if !has_picture && render.shown.take().is_some() {
             // It has no picture, and the one before is none of it.
             commands.entity(entity).try_remove::<Screen>();
         }
@@ -259,7 +271,7 @@ fn follow(
             order: Order {
                 output: settings.output,
                 view: view.view,
-                range: view.range,
+                range: view.range.filter(is_range),
             },
         };
         let keeps = view.paused && render.running.is_some();
@@ -277,6 +289,10 @@ fn follow(
             running.direct(view);
         }
     }
+}
+
+fn is_range([low, high]: &[f32; 2]) -> bool {
+    low.is_finite() && high.is_finite() && low < high
 }
 
 /// The film's size; `None` where nothing of it would be seen.

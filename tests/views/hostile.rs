@@ -5,6 +5,7 @@ use bevy::camera::{RenderTarget, Viewport};
 use bevy::prelude::*;
 use bevy::render::render_resource::TextureFormat;
 use bevy::window::{WindowRef, WindowResized, WindowResolution};
+use glassbox::film::views::View;
 use glassbox::prelude::*;
 use std::time::{Duration, Instant};
 
@@ -235,5 +236,139 @@ fn a_hundred_views_show_a_hundred_pictures() {
             Seen::Green
         };
         assert_eq!(shot.seen(middle.x, middle.y), expected, "view {i}");
+    }
+}
+
+#[test]
+fn films_that_no_memory_holds_or_that_have_no_pixels_are_named_and_not_rendered() {
+    let Some(mut game) = Game::open() else {
+        return;
+    };
+    let view = game.view(RED, None, 0);
+    game.wait_for_pictures();
+    for size in [
+        UVec2::ZERO,
+        UVec2::new(0, 7),
+        UVec2::splat(u32::MAX),
+        UVec2::splat(1 << 31),
+        UVec2::new(1 << 20, 1),
+    ] {
+        let own = ViewSettings {
+            size: Some(size),
+            ..default()
+        };
+        game.app.world_mut().entity_mut(view).insert(own);
+        let named = problems(&mut game);
+        let is_named = named.iter().any(|p| p.contains("nothing is traced for it"));
+        assert!(is_named, "{size}: {named:#?}");
+        let render = game.app.world().get::<TracedRender>(view).unwrap();
+        assert_eq!(render.status(), None, "{size} is rendered");
+        assert_eq!(game.shot().seen(48, 32), Seen::Blue, "a frozen picture");
+        game.app
+            .world_mut()
+            .entity_mut(view)
+            .remove::<ViewSettings>();
+        game.wait_for_pictures();
+        assert_eq!(game.shot().seen(48, 32), Seen::Red, "after {size}");
+        assert_eq!(problems(&mut game), Vec::<String>::new());
+    }
+}
+
+/// What becomes of a view that is told so, and goes back to what it was.
+fn survives(game: &mut Game, view: Entity, what: &str, edit: impl Fn(EntityWorldMut)) {
+    edit(game.app.world_mut().entity_mut(view));
+    for _ in 0..15 {
+        game.app.update();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let whole = (
+        TracedView::default(),
+        Transform::IDENTITY.looking_to(RED, Vec3::Y),
+        Projection::default(),
+    );
+    let mut camera = game.app.world_mut().entity_mut(view);
+    camera.insert(whole).remove::<ViewSettings>();
+    game.wait_for_pictures();
+    assert_eq!(game.shot().seen(48, 32), Seen::Red, "after {what}");
+}
+
+#[test]
+fn numbers_that_no_view_has_any_use_for_take_nothing_with_them() {
+    let Some(mut game) = Game::open() else {
+        return;
+    };
+    let view = game.view(RED, None, 0);
+    game.wait_for_pictures();
+    let numbers = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, 1e30];
+    for number in numbers {
+        let point = Vec2::new(number, 0.5);
+        for (what, told) in [
+            (
+                "divider",
+                TracedView {
+                    divider: number,
+                    ..default()
+                },
+            ),
+            (
+                "range",
+                TracedView {
+                    view: View::Depth,
+                    range: Some([number, 1.0]),
+                    ..default()
+                },
+            ),
+            (
+                "region",
+                TracedView {
+                    region: Some(Rect {
+                        min: point,
+                        max: 1.0 - point,
+                    }),
+                    ..default()
+                },
+            ),
+            (
+                "focus",
+                TracedView {
+                    focus: point,
+                    ..default()
+                },
+            ),
+            (
+                "pixel size",
+                TracedView {
+                    pixel_size: number as u32,
+                    ..default()
+                },
+            ),
+        ] {
+            let what = format!("{what} {number}");
+            survives(&mut game, view, &what, |mut view| {
+                view.insert(told.clone());
+            });
+        }
+        let sampling = Sampling {
+            error: number,
+            time: number,
+            ..default()
+        };
+        let own = ViewSettings {
+            spp: Some(number as u32),
+            sampling: Some(sampling),
+            ..default()
+        };
+        survives(&mut game, view, &format!("spp {number}"), |mut view| {
+            view.insert(own.clone());
+        });
+    }
+    for degrees in [0.0, 180.0, 270.0, -40.0] {
+        let fov = f32::to_radians(degrees);
+        survives(&mut game, view, &format!("{degrees}°"), |mut view| {
+            view.insert(Projection::Perspective(PerspectiveProjection {
+                fov,
+                ..default()
+            }));
+        });
     }
 }

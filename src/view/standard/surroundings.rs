@@ -59,6 +59,7 @@ pub(super) fn name_incomplete(
         for kind in [
             "exposure",
             "picture of view",
+            "film of view",
             "sky of view",
             "view",
             "traced camera",
