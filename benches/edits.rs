@@ -16,7 +16,11 @@
 //!
 //! `cargo bench --bench edits -- lines`: what a hundred thousand lines of gizmos that stand cost in a
 //! frame instead. `cargo bench --bench edits -- planes`: what an edit of a light costs beside a frame from scratch.
+//! `cargo bench --bench edits -- game`: what our systems add to the frames of a game of four thousand objects.
 
+#[cfg(feature = "view")]
+#[path = "shared/game.rs"]
+mod game;
 #[cfg(feature = "view")]
 #[path = "shared/lines.rs"]
 mod lines;
@@ -71,6 +75,10 @@ fn main() {
     #[cfg(feature = "view")]
     if std::env::args().any(|argument| argument == "lines") {
         return lines::main();
+    }
+    #[cfg(feature = "view")]
+    if std::env::args().any(|argument| argument == "game") {
+        return game::main();
     }
     if std::env::args().any(|argument| argument == "planes") {
         return planes::main();
