@@ -15,10 +15,14 @@ use bevy_egui::egui::{self, Align, ComboBox, Label, Layout, Ui, vec2};
 
 /// The part of the width that labels take.
 const LABELS: f32 = 0.38;
+/// Points to the right of all rows that the bar takes with which they are scrolled.
+const SCROLL_BAR: f32 = 6.0;
 
-/// A label with its explanation, and what stands beside it.
+/// A label with its explanation, and what stands beside it. Fields take all the width that there is, so that they end at
+/// one edge.
 pub(super) fn row<R>(ui: &mut Ui, label: &str, says: &str, value: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
+        ui.set_max_width(ui.available_width() - SCROLL_BAR);
         let width = (ui.available_width() * LABELS).clamp(70.0, 160.0);
         let size = vec2(width, ui.spacing().interact_size.y);
         ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
@@ -185,7 +189,7 @@ fn vector_ui(
         let width = (ui.available_width() - 3.0 * (count as f32 - 1.0)) / count as f32;
         let mut changed = None;
         for axis in 0..count {
-            let size = vec2(width.clamp(30.0, 110.0), ui.spacing().interact_size.y);
+            let size = vec2(width.max(30.0), ui.spacing().interact_size.y);
             ui.allocate_ui(size, |ui| {
                 let called = format!("{label} {}", axis + 1);
                 if in_row(ui, &called, |ui| one(ui, axis)) == Some(true) {
@@ -216,6 +220,17 @@ pub(super) fn number_row(
 
 /// The same without a label, as wide as its digits.
 pub(super) fn number(ui: &mut Ui, says: &str, value: &mut f32, quantity: Quantity) -> bool {
+    number_within(ui, says, value, quantity, 60.0)
+}
+
+/// The same, so wide.
+pub(super) fn number_within(
+    ui: &mut Ui,
+    says: &str,
+    value: &mut f32,
+    quantity: Quantity,
+    width: f32,
+) -> bool {
     let field = NumberField {
         quantity,
         is_whole: false,
@@ -223,7 +238,7 @@ pub(super) fn number(ui: &mut Ui, says: &str, value: &mut f32, quantity: Quantit
         says,
     };
     let layout = Layout::left_to_right(Align::Center);
-    ui.allocate_ui_with_layout(vec2(60.0, 20.0), layout, |ui| float_ui(ui, field, value))
+    ui.allocate_ui_with_layout(vec2(width, 20.0), layout, |ui| float_ui(ui, field, value))
         .inner
 }
 
@@ -361,7 +376,8 @@ pub(super) fn chosen_ui(
     row(ui, label, says, |ui| {
         ComboBox::from_id_salt(label)
             .selected_text(shown)
-            .width((ui.available_width() - 8.0).clamp(60.0, 240.0))
+            .width(ui.available_width().max(60.0))
+            .truncate()
             .show_ui(ui, |ui| {
                 for choice in choices {
                     let is_current = !mixed && choice.name == current;

@@ -133,15 +133,13 @@ fn field_of_view_ui(ui: &mut Ui, world: &mut World) {
     let Some(mut fov) = field_of_view(world) else {
         return;
     };
-    ui.set_min_width(230.0);
     let says = "The angle from the picture's lower to its upper edge: the looked-through camera's, or the view's own";
-    if number_row(
-        ui,
-        "Field of view",
-        says,
-        &mut fov,
-        Quantity::degrees(1.0, 170.0),
-    ) {
+    let angles = Quantity::degrees(1.0, 170.0);
+    let row = ui.scope(|ui| {
+        ui.set_width(240.0);
+        number_row(ui, "Field of view", says, &mut fov, angles)
+    });
+    if row.inner {
         set_field_of_view(world, fov);
     }
 }

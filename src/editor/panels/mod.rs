@@ -243,7 +243,13 @@ fn around_ui(ui: &mut egui::Ui, world: &mut World, preferences: &Preferences) ->
     // Narrow windows: the panels give way before the picture does.
     let for_panels = (ui.available_width() - LEAST_PICTURE).max(0.0);
     let mut widths = [preferences.hierarchy_width, preferences.inspector_width];
+    let dragged = ui.ctx().egui_is_using_pointer();
+    let context = ui.ctx().clone();
     let side = |id: &'static str, width: f32, left: bool| {
+        let range = egui::Rangef::new(120.0, (0.5 * for_panels).max(120.0));
+        if !dragged {
+            come_back(&context, id, range.clamp(width));
+        }
         let panel = if left {
             egui::Panel::left(id)
         } else {
@@ -252,7 +258,7 @@ fn around_ui(ui: &mut egui::Ui, world: &mut World, preferences: &Preferences) ->
         panel
             .resizable(true)
             .default_size(width)
-            .size_range(120.0..=(0.5 * for_panels).max(120.0))
+            .size_range(range)
             .frame(bar(egui::Margin::symmetric(6, 4)))
     };
     if preferences.show_hierarchy {
@@ -283,12 +289,21 @@ fn around_ui(ui: &mut egui::Ui, world: &mut World, preferences: &Preferences) ->
     }
     let known = [preferences.hierarchy_width, preferences.inspector_width];
     // A width that a narrow window forces is not one that a person chose.
-    let dragged = ui.ctx().egui_is_using_pointer();
     if dragged && widths != known {
         let mut preferences = world.resource_mut::<Preferences>();
         [preferences.hierarchy_width, preferences.inspector_width] = widths;
     }
     ui.available_rect_before_wrap()
+}
+
+/// Egui remembers how wide a panel was last, also where a narrow window forced that: it is as wide as it shall be again
+/// once there is room.
+fn come_back(context: &egui::Context, panel: &'static str, width: f32) {
+    let id = egui::Id::new(panel);
+    let now = egui::PanelState::load(context, id).map(|state| state.size().x);
+    if now.is_some_and(|now| (now - width).abs() > 1.0) {
+        context.data_mut(|data| data.remove::<egui::PanelState>(id));
+    }
 }
 
 /// Keeps what is drawn within the room that there is: a panel would grow with what sticks out of it,

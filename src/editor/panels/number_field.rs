@@ -71,16 +71,16 @@ impl NumberField<'_> {
     /// being drawn changes nothing, not even a number out of range.
     pub fn ui(self, ui: &mut Ui, number: &mut f64) -> bool {
         let Some([least, most]) = self.quantity.slider else {
-            let width = ui.available_width().clamp(40.0, 110.0);
+            let width = ui.available_width().max(40.0);
             ui.spacing_mut().interact_size.x = width;
             return self.number_ui(ui, number).1;
         };
         let unit = self.quantity.unit.kept_per_shown();
         let gap = ui.spacing().item_spacing.x;
-        let room = ui.available_width() - BESIDE_SLIDER - gap - 4.0;
+        let room = ui.available_width() - BESIDE_SLIDER - gap;
         let mut changed = false;
         if room >= 40.0 {
-            ui.spacing_mut().slider_width = room.min(220.0);
+            ui.spacing_mut().slider_width = room;
             let mut place = *number / unit;
             let slider = Slider::new(&mut place, least / unit..=most / unit)
                 .logarithmic(self.quantity.is_logarithmic)
@@ -227,7 +227,7 @@ impl NumberField<'_> {
         let style = ui.style().drag_value_text_style.clone();
         let text = RichText::new(self.text_that_fits(ui, *number)).text_style(style);
         let mut button = Button::new(text)
-            .wrap_mode(TextWrapMode::Extend)
+            .wrap_mode(TextWrapMode::Truncate)
             .sense(Sense::click_and_drag())
             .min_size(ui.spacing().interact_size);
         if refused.is_some() {
@@ -357,8 +357,9 @@ impl NumberField<'_> {
         let with_unit = |digits| self.text(number, digits) + &self.quantity.unit.suffix();
         let texts = [with_unit(5), with_unit(4), with_unit(3)];
         let bare = [5, 4, 3].map(|digits| self.text(number, digits));
+        let shortest = format!("{:.1e}", number / self.quantity.unit.kept_per_shown());
         let mut last = String::new();
-        for text in texts.into_iter().chain(bare) {
+        for text in texts.into_iter().chain(bare).chain([shortest]) {
             let width = ui.fonts_mut(|fonts| {
                 let galley = fonts.layout_no_wrap(text.clone(), font.clone(), egui::Color32::WHITE);
                 galley.size().x

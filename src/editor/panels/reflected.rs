@@ -375,7 +375,7 @@ fn text_ui(ui: &mut Ui, text: &mut String, mixed: bool) -> bool {
     let mut shown = if mixed { String::new() } else { text.clone() };
     let field = TextEdit::singleline(&mut shown)
         .hint_text(if mixed { MIXED } else { "" })
-        .desired_width(ui.available_width() - 12.0);
+        .desired_width(ui.available_width());
     let changed = ui.add(field).changed();
     if changed {
         *text = shown;

@@ -26,10 +26,21 @@ const AGAIN: Duration = Duration::from_millis(400);
 /// Points of what stands below the picture.
 const BELOW: f32 = 120.0;
 const GAIN: Quantity = Quantity::within(0.01, 10_000.0, "×").step(0.1);
-const INKS: [Color32; 2] = [
-    Color32::from_rgb(240, 170, 60),
-    Color32::from_rgb(79, 150, 240),
+/// Of the first picture and of the second, on dark surfaces and on light ones.
+const INKS: [[Color32; 2]; 2] = [
+    [
+        Color32::from_rgb(240, 170, 60),
+        Color32::from_rgb(96, 160, 244),
+    ],
+    [
+        Color32::from_rgb(150, 84, 0),
+        Color32::from_rgb(24, 88, 190),
+    ],
 ];
+
+fn inks(ui: &Ui) -> [Color32; 2] {
+    INKS[usize::from(!ui.visuals().dark_mode)]
+}
 
 /// One side of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -169,7 +180,8 @@ pub(in crate::editor::panels) fn window_ui(
         comparison.take(context);
         comparison.begin(world, &kept);
         let mut is_open = true;
-        let most = (free.size() - vec2(20.0, 50.0)).max(vec2(320.0, 260.0));
+        // Beside what is in it there are its title and its frame.
+        let most = (free.size() - vec2(40.0, 80.0)).max(vec2(320.0, 260.0));
         egui::Window::new("Compare")
             .id(egui::Id::new("compare pictures"))
             .open(&mut is_open)
@@ -221,7 +233,8 @@ fn inner_ui(ui: &mut Ui, world: &mut World, kept: &KeptPictures, comparison: &mu
     });
     pixel_ui(ui, pixel, pair);
     let [a, b] = &drawn.pair.histograms;
-    histogram_ui(ui, &[(a, INKS[0]), (b, INKS[1])]);
+    let inks = inks(ui);
+    histogram_ui(ui, &[(a, inks[0]), (b, inks[1])]);
     let seen = comparison.zoom.seen;
     let kinds = ".png, the part that is seen, pixel by pixel";
     save_ui(
@@ -277,7 +290,7 @@ fn choices_ui(ui: &mut Ui, kept: &KeptPictures, comparison: &mut Comparison) {
     };
     ui.horizontal_wrapped(|ui| {
         for (i, label) in ["First", "Second"].into_iter().enumerate() {
-            ui.label(RichText::new(label).color(INKS[i]));
+            ui.label(RichText::new(label).color(inks(ui)[i]));
             let side = &mut comparison.sides[i];
             ComboBox::from_id_salt(label)
                 .selected_text(name(*side))
@@ -365,6 +378,8 @@ mod tests {
     use crate::editor::document::adopt;
     use crate::editor::panels::compare::even_picture as picture;
     use crate::editor::panels::tests::Desk;
+    use crate::editor::panels::theme::assert_readable;
+    use bevy_egui::egui::Theme;
     use std::thread::sleep;
 
     /// Frames until the window has this text.
@@ -419,6 +434,15 @@ mod tests {
         desk.settle();
         assert!(desk.find("Difference").is_none());
         assert!(desk.world().resource::<KeptPictures>().all.is_empty());
+    }
+
+    #[test]
+    fn the_names_of_both_pictures_can_be_read_in_both_themes() {
+        for (theme, inks) in [Theme::Dark, Theme::Light].into_iter().zip(INKS) {
+            for ink in inks {
+                assert_readable(theme, ink, "of a picture");
+            }
+        }
     }
 
     #[test]

@@ -164,7 +164,7 @@ pub(super) fn path_ui(
     }
     let field = TextEdit::singleline(&mut form.text)
         .id(id)
-        .desired_width(ui.available_width() - 12.0);
+        .desired_width(ui.available_width());
     let response = ui
         .add(field)
         .says("The path; relative ones begin in the working folder, ~ is home, Tab completes");

@@ -67,7 +67,7 @@ pub(super) fn render_ui(ui: &mut Ui, world: &mut World, dialogs: &mut Dialogs) {
     let mut settings = form.settings.take().unwrap_or(scene);
     let says = "PNG and JPEG as on the screen; EXR and HDR keep the linear light";
     row(ui, "File", says, |ui| {
-        let width = ui.available_width() - 12.0;
+        let width = ui.available_width();
         ui.add(TextEdit::singleline(&mut form.file).desired_width(width))
             .says(says);
     });
@@ -116,7 +116,8 @@ fn from_ui(ui: &mut Ui, world: &mut World, form: &mut RenderForm) {
     row(ui, "From", says, |ui| {
         ComboBox::from_id_salt("from")
             .selected_text(name_of(form.from))
-            .width((ui.available_width() - 8.0).max(80.0))
+            .width(ui.available_width().max(80.0))
+            .truncate()
             .show_ui(ui, |ui| {
                 ui.selectable_value(&mut form.from, From::View, "The view");
                 for (id, name) in &cameras {

@@ -52,14 +52,19 @@ impl Cell {
 
 /// A builder's colour in plots and headings.
 pub(super) fn color(ui: &Ui, builder: Builder) -> Color32 {
-    let dark = ui.visuals().dark_mode;
+    match builder {
+        Builder::None => ui.visuals().weak_text_color(),
+        Builder::Ploc => accent(ui),
+        _ => ink_of(builder, ui.visuals().dark_mode),
+    }
+}
+
+fn ink_of(builder: Builder, dark: bool) -> Color32 {
     match (builder, dark) {
-        (Builder::None, _) => ui.visuals().weak_text_color(),
         (Builder::Median, true) => Color32::from_rgb(240, 176, 72),
-        (Builder::Median, false) => Color32::from_rgb(176, 104, 0),
-        (Builder::Sah, true) => Color32::from_rgb(170, 146, 248),
-        (Builder::Sah, false) => Color32::from_rgb(98, 70, 190),
-        (Builder::Ploc, _) => accent(ui),
+        (Builder::Median, false) => Color32::from_rgb(150, 84, 0),
+        (_, true) => Color32::from_rgb(170, 146, 248),
+        (_, false) => Color32::from_rgb(98, 70, 190),
     }
 }
 
@@ -164,7 +169,9 @@ pub(super) fn short(number: f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::super::theme::assert_readable;
     use super::*;
+    use bevy_egui::egui::Theme;
 
     #[test]
     fn figures_are_short_enough_for_a_column() {
@@ -191,6 +198,16 @@ mod tests {
             ]
         );
         assert!(texts.iter().all(|text| text.len() <= 5));
+    }
+
+    #[test]
+    fn the_builders_names_can_be_read_in_both_themes() {
+        for theme in [Theme::Dark, Theme::Light] {
+            for builder in [Builder::Median, Builder::Sah] {
+                let ink = ink_of(builder, theme == Theme::Dark);
+                assert_readable(theme, ink, title(builder));
+            }
+        }
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The four kinds of light, with what can be said of them in other words than their own: a temperature, a size.
 
-use super::super::fields::{color_ui, number, number_row, row, section, switch};
+use super::super::fields::{color_ui, number_row, number_within, row, section, switch};
 use super::super::several::Several;
 use super::super::temperature::{self, OF_LIGHTS, luminance};
 use super::command_button;
@@ -99,9 +99,12 @@ fn size_ui(ui: &mut Ui, several: &mut Several<ParallelogramLamp>) {
     let mut sides = several.first().edges.map(Vec3::length);
     let changed = row(ui, "Size", says, |ui| {
         let [a, b] = &mut sides;
-        let a = number(ui, "Length of edge A", a, Quantity::EXTENT).then_some(0);
+        let gap = 12.0 + 2.0 * ui.spacing().item_spacing.x;
+        let width = 0.5 * (ui.available_width() - gap);
+        let a = number_within(ui, "Length of edge A", a, Quantity::EXTENT, width).then_some(0);
         ui.weak("×");
-        let b = number(ui, "Length of edge B", b, Quantity::EXTENT).then_some(1);
+        let width = ui.available_width();
+        let b = number_within(ui, "Length of edge B", b, Quantity::EXTENT, width).then_some(1);
         a.or(b)
     });
     let Some(changed) = changed else {

@@ -224,7 +224,7 @@ impl Thumbnails {
         let edit = TextEdit::singleline(&mut text)
             .id(field)
             .hint_text("path")
-            .desired_width((ui.available_width() - 10.0).max(40.0));
+            .desired_width(ui.available_width().max(40.0));
         let response = ui
             .add(edit)
             .says("Relative to the scene file's folder, with / between its parts");

@@ -125,7 +125,8 @@ fn assign_ui(ui: &mut Ui, world: &mut World, entities: &[Entity], owner: Entity)
     row(ui, "Uses", says, |ui| {
         ComboBox::from_id_salt("uses")
             .selected_text(current)
-            .width((ui.available_width() - 8.0).max(60.0))
+            .width(ui.available_width().max(60.0))
+            .truncate()
             .show_ui(ui, |ui| {
                 let own = ui.selectable_label(!is_shared, "Its own");
                 if own.says("A material that no other object has").clicked() {

@@ -53,7 +53,7 @@ pub(super) fn object_ui(ui: &mut Ui, world: &mut World, panel: &mut Inspector) {
             let field = TextEdit::singleline(&mut text)
                 .id(name_field(active.id))
                 .char_limit(200)
-                .desired_width(ui.available_width() - 12.0);
+                .desired_width(ui.available_width());
             let response = ui
                 .add(field)
                 .says("What the list calls it; also kept in files");

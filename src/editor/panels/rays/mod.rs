@@ -135,7 +135,7 @@ fn rays_ui(ui: &mut Ui, world: &mut World, panel: &mut RaysPanel) {
     let width = (0.3 * ui.available_width()).clamp(230.0, 380.0);
     egui::Panel::right("side of the rays")
         .frame(egui::Frame::new().inner_margin(egui::Margin {
-            left: 6,
+            left: 10,
             ..egui::Margin::ZERO
         }))
         .resizable(true)

@@ -143,17 +143,24 @@ impl Desk {
         place.unwrap_or_else(|| panic!("`{text}` is not beside `{label}`"))
     }
 
-    /// The middles of all controls of a kind on the screen. The context has to speak to screen readers.
-    pub fn controls(&self, role: Role) -> Vec<Pos2> {
+    /// Where all controls of a kind are on the screen. The context has to speak to screen readers.
+    pub fn bounds(&self, role: Role) -> Vec<egui::Rect> {
         let update = self.output.platform_output.accesskit_update.as_ref();
         let nodes = update.map_or(&[][..], |update| &update.nodes);
         let controls = nodes.iter().filter(|(_, node)| node.role() == role);
         let bounds = controls.filter_map(|(_, node)| node.bounds());
-        let middle = |bounds: accesskit::Rect| {
-            let middle = [bounds.x0 + bounds.x1, bounds.y0 + bounds.y1].map(|sum| 0.5 * sum as f32);
-            Pos2::new(middle[0], middle[1])
+        let rect = |bounds: accesskit::Rect| {
+            let [x0, y0, x1, y1] =
+                [bounds.x0, bounds.y0, bounds.x1, bounds.y1].map(|side| side as f32);
+            egui::Rect::from_x_y_ranges(x0..=x1, y0..=y1)
         };
-        bounds.map(middle).collect()
+        bounds.map(rect).collect()
+    }
+
+    /// The middles of all controls of a kind.
+    pub fn controls(&self, role: Role) -> Vec<Pos2> {
+        let bounds = self.bounds(role).into_iter();
+        bounds.map(|bounds| bounds.center()).collect()
     }
 
     /// The first control of a kind in the row of a label.

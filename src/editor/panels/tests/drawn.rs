@@ -13,7 +13,9 @@ use crate::editor::viewport::{Show, Viewport};
 use crate::io::builtin::SCENES;
 use crate::scene::{PointLamp, SceneId};
 use bevy::ecs::name::Name;
+use bevy::ecs::query::With;
 use bevy::math::Vec2;
+use bevy_egui::egui::accesskit::Role;
 use bevy_egui::egui::{Id, Pos2, Rect, Shape, vec2};
 
 #[test]
@@ -41,6 +43,75 @@ fn every_scene_is_drawn_in_every_tab_at_every_size_and_nothing_of_it_counts_as_c
                 desk.draw(Vec::new());
             }
             assert_eq!(desk.changed(), [""; 0], "{} at {size:?}", scene.name);
+        }
+    }
+}
+
+#[test]
+fn panels_that_a_small_window_made_narrow_are_as_wide_as_before_once_there_is_room() {
+    let mut desk = Desk::open("cornell-box");
+    let rect = |desk: &mut Desk| desk.world().resource::<Viewport>().rect;
+    let before = rect(&mut desk);
+    desk.size = [480.0, 360.0, 1.0];
+    desk.settle();
+    assert!(rect(&mut desk).min.x < before.min.x, "they gave way");
+    desk.size = USUAL;
+    desk.settle();
+    assert_eq!(rect(&mut desk), before);
+    // So is one that a person made wider.
+    let edge = Pos2::new(before.min.x, before.center().y);
+    desk.drag(edge, vec2(60.0, 0.0));
+    desk.settle();
+    let wider = rect(&mut desk);
+    assert!((wider.min.x - before.min.x - 60.0).abs() < 4.0, "{wider:?}");
+    for size in [SMALL, [480.0, 360.0, 1.0], USUAL] {
+        desk.size = size;
+        desk.settle();
+    }
+    assert_eq!(rect(&mut desk), wider);
+}
+
+#[test]
+fn fields_end_at_one_edge_however_wide_the_panel_is() {
+    const FIELDS: [Role; 3] = [Role::SpinButton, Role::ComboBox, Role::TextInput];
+    let mut desk = Desk::open("showcase");
+    desk.context.enable_accesskit();
+    let ids = desk.ids();
+    for (size, width) in [(SMALL, 300.0), (USUAL, 420.0)] {
+        desk.size = [size[0], 1600.0, 1.0];
+        desk.world().resource_mut::<Preferences>().inspector_width = width;
+        desk.settle();
+        for tab in [Tab::Object, Tab::Render] {
+            desk.world().resource_mut::<Inspector>().tab = tab;
+            let shown = if tab == Tab::Object {
+                &ids[..]
+            } else {
+                &ids[..1]
+            };
+            for &id in shown {
+                desk.select([id]);
+                let panel = desk.world().resource::<Viewport>().rect.max.x;
+                // The last field of each row.
+                let mut rows: Vec<Rect> = Vec::new();
+                for field in FIELDS.iter().flat_map(|&role| desk.bounds(role)) {
+                    if field.left() < panel {
+                        continue;
+                    }
+                    let same = |row: &&mut Rect| row.y_range().contains(field.center().y);
+                    match rows.iter_mut().find(same) {
+                        Some(row) if row.right() < field.right() => *row = field,
+                        Some(_) => {}
+                        None => rows.push(field),
+                    }
+                }
+                let most = rows.iter().map(Rect::right).fold(0.0, f32::max);
+                let is_early = |row: &&Rect| most - row.right() > 1.5;
+                let early: Vec<&Rect> = rows.iter().filter(is_early).collect();
+                assert!(
+                    early.is_empty(),
+                    "{tab:?} of {id:?}: of {rows:#?}\n{early:#?} end before {most}"
+                );
+            }
         }
     }
 }
@@ -176,17 +247,41 @@ fn texts(desk: &Desk) -> Vec<(String, Rect, Rect)> {
 }
 
 #[test]
-fn no_text_of_the_settings_is_cut_off_at_the_side() {
-    let mut desk = Desk::open("showcase");
-    desk.world().resource_mut::<Inspector>().tab = Tab::Render;
+fn no_text_of_any_tab_is_cut_off_at_the_side_and_long_names_end_in_an_ellipsis() {
+    let mut desk = Desk::with_trees("showcase");
+    desk.context.enable_accesskit();
+    let ids = desk.ids();
+    let long = "A name that somebody took much time for and that is longer than any panel is wide";
+    let mut names = desk.world().query_filtered::<&mut Name, With<SceneId>>();
+    for mut name in names.iter_mut(desk.app.world_mut()) {
+        name.set(long);
+    }
     for size in [SMALL, USUAL] {
         desk.size = size;
-        desk.settle();
-        let right_of = desk.world().resource::<Viewport>().rect.max.x;
-        for (text, place, clip) in texts(&desk) {
-            if place.left() > right_of && clip.intersects(place) {
-                let beyond = place.right() - clip.right();
-                assert!(beyond < 1.0, "{text:?} by {beyond} at {size:?}");
+        for tab in [Tab::Object, Tab::Render, Tab::Debug, Tab::Bvh] {
+            desk.world().resource_mut::<Inspector>().tab = tab;
+            let shown = if tab == Tab::Object {
+                &ids[..]
+            } else {
+                &ids[..1]
+            };
+            for &id in shown {
+                desk.select([id]);
+                let rect = desk.world().resource::<Viewport>().rect;
+                // What is typed is scrolled in its field.
+                let typed = desk.bounds(Role::TextInput);
+                let is_typed = |place: Rect| {
+                    typed
+                        .iter()
+                        .any(|field| field.contains(place.left_center()))
+                };
+                for (text, place, clip) in texts(&desk) {
+                    let is_beside = place.left() > rect.max.x || place.left() < rect.min.x;
+                    if is_beside && clip.intersects(place) && !is_typed(place) {
+                        let beyond = place.right() - clip.right();
+                        assert!(beyond < 1.0, "{text:?} by {beyond} at {size:?}, {tab:?}");
+                    }
+                }
             }
         }
     }
