@@ -51,6 +51,12 @@ impl RenderForm {
         self.settings = Some(settings);
         self.refused = None;
     }
+
+    /// What is entered, while the dialog is open.
+    #[cfg(test)]
+    pub fn settings(&self) -> Option<&RenderSettings> {
+        self.settings.as_ref()
+    }
 }
 
 pub(super) fn render_ui(ui: &mut Ui, world: &mut World, dialogs: &mut Dialogs) {

@@ -4,11 +4,11 @@ use super::super::dialogs::{Dialog, Dialogs};
 use super::super::palette::OpenPalette;
 use super::Desk;
 use crate::editor::command::{AddCommands, Command, CommandTable, Over, State};
-use crate::editor::inspection::DebugRay;
 use crate::editor::inspection::debug_ray::Shot;
+use crate::editor::inspection::{DebugRay, Which};
 use crate::editor::keys::Keys;
 use crate::editor::notice::Notices;
-use crate::editor::pointer::{PixelAsked, RightClicked};
+use crate::editor::pointer::{Armed, PixelAsked, RightClicked};
 use crate::editor::preferences::Preferences;
 use crate::editor::selection::Selection;
 use crate::editor::{Action, edits};
@@ -18,7 +18,7 @@ use crate::sync::TracedCameras;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy::math::{UVec2, Vec2};
-use bevy_egui::egui::{Event, Key, PointerButton};
+use bevy_egui::egui::{CursorIcon, Event, Key, PointerButton, Pos2};
 use std::collections::HashSet;
 use std::time::Instant;
 
@@ -217,43 +217,79 @@ fn keys_that_were_chosen_are_shown_and_kept() {
 }
 
 #[test]
-fn a_pixel_that_was_asked_about_is_answered_in_a_sentence_until_another_is_shot() {
-    let mut desk = Desk::open("cornell-box");
-    let camera = desk.world().resource::<TracedCameras>().0[0].camera.clone();
-    let shot = Shot {
-        pixel: UVec2::new(300, 400),
-        camera,
-        size: UVec2::new(600, 480),
-    };
-    desk.world().resource_mut::<DebugRay>().shoot(shot);
-    let at = Vec2::new(600.0, 300.0);
-    desk.world().trigger(PixelAsked {
-        question: Question::Black,
-        at,
-    });
-    let start = Instant::now();
-    while desk.world().resource::<DebugRay>().is_busy() {
-        assert!(start.elapsed().as_secs() < 60, "no rays came");
+fn each_question_about_a_pixel_waits_for_a_click_and_is_answered_in_a_sentence_until_another_is_shot()
+ {
+    for (question, id, waits, preset) in [
+        (
+            Question::Black,
+            "why.black",
+            "Click a pixel: why is it black? (Esc: none)",
+            InspectPreset::WhyBlack,
+        ),
+        (
+            Question::Noisy,
+            "why.noisy",
+            "Click a pixel: why is it noisy? (Esc: none)",
+            InspectPreset::WhereIsTheNoiseFrom,
+        ),
+        (
+            Question::Color,
+            "why.color",
+            "Click a pixel: why this colour? (Esc: none)",
+            InspectPreset::WhyBlack,
+        ),
+    ] {
+        let mut desk = Desk::open("cornell-box-parallelogram-light");
+        desk.world().init_resource::<Armed>();
+        let at = Vec2::new(600.0, 300.0);
+        desk.world().write_message(Action::run(id));
+        desk.point(Pos2::new(at.x, at.y));
         desk.settle();
+        assert_eq!(*desk.world().resource::<Armed>(), Armed::Why(question));
+        desk.place_of(waits);
+        let cursor = desk.output.platform_output.cursor_icon;
+        assert_eq!(cursor, CursorIcon::Crosshair);
+        *desk.world().resource_mut::<Armed>() = Armed::No;
+
+        let camera = desk.world().resource::<TracedCameras>().0[0].camera.clone();
+        let mut ray = desk.world().resource_mut::<DebugRay>();
+        ray.which = match question {
+            Question::Black => Which::First,
+            _ => Which::All,
+        };
+        ray.shoot(Shot {
+            pixel: UVec2::new(300, 400),
+            camera,
+            size: UVec2::new(600, 480),
+        });
+        desk.world().trigger(PixelAsked { question, at });
+        desk.settle();
+        assert_eq!(desk.find(waits), None);
+        let start = Instant::now();
+        while desk.world().resource::<DebugRay>().is_busy() {
+            assert!(start.elapsed().as_secs() < 60, "no rays came");
+            desk.settle();
+        }
+        desk.settle();
+        let rays = desk.world().resource::<DebugRay>().rays().unwrap().clone();
+        let names = &desk.world().resource::<Names>().things;
+        let sentence = answer(question, &rays, names);
+        desk.place_of(&sentence);
+        desk.click_on("Ray tree");
+        assert!(desk.world().resource::<Preferences>().show_rays, "{id}");
+        desk.click_on("Show rays");
+        let wanted = preset.settings().rays;
+        assert_eq!(
+            desk.world().resource::<InspectSettings>().rays,
+            wanted,
+            "{id}"
+        );
+        desk.click_on("Go there");
+        desk.settle();
+        let met = rays.rays[0].hit.unwrap().object;
+        assert_eq!(desk.world().resource::<Selection>().ids(), [SceneId(met)]);
+        assert_eq!(desk.find(&sentence), None);
     }
-    desk.settle();
-    let rays = desk.world().resource::<DebugRay>().rays().unwrap().clone();
-    let sentence = answer(
-        Question::Black,
-        &rays,
-        &desk.world().resource::<Names>().things,
-    );
-    desk.place_of(&sentence);
-    desk.click_on("Ray tree");
-    assert!(desk.world().resource::<Preferences>().show_rays);
-    desk.click_on("Show rays");
-    let wanted = InspectPreset::WhyBlack.settings().rays;
-    assert_eq!(desk.world().resource::<InspectSettings>().rays, wanted);
-    desk.click_on("Go there");
-    desk.settle();
-    let met = rays.rays[0].hit.unwrap().object;
-    assert_eq!(desk.world().resource::<Selection>().ids(), [SceneId(met)]);
-    assert_eq!(desk.find(&sentence), None);
 }
 
 #[test]

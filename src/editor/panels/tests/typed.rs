@@ -1,18 +1,28 @@
 //! What is typed into number fields.
 
+use super::super::dialogs::{Dialog, Dialogs};
 use super::super::inspector::{Inspector, Tab};
 use super::desk::Desk;
+use crate::editor::action::Action;
 use crate::editor::history::{History, undo};
+use crate::editor::inspection::choice::Side;
+use crate::editor::inspection::debug_ray::Shot;
+use crate::editor::inspection::{DebugRay, Inspected};
+use crate::editor::preferences::Preferences;
+use crate::inspect::InspectSettings;
 use crate::scene::{
     Cone, DirectionalLamp, Environment, Lens, MeshSource, Motion, ParallelogramLamp, Phong,
     PointLamp, Projection, RenderSettings, SceneCamera, SceneId, SegmentLamp, Shape,
     range_problems,
 };
+use crate::sync::TracedCameras;
+use crate::view::ViewSettings;
 use bevy::ecs::component::Component;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::name::Name;
 use bevy::ecs::query::With;
 use bevy::ecs::world::World;
+use bevy::math::UVec2;
 use bevy::reflect::PartialReflect;
 use bevy::transform::components::Transform;
 use bevy_egui::egui::accesskit::Role;
@@ -50,7 +60,7 @@ impl Desk {
         self.controls(Role::SpinButton)
     }
 
-    fn type_at(&mut self, at: Pos2, text: &str) {
+    pub fn type_at(&mut self, at: Pos2, text: &str) {
         self.click(at);
         if self.context.text_edit_focused() {
             self.key(Key::Delete);
@@ -195,11 +205,114 @@ fn nothing_wrong_that_is_typed_anywhere_applies_and_undo_restores_everything() {
         }
     }
     assert!(fields_seen > 80, "only {fields_seen} fields were found");
+    undo_everything(&mut desk);
+    assert_eq!(numbers(desk.world()), before);
+}
+
+fn undo_everything(desk: &mut Desk) {
     while desk.world().resource::<History>().position() > 0 {
         undo(desk.world());
         desk.settle();
     }
-    assert_eq!(numbers(desk.world()), before);
+}
+
+/// What of the panels' own numbers is out of range, or is none: of what is drawn, of the preferences, of the mix, of the
+/// picture that is to be rendered.
+fn problems_of_panels(desk: &mut Desk) -> Vec<String> {
+    let world = desk.world();
+    let inspect = range_problems(world.resource::<InspectSettings>());
+    let mut all: Vec<String> = inspect.iter().map(ToString::to_string).collect();
+    let preferences = world.resource::<Preferences>();
+    if !(0.5..=3.0).contains(&preferences.zoom) || !(1..=8).contains(&preferences.pixel_size) {
+        all.push(format!("{preferences:?}"));
+    }
+    let form = &world.resource::<Dialogs>().render_form;
+    if let Some(settings) = form.settings() {
+        all.extend(range_problems(settings).iter().map(ToString::to_string));
+    }
+    let speed = world.resource::<Inspected>().stepper.speed;
+    if !(speed > 0.0 && speed.is_finite()) {
+        all.push(format!("{speed} steps a second"));
+    }
+    let mut views = world.query::<&ViewSettings>();
+    let mixes = views.iter(world).map(|view| format!("{:?}", view.mix));
+    all.extend(mixes.filter(|mix| mix.contains("inf") || mix.contains("NaN")));
+    all
+}
+
+#[test]
+fn nothing_wrong_that_is_typed_beside_the_inspector_applies_and_the_scene_stays_as_it_is() {
+    let mut desk = Desk::with_trees("cornell-box");
+    desk.size = [1280.0, 1400.0, 1.0];
+    desk.context.enable_accesskit();
+    desk.world().resource_mut::<Preferences>().show_inspector = false;
+    let camera = desk.world().resource::<TracedCameras>().0[0].camera.clone();
+    let (pixel, size) = (UVec2::new(300, 400), UVec2::new(600, 480));
+    desk.world().resource_mut::<DebugRay>().shoot(Shot {
+        pixel,
+        camera,
+        size,
+    });
+    desk.settle();
+    let before = numbers(desk.world());
+    let mut runner = TestRunner::deterministic();
+    let texts = proptest::sample::select(NONSENSE.to_vec());
+    let mut fields_seen = 0;
+    let rays = |side| {
+        move |desk: &mut Desk| {
+            desk.world().resource_mut::<Preferences>().show_rays = true;
+            let mut inspected = desk.world().resource_mut::<Inspected>();
+            inspected.choose_ray(Some(0), false);
+            inspected.side = side;
+        }
+    };
+    let dialog = |dialog| {
+        move |desk: &mut Desk| {
+            desk.world().resource_mut::<Preferences>().show_rays = false;
+            desk.world().resource_mut::<Dialogs>().open = Some(dialog);
+        }
+    };
+    let mixer = |desk: &mut Desk| {
+        desk.world().resource_mut::<Preferences>().show_rays = false;
+        desk.world().write_message(Action::run("lights.mixer"));
+    };
+    type Page<'a> = (&'a str, Box<dyn Fn(&mut Desk)>);
+    let pages: [Page; 5] = [
+        ("rays", Box::new(rays(Side::Why))),
+        ("steps", Box::new(rays(Side::Steps))),
+        ("mixer", Box::new(mixer)),
+        ("preferences", Box::new(dialog(Dialog::Preferences))),
+        ("render", Box::new(dialog(Dialog::Render))),
+    ];
+    for (page, open) in pages {
+        open(&mut desk);
+        desk.settle();
+        let count = desk.number_fields().len();
+        fields_seen += count;
+        for field in 0..count {
+            for _ in 0..6 {
+                let text = texts.new_tree(&mut runner).unwrap().current();
+                // Where the fields are now: what was typed may have moved them.
+                let Some(&at) = desk.number_fields().get(field) else {
+                    continue;
+                };
+                desk.type_at(at, text);
+                let mut wrong = problems_of_panels(&mut desk);
+                wrong.extend(problems(desk.world()));
+                assert_eq!(
+                    wrong,
+                    Vec::<String>::new(),
+                    "{page}, field {field}: `{text}`"
+                );
+            }
+            desk.world().resource_mut::<Preferences>().zoom = 1.0;
+            desk.settle();
+        }
+        // Above the view there is the scene's exposure.
+        undo_everything(&mut desk);
+        assert_eq!(numbers(desk.world()), before, "{page}");
+    }
+    assert!(fields_seen >= 14, "only {fields_seen} fields were found");
 }
 
 #[test]
