@@ -398,3 +398,45 @@ fn of_ten_thousand_rows_only_those_that_are_seen_are_laid_out_and_the_last_is_re
     let drawn = desk.world().resource::<Hierarchy>().rows_drawn;
     assert!((10..60).contains(&drawn), "{drawn} rows");
 }
+
+/// Prints how long a frame of the panels takes with ten thousand entities, beside ten.
+#[test]
+#[ignore = "a measurement: run it by itself, with --nocapture"]
+fn how_long_a_frame_takes_with_ten_thousand_entities() {
+    for count in [10, 10_000] {
+        let mut desk = Desk::open("triangle");
+        for i in 0..count {
+            let (id, name) = (SceneId(1000 + i), Name::new(format!("Thing {i}")));
+            desk.world().spawn((id, name, PointLamp::default()));
+        }
+        desk.settle();
+        let time = |desk: &mut Desk, what: &str, mut before: Box<dyn FnMut(&mut Desk, u32)>| {
+            let mut all: Vec<f64> = (0..20)
+                .map(|i| {
+                    before(desk, i);
+                    desk.app.update();
+                    let start = Instant::now();
+                    desk.draw(Vec::new());
+                    start.elapsed().as_secs_f64() * 1e3
+                })
+                .collect();
+            all.sort_by(f64::total_cmp);
+            println!(
+                "{count} entities, {what}: {:.2} ms, at most {:.2}",
+                all[10], all[19]
+            );
+        };
+        time(&mut desk, "at rest", Box::new(|_, _| {}));
+        let rename = |desk: &mut Desk, i: u32| {
+            let entity = desk.named("Thing 5").0;
+            let name = format!("Thing 5{}", " ".repeat(i as usize % 2));
+            desk.world()
+                .entity_mut(entity)
+                .insert(Name::new(name.trim().to_owned()));
+        };
+        time(&mut desk, "after one was named", Box::new(rename));
+        let all = desk.ids();
+        desk.select(all);
+        time(&mut desk, "all selected", Box::new(|_, _| {}));
+    }
+}
