@@ -1,6 +1,7 @@
 //! The two cameras that draw into the window: one for the scene, one for the panels.
 
 use super::embed::Editing;
+use super::trees::LEFT_TREES_LAYER;
 use super::viewport::{EditorCamera, Viewport};
 use crate::scene::NotTraced;
 use crate::view::{
@@ -59,7 +60,7 @@ type SceneCamera = (
 );
 
 /// The scene's camera draws into the part of the window that the panels leave free.
-fn fit_viewport(
+pub(super) fn fit_viewport(
     viewport: Res<Viewport>,
     editing: Option<Res<Editing>>,
     window: Single<&Window, With<PrimaryWindow>>,
@@ -102,9 +103,9 @@ fn fit_viewport(
     }
     // What the traced picture covers is not drawn beneath it, once there is one.
     let wanted = if divider > 0.0 || render.shown().is_none() {
-        RenderLayers::from_layers(&[0, RASTER_LAYER, OVERLAY_LAYER])
+        RenderLayers::from_layers(&[0, RASTER_LAYER, OVERLAY_LAYER, LEFT_TREES_LAYER])
     } else {
-        RenderLayers::from_layers(&[0, OVERLAY_LAYER])
+        RenderLayers::from_layers(&[0, OVERLAY_LAYER, LEFT_TREES_LAYER])
     };
     layers.set_if_neq(wanted);
 }

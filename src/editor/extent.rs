@@ -23,7 +23,8 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    fn of_points(points: impl IntoIterator<Item = Vec3>) -> Option<Self> {
+    /// That of all points that are finite; `None` where there is none.
+    pub fn of_points(points: impl IntoIterator<Item = Vec3>) -> Option<Self> {
         let mut extent: Option<Self> = None;
         for point in points.into_iter().filter(|point| point.is_finite()) {
             // What lies farther is not traced, and its squares would overflow.

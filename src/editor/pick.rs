@@ -89,10 +89,12 @@ pub(super) fn past(
     None
 }
 
-/// Where the pointer is in the window, in logical pixels.
+/// Where the pointer is in the window, in logical pixels; over the second of two views, where the first one shows the same.
 pub(super) fn cursor(world: &mut World) -> Option<Vec2> {
     let mut windows = world.query_filtered::<&Window, With<PrimaryWindow>>();
-    windows.single(world).ok()?.cursor_position()
+    let at = windows.single(world).ok()?.cursor_position()?;
+    let viewport = world.get_resource::<Viewport>();
+    Some(at - viewport.map_or(Vec2::ZERO, |viewport| viewport.offset(at)))
 }
 
 /// What is there. Symbols come first: they are small, and drawn over everything.

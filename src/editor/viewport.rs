@@ -43,6 +43,8 @@ pub enum Show {
 pub struct Viewport {
     /// In logical pixels of the window, from its top left.
     pub rect: Rect,
+    /// Where the same is shown once more, as large: the right view of two trees side by side.
+    pub twin: Option<Rect>,
     /// Which of the pictures is shown.
     pub show: Show,
     /// Where the split view is divided, as a part of the width.
@@ -59,6 +61,7 @@ impl Default for Viewport {
     fn default() -> Self {
         Self {
             rect: Rect::default(),
+            twin: None,
             show: Show::default(),
             divider: 0.5,
             hovered: false,
@@ -69,6 +72,13 @@ impl Default for Viewport {
 }
 
 impl Viewport {
+    /// What lies between a place of the window and that of [`rect`](Self::rect) which shows the same: nothing but in the
+    /// second view.
+    pub fn offset(&self, in_window: Vec2) -> Vec2 {
+        let twin = self.twin.filter(|twin| twin.contains(in_window));
+        twin.map_or(Vec2::ZERO, |twin| twin.min - self.rect.min)
+    }
+
     /// From a place in the window to one in the viewport, (0, 0) at its top left, (1, 1) opposite.
     pub fn place(&self, in_window: Vec2) -> Vec2 {
         (in_window - self.rect.min) / self.rect.size().max(Vec2::ONE)

@@ -19,7 +19,7 @@
 //!
 //! Beside lines: [`pattern`], where the samples of a pixel lie; [`Traversal`], the way of a ray
 //! through the trees step by step, and [`Stepper`], which plays it; [`tell`], what a line stands for in words and numbers;
-//! [`answer()`], questions about a pixel in a sentence; [`Column`], rays as a table; [`Addition`], what they add up to; [`legend()`], what the colours of the lines mean; [`compare_builders`], each builder's tree in numbers;
+//! [`answer()`], questions about a pixel in a sentence; [`Column`], rays as a table; [`Addition`], what they add up to; [`legend()`], what the colours of the lines mean; [`compare_builders`], each builder's tree in numbers; [`TreeCounts`], what a view's rays look at of the trees;
 //! [`draw_over`], lines over a picture without a GPU; [`Document`], all of it as one file.
 
 mod addition;
@@ -53,6 +53,7 @@ mod system;
 mod table;
 mod told;
 mod traversal;
+mod tree_counts;
 mod trees;
 mod visits;
 mod wide_boxes;
@@ -86,5 +87,6 @@ pub use system::{System, lines};
 pub use table::aligned;
 pub use told::{Told, node_told, tell, tree_name};
 pub use traversal::{StackEntry, Step, StepKind, Traversal};
+pub use tree_counts::TreeCounts;
 pub use trees::{NodeFacts, TreeView, trees};
 pub use visits::Visits;

@@ -120,14 +120,14 @@ impl Default for BoxSettings {
 }
 
 documented! {
-    /// Two trees over the same view: on its left the boxes, and what the debug rays visit, in the trees
-    /// of one builder, on its right in those of another. What is traced stays what it is. The window
+    /// Two views of the same: over the left one the boxes, and what the debug rays visit, in the trees
+    /// of one builder, over the right one in those of another. What is traced stays what it is. The window
     /// shows them; where there is none nothing is drawn of them.
     #[derive(Reflect, Clone, Debug, PartialEq)]
     #[reflect(Default, Clone, PartialEq, Debug)]
     pub struct PairSettings {
-        /// The view's left half shows the boxes of one builder's trees, the right half another's; the picture is traced as
-        /// before.
+        /// Two views from one place, each with the picture: over the left one the boxes of one builder's trees, over the
+        /// right one another's, and below each what there is to count.
         #[reflect(@Label("Show"))]
         pub on: bool,
         /// Whose trees are on the left.

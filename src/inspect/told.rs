@@ -93,7 +93,8 @@ pub fn tree_name(world: &World, instance: Option<u32>, names: &Names) -> Option<
 
 /// Everything about a node. Looks at the whole tree: not for every frame.
 pub fn node_told(world: &World, instance: Option<u32>, node: u32, names: &Names) -> Option<Told> {
-    let facts = TreeView::of(world, instance)?.facts(node)?;
+    let view = TreeView::of(world, instance)?;
+    let facts = view.facts(node)?;
     let NodeFacts {
         depth,
         bounds: [min, max],
@@ -122,10 +123,17 @@ pub fn node_told(world: &World, instance: Option<u32>, node: u32, names: &Names)
             .and("level", depth.to_string())
             .and("children", children)
             .and("holds", format!("{primitives} {what}"))
+            .and("size", size_text(&view.corners(node)))
             .and("SAH", format!("{part:.2} % of the tree's {tree_cost:.2}"))
             .and("from", vector_text(min))
             .and("to", format!("{} {space}", vector_text(max))),
     )
+}
+
+/// How long the three edges of a box are, in the world.
+fn size_text(corners: &[Vec3; 8]) -> String {
+    let [x, y, z] = [1, 2, 4].map(|corner: usize| corners[corner].distance(corners[0]));
+    format!("{x:.3} × {y:.3} × {z:.3} m")
 }
 
 fn ray_told(rays: &RayTree, index: u32, names: &Names) -> Option<Told> {

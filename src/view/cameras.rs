@@ -1,14 +1,14 @@
 //! The cameras of a window that shows a traced picture with an interface around it. The camera of
 //! [handles](super::HandleCameraPlugin) is between the two.
 
-use super::{OVERLAY_LAYER, RASTER_LAYER, TracedView, raster};
+use super::{OVERLAY_LAYER, RASTER_LAYER, ShowsPictureOf, TracedView, raster};
 use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{
-    Camera, Camera2d, Camera3d, Camera3dDepthLoadOp, ClearColorConfig, PerspectiveProjection,
-    Projection,
+    Camera, Camera2d, Camera3d, ClearColorConfig, PerspectiveProjection, Projection,
 };
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::ecs::bundle::Bundle;
+use bevy::ecs::entity::Entity;
 use bevy::render::view::Msaa;
 
 /// The layer that holds an interface.
@@ -28,14 +28,12 @@ pub fn picture_camera() -> impl Bundle {
     )
 }
 
-/// Shows lines of a layer over a picture that stands in the window already, against its depth. It rests
+/// Shows once more what the camera of a traced picture shows, beside it in the window; it traces nothing itself. It rests
 /// until it is made active.
-pub fn lines_camera(order: isize, layer: usize) -> impl Bundle {
+pub fn twin_camera(of: Entity, order: isize) -> impl Bundle {
     (
-        Camera3d {
-            depth_load_op: Camera3dDepthLoadOp::Load,
-            ..Camera3d::default()
-        },
+        ShowsPictureOf(of),
+        Camera3d::default(),
         Camera {
             order,
             clear_color: ClearColorConfig::None,
@@ -44,7 +42,8 @@ pub fn lines_camera(order: isize, layer: usize) -> impl Bundle {
         },
         Msaa::Off,
         Tonemapping::None,
-        RenderLayers::layer(layer),
+        raster::exposure(),
+        raster::ambient(),
     )
 }
 

@@ -44,7 +44,7 @@ mod traced;
 
 pub use adapter::Adapter;
 pub(crate) use adapter::largest_side;
-pub use cameras::{interface_camera, lines_camera, picture_camera};
+pub use cameras::{interface_camera, picture_camera, twin_camera};
 pub use handle_camera::{HandleCameraPlugin, draws_handles};
 pub use lines::{DrawnLines, Line, LinesPlugin, OVERLAY_LAYER};
 pub use pick::{Picked, TracedPickingPlugin, pick};
@@ -55,7 +55,9 @@ pub use render::{PrintInfo, TracedRender};
 pub use shot::shoot_window;
 pub use standard::{AddTracedMaterial, StandardMappingPlugin};
 pub use symbols::{Outlined, SymbolOf, Symbols, SymbolsPlugin, nearest_symbol};
-pub use traced::{Converged, Failed, TracedView, TracedViewPlugin, ViewSettings, traced_camera};
+pub use traced::{
+    Converged, Failed, ShowsPictureOf, TracedView, TracedViewPlugin, ViewSettings, traced_camera,
+};
 
 use crate::io::IoPlugin;
 use crate::scene::ScenePlugin;

@@ -46,7 +46,7 @@ impl Plugin for TracedViewPlugin {
                 (
                     (attend, follow).chain().after(SyncSystems),
                     // So that a print's texture reaches the renderer with the screen that names it.
-                    show_prints.before(AssetEventSystems),
+                    (show_prints, show_twins).chain().before(AssetEventSystems),
                 ),
             );
     }
@@ -132,6 +132,10 @@ pub struct Failed {
     /// Why.
     pub problem: String,
 }
+
+/// On a camera: it shows the traced picture of another one, which has a [`TracedView`] and looks at the same.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ShowsPictureOf(pub Entity);
 
 /// The tracer's camera for a Bevy camera. `None` for a projection or place that has no picture.
 pub fn traced_camera(
@@ -302,6 +306,27 @@ fn seen_size(view: &TracedView, camera: &Camera) -> Option<UVec2> {
     seen.then_some(size)
 }
 
+/// What stands on a view's screen stands on its twins' too.
+fn show_twins(
+    mut commands: Commands,
+    twins: Query<(Entity, &ShowsPictureOf, Option<&Screen>)>,
+    screens: Query<&Screen>,
+) {
+    for (twin, of, shown) in &twins {
+        let wanted = screens.get(of.0).ok();
+        if wanted == shown {
+            continue;
+        }
+        let Ok(mut twin) = commands.get_entity(twin) else {
+            continue;
+        };
+        match wanted {
+            Some(wanted) => twin.try_insert(wanted.clone()),
+            None => twin.try_remove::<Screen>(),
+        };
+    }
+}
+
 /// Puts what has been developed since the last frame onto the screens.
 fn show_prints(
     mut commands: Commands,
@@ -379,5 +404,42 @@ fn show_prints(
                 commands.trigger(Converged { entity, ending });
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::ecs::world::World;
+    use bevy::math::Vec3;
+
+    #[test]
+    fn a_twin_shows_what_its_view_shows_and_nothing_once_that_shows_nothing() {
+        let mut world = World::new();
+        let mut images = Assets::<Image>::default();
+        let screen = |images: &mut Assets<Image>, divider| Screen {
+            picture: images.add(no_depth()),
+            depth: images.add(no_depth()),
+            divider,
+            numbers: Vec3::X,
+        };
+        let view = world.spawn_empty().id();
+        let twin = world.spawn(ShowsPictureOf(view)).id();
+        let show = world.register_system(show_twins);
+        for shown in [
+            Some(screen(&mut images, 0.0)),
+            Some(screen(&mut images, 0.5)),
+            None,
+        ] {
+            match shown.clone() {
+                Some(screen) => world.entity_mut(view).insert(screen),
+                None => world.entity_mut(view).remove::<Screen>(),
+            };
+            world.run_system(show).unwrap();
+            assert_eq!(world.get::<Screen>(twin), shown.as_ref());
+        }
+        world.despawn(view);
+        world.run_system(show).unwrap();
+        assert!(world.get::<Screen>(twin).is_none());
     }
 }

@@ -15,6 +15,7 @@ mod rays;
 mod scripts;
 mod startup;
 mod story;
+mod two_trees;
 
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};

@@ -39,6 +39,15 @@ impl Shot {
         sum / places.len() as f64
     }
 
+    /// The same for a part of one picture and one of the same size that lies so many pixels further right.
+    pub fn difference_to_the_right(&self, by: u32, area: [f32; 4]) -> f64 {
+        let (width, height) = self.0.dimensions();
+        let moved = RgbImage::from_fn(width, height, |x, y| {
+            *self.0.get_pixel((x + by).min(width - 1), y)
+        });
+        self.difference(&Self(moved), area)
+    }
+
     /// Mean brightness of a part of the window, in levels of 255.
     pub fn brightness(&self, area: [f32; 4]) -> f64 {
         let places = self.places(area);

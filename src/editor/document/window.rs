@@ -5,6 +5,7 @@ use crate::editor::action::Action;
 use crate::editor::edits::{DroppedAt, scene_entity};
 use crate::editor::history::History;
 use crate::editor::notice::Notices;
+use crate::editor::pick;
 use crate::editor::schedule::EditorUpdate;
 use crate::editor::selection::Selection;
 use crate::io::{MODEL_EXTENSIONS, PICTURE_EXTENSIONS, SceneFiles};
@@ -70,8 +71,7 @@ fn drop_file(world: &mut World, file: &Path) {
             world.write_message(Action::Open(file.to_path_buf()));
         }
         model if MODEL_EXTENSIONS.contains(&model) => {
-            let mut windows = world.query_filtered::<&Window, With<PrimaryWindow>>();
-            let at = windows.single(world).ok().and_then(Window::cursor_position);
+            let at = pick::cursor(world);
             if let Some(mut dropped) = world.get_resource_mut::<DroppedAt>() {
                 dropped.0 = at;
             }

@@ -7,6 +7,7 @@ use crate::editor::command::{Command, Over, State, commands};
 use crate::editor::notice::Notices;
 use crate::editor::preferences::Preferences;
 use crate::editor::selection::Escaped;
+use crate::editor::trees::pair::TreePair;
 use crate::inspect::{InspectSettings, Stands, Stepper, Traversal};
 use crate::sync::Traced;
 use crate::trace;
@@ -177,6 +178,7 @@ pub(in crate::editor) fn shoot_pixel(world: &mut World, pixel: UVec2) {
 pub(super) fn follow(
     ray: Res<DebugRay>,
     traced: Res<Traced>,
+    pair: Option<Res<TreePair>>,
     mut inspected: ResMut<Inspected>,
     mut settings: ResMut<InspectSettings>,
 ) {
@@ -195,7 +197,11 @@ pub(super) fn follow(
         let count = ray.rays().map_or(0, |rays| rays.rays.len());
         inspected.ray = inspected.ray.filter(|&index| (index as usize) < count);
     }
-    if (inspected.node.as_ref()).is_some_and(|node| !Arc::ptr_eq(&node.world, &traced.world)) {
+    let is_there = |node: &Node| {
+        let pair = pair.as_ref().is_some_and(|pair| pair.shows(&node.world));
+        pair || Arc::ptr_eq(&node.world, &traced.world)
+    };
+    if (inspected.node.as_ref()).is_some_and(|node| !is_there(node)) {
         keep_node(&mut inspected, &traced.world);
     }
     let stepped = inspected.ray.map(|index| (ray.number(), index));

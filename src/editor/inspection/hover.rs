@@ -4,6 +4,7 @@
 use super::draw::Drawings;
 use crate::editor::pick;
 use crate::editor::pointer::PointerUse;
+use crate::editor::trees::pair::{Side, TreePair};
 use crate::editor::viewport::Viewport;
 use crate::inspect::{LineSet, Stands, System};
 use bevy::ecs::query::With;
@@ -26,6 +27,8 @@ const RAYS_BEFORE: f32 = 2.0;
 pub(in crate::editor) struct Hovered {
     /// What the line stands for, and whose it is.
     pub found: Option<(Stands, System)>,
+    /// In which of two views: 0, or 1 for the right one.
+    pub side: usize,
     /// Logical pixels of the window.
     pub at: Vec2,
 }
@@ -34,7 +37,7 @@ pub(in crate::editor) struct Hovered {
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct Asked {
     at: Vec2,
-    version: u64,
+    versions: [u64; 2],
     clip_from_world: Mat4,
 }
 
@@ -42,10 +45,15 @@ pub(super) struct Asked {
 pub(super) fn find_hovered(world: &mut World, mut asked: Local<Option<Asked>>) {
     let mut windows = world.query_filtered::<&Window, With<PrimaryWindow>>();
     let at = windows.single(world).ok().and_then(Window::cursor_position);
-    let version = world.resource::<Drawings>().version();
+    let of_pair = world.get_resource::<TreePair>();
+    let versions = [
+        world.resource::<Drawings>().version(),
+        of_pair.map_or(0, |pair| pair.version),
+    ];
     let is_free = matches!(world.resource::<PointerUse>(), PointerUse::Free);
     let over = world.resource::<Viewport>().hovered && is_free;
-    let at = at.filter(|_| over && !world.resource::<Drawings>().is_empty());
+    let of_pair = of_pair.is_some_and(TreePair::draws);
+    let at = at.filter(|_| over && (of_pair || !world.resource::<Drawings>().is_empty()));
     let Some(at) = at else {
         *asked = None;
         let mut hovered = world.resource_mut::<Hovered>();
@@ -59,15 +67,17 @@ pub(super) fn find_hovered(world: &mut World, mut asked: Local<Option<Asked>>) {
     };
     let now = Asked {
         at,
-        version,
+        versions,
         clip_from_world,
     };
     if *asked == Some(now) {
         return;
     }
     *asked = Some(now);
-    let found = line_at(world, at);
-    *world.resource_mut::<Hovered>() = Hovered { found, at };
+    let offset = world.resource::<Viewport>().offset(at);
+    let side = usize::from(offset != Vec2::ZERO);
+    let found = line_at(world, at - offset, side);
+    *world.resource_mut::<Hovered>() = Hovered { found, side, at };
 }
 
 /// From the world to the view's clip space, and the viewport's corner and size in logical pixels.
@@ -78,14 +88,18 @@ fn screen(world: &mut World) -> Option<(Mat4, Vec2, Vec2)> {
     Some((clip_from_world, rect.min, rect.size()))
 }
 
-/// The line at a place of the window, in logical pixels.
-pub(in crate::editor) fn line_at(world: &mut World, at: Vec2) -> Option<(Stands, System)> {
-    if world.get_resource::<Drawings>()?.is_empty() {
-        return None;
-    }
+/// The line at a place of the window that is in the first view, in logical pixels; of two views that on this side.
+pub(in crate::editor) fn line_at(
+    world: &mut World,
+    at: Vec2,
+    side: usize,
+) -> Option<(Stands, System)> {
     let (clip_from_world, corner, size) = screen(world)?;
-    let drawings = world.resource::<Drawings>();
-    nearest(drawings.sets(), &clip_from_world, size, at - corner)
+    let of_pair = world.get_resource::<TreePair>();
+    let of_side = of_pair.and_then(|pair| pair.sides.get(side));
+    let sets = world.get_resource::<Drawings>()?.sets();
+    let sets = sets.chain(of_side.into_iter().flat_map(Side::sets));
+    nearest(sets, &clip_from_world, size, at - corner)
 }
 
 /// The line that is nearest to a place of the viewport, in logical pixels from its top left.

@@ -3,7 +3,7 @@
 use super::commands::back;
 use super::drag::{begin_gesture, end_gesture};
 use super::{Eye, LookThrough, aspect, move_view};
-use crate::editor::extent::{extent_of, scene_extent};
+use crate::editor::extent::{Extent, extent_of, scene_extent};
 use crate::editor::history::History;
 use crate::editor::selection::Selection;
 use crate::scene::SceneId;
@@ -11,6 +11,7 @@ use bevy::ecs::change_detection::DetectChanges;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Res, ResMut};
 use bevy::ecs::world::World;
+use bevy::math::Vec3;
 
 /// More are not remembered: nobody undoes so far to see an old view.
 const MOST: usize = 32;
@@ -34,9 +35,19 @@ pub(super) fn frame(world: &mut World, all: bool) {
     } else {
         extent_of(world, &selected)
     };
-    let Some(extent) = extent else {
-        return;
-    };
+    if let Some(extent) = extent {
+        show(world, extent);
+    }
+}
+
+/// Shows all of some points of the world: a box of a tree, for example.
+pub(in crate::editor) fn frame_points(world: &mut World, points: impl IntoIterator<Item = Vec3>) {
+    if let Some(extent) = Extent::of_points(points) {
+        show(world, extent);
+    }
+}
+
+fn show(world: &mut World, extent: Extent) {
     let scene = scene_extent(world).map_or(1.0, |scene| scene.radius());
     // What has no size, a light for example, is shown with what is around it.
     let radius = match extent.radius() {
@@ -91,7 +102,6 @@ mod tests {
     use crate::editor::viewport::Viewport;
     use crate::scene::PointLamp;
     use bevy::ecs::system::RunSystemOnce;
-    use bevy::math::Vec3;
     use bevy::transform::components::Transform;
 
     #[test]

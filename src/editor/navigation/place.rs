@@ -35,7 +35,9 @@ pub(super) fn place_view(
         view.optics_of = through.camera;
     }
     let pointer = window.cursor_position().filter(|_| viewport.hovered);
-    let focus = pointer.map_or(Vec2::splat(0.5), |at| viewport.place(at));
+    let focus = pointer.map_or(Vec2::splat(0.5), |at| {
+        viewport.place(at - viewport.offset(at))
+    });
     if (focus - view.focus).abs().max_element() > FOCUS_STEP {
         view.focus = focus;
     }

@@ -11,8 +11,8 @@ use bevy::color::{ColorToPacked, LinearRgba, Srgba};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{
-    self, Align2, Color32, FontId, Id, Mesh, Rect, RichText, Sense, Stroke, StrokeKind, Ui, pos2,
-    vec2,
+    self, Align2, Color32, FontId, Id, LayerId, Mesh, Order, Rect, RichText, Sense, Stroke,
+    StrokeKind, Ui, pos2, vec2,
 };
 
 /// Extent of a line in the legend, in points.
@@ -52,10 +52,16 @@ impl LineTexts {
     }
 }
 
-/// Draws them; true where the pointer is over the legend.
+/// The legend's area.
+pub(super) fn layer() -> LayerId {
+    LayerId::new(Order::Middle, Id::new("legend of the lines"))
+}
+
+/// Draws them, the legend so many points below the picture's upper side; true where the pointer is over the legend.
 pub(super) fn line_legend_ui(
     ui: &Ui,
     free: Rect,
+    below: f32,
     world: &mut World,
     legend: &mut LineLegend,
 ) -> bool {
@@ -79,9 +85,9 @@ pub(super) fn line_legend_ui(
     if texts.meanings.is_empty() && texts.notes.is_empty() && !lacks_rays {
         return false;
     }
-    let area = egui::Area::new(Id::new("legend of the lines"))
-        .fixed_pos(free.min + vec2(10.0, 10.0))
-        .order(egui::Order::Middle)
+    let area = egui::Area::new(layer().id)
+        .fixed_pos(free.min + vec2(10.0, 10.0 + below))
+        .order(layer().order)
         .show(ui.ctx(), |ui| {
             let fill = ui.visuals().panel_fill.gamma_multiply(0.93);
             egui::Frame::new()

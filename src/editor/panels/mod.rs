@@ -16,7 +16,7 @@
 //! | [`overlays`], [`notices`] | divider, legend, region, messages over the picture |
 //! | [`compare`] | pictures that were kept, in place of the new one and beside it |
 //! | [`line_legend`], [`pattern`] | what the tracer's lines mean, and where a pixel's samples lie |
-//! | [`tree_pair`] | which builder's trees are on which side |
+//! | [`tree_pair`] | two views beside each other, with two builders' trees |
 //! | [`rays`] | the ray inspector, below the picture or over it |
 //! | [`answer`], [`first_steps`] | why a pixel is as it is; three things to try |
 //! | [`typed_drag`] | the number that is typed while a handle is dragged |
@@ -192,11 +192,13 @@ fn panels_ui(context: &egui::Context, world: &mut World) {
         true => ui.available_rect_before_wrap(),
         false => around_ui(&mut ui, world, &preferences),
     };
-    compare::compare_ui(&mut ui, free, world);
-    let over_overlay = overlays::overlays_ui(&mut ui, free, world, only_picture);
-    typed_drag::typed_drag_ui(&ui, free, world);
+    let views = tree_pair::views(free, world);
+    let picture = views.map_or(free, |[left, _]| left);
+    compare::compare_ui(&mut ui, picture, world);
+    let over_overlay = overlays::overlays_ui(&mut ui, free, views, world, only_picture);
+    typed_drag::typed_drag_ui(&ui, picture, world);
     with(world, |world, under| {
-        readout::readout_ui(&ui, free, world, under)
+        readout::readout_ui(&ui, picture, world, under)
     });
     with(world, |world, tales| {
         told::told_ui(context, free, world, tales)
@@ -217,7 +219,13 @@ fn panels_ui(context: &egui::Context, world: &mut World) {
     });
     gesture::note_gesture(context, world);
     let letters_taken = world.resource::<hierarchy::Hierarchy>().list_keys.focused;
-    note_viewport(context, free, [over_overlay, letters_taken], world);
+    let twin = views.map(|[_, right]| right);
+    note_viewport(
+        context,
+        (picture, twin),
+        [over_overlay, letters_taken],
+        world,
+    );
     dispatch(world);
     mixer::apply(world);
 }
@@ -337,35 +345,37 @@ fn within_room(
 /// Tells the rest of the editor where the picture is, and whether pointer and keys are meant for it.
 fn note_viewport(
     context: &egui::Context,
-    free: egui::Rect,
+    (picture, twin): (egui::Rect, Option<egui::Rect>),
     [over_overlay, letters_taken]: [bool; 2],
     world: &mut World,
 ) {
     let zoom = context.zoom_factor();
-    let rect = Rect {
-        min: Vec2::new(free.min.x, free.min.y) * zoom,
-        max: Vec2::new(free.max.x, free.max.y) * zoom,
+    let in_window = |rect: egui::Rect| Rect {
+        min: Vec2::new(rect.min.x, rect.min.y) * zoom,
+        max: Vec2::new(rect.max.x, rect.max.y) * zoom,
     };
+    let places = (in_window(picture), twin.map(in_window));
     let pointer = context.pointer_latest_pos();
     let in_front = |at| {
         context
             .layer_id_at(at)
             .is_some_and(|layer| layer.order != egui::Order::Background)
     };
+    let is_over = |at| picture.contains(at) || twin.is_some_and(|twin| twin.contains(at));
     let hovered = !over_overlay
-        && pointer.is_some_and(|at| free.contains(at) && !in_front(at))
+        && pointer.is_some_and(|at| is_over(at) && !in_front(at))
         && !context.egui_is_using_pointer();
     let modal = context.memory(|memory| memory.top_modal_layer().is_some());
     let takes_keys = !modal && !context.egui_wants_keyboard_input() && !context.any_popup_open();
     let takes_letters = takes_keys && !letters_taken;
     let viewport = world.resource::<Viewport>();
     let keys = [takes_keys, takes_letters];
-    if viewport.rect != rect
+    if (viewport.rect, viewport.twin) != places
         || viewport.hovered != hovered
         || [viewport.takes_keys, viewport.takes_letters] != keys
     {
         let mut viewport = world.resource_mut::<Viewport>();
-        viewport.rect = rect;
+        (viewport.rect, viewport.twin) = places;
         viewport.hovered = hovered;
         [viewport.takes_keys, viewport.takes_letters] = keys;
     }

@@ -50,25 +50,38 @@ pub(super) fn forget_scene(_: On<SceneOpened>, mut known: ResMut<UnderPointer>) 
     known.0 = None;
 }
 
-/// Draws them over the free rectangle; true where the pointer is over one of them.
-pub(super) fn overlays_ui(ui: &mut Ui, free: Rect, world: &mut World, only_picture: bool) -> bool {
+/// Draws them over the free rectangle, in which there may be two views; true where the pointer is over one of them.
+pub(super) fn overlays_ui(
+    ui: &mut Ui,
+    free: Rect,
+    views: Option<[Rect; 2]>,
+    world: &mut World,
+    only_picture: bool,
+) -> bool {
     if !free.is_positive() {
         return false;
     }
     let mut over = false;
     let split = world.resource::<Viewport>().show == Show::Split;
-    let pair = tree_pair::is_shown(world);
-    if split || pair {
-        over |= divider_ui(ui, free, world, split);
+    let picture = views.map_or(free, |[left, _]| left);
+    if split {
+        over |= divider_ui(ui, picture, world);
+        if let Some([_, right]) = views {
+            let x = right.min.x + world.resource::<Viewport>().divider * right.width();
+            ui.painter()
+                .vline(x, right.y_range(), Stroke::new(1.0, Color32::WHITE));
+        }
     }
-    if pair {
-        tree_pair::labels_ui(ui, free, world, split);
-    }
-    over |= with(world, |world, drag| region_ui(ui, free, world, drag));
-    with(world, |world, under| legend_ui(ui, free, world, under));
-    with(world, |world, shown| pattern_ui(ui, free, world, shown));
+    let [above, below] = views.map_or([0.0; 2], |views| {
+        tree_pair::pair_ui(ui, views, world, split)
+    });
+    over |= with(world, |world, drag| region_ui(ui, picture, world, drag));
+    with(world, |world, under| {
+        legend_ui(ui, picture, below, world, under)
+    });
+    with(world, |world, shown| pattern_ui(ui, picture, world, shown));
     over |= with(world, |world, legend| {
-        line_legend_ui(ui, free, world, legend)
+        line_legend_ui(ui, picture, above, world, legend)
     });
     over |= notices_ui(ui.ctx(), free, world);
     over |= with(world, |world, answer| {
@@ -83,8 +96,8 @@ pub(super) fn overlays_ui(ui: &mut Ui, free: Rect, world: &mut World, only_pictu
     over
 }
 
-/// The line between raster and traced, or between two trees.
-fn divider_ui(ui: &Ui, free: Rect, world: &mut World, split: bool) -> bool {
+/// The line between raster and traced.
+fn divider_ui(ui: &Ui, free: Rect, world: &mut World) -> bool {
     let divider = world.resource::<Viewport>().divider.clamp(0.0, 1.0);
     let x = free.min.x + divider * free.width();
     let rect = Rect::from_x_y_ranges(x - GRAB..=x + GRAB, free.y_range()).intersect(free);
@@ -108,9 +121,6 @@ fn divider_ui(ui: &Ui, free: Rect, world: &mut World, split: bool) -> bool {
         Stroke::new(width, Color32::from_black_alpha(120)),
     );
     painter.vline(x, free.y_range(), Stroke::new(width, color));
-    if !split {
-        return active;
-    }
     for (align, dx, text) in [
         (Align2::RIGHT_TOP, -8.0, "raster"),
         (Align2::LEFT_TOP, 8.0, "traced"),
@@ -195,8 +205,9 @@ fn region_ui(ui: &Ui, free: Rect, world: &mut World, drag: &mut RegionDrag) -> b
     true
 }
 
-/// The palette of a heatmap with its ends, which can be dragged, and the value under the pointer.
-fn legend_ui(ui: &Ui, free: Rect, world: &mut World, known: &mut UnderPointer) {
+/// The palette of a heatmap with its ends, which can be dragged, and the value under the pointer; so many points above the
+/// picture's lower side.
+fn legend_ui(ui: &Ui, free: Rect, above: f32, world: &mut World, known: &mut UnderPointer) {
     let mut query = world.query_filtered::<(&TracedView, &TracedRender), With<EditorCamera>>();
     let Ok((view, render)) = query.single(world) else {
         return;
@@ -206,14 +217,15 @@ fn legend_ui(ui: &Ui, free: Rect, world: &mut World, known: &mut UnderPointer) {
         return;
     };
     let (kind, range) = (view.view, view.range);
-    let under = value_under_pointer(ui, free, view, render, known);
+    let at = place_under_pointer(ui.ctx(), free, world.resource::<Viewport>());
+    let under = value_under_pointer(at, view, render, known);
     let mut entered = range;
     egui::Area::new(Id::new("legend"))
         .anchor(
             Align2::LEFT_BOTTOM,
             vec2(
                 free.min.x + 10.0,
-                -(ui.ctx().viewport_rect().max.y - free.max.y + 10.0),
+                -(ui.ctx().viewport_rect().max.y - free.max.y + above + 10.0),
             ),
         )
         .order(egui::Order::Middle)
@@ -304,27 +316,37 @@ fn legend_body(
     entered.filter(|[low, high]| low < high && low.is_finite() && high.is_finite())
 }
 
-/// What the heatmap shows at the pixel under the pointer. Looked up when the pointer or the picture
+/// Where the pointer is over the picture, whichever of two views of it that is: (0, 0) at the top left, (1, 1) opposite.
+pub(super) fn place_under_pointer(
+    context: &egui::Context,
+    picture: Rect,
+    viewport: &Viewport,
+) -> Option<Vec2> {
+    let at = context.pointer_latest_pos()?;
+    let zoom = context.zoom_factor();
+    let offset = viewport.offset(Vec2::new(at.x, at.y) * zoom) / zoom;
+    let at = at - vec2(offset.x, offset.y);
+    let place = (at - picture.min) / picture.size();
+    picture.contains(at).then_some(Vec2::new(place.x, place.y))
+}
+
+/// The pixel of the traced picture at a place of the view.
+pub(super) fn pixel_at(place: Vec2, view: &TracedView, size: UVec2) -> Option<UVec2> {
+    let pixel = (place * size.as_vec2()).as_uvec2();
+    (place.x >= view.divider).then(|| pixel.min(size - UVec2::ONE))
+}
+
+/// What the heatmap shows at a place of the view. Looked up when the pointer or the picture
 /// moved on, by the same function that the view is made with.
 pub(super) fn value_under_pointer(
-    ui: &Ui,
-    free: Rect,
+    at: Option<Vec2>,
     view: &TracedView,
     render: &TracedRender,
     known: &mut UnderPointer,
 ) -> Option<PixelValue> {
-    let at = ui
-        .ctx()
-        .pointer_latest_pos()
-        .filter(|&at| free.contains(at))?;
     let (world, camera, settings) = render.subject()?;
-    let place = (at - free.min) / free.size();
-    if place.x < view.divider {
-        return None;
-    }
     let size = settings.size;
-    let pixel = (Vec2::new(place.x, place.y) * size.as_vec2()).as_uvec2();
-    let pixel = pixel.min(size - UVec2::ONE);
+    let pixel = pixel_at(at?, view, size)?;
     let film = || render.render()?.pixel(pixel);
     match view.view {
         View::Samples => film().map(|(samples, _)| (samples as f32).into()),

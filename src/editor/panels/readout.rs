@@ -1,6 +1,6 @@
 //! What the pixel under the pointer has, in the status line: the number that its colour stands for.
 
-use super::overlays::{UnderPointer, value_under_pointer};
+use super::overlays::{UnderPointer, pixel_at, place_under_pointer, value_under_pointer};
 use super::says::note_hint;
 use crate::editor::viewport::{EditorCamera, Viewport};
 use crate::film::views::View;
@@ -8,8 +8,7 @@ use crate::inspect::{Names, color_text, vector_text};
 use crate::view::{TracedRender, TracedView};
 use bevy::ecs::query::With;
 use bevy::ecs::world::World;
-use bevy::math::{UVec2, Vec2};
-use bevy_egui::egui::{self, Rect, Ui};
+use bevy_egui::egui::{Rect, Ui};
 
 /// Says it where the pointer is over the traced picture.
 pub(super) fn readout_ui(ui: &Ui, free: Rect, world: &mut World, known: &mut UnderPointer) {
@@ -20,10 +19,12 @@ pub(super) fn readout_ui(ui: &Ui, free: Rect, world: &mut World, known: &mut Und
     let Ok((view, render)) = query.single(world) else {
         return;
     };
-    let Some(pixel) = pixel_under_pointer(ui.ctx(), free, view, render) else {
+    let at = place_under_pointer(ui.ctx(), free, world.resource::<Viewport>());
+    let size = render.subject().map(|(_, _, settings)| settings.size);
+    let Some(pixel) = at.zip(size).and_then(|(at, size)| pixel_at(at, view, size)) else {
         return;
     };
-    let value = value_under_pointer(ui, free, view, render, known);
+    let value = value_under_pointer(at, view, render, known);
     let names = world.get_resource::<Names>();
     let hit = known.0.as_ref().map(|(_, hit)| hit);
     let unit = render.shown().and_then(|shown| shown.scale);
@@ -50,22 +51,6 @@ pub(super) fn readout_ui(ui: &Ui, free: Rect, world: &mut World, known: &mut Und
     };
     let text = text.unwrap_or_default();
     note_hint(ui.ctx(), format!("pixel {}, {}: {text}", pixel.x, pixel.y));
-}
-
-fn pixel_under_pointer(
-    context: &egui::Context,
-    free: Rect,
-    view: &TracedView,
-    render: &TracedRender,
-) -> Option<UVec2> {
-    let at = context
-        .pointer_latest_pos()
-        .filter(|&at| free.contains(at))?;
-    let place = (at - free.min) / free.size();
-    let (_, _, settings) = render.subject()?;
-    let size = settings.size;
-    let pixel = (Vec2::new(place.x, place.y) * size.as_vec2()).as_uvec2();
-    (place.x >= view.divider).then(|| pixel.min(size - UVec2::ONE))
 }
 
 /// What a heatmap shows at a pixel.

@@ -1,16 +1,19 @@
 //! What the lines over the picture stand for: beside the pointer, and of the chosen node in a corner.
 
 use super::answer::Answer;
+use super::line_legend;
 use super::says::Says;
 use crate::bvh::primitives_below;
 use crate::editor::inspection::choice::Node;
 use crate::editor::inspection::{DebugRay, Hovered, Inspected};
+use crate::editor::navigation::frame_points;
 use crate::editor::pick::to_points;
+use crate::editor::trees::pair::TreePair;
 use crate::inspect::{InspectSettings, Names, Stands, System, Told, TreeView, node_told, tell};
 use crate::sync::Traced;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
-use bevy_egui::egui::{self, Align2, Grid, Id, Order, Rect, RichText, Ui, vec2};
+use bevy_egui::egui::{self, Align2, Grid, Id, Order, Rect, RichText, Ui, pos2, vec2};
 use std::sync::Arc;
 
 /// What was told last, of what.
@@ -58,6 +61,8 @@ fn hovered_ui(context: &egui::Context, free: Rect, world: &World, tales: &mut Ta
         return;
     }
     let traced = &world.resource::<Traced>().world;
+    let pair = world.get_resource::<TreePair>();
+    let traced = pair.map_or(traced, |pair| pair.meant(hovered.side, stands.1, traced));
     let ray = world.resource::<DebugRay>();
     let names = world.resource::<Names>();
     let of = Of {
@@ -146,30 +151,42 @@ fn node_ui(context: &egui::Context, free: Rect, world: &mut World, tales: &mut T
         return;
     };
     let mut next = Some(node.clone());
+    let mut frames = false;
+    // Below the legend, where there is one.
+    let legend = context.memory(|memory| {
+        let is_shown = memory.areas().visible_last_frame(&line_legend::layer());
+        let rect = memory.area_rect(line_legend::layer().id);
+        rect.filter(|_| is_shown)
+    });
+    let top = legend.map_or(free.min.y + 10.0, |legend| legend.max.y + 6.0);
     egui::Area::new(Id::new("the chosen node"))
         .order(Order::Middle)
-        .fixed_pos(free.min + vec2(10.0, 10.0))
+        .fixed_pos(pos2(free.min.x + 10.0, top))
         .constrain_to(free)
         .show(context, |ui| {
             egui::Frame::popup(ui.style())
                 .inner_margin(egui::Margin::same(6))
                 .show(ui, |ui| {
                     figures_ui(ui, told);
-                    ways_ui(ui, &node, &mut next);
+                    frames = ways_ui(ui, &node, &mut next);
                 });
         });
+    if frames && let Some(view) = TreeView::of(&node.world, node.instance) {
+        frame_points(world, view.corners(node.node));
+    }
     let is = |a: &Node| (a.instance, a.node) == (node.instance, node.node);
     if !next.as_ref().is_some_and(is) {
         world.resource_mut::<Inspected>().choose_node(next);
     }
 }
 
-fn ways_ui(ui: &mut Ui, node: &Node, next: &mut Option<Node>) {
+/// Where to go from a node; true where the view is to show it.
+fn ways_ui(ui: &mut Ui, node: &Node, next: &mut Option<Node>) -> bool {
     let Some(view) = TreeView::of(&node.world, node.instance) else {
-        return;
+        return false;
     };
     let Some(here) = view.tree.nodes.get(node.node as usize) else {
-        return;
+        return false;
     };
     let parent = parent_of(&view, node.node);
     let children = (!here.is_leaf()).then_some([here.first_index, here.first_index + 1]);
@@ -194,11 +211,17 @@ fn ways_ui(ui: &mut Ui, node: &Node, next: &mut Option<Node>) {
                 });
             }
         }
+        let frame = ui.small_button("Frame it");
+        let frames = frame
+            .says("Moves the view so that its box fills it")
+            .clicked();
         let close = ui.small_button("✖");
         if close.says("No node is chosen (Esc)").clicked() {
             *next = None;
         }
-    });
+        frames
+    })
+    .inner
 }
 
 fn parent_of(view: &TreeView, node: u32) -> Option<u32> {

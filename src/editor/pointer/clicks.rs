@@ -7,16 +7,19 @@ use super::super::inspection::debug_ray::shoot_at;
 use super::super::inspection::hover::line_at;
 use super::super::inspection::{DebugRay, Inspected, Which};
 use super::super::selection::Selection;
+use super::super::trees::pair::TreePair;
 use super::super::{handles, pick};
 use super::{Armed, DOUBLE, PixelAsked, Pointer, RightClicked, STILL};
 use crate::inspect::{Question, Stands};
 use crate::scene::SceneId;
 use crate::sync::Traced;
+use crate::trace;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::query::{Or, With};
 use bevy::ecs::world::World;
 use bevy::math::{Rect, Vec2};
 use bevy::mesh::Mesh3d;
+use std::sync::Arc;
 use std::time::Instant;
 
 pub(super) fn click(world: &mut World, at: Vec2) {
@@ -58,6 +61,7 @@ pub(super) fn answer_target(world: &mut World, at: Vec2) {
                 if question != Question::Black {
                     world.resource_mut::<DebugRay>().which = Which::All;
                 }
+                let at = at + world.resource::<Pointer>().offset;
                 world.trigger(PixelAsked { question, at });
             }
         }
@@ -68,11 +72,9 @@ pub(super) fn answer_target(world: &mut World, at: Vec2) {
 
 /// Chooses what is there, as a click does, and has its menu opened.
 pub(super) fn right_click(world: &mut World, at: Vec2) {
-    let line = line_at(world, at).map(|(stands, _)| stands);
-    let over = match line {
-        Some(stands @ (Stands::Ray(_) | Stands::Node { .. })) => {
-            let traced = world.resource::<Traced>().world.clone();
-            world.resource_mut::<Inspected>().click(stands, &traced);
+    let over = match line_under(world, at) {
+        Some((stands @ (Stands::Ray(_) | Stands::Node { .. }), of)) => {
+            world.resource_mut::<Inspected>().click(stands, &of);
             match stands {
                 Stands::Ray(_) => Over::Ray,
                 _ => Over::Box,
@@ -88,16 +90,26 @@ pub(super) fn right_click(world: &mut World, at: Vec2) {
             None => Over::Nothing,
         },
     };
+    let at = at + world.resource::<Pointer>().offset;
     world.trigger(RightClicked { at, over });
 }
 
 /// Whether the click is for a line that shows what the tracer did.
 fn click_line(world: &mut World, at: Vec2) -> bool {
-    let Some((stands, _)) = line_at(world, at) else {
+    let Some((stands, of)) = line_under(world, at) else {
         return false;
     };
-    let traced = world.resource::<Traced>().world.clone();
-    world.resource_mut::<Inspected>().click(stands, &traced)
+    world.resource_mut::<Inspected>().click(stands, &of)
+}
+
+/// The line there, in the view that the pointer is in, and the world that it is about.
+fn line_under(world: &mut World, at: Vec2) -> Option<(Stands, Arc<trace::World>)> {
+    let side = usize::from(world.resource::<Pointer>().offset != Vec2::ZERO);
+    let (stands, system) = line_at(world, at, side)?;
+    let traced = &world.resource::<Traced>().world;
+    let pair = world.get_resource::<TreePair>();
+    let of = pair.map_or(traced, |pair| pair.meant(side, system, traced));
+    Some((stands, of.clone()))
 }
 
 fn select(world: &mut World, wanted: Selection) {

@@ -110,7 +110,10 @@ pub(super) struct RightClicked {
 
 #[derive(Resource, Default)]
 struct Pointer {
+    /// In logical pixels of the window; over the second of two views, where the first one shows the same.
     at: Option<Vec2>,
+    /// From there to where it is. It stays from a press to its release.
+    offset: Vec2,
     held: Option<MouseButton>,
     /// Where and when it was pressed, while the pointer has not moved since.
     pressed: Option<(Vec2, Instant)>,
@@ -148,7 +151,12 @@ fn take_use(world: &mut World) -> PointerUse {
 }
 
 fn go(world: &mut World, to: Vec2) {
+    let here = world.resource::<Viewport>().offset(to);
     let mut pointer = world.resource_mut::<Pointer>();
+    if pointer.held.is_none() {
+        pointer.offset = here;
+    }
+    let to = to - pointer.offset;
     pointer.pressed = pointer.pressed.filter(|(at, _)| at.distance(to) <= STILL);
     let Some(from) = pointer.at.replace(to) else {
         return;
@@ -219,6 +227,10 @@ fn press(world: &mut World, button: MouseButton) {
 fn take_hold(world: &mut World, at: Vec2) -> PointerUse {
     if *world.resource::<Armed>() != Armed::No {
         return PointerUse::Target { at };
+    }
+    if world.resource::<Pointer>().offset != Vec2::ZERO {
+        // Handles are drawn over the first view alone.
+        return PointerUse::Click { at };
     }
     if let Some(grip) = grip_at(world, at)
         && let Some(drag) = GripDrag::begin(world, grip, at)
@@ -325,7 +337,8 @@ fn is_over_scene(world: &mut World, at: Vec2) -> bool {
     let Some(context) = pick::egui_context(world) else {
         return true;
     };
-    let place = pick::to_points(&context, at);
+    let offset = world.resource::<Pointer>().offset;
+    let place = pick::to_points(&context, at + offset);
     // The panels' answer is that of the last frame, and of where the pointer was then.
     let last = context.pointer_latest_pos();
     let asked_there = last.is_some_and(|last| last.distance(place) < 1.0);
@@ -360,8 +373,10 @@ fn draw_box(world: &mut World) {
         return;
     };
     let viewport = world.resource::<Viewport>().rect;
+    let offset = world.resource::<Pointer>().offset;
     let rect = |rect: Rect| {
-        let [min, max] = [rect.min, rect.max].map(|place| pick::to_points(&context, place));
+        let [min, max] =
+            [rect.min, rect.max].map(|place| pick::to_points(&context, place + offset));
         egui::Rect::from_min_max(min, max)
     };
     let color = egui::Color32::from_rgb(255, 190, 60);

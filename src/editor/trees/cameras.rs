@@ -1,34 +1,30 @@
-//! The two cameras that draw a pair of trees: each sees what the editor's camera sees in one half of
-//! the view, over its picture and against its depth.
+//! The camera of the right view of a pair: it sees what the editor's camera sees, in a view beside that one's, with the
+//! other trees over it.
 
 use super::pair::LAYERS;
 use crate::editor::viewport::{EditorCamera, Viewport};
-use crate::inspect::InspectSettings;
 use crate::scene::NotTraced;
-use crate::view::{draws_handles, lines_camera};
+use crate::view::{draws_handles, twin_camera};
 use bevy::camera::visibility::RenderLayers;
-use bevy::camera::{Camera, Projection, SubCameraView, Viewport as Part};
+use bevy::camera::{Camera, Projection, Viewport as Part};
+use bevy::ecs::change_detection::DetectChangesMut;
 use bevy::ecs::component::Component;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::hierarchy::ChildOf;
 use bevy::ecs::query::{Has, With, Without};
 use bevy::ecs::system::{Commands, Local, Query, Res, Single};
 use bevy::math::{UVec2, Vec2};
+use bevy::window::{PrimaryWindow, Window};
 use bevy_egui::PrimaryEguiContext;
 
-/// The first one's place among the cameras of the window: next after the editor's.
+/// Its place among the cameras of the window: next after the editor's, which clears the window.
 const ORDER: isize = 1;
 
-/// A camera that draws one side, 0 or 1 from the left.
+/// The camera that draws the right view.
 #[derive(Component)]
-pub(super) struct SideCamera(usize);
+pub(super) struct Twin;
 
-/// Where the view is divided: pixels of its width that are on the left.
-fn left_width(width: u32, divider: f32) -> u32 {
-    ((width as f32 * divider.clamp(0.0, 1.0)).round() as u32).min(width)
-}
-
-/// Those that may draw over the sides: the handles' and the panels'. Others are the app's own.
+/// Those that come after it: the handles' and the panels'. Others are the app's own.
 type Others<'w, 's> = Query<
     'w,
     's,
@@ -37,124 +33,121 @@ type Others<'w, 's> = Query<
         Option<&'static RenderLayers>,
         Has<PrimaryEguiContext>,
     ),
-    (Without<SideCamera>, Without<EditorCamera>),
+    (Without<Twin>, Without<EditorCamera>),
+>;
+
+type Twins<'w, 's> = Query<
+    'w,
+    's,
+    (
+        Entity,
+        &'static mut Camera,
+        &'static mut Projection,
+        &'static mut RenderLayers,
+    ),
+    (With<Twin>, Without<EditorCamera>),
 >;
 
 fn comes_later(layers: Option<&RenderLayers>, shows_panels: bool) -> bool {
     shows_panels || draws_handles(layers)
 }
 
-/// Two cameras while there is a pair to be seen, and none else: a camera costs time even where it
-/// draws nothing.
-pub(super) fn fit_cameras(
+/// It is there while there is a second view, and not else: a camera costs time even where it draws nothing.
+pub(super) fn fit_twin(
     mut commands: Commands,
-    inspect: Res<InspectSettings>,
     viewport: Res<Viewport>,
-    editor: Single<(Entity, &Camera, &Projection), With<EditorCamera>>,
-    mut sides: Query<(Entity, &SideCamera, &mut Camera, &mut Projection), Without<EditorCamera>>,
+    window: Option<Single<&Window, With<PrimaryWindow>>>,
+    editor: Single<(Entity, &Camera, &Projection, &RenderLayers), With<EditorCamera>>,
+    mut twins: Twins,
     mut others: Others,
-    mut moved: Local<isize>,
+    mut moved: Local<bool>,
 ) {
-    let (parent, editor, seen) = editor.into_inner();
-    if !(inspect.on && inspect.pair.on) {
-        for (entity, ..) in &sides {
+    let (of, editor, seen, layers) = editor.into_inner();
+    let Some(place) = viewport.twin else {
+        for (entity, ..) in &twins {
             commands.entity(entity).despawn();
         }
-        let back = std::mem::take(&mut *moved);
-        if back != 0 {
+        if std::mem::take(&mut *moved) {
             for (mut camera, layers, shows_panels) in &mut others {
-                if comes_later(layers, shows_panels) && camera.order >= ORDER + back {
-                    camera.order -= back;
+                if comes_later(layers, shows_panels) && camera.order > ORDER {
+                    camera.order -= 1;
                 }
             }
         }
         return;
-    }
-    // Those of the handles, which begin with an empty depth, and of the panels come later.
-    let ours = ORDER..ORDER + LAYERS.len() as isize;
+    };
     let is_in_the_way = |(camera, layers, shows_panels): (&Camera, Option<&RenderLayers>, bool)| {
-        comes_later(layers, shows_panels) && ours.contains(&camera.order)
+        comes_later(layers, shows_panels) && camera.order == ORDER
     };
     if others.iter().any(is_in_the_way) {
-        let room = LAYERS.len() as isize;
-        *moved += room;
+        *moved = true;
         for (mut camera, layers, shows_panels) in &mut others {
             if comes_later(layers, shows_panels) && camera.order >= ORDER {
-                camera.order += room;
+                camera.order += 1;
             }
         }
     }
-    if sides.is_empty() {
-        for (side, layer) in LAYERS.into_iter().enumerate() {
-            commands.spawn((
-                SideCamera(side),
-                NotTraced,
-                lines_camera(ORDER + side as isize, layer),
-                seen.clone(),
-                ChildOf(parent),
-            ));
-        }
+    if twins.is_empty() {
+        commands.spawn((
+            Twin,
+            NotTraced,
+            twin_camera(of, ORDER),
+            with_right(layers),
+            seen.clone(),
+            ChildOf(of),
+        ));
         return;
     }
-    let whole = editor.viewport.as_ref();
-    for (_, side, mut camera, mut projection) in &mut sides {
-        let part = whole.and_then(|whole| part(whole, viewport.divider, side.0));
+    let window = window.map(|window| (window.scale_factor(), window.physical_size()));
+    let whole = editor.viewport.as_ref().zip(window);
+    let part = whole.and_then(|(whole, window)| part(whole, place.min, window));
+    for (_, mut camera, mut projection, mut own_layers) in &mut twins {
         let is_active = editor.is_active && part.is_some();
         if camera.is_active != is_active {
             camera.is_active = is_active;
         }
-        let Some((part, sub_view)) = part else {
+        own_layers.set_if_neq(with_right(layers));
+        if !same_projection(&projection, seen) {
+            *projection = seen.clone();
+        }
+        let Some(part) = &part else {
             continue;
         };
         let same = camera.viewport.as_ref().is_some_and(|known| {
             known.physical_position == part.physical_position
                 && known.physical_size == part.physical_size
         });
-        if !same || camera.sub_camera_view != Some(sub_view) {
-            camera.viewport = Some(part);
-            camera.sub_camera_view = Some(sub_view);
-        }
-        if !same_projection(&projection, seen) {
-            *projection = seen.clone();
+        if !same {
+            camera.viewport = Some(part.clone());
         }
     }
 }
 
-/// A side's part of the view, in the window and in the whole picture; `None` where it has no width.
-fn part(whole: &Part, divider: f32, side: usize) -> Option<(Part, SubCameraView)> {
-    let size = whole.physical_size;
-    let left = left_width(size.x, divider);
-    let (offset, width) = match side {
-        0 => (0, left),
-        _ => (left, size.x - left),
-    };
-    if width == 0 || size.y == 0 {
-        return None;
-    }
-    let part = Part {
-        physical_position: whole.physical_position + UVec2::new(offset, 0),
-        physical_size: UVec2::new(width, size.y),
+/// What the editor's camera shows, with the right view's trees in place of the left one's.
+fn with_right(layers: &RenderLayers) -> RenderLayers {
+    layers.clone().without(LAYERS[0]).with(LAYERS[1])
+}
+
+/// As large as the left view, at that place of the window; `None` where the window has no room for it.
+fn part(left: &Part, at: Vec2, (scale, window): (f32, UVec2)) -> Option<Part> {
+    let size = left.physical_size;
+    let last = window.checked_sub(size)?;
+    let at = (at * scale).round().max(Vec2::ZERO).as_uvec2().min(last);
+    (at.x >= left.physical_position.x + size.x).then(|| Part {
+        physical_position: at,
+        physical_size: size,
         depth: 0.0..1.0,
-    };
-    let sub_view = SubCameraView {
-        full_size: size,
-        offset: Vec2::new(offset as f32, 0.0),
-        size: UVec2::new(width, size.y),
-    };
-    Some((part, sub_view))
+    })
 }
 
-/// Whether both see the same but for the aspect, which Bevy sets by each camera's own part.
+/// Whether both see the same.
 fn same_projection(a: &Projection, b: &Projection) -> bool {
     match (a, b) {
         (Projection::Perspective(a), Projection::Perspective(b)) => {
-            a.fov == b.fov && a.near == b.near && a.far == b.far
+            (a.fov, a.near, a.far, a.aspect_ratio) == (b.fov, b.near, b.far, b.aspect_ratio)
         }
         (Projection::Orthographic(a), Projection::Orthographic(b)) => {
-            a.scale == b.scale
-                && a.near == b.near
-                && a.far == b.far
-                && a.area.height() == b.area.height()
+            (a.scale, a.near, a.far, a.area) == (b.scale, b.near, b.far, b.area)
         }
         _ => false,
     }
@@ -164,49 +157,56 @@ fn same_projection(a: &Projection, b: &Projection) -> bool {
 mod tests {
     use super::*;
     use bevy::ecs::world::World;
+    use bevy::math::Rect;
 
     #[test]
-    fn handles_and_panels_make_room_for_the_sides_and_go_back_and_no_other_camera_moves() {
+    fn handles_and_panels_make_room_for_the_right_view_and_go_back_and_no_other_camera_moves() {
         let mut world = World::new();
-        world.init_resource::<InspectSettings>();
         world.init_resource::<Viewport>();
-        world.spawn((EditorCamera, Camera::default(), Projection::default()));
+        world.spawn((
+            EditorCamera,
+            Camera::default(),
+            Projection::default(),
+            RenderLayers::from_layers(&[0, LAYERS[0]]),
+        ));
         let camera = |order| Camera {
             order,
             ..Camera::default()
         };
-        let panels = world.spawn((PrimaryEguiContext, camera(2))).id();
+        let panels = world.spawn((PrimaryEguiContext, camera(1))).id();
         let of_the_app = world.spawn(camera(1)).id();
-        let fit = world.register_system(fit_cameras);
-        for (is_on, order) in [(true, 4), (true, 4), (false, 2), (true, 4)] {
-            world.resource_mut::<InspectSettings>().pair.on = is_on;
+        let fit = world.register_system(fit_twin);
+        for (is_on, order) in [(true, 2), (true, 2), (false, 1), (true, 2)] {
+            let twin = is_on.then(|| Rect::new(100.0, 0.0, 200.0, 80.0));
+            world.resource_mut::<Viewport>().twin = twin;
             world.run_system(fit).unwrap();
             let order_of = |entity| world.get::<Camera>(entity).unwrap().order;
             assert_eq!((order_of(panels), order_of(of_the_app)), (order, 1));
-            let mut sides = world.query_filtered::<&SideCamera, With<NotTraced>>();
-            let count = if is_on { LAYERS.len() } else { 0 };
-            assert_eq!(sides.iter(&world).count(), count);
+            let mut twins = world.query_filtered::<&RenderLayers, (With<Twin>, With<NotTraced>)>();
+            let layers: Vec<_> = twins.iter(&world).collect();
+            assert_eq!(layers.len(), usize::from(is_on));
+            for layers in layers {
+                assert_eq!(*layers, RenderLayers::from_layers(&[0, LAYERS[1]]));
+            }
         }
     }
 
     #[test]
-    fn the_sides_make_up_the_view_wherever_it_is_divided() {
-        let whole = Part {
-            physical_position: UVec2::new(220, 60),
-            physical_size: UVec2::new(761, 630),
+    fn the_right_view_has_the_left_ones_pixels_and_lies_beside_it_in_the_window() {
+        let left = Part {
+            physical_position: UVec2::new(221, 60),
+            physical_size: UVec2::new(379, 630),
             depth: 0.0..1.0,
         };
-        for divider in [0.02, 0.5, 0.98] {
-            let [(left, seen_left), (right, seen_right)] =
-                [0, 1].map(|side| part(&whole, divider, side).unwrap());
-            assert_eq!(left.physical_position, whole.physical_position);
-            let end = left.physical_position.x + left.physical_size.x;
-            assert_eq!(right.physical_position.x, end);
-            assert_eq!(left.physical_size.x + right.physical_size.x, 761);
-            assert_eq!(seen_right.offset.x, seen_left.size.x as f32);
-            assert_eq!(seen_left.full_size, whole.physical_size);
-        }
-        assert!(part(&whole, 0.0, 0).is_none());
-        assert!(part(&whole, 1.0, 1).is_none());
+        let window = UVec2::new(1280, 720);
+        let at = Vec2::new(602.0 / 1.25, 60.0 / 1.25);
+        let right = part(&left, at, (1.25, window)).unwrap();
+        assert_eq!(right.physical_size, left.physical_size);
+        assert_eq!(right.physical_position, UVec2::new(602, 60));
+        // A place that rounds to one beyond the window.
+        let right = part(&left, Vec2::new(1300.0, 0.0), (1.0, window)).unwrap();
+        assert_eq!(right.physical_position.x + 379, window.x);
+        assert!(part(&left, Vec2::new(500.0, 60.0), (1.0, window)).is_none());
+        assert!(part(&left, at, (1.0, UVec2::new(300, 720))).is_none());
     }
 }

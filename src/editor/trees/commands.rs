@@ -48,7 +48,7 @@ pub(super) fn commands() -> Vec<Command> {
             => |world| ask(world, InspectPreset::IsTheTreeGood); menu("View/Rays and trees", 1),
         "lines.noise" "Where is my noise from?" [] "Draws what is chosen at random for a pixel: point at it and press R"
             => |world| ask(world, InspectPreset::WhereIsTheNoiseFrom); menu("View/Rays and trees", 1),
-        "lines.pair" "Two trees side by side" [] "The boxes of one builder's trees on the left of the view, of another's on the right (tab BVH)"
+        "lines.pair" "Two trees side by side" [] "Two views from one place: over the left one the boxes of one builder's trees, over the right one another's, with their counts (tab BVH)"
             => toggle_pair; menu("View/Rays and trees", 2); state(is_pair_shown),
         "boxes.previous-leaf" "Previous leaf" ["A"] "One leaf back, while one leaf of the trees is drawn"
             => |world| step_leaf(world, |leaf| leaf.saturating_sub(1)); over(&[Over::Box]); repeats(); state(draws_a_leaf),

@@ -5,7 +5,7 @@
 //! |---|---|
 //! | [`background`] | work on a thread of its own, with progress and an end |
 //! | [`measure`] | compares the builders and times pictures |
-//! | [`pair`], [`cameras`] | two builders' trees over the left and the right of the view |
+//! | [`pair`], [`cameras`] | two builders' trees in two views of the scene |
 //! | [`commands`] | the commands about lines and boxes |
 
 pub(super) mod background;
@@ -15,6 +15,7 @@ pub(super) mod measure;
 pub(super) mod pair;
 
 pub(super) use commands::{BoxRanges, show_preset};
+pub(super) use pair::LEFT_TREES_LAYER;
 
 use super::command::AddCommands;
 use super::schedule::EditorUpdate;
@@ -53,7 +54,9 @@ impl Plugin for TreesPlugin {
                 PostUpdate,
                 (
                     pair::draw_pair.after(pair::build_pair),
-                    cameras::fit_cameras.before(bevy::camera::CameraUpdateSystems),
+                    cameras::fit_twin
+                        .after(super::cameras::fit_viewport)
+                        .before(bevy::camera::CameraUpdateSystems),
                 ),
             );
     }

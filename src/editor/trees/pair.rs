@@ -1,27 +1,29 @@
-//! Two trees over the same view: boxes and visits of one builder's on the left, of another's on the
-//! right.
+//! Two trees in two views of the same: boxes and visits of one builder's over the left one, of another's over the
+//! right one, and below each what there is to count.
 //!
 //! The trees are built in the background from the meshes that are traced; where one of the two is
-//! what is traced, it is that very tree. Each side is drawn by a camera of its own over one half of
-//! the view, so that moving the view makes no line again.
+//! what is traced, it is that very tree. Both views look from one place, so that moving it makes no line again.
 
 use super::background::{Background, Outcome};
 use super::of_setting;
 use crate::bvh::BuildOptions;
 use crate::editor::inspection::{DebugRay, DrawnSet, Seen, Source, seen_from};
 use crate::editor::viewport::EditorCamera;
-use crate::inspect::{InspectSettings, LineSet, Subject, System, rebuilt};
+use crate::inspect::{InspectSettings, LineSet, Subject, System, TreeCounts, rebuilt};
 use crate::scene::{Builder, RenderSettings};
 use crate::sync::{Traced, TracedCameras};
-use crate::trace::World;
+use crate::trace::{Camera, RayTree, World};
 use crate::view::DrawnLines;
 use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Commands, Query, Res, ResMut, Single};
+use bevy::math::UVec2;
 use std::sync::Arc;
 
-/// The layers of the two sides.
-pub(super) const LAYERS: [usize; 2] = [20, 21];
+/// The layers of the two sides. What is in the left one's is over the editor's own view.
+pub(super) const LAYERS: [usize; 2] = [LEFT_TREES_LAYER, 21];
+/// What the editor's view shows of a pair.
+pub(in crate::editor) const LEFT_TREES_LAYER: usize = 20;
 /// What is drawn of each side.
 const SYSTEMS: [System; 2] = [System::Boxes, System::Visits];
 
@@ -29,6 +31,8 @@ const SYSTEMS: [System; 2] = [System::Boxes, System::Visits];
 #[derive(Resource, Default)]
 pub(in crate::editor) struct TreePair {
     pub sides: [Side; 2],
+    /// Another number for other lines.
+    pub version: u64,
 }
 
 /// One side of the view.
@@ -43,6 +47,26 @@ pub(in crate::editor) struct Side {
     world: Option<Arc<World>>,
     failed: Option<String>,
     drawn: [DrawnSet; SYSTEMS.len()],
+    counts: Option<(Counted, TreeCounts)>,
+    counting: Option<(Counted, Background<TreeCounts>)>,
+}
+
+/// What was counted.
+#[derive(Clone)]
+struct Counted {
+    world: Arc<World>,
+    camera: Camera,
+    size: UVec2,
+    rays: Option<Arc<RayTree>>,
+}
+
+impl Counted {
+    fn is(&self, other: &Self) -> bool {
+        let pointer = |rays: &Option<Arc<RayTree>>| rays.as_ref().map(Arc::as_ptr);
+        Arc::ptr_eq(&self.world.aggregate, &other.world.aggregate)
+            && (&self.camera, self.size) == (&other.camera, other.size)
+            && pointer(&self.rays) == pointer(&other.rays)
+    }
 }
 
 /// How far a side is.
@@ -74,14 +98,50 @@ impl Side {
 
     /// What its lines say of themselves: what was left out, and why.
     pub fn says(&self) -> impl Iterator<Item = String> {
-        let sets = self.drawn.iter().filter_map(DrawnSet::set);
-        sets.flat_map(LineSet::says)
+        self.sets().flat_map(LineSet::says)
     }
 
     /// The world whose trees are shown.
-    #[cfg(test)]
     pub fn world(&self) -> Option<&Arc<World>> {
         self.world.as_ref()
+    }
+
+    /// The lines that are drawn.
+    pub fn sets(&self) -> impl Iterator<Item = &LineSet> {
+        self.drawn.iter().filter_map(DrawnSet::set)
+    }
+
+    /// What there is to count of its trees; while they are another's, that of before.
+    pub fn counts(&self) -> Option<&TreeCounts> {
+        self.counts.as_ref().map(|(_, counts)| counts)
+    }
+
+    /// Nothing of it is left.
+    fn clear(&mut self) {
+        (self.of, self.world, self.building) = (None, None, None);
+        (self.counts, self.counting, self.failed) = (None, None, None);
+    }
+
+    /// Counts what is not counted yet, beside the frames: one count at a time, the newest comes next.
+    fn count(&mut self, wanted: &Counted, settings: &RenderSettings) {
+        if let Some((of, work)) = self.counting.take() {
+            match work.take() {
+                Outcome::Pending => self.counting = Some((of, work)),
+                Outcome::Done(counts) => self.counts = Some((of, counts)),
+                // It was reported, and would end so again: there is nothing to be read.
+                Outcome::Lost => self.counts = Some((of, TreeCounts::default())),
+            }
+        }
+        let is_known = self.counts.as_ref().is_some_and(|(of, _)| of.is(wanted));
+        if is_known || self.counting.is_some() {
+            return;
+        }
+        let (of, settings) = (wanted.clone(), settings.clone());
+        let work = Background::start("counts of trees", move |_| {
+            TreeCounts::of(&of.world, &of.camera, &settings, of.rays.as_deref())
+        });
+        // Without a thread nothing is counted; everything else is there.
+        self.counting = work.ok().map(|work| (wanted.clone(), work));
     }
 
     /// Begins to build what is wanted and not there yet.
@@ -148,10 +208,7 @@ pub(super) fn build_pair(
 ) {
     let wanted = &inspect.pair;
     if !(inspect.on && wanted.on) {
-        for side in &mut pair.sides {
-            (side.of, side.world, side.building) = (None, None, None);
-            side.failed = None;
-        }
+        pair.sides.iter_mut().for_each(Side::clear);
         return;
     }
     for (side, builder) in pair.sides.iter_mut().zip([wanted.left, wanted.right]) {
@@ -161,7 +218,33 @@ pub(super) fn build_pair(
     }
 }
 
-/// Makes those lines again that may be others.
+impl TreePair {
+    /// The world whose trees a line of a view is about: where there is no pair, that which is traced.
+    pub fn meant<'a>(
+        &'a self,
+        side: usize,
+        system: System,
+        traced: &'a Arc<World>,
+    ) -> &'a Arc<World> {
+        let of_side = self.sides.get(side).and_then(Side::world);
+        of_side
+            .filter(|_| SYSTEMS.contains(&system))
+            .unwrap_or(traced)
+    }
+
+    /// Whether there is a line.
+    pub fn draws(&self) -> bool {
+        self.sides.iter().any(|side| side.sets().next().is_some())
+    }
+
+    /// Whether it shows this world's trees.
+    pub fn shows(&self, world: &Arc<World>) -> bool {
+        let mut worlds = self.sides.iter().filter_map(Side::world);
+        worlds.any(|shown| Arc::ptr_eq(shown, world))
+    }
+}
+
+/// Counts, and makes those lines again that may be others.
 #[expect(
     clippy::too_many_arguments,
     reason = "a system's parameters are the list of what it reads"
@@ -178,10 +261,11 @@ pub(super) fn draw_pair(
 ) {
     let (render, view, camera, place, projection) = *view;
     let seen = seen_from(render, view, camera, place, projection);
-    for (side, layer) in pair.sides.iter_mut().zip(LAYERS) {
+    let TreePair { sides, version } = &mut *pair;
+    for (side, layer) in sides.iter_mut().zip(LAYERS) {
         let Some((world, (camera, size))) = side.world.clone().zip(seen.as_ref()) else {
             for drawn in &mut side.drawn {
-                drawn.clear(&mut commands);
+                *version += u64::from(drawn.clear(&mut commands));
             }
             continue;
         };
@@ -193,17 +277,25 @@ pub(super) fn draw_pair(
             world,
             rays: ray.rays().cloned(),
         };
+        let counted = Counted {
+            world: source.world.clone(),
+            camera: camera.clone(),
+            size: *size,
+            rays: source.rays.clone(),
+        };
+        side.count(&counted, &settings);
         let rays = source.rays.as_deref();
         let of_scene = cameras.0.first().map(|camera| &camera.camera);
         let photographer = of_scene.unwrap_or(camera);
         let subject =
             Subject::new(&source.world, photographer, &settings, &inspect, rays).seen_by(camera);
         for (system, drawn) in SYSTEMS.into_iter().zip(&mut side.drawn) {
-            if system.is_wanted(&inspect) && (rays.is_some() || !system.needs_rays()) {
-                drawn.draw(system, &subject, &source, layer, &mut commands, &mut lines);
-            } else {
-                drawn.clear(&mut commands);
-            }
+            let is_on = system.is_wanted(&inspect) && (rays.is_some() || !system.needs_rays());
+            let is_other = match is_on {
+                true => drawn.draw(system, &subject, &source, layer, &mut commands, &mut lines),
+                false => drawn.clear(&mut commands),
+            };
+            *version += u64::from(is_other);
         }
     }
 }

@@ -11,15 +11,18 @@ use super::pair::pair_ui;
 use super::performance::performance_ui;
 use super::still_plot::still_plot;
 use crate::bvh::{LARGEST_LEAF_BIN, MeshTree, TreeStats};
+use crate::editor::inspection::Inspected;
+use crate::editor::inspection::choice::Node;
 use crate::editor::texts::{counted, grouped};
+use crate::inspect::{InspectSettings, Names, TreeChoice};
 use crate::scene::{Property, RenderSettings, TreeSettings};
 use crate::sync::Traced;
 use crate::trace;
 use bevy::ecs::resource::Resource;
-use bevy::ecs::world::World;
-use bevy::platform::collections::HashSet;
+use bevy::ecs::world::{Mut, World};
+use bevy::platform::collections::HashMap;
 use bevy::reflect::Typed;
-use bevy_egui::egui::{ComboBox, Grid, Ui};
+use bevy_egui::egui::{Button, Grid, RichText, ScrollArea, Ui, vec2};
 use egui_plot::{Bar, BarChart};
 use std::sync::Arc;
 use std::time::Duration;
@@ -34,32 +37,43 @@ pub(super) const SETTINGS_OF_TREES: &[&str] = &[
     "tree.preset",
 ];
 
+/// Points of a row of the list of trees, and how many are seen at once.
+const ROW: f32 = 20.0;
+const ROWS: usize = 7;
+
 /// One of the trees that are traced.
 struct Tree {
     name: String,
+    /// The first object whose mesh has it, by its place in the world and its `SceneId`; `None` for the top tree.
+    of: Option<(u32, u64)>,
     /// Of a mesh. Held, so that no other takes its place in memory while the figures are kept.
     mesh: Option<Arc<MeshTree>>,
     stats: TreeStats,
     build_time: Duration,
-    /// What its leaves hold.
+    /// What its leaves hold, and how many there are.
     primitives: &'static str,
+    count: u64,
 }
 
 /// The trees of a traced world, looked at once for each world, and those of meshes once at all.
 #[derive(Resource, Default)]
 pub(in super::super) struct Trees {
-    of: Option<Arc<trace::World>>,
+    /// The world, and the version of the names.
+    of: Option<(Arc<trace::World>, u64)>,
     trees: Vec<Tree>,
     shown: usize,
 }
 
 impl Trees {
-    fn update(&mut self, world: &Arc<trace::World>) {
-        if self.of.as_ref().is_some_and(|of| Arc::ptr_eq(of, world)) {
+    fn update(&mut self, world: &Arc<trace::World>, names: &Names) {
+        let known = self.of.as_ref();
+        if known.is_some_and(|(of, named)| Arc::ptr_eq(of, world) && *named == names.version) {
             return;
         }
-        self.of = Some(world.clone());
-        let mut before = std::mem::take(&mut self.trees);
+        self.of = Some((world.clone(), names.version));
+        let before = std::mem::take(&mut self.trees).into_iter();
+        let of_mesh = |tree: Tree| Some((tree.mesh.as_ref().map(Arc::as_ptr)?, tree));
+        let mut before: HashMap<*const MeshTree, Tree> = before.filter_map(of_mesh).collect();
         let aggregate = &world.aggregate;
         let one = aggregate.options().levels == crate::bvh::Levels::One;
         self.trees = vec![Tree {
@@ -70,39 +84,41 @@ impl Trees {
                     format!("Over {}", counted(objects, "object"))
                 }
             },
+            of: None,
             mesh: None,
             stats: aggregate.stats(),
             build_time: aggregate.build_time(),
             primitives: if one { "triangles" } else { "objects" },
+            count: aggregate.tree().primitive_indices.len() as u64,
         }];
         if !one {
-            let mut seen = HashSet::new();
-            let objects = world.objects.iter();
-            let mut meshes: Vec<_> = objects
-                .filter(|object| seen.insert(Arc::as_ptr(&object.mesh.tree)))
-                .collect();
-            meshes.sort_by_key(|object| std::cmp::Reverse(object.mesh.tree.traced()));
-            meshes.truncate(50);
-            self.trees.extend(meshes.into_iter().map(|object| {
+            // The first object of each mesh, and how many have it.
+            let mut meshes: HashMap<*const MeshTree, (usize, u64)> = HashMap::default();
+            for (place, object) in world.objects.iter().enumerate() {
+                let found = meshes.entry(Arc::as_ptr(&object.mesh.tree));
+                found.or_insert((place, 0)).1 += 1;
+            }
+            let mut meshes: Vec<(usize, u64)> = meshes.into_values().collect();
+            let traced = |place: usize| world.objects[place].mesh.tree.traced();
+            meshes.sort_unstable_by_key(|(place, _)| (std::cmp::Reverse(traced(*place)), *place));
+            self.trees.extend(meshes.into_iter().map(|(place, users)| {
+                let object = &world.objects[place];
                 let tree = &object.mesh.tree;
-                let is_known = |known: &Tree| {
-                    let mesh = known.mesh.as_ref();
-                    mesh.is_some_and(|mesh| Arc::ptr_eq(mesh, tree))
-                };
-                let known = before.iter().position(is_known);
+                let name = names.of(object.id);
                 Tree {
-                    name: format!(
-                        "Mesh of object {}, {}",
-                        object.id,
-                        counted(tree.traced() as u64, "triangle")
-                    ),
+                    name: match users - 1 {
+                        0 => name,
+                        more => format!("{name} and {more} more"),
+                    },
+                    of: Some((place as u32, object.id)),
                     mesh: Some(tree.clone()),
-                    stats: match known {
-                        Some(at) => before.swap_remove(at).stats,
+                    stats: match before.remove(&Arc::as_ptr(tree)) {
+                        Some(known) => known.stats,
                         None => tree.stats(),
                     },
                     build_time: tree.build_time(),
                     primitives: "triangles",
+                    count: tree.traced() as u64,
                 }
             }));
         }
@@ -144,16 +160,19 @@ pub(super) fn bvh_ui(ui: &mut Ui, world: &mut World) {
         with(world, |world, form| performance_ui(ui, world, form));
     });
     let traced = world.resource::<Traced>().world.clone();
-    let mut trees = world.resource_mut::<Trees>();
-    let mut is_open = false;
-    section(ui, "Trees that are traced", true, |ui| {
-        is_open = true;
-        trees.update(&traced);
-        trees_ui(ui, &mut trees);
+    world.resource_scope(|world, mut trees: Mut<Trees>| {
+        let mut is_open = false;
+        section(ui, "Trees that are traced", true, |ui| {
+            is_open = true;
+            trees.update(&traced, world.get_resource().unwrap_or(&Names::default()));
+            list_ui(ui, &mut trees);
+            ways_ui(ui, world, &traced, &trees);
+            figures_ui(ui, &trees);
+        });
+        if !is_open {
+            trees.forget();
+        }
     });
-    if !is_open {
-        trees.forget();
-    }
 }
 
 /// Those settings that the builder reads.
@@ -165,20 +184,71 @@ fn shown_settings(settings: &RenderSettings) -> Vec<&'static str> {
     SETTINGS_OF_TREES.iter().copied().filter(is_read).collect()
 }
 
-fn trees_ui(ui: &mut Ui, trees: &mut Trees) {
-    let name = |tree: &Tree| tree.name.clone();
-    let current = trees.trees.get(trees.shown).map_or_else(String::new, name);
-    ComboBox::from_id_salt("tree")
-        .selected_text(current)
-        .width((ui.available_width() - 12.0).max(80.0))
-        .truncate()
-        .show_ui(ui, |ui| {
-            for (i, tree) in trees.trees.iter().enumerate() {
-                ui.selectable_value(&mut trees.shown, i, &tree.name);
+/// A row for each tree: whose it is, what it holds, what a ray pays in it. Only those that are seen are laid out.
+fn list_ui(ui: &mut Ui, trees: &mut Trees) {
+    ui.spacing_mut().item_spacing.y = 0.0;
+    let rows = trees.trees.len();
+    ScrollArea::vertical()
+        .id_salt("list of trees")
+        .max_height(ROW * rows.min(ROWS) as f32)
+        .auto_shrink([false, true])
+        .show_rows(ui, ROW, rows, |ui, range| {
+            for at in range {
+                let tree = &trees.trees[at];
+                let figures = format!(
+                    "{} {}, SAH {:.1}",
+                    grouped(tree.count),
+                    tree.primitives,
+                    tree.stats.sah_cost
+                );
+                let row = Button::selectable(trees.shown == at, &tree.name)
+                    .truncate()
+                    .right_text(RichText::new(figures).small());
+                let row = ui.add_sized(vec2(ui.available_width(), ROW), row);
+                let says = "Whose tree it is, the largest first; triangles, and the SAH cost: a click shows its figures";
+                if row.says(says).clicked() {
+                    trees.shown = at;
+                }
             }
-        })
-        .response
-        .says("Of which tree the figures are; the largest meshes are listed");
+        });
+    ui.add_space(4.0);
+}
+
+/// What can be done with the tree whose figures are shown.
+fn ways_ui(ui: &mut Ui, world: &mut World, traced: &Arc<trace::World>, trees: &Trees) {
+    let Some(tree) = trees.trees.get(trees.shown) else {
+        return;
+    };
+    ui.horizontal(|ui| {
+        let root = ui.add_enabled(tree.stats.nodes > 0, Button::new("Its root").small());
+        let says = "Chooses its root in the view: the card there goes on from child to child";
+        if root.says(says).clicked()
+            && let Some(mut inspected) = world.get_resource_mut::<Inspected>()
+        {
+            inspected.choose_node(Some(Node {
+                world: traced.clone(),
+                instance: tree.of.map(|(place, _)| place),
+                node: 0,
+            }));
+        }
+        let boxes = ui.small_button("Draw its boxes");
+        if boxes
+            .says("Draws the boxes of this tree and of no other (Debug, Trees)")
+            .clicked()
+            && let Some(mut inspect) = world.get_resource_mut::<InspectSettings>()
+        {
+            let boxes = &mut inspect.boxes;
+            boxes.on = true;
+            (boxes.object, boxes.trees) = match tree.of {
+                Some((_, id)) => (id, TreeChoice::Meshes),
+                None => (0, TreeChoice::Top),
+            };
+            inspect.on = true;
+        }
+    });
+}
+
+fn figures_ui(ui: &mut Ui, trees: &Trees) {
     let Some(tree) = trees.trees.get(trees.shown) else {
         return;
     };
@@ -288,8 +358,9 @@ mod tests {
             }
             app.update();
             let before = trees.of.clone();
-            trees.update(&app.world().resource::<Traced>().world);
-            assert!(before.is_none_or(|before| !Arc::ptr_eq(&before, trees.of.as_ref().unwrap())));
+            let world = &app.world().resource::<Traced>().world;
+            trees.update(world, &Names::default());
+            assert!(before.is_none_or(|(before, _)| !Arc::ptr_eq(&before, world)));
             let of_meshes = trees.trees.iter().filter(|tree| tree.mesh.is_some());
             let stats = of_meshes.map(|tree| tree.stats.depths.as_ptr());
             places.push(stats.collect::<Vec<_>>());

@@ -5,10 +5,12 @@ use super::desk::{Desk, USUAL};
 use crate::bvh::Builder;
 use crate::editor::action::Action;
 use crate::editor::history::History;
+use crate::editor::inspection::Inspected;
 use crate::editor::trees::measure::{BUILDERS, Measurements, Stale};
 use crate::editor::trees::pair::{SideState, TreePair};
+use crate::editor::viewport::Viewport;
 use crate::inspect::{
-    BoxChoice, BoxRange, BuilderFigures, InspectPreset, InspectSettings, compare_builders,
+    BoxChoice, BoxRange, BuilderFigures, InspectPreset, InspectSettings, Names, compare_builders,
 };
 use crate::scene::{self, RenderSettings, SceneId};
 use crate::sync::{Traced, TracedCameras};
@@ -16,6 +18,7 @@ use crate::view::TracedView;
 use bevy::ecs::query::With;
 use bevy::ecs::world::World;
 use bevy::transform::components::Transform;
+use bevy_egui::egui::vec2;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -259,6 +262,42 @@ fn of_two_trees_the_one_that_is_traced_is_not_built_again() {
             .world()
             .is_none()
     );
+}
+
+#[test]
+fn the_list_has_every_tree_the_largest_first_and_goes_to_boxes_and_root_of_the_chosen_one() {
+    let mut desk = Desk::in_tab_bvh("head");
+    desk.size[1] = 1800.0;
+    desk.settle();
+    let traced = desk.world().resource::<Traced>().world.clone();
+    let largest = traced
+        .objects
+        .iter()
+        .max_by_key(|object| object.mesh.tree.traced());
+    let largest = largest.unwrap();
+    let name = desk.world().resource::<Names>().of(largest.id);
+    let objects = traced.objects.len() as u64;
+    let over = format!("Over {}", crate::editor::texts::counted(objects, "object"));
+    // The list of entities has the name too.
+    let rect = desk.world().resource::<Viewport>().rect;
+    let row = desk.place_of(&over) + vec2(0.0, 20.0);
+    assert!(row.x > rect.max.x);
+    desk.click(row);
+    desk.settle();
+    let figure = crate::editor::texts::grouped(largest.mesh.tree.stats().nodes as u64);
+    desk.place_beside("Nodes", &figure);
+    desk.click_on("Draw its boxes");
+    let boxes = &desk.world().resource::<InspectSettings>().boxes;
+    assert!(boxes.on && boxes.object == largest.id, "{name}");
+    desk.click_on("Its root");
+    desk.settle();
+    let inspected = desk.world().resource::<Inspected>();
+    let node = inspected.node().expect("its root is chosen");
+    let object = &node.world.objects[node.instance.unwrap() as usize];
+    assert_eq!((node.node, object.id), (0, largest.id));
+    for said in ["Node 0", "size", "Frame it"] {
+        desk.place_of(said);
+    }
 }
 
 #[test]
