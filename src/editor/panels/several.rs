@@ -6,7 +6,7 @@ use crate::scene::schema::{Property, keep_order};
 use bevy::ecs::component::{Component, Mutable};
 use bevy::ecs::entity::Entity;
 use bevy::ecs::world::World;
-use bevy::reflect::{Reflect, ReflectPath, ReflectRef, Typed};
+use bevy::reflect::{ParsedPath, Reflect, ReflectPath, ReflectRef, Typed};
 use bevy_egui::egui::Ui;
 
 /// Copies of the same component of several entities, the active one's first.
@@ -118,7 +118,7 @@ impl<C: Component<Mutability = Mutable> + Clone + PartialEq + Reflect + Typed> S
             Err(_) => String::new(),
         };
         let current = name(self.first());
-        let mixed = self.any(|value| name(value) != current);
+        let mixed = self.any(|value| value != self.first() && name(value) != current);
         let (label, says) = (&property.label, &property.says);
         chosen_ui(ui, label, says, &current, &property.choices(), mixed)
     }
@@ -130,12 +130,18 @@ impl<C: Component<Mutability = Mutable> + Clone + PartialEq + Reflect + Typed> S
         };
         let before = active.clone();
         let is_mixed = |path: &str| {
+            // Parsed once, and those that are alike in everything not looked into: there may be ten thousand.
+            let Ok(path) = ParsedPath::parse(path) else {
+                return false;
+            };
             let of_active = path.reflect_element(before.as_partial_reflect());
             let differs = |other: &C| match (&of_active, path.reflect_element(other)) {
                 (Ok(of_active), Ok(other)) => of_active.reflect_partial_eq(other) == Some(false),
                 _ => false,
             };
-            others.iter().any(differs)
+            others
+                .iter()
+                .any(|other| *other != before && differs(other))
         };
         let root = active.as_partial_reflect_mut();
         let Some(path) = property_ui(ui, root, property, &is_mixed) else {

@@ -138,6 +138,9 @@ fn traced_ui(ui: &mut Ui, world: &mut World) {
     }
 }
 
+/// Points of its field: enough for a number with its unit, which says what it is.
+const EXPOSURE: f32 = 52.0;
+
 /// Of the picture on the screen and in files alike; no ray is traced for it.
 fn exposure_ui(ui: &mut Ui, world: &mut World) {
     let exposure = world.resource::<RenderSettings>().output.exposure;
@@ -148,6 +151,7 @@ fn exposure_ui(ui: &mut Ui, world: &mut World) {
         says: "Exposure in stops: +1 doubles the picture's brightness; nothing is traced again",
     };
     let mut number = f64::from(exposure);
+    ui.spacing_mut().interact_size.x = EXPOSURE;
     let (response, is_changed) = field.number_ui(ui, &mut number);
     let mut entered = is_changed.then_some(number as f32);
     response.context_menu(|ui| {
