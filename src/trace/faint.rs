@@ -17,8 +17,11 @@ use glam::Vec3;
 /// Lights of a scene that all get their shadow rays.
 pub const FEW: usize = 32;
 
-/// Places of the scene that say what lights usually add.
+/// Places of the scene that say what lights usually add, and lights that are looked at from all of them together: about a
+/// millisecond, since it is done at every edit.
 const PLACES: usize = 64;
+const LEAST_PLACES: usize = 8;
+const LOOKS: usize = 1 << 16;
 /// What a surface reflects of a light, about: half of what a white one would that faces it, 1/π.
 const REFLECTED: f32 = 1.0 / 8.0;
 /// Powers of two that an f32 may lie between.
@@ -30,7 +33,8 @@ pub(super) fn faint(world: &World) -> f32 {
     if world.lights.count() <= FEW {
         return 0.0;
     }
-    let mut thresholds: Vec<i32> = places(world)
+    let most = (LOOKS / world.lights.count()).clamp(LEAST_PLACES, PLACES);
+    let mut thresholds: Vec<i32> = places(world, most)
         .filter_map(|place| threshold(&world.lights, place))
         .collect();
     let half = thresholds.len() / 2;
@@ -41,14 +45,15 @@ pub(super) fn faint(world: &World) -> f32 {
     REFLECTED * (*middle as f32).exp2()
 }
 
-/// Middles of triangles of the scene, evenly by their numbers: what is made of many is what people look at.
-fn places(world: &World) -> impl Iterator<Item = Vec3> {
+/// Middles of so many triangles of the scene, evenly by their numbers: what is made of many is what people look at.
+fn places(world: &World, most: usize) -> impl Iterator<Item = Vec3> {
     let instances = world.aggregate.instances();
     let triangles = |of: usize| instances[of].mesh.triangles().len();
     let total: usize = (0..instances.len()).map(triangles).sum();
+    let count = most.min(total);
     let (mut instance, mut before) = (0, 0);
-    (0..PLACES.min(total)).map(move |i| {
-        let number = (total as u128 * i as u128 / PLACES.min(total) as u128) as usize;
+    (0..count).map(move |i| {
+        let number = (total as u128 * i as u128 / count as u128) as usize;
         while number - before >= triangles(instance) {
             before += triangles(instance);
             instance += 1;
