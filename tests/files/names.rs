@@ -51,6 +51,9 @@ fn renders_alike(folder: &Path, file: &OsStr, like: &str) {
         "--quiet",
         "-o",
         "shown.png",
+        // No model file keeps the dome by which a model without lights is shown.
+        "--set",
+        "features.shading=false",
     ];
     let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_glassbox"));
     let output = command
@@ -77,7 +80,8 @@ fn plain(folder: &Path) {
     write(folder, "plain.obj", obj);
     let small = ["--size", "24x16", "--spp", "1", "--quiet"];
     let how = ["render", "plain.obj", "-o", "plain-shown.png"];
-    succeeds(folder, &[&how[..], &small].concat());
+    let unlit = ["--set", "features.shading=false"];
+    succeeds(folder, &[&how[..], &small, &unlit].concat());
 }
 
 #[test]

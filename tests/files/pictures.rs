@@ -36,7 +36,10 @@ fn problems(app: &App) -> Vec<String> {
 
 /// The farthest from 1 that any pixel is, where nothing is shaded and the background is 1.
 fn farthest_from_white(app: &mut App, filter: TextureFilter) -> f32 {
-    app.world_mut().resource_mut::<Environment>().background = LinearRgba::WHITE;
+    app.world_mut().insert_resource(Environment {
+        background: LinearRgba::WHITE,
+        ..Environment::default()
+    });
     app.update();
     let world = app.world().resource::<Traced>().world.clone();
     let camera = app.world().resource::<TracedCameras>().0[0].camera.clone();

@@ -282,7 +282,7 @@ fn an_obj_becomes_an_object_for_each_name_and_material() {
     let world = app.world_mut();
     let cameras = world.query::<&SceneCamera>().iter(world).count();
     let lamps = world.query::<&DirectionalLamp>().iter(world).count();
-    assert_eq!((cameras, lamps), (1, 3));
+    assert_eq!((cameras, lamps), (1, 2));
 }
 
 #[test]

@@ -18,7 +18,8 @@ const BACK: f32 = 0.2 * PI;
 /// Of the dome, and of a white surface in the open that nothing else reaches. Less than half of the key, so that shapes are
 /// told by both, and what the key does not reach can be seen.
 const DOME: f32 = 0.25;
-/// Shadow rays to the dome at a first hit. Of one, what is half in the open is speckled in the first picture.
+/// Shadow rays to the dome at a first hit. Of one, what is half in the open has black speckles in the first picture. (A head at
+/// 400 × 300: an RMS of 7.5, 3.6 and 2.3 levels with one, two and four, which take 1, 1.4 and 2.2 times as long.)
 const DOME_SAMPLES: u32 = 2;
 
 /// The lamps for what a camera looks at: names, places, lamps.
