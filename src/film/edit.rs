@@ -20,7 +20,8 @@ use std::time::Duration;
 /// coarse picture of everything comes first.
 const LONGEST_SAMPLE: Duration = Duration::from_millis(100);
 /// Planes are kept where those that are rendered again take no more than this part of a sample of everything: above it a
-/// render of its own is as soon complete, and shows what it has tile by tile.
+/// render of its own is as soon complete, and shows what it has tile by tile. Not so where a light is set apart by it from
+/// many: once, and what follows is of that light alone.
 const LARGEST_PART: f64 = 0.8;
 
 /// What the way to where lights are asked for takes, as a part of what asking for a light takes.
@@ -32,6 +33,8 @@ pub(super) struct Edit {
     from: Vec<Option<usize>>,
     /// The materials that are others.
     materials: MaterialSet,
+    /// A light gets a plane of its own: the next edit of it is of that plane alone.
+    sets_apart: bool,
     /// A coarse picture comes first.
     is_long: bool,
 }
@@ -54,12 +57,14 @@ impl Edit {
         }
         let materials = old.world.changed_materials(&world)?;
         let first = edited_first(old, &gains.applied(&world));
+        let sets_apart = first.iter().any(|id| !old.first.contains(id));
         let subject = old.edited(world, first, gains.clone());
         let from = same_planes(old, &subject)?;
         Some(Self {
             subject,
             from,
             materials,
+            sets_apart,
             is_long: false,
         })
     }
@@ -70,6 +75,7 @@ impl Edit {
             *from = from.and_then(|plane| before.from[plane]);
         }
         self.materials = self.materials.and(before.materials);
+        self.sets_apart |= before.sets_apart;
         self
     }
 
@@ -221,7 +227,7 @@ impl Engine {
             let part = edit.part_of_sample(self.part_that_shows(edit.materials));
             let seconds = self.seconds_a_sample() * part;
             edit.is_long = seconds > LONGEST_SAMPLE.as_secs_f64();
-            if edit.is_long && part > LARGEST_PART {
+            if edit.is_long && part > LARGEST_PART && !edit.sets_apart {
                 return false;
             }
         }

@@ -22,7 +22,7 @@ impl Paths {
     }
 
     /// All leave the camera, along the rays that are put in place of those there are.
-    pub fn from_camera(&mut self) -> &mut Vec<Ray> {
+    pub fn of_camera(&mut self) -> &mut Vec<Ray> {
         self.states.clear();
         self.straight.clear();
         &mut self.rays

@@ -186,7 +186,7 @@ fn evaluate<R: Recorder>(
         std::mem::swap(paths, next);
     }
     let image_plane = camera.image_plane(settings.size);
-    camera_rays.of(world, &image_plane, settings, samples, paths.from_camera());
+    camera_rays.of(world, &image_plane, settings, samples, paths.of_camera());
     let mut batch = Batch {
         world,
         settings,

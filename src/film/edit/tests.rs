@@ -357,3 +357,28 @@ fn one_of_many_lights_that_is_edited_takes_its_own_rays_and_no_other_s() {
         }
     }
 }
+
+#[test]
+fn a_light_that_is_set_apart_from_many_is_no_reason_to_begin_anew() {
+    let world = many(1..301);
+    let mode = Mode {
+        watched: true,
+        samples: 0..1,
+        region: None,
+    };
+    let subject = Subject::new(world.clone(), camera(), settings(SIZE, 1), true);
+    let engine = Engine::new(subject, mode, None);
+    engine.run(&|_| {});
+    // As if it took ten seconds a sample.
+    engine.pace.set(10.0).unwrap();
+    let mut now = world;
+    let mut rays = Vec::new();
+    for _ in 0..2 {
+        let before = engine.status().rays.total();
+        now = edited(&now, |lights| lights.points[200].position.y += 0.1);
+        assert!(engine.edit(now.clone(), &Gains::default()));
+        engine.run(&|_| {});
+        rays.push(engine.status().rays.total() - before);
+    }
+    assert!(4 * rays[1] < rays[0], "{rays:?}");
+}
