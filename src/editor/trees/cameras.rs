@@ -133,7 +133,7 @@ fn part(left: &Part, at: Vec2, (scale, window): (f32, UVec2)) -> Option<Part> {
     let size = left.physical_size;
     let last = window.checked_sub(size)?;
     let at = (at * scale).round().max(Vec2::ZERO).as_uvec2().min(last);
-    (at.x >= left.physical_position.x + size.x).then(|| Part {
+    (at.x >= left.physical_position.x + size.x).then_some(Part {
         physical_position: at,
         physical_size: size,
         depth: 0.0..1.0,

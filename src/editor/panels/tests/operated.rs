@@ -410,7 +410,7 @@ fn how_long_a_frame_takes_with_ten_thousand_entities() {
             desk.world().spawn((id, name, PointLamp::default()));
         }
         desk.settle();
-        let time = |desk: &mut Desk, what: &str, mut before: Box<dyn FnMut(&mut Desk, u32)>| {
+        let time = |desk: &mut Desk, what: &str, before: fn(&mut Desk, u32)| {
             let mut all: Vec<f64> = (0..20)
                 .map(|i| {
                     before(desk, i);
@@ -426,7 +426,7 @@ fn how_long_a_frame_takes_with_ten_thousand_entities() {
                 all[10], all[19]
             );
         };
-        time(&mut desk, "at rest", Box::new(|_, _| {}));
+        time(&mut desk, "at rest", |_, _| {});
         let rename = |desk: &mut Desk, i: u32| {
             let entity = desk.named("Thing 5").0;
             let name = format!("Thing 5{}", " ".repeat(i as usize % 2));
@@ -434,9 +434,9 @@ fn how_long_a_frame_takes_with_ten_thousand_entities() {
                 .entity_mut(entity)
                 .insert(Name::new(name.trim().to_owned()));
         };
-        time(&mut desk, "after one was named", Box::new(rename));
+        time(&mut desk, "after one was named", rename);
         let all = desk.ids();
         desk.select(all);
-        time(&mut desk, "all selected", Box::new(|_, _| {}));
+        time(&mut desk, "all selected", |_, _| {});
     }
 }
