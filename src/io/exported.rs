@@ -35,6 +35,8 @@ pub(crate) struct Exported {
     pub objects: Vec<Object>,
     /// Materials that objects use, with names that no other has.
     pub materials: Vec<Material>,
+    /// What is around the scene, where it is not as usual.
+    pub environment: Option<Environment>,
     /// What no model file can say.
     pub notes: Notes,
 }
@@ -107,8 +109,9 @@ pub(crate) fn gather(world: &mut World, file: &Path) -> Exported {
     note(count::<Motion>(world, &entities), "motions");
     note(count::<Lens>(world, &entities), "lenses");
     let environment = world.get_resource::<Environment>();
-    let is_set = environment.is_some_and(|environment| *environment != Environment::default());
-    note(is_set.into(), "the environment");
+    out.environment = environment
+        .filter(|e| **e != Environment::default())
+        .cloned();
     let settings = world.get_resource::<RenderSettings>();
     let is_set = settings.is_some_and(|settings| *settings != RenderSettings::default());
     note(is_set.into(), "the render settings");
@@ -135,8 +138,17 @@ pub(crate) fn gather(world: &mut World, file: &Path) -> Exported {
 }
 
 impl Exported {
+    /// A note for a format that cannot say what is around the scene.
+    pub fn note_environment(&mut self, file: &Path) {
+        if self.environment.is_some() {
+            let what = "the environment";
+            self.notes.add(file, Place::Whole, what, LEFT_OUT);
+        }
+    }
+
     /// Notes for a format without lights, cameras and parents.
     pub fn note_lights_and_cameras(&mut self, world: &World, file: &Path) {
+        self.note_environment(file);
         let lights = count::<PointLamp>(world, &self.entities)
             + count::<DirectionalLamp>(world, &self.entities);
         let cameras = count::<SceneCamera>(world, &self.entities);

@@ -1,7 +1,7 @@
 //! Adding to the open scene what a model file holds.
 
 use super::budget::beside;
-use super::error::FileError;
+use super::error::{FileError, Place};
 use super::folder::Folder;
 use super::loader::{Loader, read_model};
 use super::notes::Notes;
@@ -51,6 +51,14 @@ pub fn import(
     let rebase = Rebase::between(folder, scene_folder, file);
     let mut notes = std::mem::take(&mut model.notes);
     notes.append(std::mem::take(&mut loaded.notes));
+    if model.environment.is_some() {
+        notes.add(
+            file,
+            Place::Whole,
+            "an environment",
+            "the scene keeps its own",
+        );
+    }
     for (source, _, _) in &mut loaded.pictures {
         source.path = rebase.path(&source.path, &mut notes);
     }

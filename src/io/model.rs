@@ -1,7 +1,7 @@
 //! What an importer found in a file, before it becomes entities.
 
 use super::notes::Notes;
-use crate::scene::{DirectionalLamp, Phong, PointLamp, SceneCamera};
+use crate::scene::{DirectionalLamp, Environment, Phong, PointLamp, SceneCamera};
 use bevy::asset::RenderAssetUsages;
 use bevy::color::LinearRgba;
 use bevy::mesh::{Indices, Mesh, PrimitiveTopology};
@@ -18,6 +18,8 @@ pub(crate) struct Model {
     pub nodes: Vec<Node>,
     /// By the name that `MeshSource::File` carries.
     pub meshes: BTreeMap<String, Mesh>,
+    /// What is around it, where the file says so.
+    pub environment: Option<Environment>,
     /// What could not be taken over.
     pub notes: Notes,
     /// Every file that it was read from.

@@ -176,6 +176,9 @@ fn open_model(
     let mut loaded = Loaded::of_model(&mut model, &path, &mut Loader::new(&folder, &limits))?;
     let picture_notes = std::mem::take(&mut loaded.notes);
     clear(world, SceneFiles::new(folder, limits));
+    if let Some(environment) = model.environment.take() {
+        world.insert_resource(environment);
+    }
     let held = loaded.hand_over(world);
     let mut notes = std::mem::take(&mut model.notes);
     notes.append(picture_notes);

@@ -42,10 +42,10 @@ fn each_kind_of_thing_that_a_format_cannot_say_is_one_note_with_its_number() {
         ("segment lights; left out (3 times)", 3),
         ("motions; left out", 1),
         ("lenses; left out", 1),
-        ("the environment; left out", 1),
         ("the render settings; left out", 1),
     ];
     let of_obj = [
+        ("the environment; left out", 1),
         ("point and directional lights; left out", 1),
         ("cameras; left out", 1),
         ("objects below others; written where they stand", 1),

@@ -4,9 +4,9 @@ use super::app::{opened, write};
 use bevy::color::LinearRgba;
 use bevy::ecs::name::Name;
 use bevy::math::Vec3;
-use bevy::prelude::{App, With, World};
+use bevy::prelude::{App, Entity, With, World};
 use bevy::transform::components::Transform;
-use glassbox::io::Opened;
+use glassbox::io::{Opened, import, save};
 use glassbox::scene::*;
 
 fn open(name: &str, text: &str) -> (App, Opened) {
@@ -65,12 +65,59 @@ fn a_model_without_lights_gets_two_and_a_dome_that_can_be_edited_and_says_so_in_
 }
 
 #[test]
+fn the_dome_comes_back_from_glb_and_a_scene_that_it_is_put_into_keeps_its_own() {
+    let (mut app, _) = open("a.obj", &cube([0; 3], 1, 1));
+    let environment = app.world().resource::<Environment>().clone();
+    let names = lamps(app.world_mut());
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.glb");
+    let notes = save(app.world_mut(), &file).unwrap();
+    assert!(
+        !notes.iter().any(|note| note.what.contains("environment")),
+        "{notes:?}"
+    );
+    let (mut again, reopened) = opened(&file);
+    assert_eq!(*again.world().resource::<Environment>(), environment);
+    assert_eq!(lamps(again.world_mut()), names);
+    assert_eq!(reopened.notes.len(), 0, "{:?}", reopened.notes);
+    let (mut other, _) = open("b.obj", &cube([0; 3], 1, 1));
+    let own = Environment::default();
+    other.world_mut().insert_resource(own.clone());
+    let mut next = 100;
+    let imported = import(other.world_mut(), &file, || {
+        next += 1;
+        SceneId(next)
+    })
+    .unwrap();
+    assert_eq!(
+        imported
+            .notes
+            .iter()
+            .filter(|note| note.what == "an environment")
+            .count(),
+        1
+    );
+    assert_eq!(*other.world().resource::<Environment>(), own);
+    // A dome without lamps is light enough.
+    let world = again.world_mut();
+    let mut query = world.query_filtered::<Entity, With<DirectionalLamp>>();
+    let all: Vec<Entity> = query.iter(world).collect();
+    for lamp in all {
+        world.despawn(lamp);
+    }
+    save(again.world_mut(), &file).unwrap();
+    let (mut dome, reopened) = opened(&file);
+    assert!(lamps(dome.world_mut()).is_empty(), "{:?}", reopened.notes);
+    assert_eq!(*dome.world().resource::<Environment>(), environment);
+}
+
+#[test]
 fn the_dome_of_a_model_without_lights_is_saved_and_opens_as_it_was() {
     let folder = tempfile::tempdir().unwrap();
     let (mut app, _) = opened(&write(folder.path(), "a.obj", cube([0; 3], 1, 1)));
     let file = folder.path().join("a.scn.ron");
     glassbox::io::save(app.world_mut(), &file).unwrap();
-    let (again, _) = super::app::opened(&file);
+    let (again, _) = opened(&file);
     let dome = |app: &App| app.world().resource::<Environment>().clone();
     assert_eq!(dome(&again), dome(&app));
     assert!(dome(&again).lights);

@@ -18,8 +18,8 @@ use super::ids::assign_ids;
 use super::notes::Notes;
 use super::place::world_from;
 use crate::scene::{
-    DirectionalLamp, ParallelogramLamp, PointLamp, Projection, RenderSettings, SceneCamera,
-    SegmentLamp,
+    DirectionalLamp, Environment, ParallelogramLamp, PointLamp, Projection, RenderSettings,
+    SceneCamera, SegmentLamp,
 };
 use bevy::ecs::name::Name;
 use bevy::ecs::query::QueryFilter;
@@ -41,6 +41,7 @@ type Lamp = Or<(
 pub(crate) fn frame(world: &mut World, file: &Path, notes: &mut Notes) {
     let mut note = |what: &str, instead| notes.add(file, Place::Whole, what, instead);
     let has_lamps = count::<Lamp>(world) > 0;
+    let has_dome = (world.get_resource::<Environment>()).is_some_and(|around| around.lights);
     let surface = Surface::of(world);
     if surface.is_without_area() {
         let what = "triangles, and none of them has an area";
@@ -62,7 +63,7 @@ pub(crate) fn frame(world: &mut World, file: &Path, notes: &mut Notes) {
             eye
         }
     };
-    if !has_lamps {
+    if !has_lamps && !has_dome {
         for (name, transform, lamp) in lights::studio(eye) {
             added.push(spawn(world, name, transform, lamp));
         }
@@ -74,7 +75,7 @@ pub(crate) fn frame(world: &mut World, file: &Path, notes: &mut Notes) {
             "a key light, one from behind and a soft dome around it were added"
         };
         note("has no light", instead);
-    } else if let Some(stops) = exposure::missing(world, &surface) {
+    } else if has_lamps && let Some(stops) = exposure::missing(world, &surface) {
         let glows = exposure::glows(world);
         let (all, instead) = if glows {
             exposure::brighten(world, stops);

@@ -359,7 +359,7 @@ fn alpha_mode(alpha: Alpha) -> &'static str {
     }
 }
 
-fn color([red, green, blue]: [f32; 3]) -> LinearRgba {
+pub(super) fn color([red, green, blue]: [f32; 3]) -> LinearRgba {
     LinearRgba::rgb(red, green, blue)
 }
 
@@ -369,7 +369,7 @@ fn unit(value: f32) -> f32 {
 }
 
 /// Finite and not negative; not a number becomes 0.
-fn at_least_0(value: f32) -> f32 {
+pub(super) fn at_least_0(value: f32) -> f32 {
     if value > 0.0 {
         value.min(f32::MAX)
     } else {

@@ -3,10 +3,11 @@
 //!
 //! Nodes become entities with `ChildOf`, as deep as the file has them, so that a model stays
 //! editable. A node's only content sits on its own entity, several contents on children of it.
-//! How materials, lights and cameras are mapped: [`material`] and [`lamps`]; what deforms: [`rest`].
+//! How materials, lights and cameras are mapped: [`material`] and [`lamps`], with the environment in [`environment`]; what deforms: [`rest`].
 
 mod accessors;
 mod document;
+mod environment;
 mod glb;
 mod json;
 mod lamps;

@@ -3,6 +3,7 @@ use super::super::folder::Folder;
 use super::super::model::Model;
 use super::super::picture::{PictureUse, ReadPicture, decode_picture, read_picture};
 use super::document::{Document, Picture};
+use super::environment::environment_of;
 use super::json::Json;
 use super::material::phong_of;
 use super::nodes::read_nodes;
@@ -20,6 +21,7 @@ pub(crate) fn read_gltf(file: &Path, folder: &Folder, limits: &Limits) -> Result
     let document = Document::read(file, folder, limits)?;
     let mut model = Model {
         files: document.files(),
+        environment: environment_of(document.json()),
         ..Model::default()
     };
     let used = used_materials(&document);

@@ -5,6 +5,7 @@ use super::super::model::MeshParts;
 use super::super::notes::Notes;
 use super::super::picture::encode_png;
 use super::super::replace::{check_space, replace_file};
+use super::environment::environment_json;
 use super::glb::Bytes;
 use super::lamps::{camera_json, directional_json, point_json};
 use super::material::material_json;
@@ -26,7 +27,11 @@ use std::path::Path;
 /// cameras into one GLB. Returns what could not be said.
 pub(crate) fn write_glb(world: &mut World, file: &Path) -> Result<Notes, FileError> {
     super::super::check_writable(file)?;
-    let exported = gather(world, file);
+    let mut exported = gather(world, file);
+    let environment = (exported.environment.as_ref()).and_then(environment_json);
+    if environment.is_none() {
+        exported.note_environment(file);
+    }
     let mut glb = Glb {
         world,
         file,
@@ -42,7 +47,10 @@ pub(crate) fn write_glb(world: &mut World, file: &Path) -> Result<Notes, FileErr
         glb.push("materials", json);
     }
     glb.nodes(&exported);
-    let (root, bytes, notes) = glb.finish();
+    let (mut root, bytes, notes) = glb.finish();
+    if let Some(environment) = environment {
+        root["extras"] = environment;
+    }
     check_space(file, bytes.len() as u64)?;
     replace_file(file, |out| bytes.write(&root, out))?;
     Ok(notes)
