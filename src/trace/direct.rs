@@ -158,6 +158,7 @@ impl<R: Recorder> Batch<'_, R> {
             counts,
             firsts,
             numbers,
+            chances,
             matt,
             glossy,
             others,
@@ -171,9 +172,10 @@ impl<R: Recorder> Batch<'_, R> {
             SHORT_OF_THE_LIGHT
         };
         let from = |vertex: usize| self.seen_from(asked.lamp, vertices, vertex);
+        let from = (!self.world.lights.moving.is_empty()).then_some(from);
         let mut questions = Questions::nothing(is_glossy);
         for some in (if is_glossy { glossy } else { matt }).chunks(LANES) {
-            questions.ask(some, counts, weights, vertices, from);
+            questions.ask(some, counts, weights, vertices, from.as_ref());
             let prepared = source.prepare(&questions);
             let most = some.iter().map(|&i| counts[i as usize]).max().unwrap_or(0);
             for k in 0..most {
@@ -197,7 +199,11 @@ impl<R: Recorder> Batch<'_, R> {
                         others.push(question as u32);
                         continue;
                     }
-                    values[question] = column_vector(&value, lane);
+                    let value = column_vector(&value, lane);
+                    values[question] = value;
+                    if value == Vec3::ZERO || !asked.is_asked(value, chances, question) {
+                        continue;
+                    }
                     rays[question] = Ray {
                         origin: column_vector(&origin, lane),
                         direction: column_vector(&along, lane),
@@ -292,10 +298,9 @@ impl<R: Recorder> Batch<'_, R> {
             if value == Vec3::ZERO {
                 continue;
             }
-            let brightness = mean(value);
-            if brightness < asked.faint {
-                let chance = brightness / asked.faint;
-                let is_asked = chances.u[question] < chance;
+            let chance = asked.chance(value);
+            if chance < 1.0 {
+                let is_asked = asked.is_asked(value, chances, question);
                 self.recorder.left_to_chance(number, chance, is_asked);
                 if !is_asked {
                     continue;
@@ -358,6 +363,23 @@ impl<R: Recorder> Batch<'_, R> {
 }
 
 impl Asked<'_> {
+    /// How likely a point is asked for that adds so much if nothing is in the way.
+    #[inline(always)]
+    fn chance(&self, value: Vec3) -> f32 {
+        let brightness = mean(value);
+        if brightness < self.faint {
+            brightness / self.faint
+        } else {
+            1.0
+        }
+    }
+
+    /// Whether the point of a question is.
+    #[inline(always)]
+    fn is_asked(&self, value: Vec3, chances: &Pairs, question: usize) -> bool {
+        self.faint == 0.0 || chances.u[question] < self.chance(value)
+    }
+
     /// The point that numbers choose for a surface at `from`, by itself.
     fn point(
         &self,

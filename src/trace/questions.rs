@@ -51,7 +51,7 @@ impl Questions<LANES> {
     }
 
     /// Puts vertices into the first lanes, each with how many points share what it reflects: `from` says where a vertex is
-    /// in the frame that moves with the light. The other lanes keep what they had.
+    /// in the frame that moves with the light, where any does. The other lanes keep what they had.
     #[inline(always)]
     pub fn ask(
         &mut self,
@@ -59,7 +59,7 @@ impl Questions<LANES> {
         counts: &[u32],
         weights: &Vectors,
         vertices: &Vertices,
-        from: impl Fn(usize) -> Vec3,
+        from: Option<&impl Fn(usize) -> Vec3>,
     ) {
         gather(&vertices.normal, some, &mut self.receivers.normal);
         gather(&vertices.position, some, &mut self.position);
@@ -68,10 +68,16 @@ impl Questions<LANES> {
         gather(&vertices.geometric_normal, some, &mut self.geometric_normal);
         gather(&vertices.diffuse, some, &mut self.diffuse);
         gather(weights, some, &mut self.weight);
-        for (lane, &vertex) in some.iter().enumerate() {
-            let vertex = vertex as usize;
-            self.count[lane] = counts[vertex] as f32;
-            set_column(&mut self.receivers.from, lane, from(vertex));
+        for (count, &vertex) in self.count.iter_mut().zip(some) {
+            *count = counts[vertex as usize] as f32;
+        }
+        match from {
+            None => self.receivers.from = self.position,
+            Some(from) => {
+                for (lane, &vertex) in some.iter().enumerate() {
+                    set_column(&mut self.receivers.from, lane, from(vertex as usize));
+                }
+            }
         }
         if self.is_glossy {
             gather(&vertices.specular, some, &mut self.specular);
