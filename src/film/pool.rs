@@ -26,30 +26,38 @@ impl Purpose {
     }
 }
 
-/// So long a render keeps the threads while another waits for them: long beside what the change costs, and
+/// So long a render keeps the threads while there is another for them: long beside what the change costs, and
 /// short beside what an eye takes for a delay.
 const TURN: Duration = Duration::from_millis(30);
 
 /// Threads that several renders share in turns.
 pub(super) struct SharedPool {
     threads: ThreadPool,
-    /// How many renders wait for their turn.
-    waiting: AtomicUsize,
+    /// How many renders want the threads, or have them. More than one of them may have begun its turn: a thread that waits for
+    /// the rest of one takes up whatever else there is, and the first one goes on when that is over.
+    renders: AtomicUsize,
 }
 
 impl SharedPool {
     fn new(threads: ThreadPool) -> Self {
-        let waiting = AtomicUsize::new(0);
-        Self { threads, waiting }
+        let renders = AtomicUsize::new(0);
+        Self { threads, renders }
     }
 
     /// Works on the threads as soon as those who asked before have had their turn.
     pub fn install<R: Send>(&self, work: impl FnOnce(Turn) -> R + Send) -> R {
-        self.waiting.fetch_add(1, Ordering::Relaxed);
-        self.threads.install(|| {
-            self.waiting.fetch_sub(1, Ordering::Relaxed);
-            work(Turn(Some((&self.waiting, Instant::now()))))
-        })
+        /// Also where the work panics.
+        struct Leaves<'a>(&'a AtomicUsize);
+
+        impl Drop for Leaves<'_> {
+            fn drop(&mut self) {
+                self.0.fetch_sub(1, Ordering::Relaxed);
+            }
+        }
+
+        self.renders.fetch_add(1, Ordering::Relaxed);
+        let _leaves = Leaves(&self.renders);
+        (self.threads).install(|| work(Turn(Some((&self.renders, Instant::now())))))
     }
 }
 
@@ -61,10 +69,10 @@ impl Turn<'_> {
     /// Of a render that shares its threads with no other.
     pub const ENDLESS: Self = Self(None);
 
-    /// Whether others wait, and have waited long enough: then what is left is left for the next turn.
+    /// Whether there are others, and it has lasted long enough: then what is left is left for the next turn.
     pub fn is_over(&self) -> bool {
-        self.0.is_some_and(|(waiting, start)| {
-            waiting.load(Ordering::Relaxed) > 0 && start.elapsed() >= TURN
+        self.0.is_some_and(|(renders, start)| {
+            renders.load(Ordering::Relaxed) > 1 && start.elapsed() >= TURN
         })
     }
 }

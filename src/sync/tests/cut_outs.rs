@@ -146,6 +146,7 @@ fn large_maps_are_cut_out_behind_the_frames_and_what_was_there_before_is_seen_un
 fn of_an_opacity_map_that_is_edited_in_every_frame_some_states_are_seen() {
     let (mut small, [diffuse, opacity]) = large();
     wear(&mut small, &diffuse, Some(&opacity));
+    small.app.update();
     until(&mut small.app, |app| pending(app) == 0);
     let mut seen = Vec::new();
     for i in 0..10_000 {
@@ -192,6 +193,7 @@ fn what_goes_while_it_is_cut_out_is_missing_and_what_nobody_wears_is_not_waited_
     assert_eq!((pending(&small.app), problems(&small.app)), (0, Vec::new()));
     // And again: what was begun for nobody does not come back.
     wear(&mut small, &diffuse, Some(&other));
+    small.app.update();
     until(&mut small.app, |app| pending(app) == 0);
     assert_eq!(middle(&small.app), 0.0, "only the black ones are there");
 }
