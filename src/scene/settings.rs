@@ -43,7 +43,7 @@ documented! {
         pub samples: u32,
         /// The camera sees black where there is nothing, or the background's colour where there is a picture. Mirrors show
         /// what is around all the same, and so does its light.
-        #[reflect(@Label("Hidden from the camera"))]
+        #[reflect(@Label("Hidden"))]
         pub hidden: bool,
     }
 }
