@@ -118,7 +118,7 @@ fn the_dome_of_a_model_without_lights_is_saved_and_opens_as_it_was() {
     let (mut app, _) = opened(&write(folder.path(), "a.obj", cube([0; 3], 1, 1)));
     let file = folder.path().join("a.scn.ron");
     glassbox::io::save(app.world_mut(), &file).unwrap();
-    let (again, _) = opened(&bare);
+    let (again, _) = opened(&file);
     let dome = |app: &App| app.world().resource::<Environment>().clone();
     assert_eq!(dome(&again), dome(&app));
     assert!(dome(&again).lights);
