@@ -1,7 +1,7 @@
 //! What an edit costs beside a frame from scratch: `cargo bench --bench edits -- planes`.
 //!
-//! Of a scene with one, three, twelve and a hundred point lights more than it has, at 1280 × 720 and one sample a pixel, the median of
-//! some rounds, as a part of the time that a render from scratch takes to its only sample of every pixel:
+//! Of a scene with one, three, twelve and a hundred point lights more than it has, at 1280 × 720 and one sample a pixel, the
+//! median of some rounds, as a part of the time that a render from scratch takes to its only sample of every pixel:
 //!
 //! - colour: another colour of a light, until the picture of it is there; and the rays that it took;
 //! - move: a light moves, until its light is complete again;

@@ -18,6 +18,14 @@ use bevy::math::Vec2;
 use bevy_egui::egui::accesskit::Role;
 use bevy_egui::egui::{Id, Pos2, Rect, Shape, vec2};
 
+/// What is selected one after the other in a tab: only that of the object differs from one to the next.
+fn shown_in<T>(tab: Tab, ids: &[T]) -> &[T] {
+    match tab {
+        Tab::Object => ids,
+        _ => &ids[..1],
+    }
+}
+
 #[test]
 fn every_scene_is_drawn_in_every_tab_at_every_size_and_nothing_of_it_counts_as_changed() {
     for scene in SCENES {
@@ -83,12 +91,7 @@ fn fields_end_at_one_edge_however_wide_the_panel_is() {
         desk.settle();
         for tab in [Tab::Object, Tab::Render] {
             desk.world().resource_mut::<Inspector>().tab = tab;
-            let shown = if tab == Tab::Object {
-                &ids[..]
-            } else {
-                &ids[..1]
-            };
-            for &id in shown {
+            for &id in shown_in(tab, &ids) {
                 desk.select([id]);
                 let panel = desk.world().resource::<Viewport>().rect.max.x;
                 // The last field of each row.
@@ -260,12 +263,7 @@ fn no_text_of_any_tab_is_cut_off_at_the_side_and_long_names_end_in_an_ellipsis()
         desk.size = size;
         for tab in [Tab::Object, Tab::Render, Tab::Debug, Tab::Bvh] {
             desk.world().resource_mut::<Inspector>().tab = tab;
-            let shown = if tab == Tab::Object {
-                &ids[..]
-            } else {
-                &ids[..1]
-            };
-            for &id in shown {
+            for &id in shown_in(tab, &ids) {
                 desk.select([id]);
                 let rect = desk.world().resource::<Viewport>().rect;
                 // What is typed is scrolled in its field.
