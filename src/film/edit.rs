@@ -79,14 +79,16 @@ impl Edit {
         self
     }
 
-    /// Whether every plane stays what it is, and where: only tints are others.
+    /// Whether every plane has the light that it had.
+    fn leaves_lights(&self, old: &Subject) -> bool {
+        let mut planes = self.from.iter().enumerate();
+        let stays = planes.all(|(plane, from)| *from == Some(plane));
+        stays && self.from.len() == old.planes()
+    }
+
+    /// Whether everything stays what it is, and where: only tints are others.
     fn is_of_tints(&self, old: &Subject) -> bool {
-        let stays = self
-            .from
-            .iter()
-            .enumerate()
-            .all(|(plane, from)| *from == Some(plane));
-        stays && self.from.len() == old.planes() && self.materials == MaterialSet::NONE
+        self.leaves_lights(old) && self.materials == MaterialSet::NONE
     }
 
     /// Whether some plane has to be rendered, or some tile.
@@ -253,7 +255,9 @@ impl Engine {
         };
         self.edit_waits.store(false, Ordering::Relaxed);
         let needs_rays = edit.needs_rays();
-        let arrangement = self.subject().arrangement.wrapping_add(1);
+        let old = self.subject();
+        self.kept.edit(edit.leaves_lights(&old));
+        let arrangement = old.arrangement.wrapping_add(1);
         edit.subject.arrangement = arrangement;
         self.set_subject(edit.subject);
         let mut emptied = 0;

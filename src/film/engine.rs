@@ -2,7 +2,7 @@
 
 use super::control::{Control, Signal};
 use super::edit::Edit;
-use super::kept_hits::KeptHits;
+use super::kept::Kept;
 use super::past_moves::PAST_BYTES;
 use super::pool::{SharedPool, Turn};
 use super::preview::Preview;
@@ -51,7 +51,7 @@ pub(super) struct Engine {
     pub(super) queue: Mutex<Queue>,
     pub(super) batch: BatchSize,
     pub(super) unmet: Unmet,
-    kept: KeptHits,
+    pub(super) kept: Kept,
     pub control: Control,
     /// The picture is complete at every such pixel of every such row; 0 before the first picture.
     divider: AtomicU32,
@@ -110,7 +110,7 @@ impl Engine {
             queue: Mutex::default(),
             batch: BatchSize::new(&subject),
             unmet: Unmet::default(),
-            kept: KeptHits::new(&grid),
+            kept: Kept::new(&grid),
             control: Control::new(),
             divider: AtomicU32::new(0),
             progress: Mutex::default(),

@@ -1,6 +1,7 @@
 //! The samples of a chunk: batch by batch, so that a render can stop between two of them.
 
-use super::kept_hits::{KeptHits, Run};
+use super::kept::Kept;
+use super::per_sample::{BatchPlaces, Run};
 use super::subject::Subject;
 use super::sum_columns::SumColumns;
 use super::tile_state::Chunk;
@@ -149,8 +150,8 @@ pub(super) fn with_scratch<R>(work: impl FnOnce(&mut Scratch) -> R) -> R {
 pub(super) struct Work<'a> {
     pub subject: &'a Subject,
     pub batch: &'a BatchSize,
-    /// Where the hits of camera rays are kept, and read.
-    pub kept: Option<&'a KeptHits>,
+    /// What is known of samples from before.
+    pub kept: Option<&'a Kept>,
     /// Whether to leave it.
     pub stopped: &'a dyn Fn() -> bool,
 }
@@ -226,15 +227,19 @@ impl Scratch {
                     (place, index) = (0, index + 1);
                 }
             }
+            let tile = chunk.tile;
             if let Some(kept) = kept {
                 let runs = &self.runs;
-                (self.workspace).know_camera_hits(|hits| {
-                    kept.read(chunk.tile, chunk.pixels, places, runs, hits)
-                });
+                kept.tell(BatchPlaces { tile, places, runs }, &mut self.workspace);
             }
             let taken = self.evaluate_samples(subject, wanted, batch);
-            if let Some(kept) = kept.filter(|_| taken.camera > 0) {
-                kept.write(chunk.tile, places, &self.runs, self.workspace.camera_hits());
+            if let Some(kept) = kept {
+                let of = BatchPlaces {
+                    tile,
+                    places,
+                    runs: &self.runs,
+                };
+                kept.learn(of, taken, &mut self.workspace);
             }
             rays += taken;
             let whole = is_whole.then_some(first);
@@ -243,9 +248,6 @@ impl Scratch {
             if stopped() {
                 return None;
             }
-        }
-        if let Some(kept) = kept {
-            kept.complete(chunk.tile, chunk.pixels, segment);
         }
         for row in (0..rows).filter(|_| !is_whole) {
             for (i, at) in places.iter().enumerate() {

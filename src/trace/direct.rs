@@ -17,6 +17,7 @@ use super::shadow_rays::{SHORT_OF_THE_LIGHT, Shadow, ShadowRays, shadow_ray};
 use super::transmittance::through;
 use super::vectors::{Vectors, column_vector};
 use super::vertices::Vertices;
+use super::visibility::surface;
 use crate::bvh::{Hit, Order, Ray};
 use crate::scene::Lighting;
 use glam::Vec3;
@@ -30,6 +31,8 @@ struct Asked<'a> {
     has_extent: bool,
     /// What adds less is asked for by chance; 0 where nothing is.
     faint: f32,
+    /// Its first one among the points of all lights that a first hit asks for.
+    first: u32,
 }
 
 impl<R: Recorder> Batch<'_, R> {
@@ -42,12 +45,23 @@ impl<R: Recorder> Batch<'_, R> {
         let is_even =
             self.settings.lighting == Lighting::Classic || !self.settings.features.soft_shadows;
         self.weigh(vertices, &mut shadow_rays.weights);
+        self.recall(vertices);
+        let mut first = 0;
         for (i, lamp) in self.world.lamps(self.settings).enumerate() {
+            let before = first;
+            first = before.saturating_add(lamp.samples(self.settings).unwrap_or(1));
             let Some(row) = self.wanted.row(self.planes.of_light(i)) else {
                 continue;
             };
             let frame = if is_even { None } else { lamp.frame() };
-            self.gather(lamp, row, frame.as_ref(), vertices, shadow_rays);
+            let asked = Asked {
+                lamp,
+                frame: frame.as_ref(),
+                has_extent: lamp.samples(self.settings).is_some(),
+                faint: self.faint(lamp),
+                first: before,
+            };
+            self.gather(&asked, row, vertices, shadow_rays);
             self.add_arriving_light(row, shadow_rays);
         }
     }
@@ -73,27 +87,31 @@ impl<R: Recorder> Batch<'_, R> {
         }
     }
 
+    /// What is known of the lights that something hides from first hits holds for the points that they ask for now.
+    fn recall(&mut self, vertices: &Vertices) {
+        let Some(visibilities) = &mut self.visibilities else {
+            return;
+        };
+        for i in 0..vertices.len() {
+            let sample = vertices.path(i).sample as usize;
+            visibilities[sample].keep_of(surface(vertices, i));
+        }
+    }
+
     /// Points of a light for every vertex, and a shadow ray to each that can add something: `samples` of them at a first
     /// hit, stratified together over all samples of the pixel; one at later hits, and its middle where there are no soft
     /// shadows.
     fn gather(
         &mut self,
-        lamp: Lamp,
+        asked: &Asked,
         row: usize,
-        frame: Option<&Frame>,
         vertices: &Vertices,
         shadow_rays: &mut ShadowRays,
     ) {
-        let samples = lamp.samples(self.settings);
-        let (at_first_hits, has_extent) = (samples.unwrap_or(1), samples.is_some());
-        let asked = Asked {
-            lamp,
-            frame,
-            has_extent,
-            faint: self.faint(lamp),
-        };
+        let lamp = asked.lamp;
+        let at_first_hits = lamp.samples(self.settings).unwrap_or(1);
         shadow_rays.ask(vertices, at_first_hits, self.samples, self.pixels);
-        if has_extent {
+        if asked.has_extent {
             let ShadowRays {
                 asking, numbers, ..
             } = &mut *shadow_rays;
@@ -105,8 +123,8 @@ impl<R: Recorder> Batch<'_, R> {
             } = &mut *shadow_rays;
             chances.draw(asking, Purpose::Faint(lamp.id()), self.settings);
         }
-        self.answer(&asked, vertices, shadow_rays);
-        self.collect(&asked, row, vertices, shadow_rays);
+        self.answer(asked, vertices, shadow_rays);
+        self.collect(asked, row, vertices, shadow_rays);
     }
 
     /// What a point of a light has to add so that it is always asked for. A dome is one light, and Classic light has no
@@ -262,6 +280,7 @@ impl<R: Recorder> Batch<'_, R> {
         let ShadowRays {
             askers,
             counts,
+            firsts,
             numbers,
             chances,
             values,
@@ -312,6 +331,15 @@ impl<R: Recorder> Batch<'_, R> {
                 self.add_to(row, sample, Adding::Light(number), value);
                 continue;
             }
+            let place = asked.first.saturating_add(question as u32 - firsts[vertex]);
+            if let Some(visibilities) = &self.visibilities
+                && let Some(is_hidden) = visibilities[sample as usize].is_hidden(place)
+            {
+                if !is_hidden {
+                    self.add_to(row, sample, Adding::Light(number), value);
+                }
+                continue;
+            }
             let ray = rays[question];
             self.recorder.shadow_ray(number, &ray);
             rays[shadows.len()] = ray;
@@ -319,6 +347,7 @@ impl<R: Recorder> Batch<'_, R> {
                 sample,
                 value,
                 point: number,
+                place,
             });
         }
     }
@@ -348,6 +377,11 @@ impl<R: Recorder> Batch<'_, R> {
         self.world
             .aggregate
             .occlusions_in(Order::Light, rays, occluded);
+        if let Some(visibilities) = &mut self.visibilities {
+            for (shadow, occluded) in shadows.iter().zip(&*occluded) {
+                visibilities[shadow.sample as usize].remember(shadow.place, *occluded);
+            }
+        }
         for (shadow, occluded) in shadows.iter().zip(occluded) {
             if !*occluded {
                 self.recorder.arrived(shadow.point, Vec3::ONE);

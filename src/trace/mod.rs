@@ -77,6 +77,7 @@ mod texture;
 mod transmittance;
 mod vectors;
 mod vertices;
+mod visibility;
 mod world;
 mod wrap;
 
@@ -113,5 +114,6 @@ pub use sun_disc::SunDisc;
 pub use surface::Surface;
 pub use texels::Texels;
 pub use texture::{Texture, TextureError};
+pub use visibility::Visibility;
 pub use world::{Mesh, Object, World};
 pub use wrap::Reading;

@@ -17,6 +17,7 @@ use super::recorder::{Adding, Recorder};
 use super::sampler::Sampler;
 use super::shadow_rays::ShadowRays;
 use super::vertices::Vertices;
+use super::visibility::Visibility;
 use super::{Camera, Cone, MaterialSet, ParallelogramLight, RayCounts, World};
 use crate::bvh::{Hit, Order, Ray};
 use crate::scene::{Lighting, RenderSettings};
@@ -44,6 +45,8 @@ pub struct Workspace {
     hits: Vec<Option<Hit>>,
     /// The camera's are known.
     is_known: bool,
+    /// Of the samples' first hits, where somebody keeps it.
+    visibilities: Vec<Visibility>,
     behind: Behind,
     vertices: Vertices,
     shadow_rays: ShadowRays,
@@ -60,6 +63,12 @@ impl Workspace {
     pub fn know_camera_hits(&mut self, fill: impl FnOnce(&mut Vec<Option<Hit>>) -> bool) {
         self.camera_hits.clear();
         self.is_known = fill(&mut self.camera_hits);
+    }
+
+    /// What is known of the lights that something hides from the first hits of the next batch, one for each sample: what is
+    /// found out is added to it. Where there is none nothing is.
+    pub fn visibilities(&mut self) -> &mut Vec<Visibility> {
+        &mut self.visibilities
     }
 
     /// The materials that paths have met since this was asked last. The values of samples depend on no other material, those
@@ -175,6 +184,7 @@ fn evaluate<R: Recorder>(
         camera_hits,
         hits,
         is_known,
+        visibilities,
         behind,
         vertices,
         shadow_rays,
@@ -196,6 +206,7 @@ fn evaluate<R: Recorder>(
         wanted,
         values,
         counts: RayCounts::default(),
+        visibilities: (visibilities.len() == samples.len()).then_some(&mut visibilities[..]),
         recorder,
     };
     if !is_known {
@@ -217,6 +228,7 @@ fn evaluate<R: Recorder>(
         batch.continue_paths(vertices, paths, next);
         std::mem::swap(paths, next);
         hits_now = &mut *hits;
+        batch.visibilities = None;
         batch.recorder.next_bounce();
     }
     batch.counts
@@ -234,6 +246,8 @@ pub(super) struct Batch<'a, R> {
     /// Plane by plane of those that are wanted, one for each sample.
     values: &'a mut [Vec3],
     pub counts: RayCounts,
+    /// Of the first hits, where it is kept; none at later bounces.
+    pub visibilities: Option<&'a mut [Visibility]>,
     pub recorder: &'a mut R,
 }
 

@@ -56,6 +56,8 @@ pub(super) struct Shadow {
     pub value: Vec3,
     /// The number of the light's point.
     pub point: u32,
+    /// The same among those of all lights for which the vertex may ask.
+    pub place: u32,
 }
 
 impl ShadowRays {

@@ -329,6 +329,41 @@ fn camera_rays_are_traced_once_however_often_lights_and_materials_are_edited() {
 }
 
 #[test]
+fn while_materials_are_edited_what_hides_lights_from_first_hits_is_found_out_once() {
+    let render = start(&lit(), 4);
+    render.wait();
+    let mut now = lit();
+    let mut before = render.status().rays.shadow;
+    let mut shadow_rays = |edited: World| {
+        now = edited;
+        assert!(render.edit(now.clone(), &Gains::default()));
+        render.wait();
+        let fresh = start(&now, 4);
+        fresh.wait();
+        assert_eq!(render.snapshot().picture, fresh.snapshot().picture);
+        let more = render.status().rays.shadow - before;
+        before += more;
+        (now.clone(), more)
+    };
+    let (world, first) = shadow_rays(repainted(&lit(), 0, Vec3::splat(0.3)));
+    let (world, second) = shadow_rays(repainted(&world, 0, Vec3::new(0.1, 0.4, 0.2)));
+    assert!(0 < second && 4 * second < first, "{second}, {first}: what a mirror sees");
+    // With a highlight its points on lamps are others, not those on lights without extent.
+    let mut materials = (*world.materials).clone();
+    materials[0].specular = Vec3::splat(0.3);
+    let (world, glossy) = shadow_rays(World {
+        materials: Arc::new(materials),
+        ..world
+    });
+    assert!(2 * second < glossy, "{glossy}, {second}");
+    // Of lights that moved nothing is known, and who edits them has no use for it.
+    let (world, _) = shadow_rays(edited(&world, |lights| lights.points[0].position.x += 0.1));
+    let (world, first) = shadow_rays(repainted(&world, 0, Vec3::splat(0.2)));
+    let (_, second) = shadow_rays(repainted(&world, 0, Vec3::splat(0.3)));
+    assert!(2 * second < first, "{second}, {first}");
+}
+
+#[test]
 fn one_of_many_lights_that_is_edited_takes_its_own_rays_and_no_other_s() {
     let mut now = many(1..101);
     let render = start(&now, 4);
