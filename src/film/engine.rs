@@ -14,6 +14,7 @@ use super::tile_planes::{BLEND_BYTES, PLANE_BYTES};
 use super::tile_state::TileState;
 use super::tiles::{TILE_PIXELS, Tile, TileGrid};
 use super::unmet::Unmet;
+use super::voids::Voids;
 use super::{FilmMemory, lock};
 use crate::trace::RayCounts;
 use crate::trace::planes::OWN;
@@ -52,6 +53,7 @@ pub(super) struct Engine {
     pub(super) batch: BatchSize,
     pub(super) unmet: Unmet,
     pub(super) kept: Kept,
+    voids: Voids,
     pub control: Control,
     /// The picture is complete at every such pixel of every such row; 0 before the first picture.
     divider: AtomicU32,
@@ -111,6 +113,7 @@ impl Engine {
             batch: BatchSize::new(&subject),
             unmet: Unmet::default(),
             kept: Kept::new(&grid),
+            voids: Voids::of(&subject, &grid),
             control: Control::new(),
             divider: AtomicU32::new(0),
             progress: Mutex::default(),
@@ -342,6 +345,7 @@ impl Engine {
             subject: &subject,
             batch: &self.batch,
             kept: (subject.edit > 0).then_some(&self.kept),
+            voids: Some(&self.voids),
             stopped: &|| self.must_stop(),
         };
         for chunk in &waiting {

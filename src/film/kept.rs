@@ -34,7 +34,8 @@ impl Kept {
 
     /// Something is edited: materials alone, or lights too.
     pub fn edit(&self, materials_alone: bool) {
-        self.edits_materials.store(materials_alone, Ordering::Relaxed);
+        self.edits_materials
+            .store(materials_alone, Ordering::Relaxed);
         if !materials_alone {
             self.visibilities.clear();
         }

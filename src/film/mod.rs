@@ -61,6 +61,7 @@ mod tiles;
 mod unmet;
 mod view_transform;
 pub mod views;
+mod voids;
 
 pub use agx::agx;
 pub use bloom::{bloom_layer, bloom_threshold, with_bloom};

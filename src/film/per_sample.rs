@@ -127,7 +127,10 @@ mod tests {
         kept.write(in_first_tile(&half, &runs), values_of_runs.copied());
         assert_eq!(kept.bytes(), 4 * PerSample::<Option<u32>>::TILE_BYTES);
         assert_eq!(read(&half, (2, 3..11)), of_half[3..11]);
-        assert_eq!(read(&half, (3, 7..11)), [of_half[7], of_half[8], None, None]);
+        assert_eq!(
+            read(&half, (3, 7..11)),
+            [of_half[7], of_half[8], None, None]
+        );
         let known = read(&all, (2, 0..TILE_PIXELS));
         assert_eq!(known.iter().flatten().count(), half.len());
         let whole = [(2, 0..TILE_PIXELS)];

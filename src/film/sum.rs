@@ -21,6 +21,13 @@ impl Sum {
         }
     }
 
+    /// That of so many times the same colour.
+    pub fn of_many(value: Vec3, count: u64) -> Self {
+        let mut sum = Self::default();
+        sum.add(value);
+        Self(sum.0.map(|sum| sum * i128::from(count)))
+    }
+
     /// Adds what another sum holds.
     pub fn merge(&mut self, other: &Self) {
         for (sum, other) in self.0.iter_mut().zip(other.0) {
@@ -89,6 +96,15 @@ mod tests {
             let mut merged = total(b);
             merged.merge(&total(a));
             prop_assert_eq!(forwards, merged);
+        }
+    }
+
+    #[test]
+    fn the_sum_of_many_times_the_same_is_what_adding_it_as_often_gives() {
+        for value in [Vec3::new(0.1, -3.0, 1e30), Vec3::new(f32::NAN, 1e-20, 0.7)] {
+            let mut one_by_one = Sum::default();
+            (0..37).for_each(|_| one_by_one.add(value));
+            assert_eq!(Sum::of_many(value, 37), one_by_one);
         }
     }
 

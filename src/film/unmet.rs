@@ -61,6 +61,12 @@ vectorized! {
     }
 }
 
+/// Adds that of so many samples of one value.
+pub(super) fn count_octave(value: Vec3, samples: u64, counts: &mut Octaves) {
+    let count = &mut counts[octave(value) as usize % OCTAVES];
+    *count = count.saturating_add(samples.try_into().unwrap_or(u32::MAX));
+}
+
 /// Adds the octaves of samples of these values.
 pub(super) fn count_octaves(values: &[Vec3], counts: &mut Octaves) {
     let mut octaves = [0; LANES];

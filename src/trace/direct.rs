@@ -7,7 +7,6 @@ use super::light_columns::Source;
 use super::light_frames::Frame;
 use super::lights::{LightPoint, MIDDLE};
 use super::numbers::Pairs;
-use super::questions::{LANES, Questions};
 use super::radiance::Batch;
 use super::recorder::{Adding, LitPoint, Recorder};
 use super::replies::Replies;
@@ -38,13 +37,13 @@ struct Asked<'a> {
 impl<R: Recorder> Batch<'_, R> {
     /// Adds what arrives at the vertices from the lights.
     pub(super) fn add_direct_light(&mut self, vertices: &Vertices, shadow_rays: &mut ShadowRays) {
-        shadow_rays.begin();
         if vertices.len() == 0 {
             return;
         }
         let is_even =
             self.settings.lighting == Lighting::Classic || !self.settings.features.soft_shadows;
         self.weigh(vertices, &mut shadow_rays.weights);
+        shadow_rays.begin();
         self.recall(vertices);
         let mut first = 0;
         for (i, lamp) in self.world.lamps(self.settings).enumerate() {
@@ -148,10 +147,8 @@ impl<R: Recorder> Batch<'_, R> {
         shadow_rays.begin_replies();
         match source {
             Some(source) => {
-                shadow_rays.set_apart();
-                for is_glossy in [false, true] {
-                    self.answer_in_columns(asked, &source, is_glossy, vertices, shadow_rays);
-                }
+                shadow_rays.sort(vertices);
+                self.answer_in_columns(asked, &source, vertices, shadow_rays);
             }
             None => {
                 let all = 0..shadow_rays.askers.len() as u32;
@@ -161,24 +158,20 @@ impl<R: Recorder> Batch<'_, R> {
         self.answer_alone(asked, vertices, shadow_rays);
     }
 
-    /// Answers the questions of matt or of glossy vertices, together. Those with an answer out of the ordinary go to the
-    /// others.
+    /// Answers the questions in columns. Those with an answer out of the ordinary go to the others.
     fn answer_in_columns(
         &self,
         asked: &Asked,
         source: &Source,
-        is_glossy: bool,
         vertices: &Vertices,
         shadow_rays: &mut ShadowRays,
     ) {
         let ShadowRays {
-            weights,
             counts,
             firsts,
             numbers,
             chances,
-            matt,
-            glossy,
+            columns,
             others,
             values,
             rays,
@@ -189,30 +182,28 @@ impl<R: Recorder> Batch<'_, R> {
         } else {
             SHORT_OF_THE_LIGHT
         };
-        let from = |vertex: usize| self.seen_from(asked.lamp, vertices, vertex);
-        let from = (!self.world.lights.moving.is_empty()).then_some(from);
-        let mut questions = Questions::nothing(is_glossy);
-        for some in (if is_glossy { glossy } else { matt }).chunks(LANES) {
-            questions.ask(some, counts, weights, vertices, from.as_ref());
-            let prepared = source.prepare(&questions);
-            let most = some.iter().map(|&i| counts[i as usize]).max().unwrap_or(0);
-            for k in 0..most {
+        let moves = !self.world.lights.moving.is_empty();
+        for questions in columns.all() {
+            if moves {
+                questions.stand_at(|vertex| self.seen_from(asked.lamp, vertices, vertex));
+            }
+            let prepared = source.prepare(questions);
+            let most = questions.askers().map(|vertex| counts[vertex]).max();
+            for k in 0..most.unwrap_or(0) {
                 // Those that ask for fewer points ask for their last one again.
-                let question = |&vertex: &u32| {
-                    let vertex = vertex as usize;
-                    (firsts[vertex] + k.min(counts[vertex] - 1)) as usize
-                };
+                let question =
+                    |vertex: usize| (firsts[vertex] + k.min(counts[vertex] - 1)) as usize;
                 if asked.has_extent {
-                    questions.draw(numbers, some.iter().map(question));
+                    questions.draw(numbers, question);
                 }
                 let Replies {
                     value,
                     origin,
                     along,
                     is_rare,
-                } = source.answer(&prepared, &questions);
-                for (lane, vertex) in some.iter().enumerate() {
-                    let (question, vertex) = (question(vertex), *vertex as usize);
+                } = source.answer(&prepared, questions);
+                for (lane, vertex) in questions.askers().enumerate() {
+                    let question = question(vertex);
                     if is_rare[lane] != 0 {
                         others.push(question as u32);
                         continue;

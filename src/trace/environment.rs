@@ -33,6 +33,12 @@ impl Environment {
         self.intensity * map.sample_sphere(equirectangular(direction, self.rotation))
     }
 
+    /// What every camera ray carries that meets nothing, where they all carry the same; with the map in use or not.
+    pub fn even(&self, map_in_use: bool) -> Option<Vec3> {
+        let is_even = self.map.is_none() || !map_in_use;
+        self.backdrop.or(is_even.then_some(self.background))
+    }
+
     /// Whether both are the same: of the same map, not of one that is alike.
     pub fn is_same(&self, other: &Self) -> bool {
         let maps = match (&self.map, &other.map) {

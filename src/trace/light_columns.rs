@@ -340,9 +340,9 @@ mod tests {
             };
             for (some, is_glossy) in [some_of(&matt, false), some_of(&glossy, true)].concat() {
                 let mut questions = Questions::nothing(is_glossy);
-                let from = |i: usize| vertices.position.get(i);
-                questions.ask(&some, &counts, &weights, &vertices, Some(&from));
-                questions.draw(&drawn, some.iter().map(|&i| i as usize));
+                questions.ask(&some, &weights, &vertices);
+                questions.share(&counts);
+                questions.draw(&drawn, |vertex| vertex);
                 let replies = source.answer(&source.prepare(&questions), &questions);
                 for (lane, &question) in some.iter().enumerate() {
                     let i = question as usize;

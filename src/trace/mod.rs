@@ -37,6 +37,7 @@ mod faint;
 mod first_hit;
 mod footprint;
 mod gains;
+mod in_view;
 mod lamp;
 mod light_columns;
 mod light_frames;
@@ -90,6 +91,7 @@ pub use faint::FEW as FEW_LIGHTS;
 pub use first_hit::{FirstHit, central_hits, central_ray, first_hits};
 pub use footprint::Cone;
 pub use gains::Gains;
+pub use in_view::in_view;
 pub use lamp::Lamp;
 pub use lights::{
     DirectionalLight, LightPoint, Lights, MovingLight, ParallelogramLight, PointLight, SegmentLight,

@@ -1,4 +1,4 @@
-//! What vertices ask of one light, in columns.
+//! What vertices ask of lights, in columns.
 
 use super::numbers::Pairs;
 use super::receiver::Receivers;
@@ -10,9 +10,12 @@ use glam::Vec3;
 /// Questions that are answered together: what fills the widest vectors.
 pub(super) const LANES: usize = 32;
 
-/// Points of one light that vertices ask for: matt ones, or ones with a highlight.
+/// Points of lights that vertices ask for: matt ones, or ones with a highlight.
 pub(super) struct Questions<const N: usize> {
     pub is_glossy: bool,
+    /// Which they are: so many, in the first lanes.
+    askers: [u32; N],
+    count_of_askers: usize,
     /// Where they are in the frame in which the light stands still, and how they reflect: of matt ones only the normal.
     pub receivers: Receivers<N>,
     /// Two in [0, 1) for each.
@@ -36,6 +39,8 @@ impl Questions<LANES> {
     pub fn nothing(is_glossy: bool) -> Self {
         Self {
             is_glossy,
+            askers: [0; LANES],
+            count_of_askers: 0,
             receivers: Receivers::NOWHERE,
             numbers: [[0.5; LANES]; 2],
             position: [[0.0; LANES]; 3],
@@ -50,17 +55,11 @@ impl Questions<LANES> {
         }
     }
 
-    /// Puts vertices into the first lanes, each with how many points share what it reflects: `from` says where a vertex is
-    /// in the frame that moves with the light, where any does. The other lanes keep what they had.
+    /// Puts vertices into the first lanes, which stand where the lights see them. The other lanes keep what they had.
     #[inline(always)]
-    pub fn ask(
-        &mut self,
-        some: &[u32],
-        counts: &[u32],
-        weights: &Vectors,
-        vertices: &Vertices,
-        from: Option<&impl Fn(usize) -> Vec3>,
-    ) {
+    pub fn ask(&mut self, some: &[u32], weights: &Vectors, vertices: &Vertices) {
+        self.askers[..some.len()].copy_from_slice(some);
+        self.count_of_askers = some.len();
         gather(&vertices.normal, some, &mut self.receivers.normal);
         gather(&vertices.position, some, &mut self.position);
         gather(&vertices.error, some, &mut self.error);
@@ -68,17 +67,7 @@ impl Questions<LANES> {
         gather(&vertices.geometric_normal, some, &mut self.geometric_normal);
         gather(&vertices.diffuse, some, &mut self.diffuse);
         gather(weights, some, &mut self.weight);
-        for (count, &vertex) in self.count.iter_mut().zip(some) {
-            *count = counts[vertex as usize] as f32;
-        }
-        match from {
-            None => self.receivers.from = self.position,
-            Some(from) => {
-                for (lane, &vertex) in some.iter().enumerate() {
-                    set_column(&mut self.receivers.from, lane, from(vertex as usize));
-                }
-            }
-        }
+        self.receivers.from = self.position;
         if self.is_glossy {
             gather(&vertices.specular, some, &mut self.specular);
             gather(&vertices.to_viewer, some, &mut self.to_viewer);
@@ -96,12 +85,87 @@ impl Questions<LANES> {
         }
     }
 
+    /// The vertices, lane by lane.
+    #[inline(always)]
+    pub fn askers(&self) -> impl Iterator<Item = usize> {
+        let (askers, count) = (self.askers, self.count_of_askers);
+        askers.into_iter().take(count).map(|vertex| vertex as usize)
+    }
+
+    /// How many points of a light share what each vertex reflects.
+    #[inline(always)]
+    pub fn share(&mut self, counts: &[u32]) {
+        for (lane, vertex) in self.askers().enumerate() {
+            self.count[lane] = counts[vertex] as f32;
+        }
+    }
+
+    /// Where each vertex is in the frame that moves with a light.
+    #[inline(always)]
+    pub fn stand_at(&mut self, from: impl Fn(usize) -> Vec3) {
+        for (lane, vertex) in self.askers().enumerate() {
+            set_column(&mut self.receivers.from, lane, from(vertex));
+        }
+    }
+
     /// The numbers that choose the places of those vertices' next questions.
     #[inline(always)]
-    pub fn draw(&mut self, numbers: &Pairs, questions: impl Iterator<Item = usize>) {
-        for (lane, question) in questions.enumerate() {
-            [self.numbers[0][lane], self.numbers[1][lane]] = numbers.get(question);
+    pub fn draw(&mut self, numbers: &Pairs, question: impl Fn(usize) -> usize) {
+        for (lane, vertex) in self.askers().enumerate() {
+            [self.numbers[0][lane], self.numbers[1][lane]] = numbers.get(question(vertex));
         }
+    }
+}
+
+/// All questions that are answered in columns.
+#[derive(Default)]
+pub(super) struct Columns {
+    /// So many of them.
+    questions: Vec<Questions<LANES>>,
+    count: usize,
+    matt: Vec<u32>,
+    glossy: Vec<u32>,
+}
+
+impl Columns {
+    /// What vertices ask that light can add something to, but for those beside edges.
+    pub fn gather(&mut self, weights: &Vectors, vertices: &Vertices) {
+        self.matt.clear();
+        self.glossy.clear();
+        for vertex in 0..vertices.len() {
+            if weights.get(vertex) == Vec3::ZERO || vertices.is_near_edge[vertex] {
+                continue;
+            }
+            let alike = if vertices.has_highlight(vertex) {
+                &mut self.glossy
+            } else {
+                &mut self.matt
+            };
+            alike.push(vertex as u32);
+        }
+        self.count = 0;
+        for (alike, is_glossy) in [(&self.matt, false), (&self.glossy, true)] {
+            for some in alike.chunks(LANES) {
+                if self.questions.len() == self.count {
+                    self.questions.push(Questions::nothing(is_glossy));
+                }
+                let questions = &mut self.questions[self.count];
+                questions.is_glossy = is_glossy;
+                questions.ask(some, weights, vertices);
+                self.count += 1;
+            }
+        }
+    }
+
+    /// How many points of a light share what each vertex reflects.
+    pub fn share(&mut self, counts: &[u32]) {
+        for questions in self.all() {
+            questions.share(counts);
+        }
+    }
+
+    pub fn all(&mut self) -> &mut [Questions<LANES>] {
+        &mut self.questions[..self.count]
     }
 }
 

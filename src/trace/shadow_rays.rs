@@ -2,6 +2,7 @@
 
 use super::lights::LightPoint;
 use super::numbers::{Asking, Pairs};
+use super::questions::Columns;
 use super::vectors::Vectors;
 use super::vertices::Vertices;
 use super::{SampleId, Surface};
@@ -29,10 +30,11 @@ pub(super) struct ShadowRays {
     pub numbers: Pairs,
     /// Where there are many lights, the number of each question that decides whether it is asked if it is faint.
     pub chances: Pairs,
-    /// The vertices whose questions are answered in columns, matt ones and those with a highlight, and the questions of those
-    /// beside edges.
-    pub matt: Vec<u32>,
-    pub glossy: Vec<u32>,
+    /// What is asked in columns, the same of every light; and whether it is there, and has the counts.
+    pub columns: Columns,
+    are_gathered: bool,
+    are_shared: bool,
+    /// The questions of those beside edges.
     beside_edges: Vec<u32>,
     /// The questions that are answered one by one.
     pub others: Vec<u32>,
@@ -72,34 +74,31 @@ impl ShadowRays {
         self.others.clear();
     }
 
-    /// What vertices beside edges ask is answered one by one.
-    pub fn set_apart(&mut self) {
-        self.others.extend(&self.beside_edges);
-    }
-
-    /// Which vertices are answered in columns, and which questions are of those beside edges.
-    fn sort(&mut self, vertices: &Vertices) {
-        self.matt.clear();
-        self.glossy.clear();
-        self.beside_edges.clear();
-        for (vertex, (&count, &first)) in self.counts.iter().zip(&self.firsts).enumerate() {
-            if count == 0 {
-                continue;
-            }
-            if vertices.is_near_edge[vertex] {
-                self.beside_edges.extend(first..first + count);
-            } else if vertices.has_highlight(vertex) {
-                self.glossy.push(vertex as u32);
-            } else {
-                self.matt.push(vertex as u32);
-            }
-        }
-    }
-
     /// Other vertices ask from now on.
     pub fn begin(&mut self) {
         self.points = 0;
         self.asked = None;
+        self.are_gathered = false;
+    }
+
+    /// The questions of a light that gives them answers in columns; those of vertices beside edges are answered one by one.
+    pub fn sort(&mut self, vertices: &Vertices) {
+        if !self.are_gathered {
+            self.columns.gather(&self.weights, vertices);
+            self.are_gathered = true;
+            self.are_shared = false;
+        }
+        if !self.are_shared {
+            self.columns.share(&self.counts);
+            self.beside_edges.clear();
+            for (vertex, (&count, &first)) in self.counts.iter().zip(&self.firsts).enumerate() {
+                if vertices.is_near_edge[vertex] {
+                    self.beside_edges.extend(first..first + count);
+                }
+            }
+            self.are_shared = true;
+        }
+        self.others.extend(&self.beside_edges);
     }
 
     /// Every vertex that light can add something to asks for so many points at a first hit, and for one later: their numbers
@@ -136,7 +135,7 @@ impl ShadowRays {
                 self.asking.push(pixels[sample], path.name, index);
             }
         }
-        self.sort(vertices);
+        self.are_shared = false;
     }
 }
 

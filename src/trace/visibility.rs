@@ -80,6 +80,10 @@ mod tests {
         visibility.keep_of(7);
         assert_eq!(visibility.is_hidden(62), yes);
         visibility.keep_of(8);
-        assert!(points.iter().all(|point| visibility.is_hidden(*point).is_none()));
+        assert!(
+            points
+                .iter()
+                .all(|point| visibility.is_hidden(*point).is_none())
+        );
     }
 }

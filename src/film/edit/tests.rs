@@ -347,7 +347,10 @@ fn while_materials_are_edited_what_hides_lights_from_first_hits_is_found_out_onc
     };
     let (world, first) = shadow_rays(repainted(&lit(), 0, Vec3::splat(0.3)));
     let (world, second) = shadow_rays(repainted(&world, 0, Vec3::new(0.1, 0.4, 0.2)));
-    assert!(0 < second && 4 * second < first, "{second}, {first}: what a mirror sees");
+    assert!(
+        0 < second && 4 * second < first,
+        "{second}, {first}: what a mirror sees"
+    );
     // With a highlight its points on lamps are others, not those on lights without extent.
     let mut materials = (*world.materials).clone();
     materials[0].specular = Vec3::splat(0.3);

@@ -1,0 +1,108 @@
+//! Tiles in which nothing is to be seen but an even background: their samples are known without a ray. Of a model that stands
+//! by itself, as it comes out of a file, they are most of the picture.
+
+use super::subject::Subject;
+use super::tiles::TileGrid;
+use crate::trace::in_view;
+use glam::Vec3;
+
+/// Which tiles those are, and what their samples are.
+pub(super) struct Voids {
+    color: Vec3,
+    /// Of each tile, whether it is one; empty where none is.
+    tiles: Vec<bool>,
+}
+
+impl Voids {
+    /// Of a picture: it stays true while lights that are not seen and materials are edited.
+    pub fn of(subject: &Subject, grid: &TileGrid) -> Self {
+        let Subject {
+            world,
+            camera,
+            settings,
+            ..
+        } = subject;
+        let none = Self {
+            color: Vec3::ZERO,
+            tiles: Vec::new(),
+        };
+        let background = world.environment.even(settings.features.environment);
+        let Some(color) = background.filter(|color| color.is_finite()) else {
+            return none;
+        };
+        let Some(rectangles) = in_view(world, camera, settings) else {
+            return none;
+        };
+        let mut tiles = vec![true; grid.count() as usize];
+        for rectangle in rectangles {
+            for tile in grid.within(Some(rectangle)).0 {
+                tiles[tile as usize] = false;
+            }
+        }
+        Self { color, tiles }
+    }
+
+    /// What every sample of a tile is, where nothing is to be seen in it.
+    pub fn color_of(&self, tile: u32) -> Option<Vec3> {
+        let is_void = self.tiles.get(tile as usize).copied().unwrap_or(false);
+        is_void.then_some(self.color)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_scene::{settings, world};
+    use super::super::{Progressive, Sum};
+    use super::*;
+    use crate::trace::{Camera, SampleId, Workspace, radiance};
+    use glam::UVec2;
+
+    const SIZE: UVec2 = UVec2::new(150, 90);
+
+    #[test]
+    fn a_picture_with_much_nothing_around_is_that_of_its_samples_one_by_one() {
+        let mut world = world();
+        world.environment.background = Vec3::new(0.3, 0.1, 2.7);
+        let eye = Vec3::new(4.0, 9.0, 30.0);
+        let camera = Camera::looking_at(eye, Vec3::ZERO, Vec3::Y, 0.9);
+        let settings = settings(SIZE, 5);
+        let subject = Subject::new(world.clone(), camera.clone(), settings.clone(), true);
+        let grid = TileGrid::new(SIZE);
+        let voids = Voids::of(&subject, &grid);
+        let count = (0..grid.count())
+            .filter(|tile| voids.color_of(*tile).is_some())
+            .count();
+        assert!(2 * count > grid.count() as usize, "{count}");
+        assert!(count < grid.count() as usize);
+
+        let render = Progressive::start(world.clone(), camera.clone(), settings.clone()).unwrap();
+        render.wait();
+        let picture = render.snapshot().picture;
+        let rays = render.status().rays;
+        assert_eq!(rays.camera, 5 * u64::from(SIZE.element_product()));
+        let mut workspace = Workspace::default();
+        for (i, pixel) in picture.pixels.iter().enumerate() {
+            let place = UVec2::new(i as u32 % SIZE.x, i as u32 / SIZE.x);
+            let ids: Vec<_> = (0..5)
+                .map(|index| SampleId {
+                    pixel: place,
+                    index,
+                })
+                .collect();
+            let mut values = [Vec3::ZERO; 5];
+            radiance(
+                &world,
+                &camera,
+                &settings,
+                &ids,
+                &mut values,
+                &mut workspace,
+            );
+            let mut sum = Sum::default();
+            values.into_iter().for_each(|value| sum.add(value));
+            // The panel's light is added to what shines by itself in f32.
+            let difference = (sum.mean(5) - *pixel).abs().max_element();
+            assert!(difference < 1e-5 * pixel.max_element(), "{place}");
+        }
+    }
+}
