@@ -229,6 +229,7 @@ impl Scratch {
             batch,
             kept,
             stopped,
+            ..
         } = *work;
         let wanted = chunk.planes;
         let mut rays = RayCounts::default();

@@ -45,7 +45,7 @@ impl<R: Recorder> Batch<'_, R> {
         self.weigh(vertices, &mut shadow_rays.weights);
         shadow_rays.begin();
         self.recall(vertices);
-        let mut first = 0;
+        let mut first = 0_u32;
         for (i, lamp) in self.world.lamps(self.settings).enumerate() {
             let before = first;
             first = before.saturating_add(lamp.samples(self.settings).unwrap_or(1));

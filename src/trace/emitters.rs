@@ -92,7 +92,7 @@ fn touches_picture(corners: &[Vec3], camera: &Camera, size: UVec2) -> bool {
 }
 
 impl ParallelogramLight {
-    fn corners(&self) -> [Vec3; 4] {
+    pub(super) fn corners(&self) -> [Vec3; 4] {
         let [a, b] = self.edges;
         [Vec3::ZERO, a, b, a + b].map(|edge| self.corner + edge)
     }

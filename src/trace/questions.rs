@@ -87,7 +87,7 @@ impl Questions<LANES> {
 
     /// The vertices, lane by lane.
     #[inline(always)]
-    pub fn askers(&self) -> impl Iterator<Item = usize> {
+    pub fn askers(&self) -> impl Iterator<Item = usize> + use<> {
         let (askers, count) = (self.askers, self.count_of_askers);
         askers.into_iter().take(count).map(|vertex| vertex as usize)
     }
