@@ -2,7 +2,7 @@ use super::super::engine::{Engine, Mode};
 use super::super::subject::Subject;
 use super::super::test_scene::{camera, edited, lit, many, repainted, settings};
 use super::super::{Ending, Progressive, Snapshot};
-use crate::trace::{Gains, Lights, PointLight, Untinted, World};
+use crate::trace::{Gains, Lights, Material, PointLight, Untinted, World};
 use glam::{UVec2, Vec3};
 use std::sync::Arc;
 
@@ -351,14 +351,20 @@ fn while_materials_are_edited_what_hides_lights_from_first_hits_is_found_out_onc
         0 < second && 4 * second < first,
         "{second}, {first}: what a mirror sees"
     );
-    // With a highlight its points on lamps are others, not those on lights without extent.
-    let mut materials = (*world.materials).clone();
-    materials[0].specular = Vec3::splat(0.3);
-    let (world, glossy) = shadow_rays(World {
-        materials: Arc::new(materials),
-        ..world
-    });
-    assert!(2 * second < glossy, "{glossy}, {second}");
+    // Of what has a highlight the points on lamps hang on how wide that is, and not on what it mirrors.
+    let polished = |world: &World, change: &dyn Fn(&mut Material)| {
+        let mut materials = (*world.materials).clone();
+        change(&mut materials[2]);
+        World {
+            materials: Arc::new(materials),
+            ..world.clone()
+        }
+        .with_needs()
+    };
+    let (world, _) = shadow_rays(polished(&world, &|material| material.mirror *= 0.9));
+    let (world, same) = shadow_rays(polished(&world, &|material| material.mirror *= 0.9));
+    let (world, other) = shadow_rays(polished(&world, &|material| material.shininess *= 2.0));
+    assert!(same < other, "{same}, {other}");
     // Of lights that moved nothing is known, and who edits them has no use for it.
     let (world, _) = shadow_rays(edited(&world, |lights| lights.points[0].position.x += 0.1));
     let (world, first) = shadow_rays(repainted(&world, 0, Vec3::splat(0.2)));
