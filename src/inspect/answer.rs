@@ -161,7 +161,8 @@ impl Tree<'_> {
         } else if !shadows.is_empty() {
             format!("is {}", shadows.join(" and "))
         } else if faint {
-            "is lit by lights so faint that this sample asked for none of them".into()
+            "could be lit by none but lights so faint that this sample asked for none of them"
+                .into()
         } else if !behind.is_empty() {
             format!("is turned away from {}", list(&mut behind.iter().copied()))
         } else if !unlit.is_empty() {

@@ -174,7 +174,6 @@ impl RayLine {
     }
 }
 
-/// A thing's name, or what to call it by its number.
 /// What an object or a light is called, or what to call it by its number.
 pub fn named(names: &BTreeMap<u64, String>, id: u64) -> String {
     match names.get(&id) {

@@ -113,7 +113,10 @@ pub(super) fn mean(color: Vec3) -> f32 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Camera, PointLight, SampleId, Workspace, radiance, test_scene};
+    use super::super::{
+        Camera, ParallelogramLight, PointLight, RayEnd, SampleId, Samples, SegmentLight, Workspace,
+        probe, radiance, test_scene,
+    };
     use super::*;
     use crate::scene::RenderSettings;
     use glam::{DVec3, UVec2};
@@ -139,24 +142,45 @@ mod tests {
         .with_needs()
     }
 
-    /// The mean of some samples of all pixels of a small picture, and their shadow rays.
-    fn render(world: &World, samples: u64) -> (DVec3, u64) {
-        let size = UVec2::splat(8);
-        let settings = RenderSettings {
-            size,
+    fn camera() -> Camera {
+        Camera::looking_at(Vec3::new(0.5, 2.0, 6.0), Vec3::ZERO, Vec3::Y, 0.9)
+    }
+
+    /// Of a small picture.
+    fn settings(spp: u64) -> RenderSettings {
+        RenderSettings {
+            size: UVec2::splat(8),
+            spp: spp as u32,
             ..RenderSettings::default()
-        };
-        let eye = Vec3::new(0.5, 2.0, 6.0);
-        let camera = Camera::looking_at(eye, Vec3::ZERO, Vec3::Y, 0.9);
+        }
+    }
+
+    /// Some samples of all pixels of the small picture, traced together: which, their values, and their shadow rays.
+    fn trace(world: &World, samples: u64) -> (Vec<SampleId>, Vec<Vec3>, u64) {
+        let settings = settings(samples);
+        let size = settings.size;
         let pixels = (0..size.element_product()).map(|i| UVec2::new(i % size.x, i / size.x));
         let ids: Vec<SampleId> = pixels
             .flat_map(|pixel| (0..samples).map(move |index| SampleId { pixel, index }))
             .collect();
         let mut values = vec![Vec3::ZERO; ids.len()];
         let mut workspace = Workspace::default();
-        let rays = radiance(world, &camera, &settings, &ids, &mut values, &mut workspace);
+        let rays = radiance(
+            world,
+            &camera(),
+            &settings,
+            &ids,
+            &mut values,
+            &mut workspace,
+        );
+        (ids, values, rays.shadow)
+    }
+
+    /// The mean of those samples, and their shadow rays.
+    fn render(world: &World, samples: u64) -> (DVec3, u64) {
+        let (_, values, rays) = trace(world, samples);
         let sum: DVec3 = values.iter().map(|value| value.as_dvec3()).sum();
-        (sum / values.len() as f64, rays.shadow)
+        (sum / values.len() as f64, rays)
     }
 
     #[test]
@@ -170,6 +194,92 @@ mod tests {
         let ratio = some.0 / all.0;
         assert!((ratio - 1.0).abs().max_element() < 0.01, "{ratio}");
         assert!(4 * some.1 < all.1, "{} rays instead of {}", some.1, all.1);
+    }
+
+    /// Lights of every kind, and so many of them that most are left to chance.
+    fn under_all_kinds() -> World {
+        let world = under(200);
+        let mut numbers = test_scene::Numbers(11);
+        let mut lights = (*world.lights).clone();
+        for id in 201..=240 {
+            let (place, color) = (3.0 * numbers.in_cube(), Vec3::splat(0.3 * numbers.next()));
+            lights.segments.push(SegmentLight {
+                id,
+                ends: [place, place + numbers.in_cube()],
+                colors: [color; 2],
+                samples: 3,
+            });
+            lights.parallelograms.push(ParallelogramLight {
+                id: id + 100,
+                corner: -place,
+                edges: [0.2 * numbers.in_cube(), 0.2 * numbers.in_cube()],
+                colors: [color; 4],
+                two_sided: true,
+                visible: false,
+                samples: 2,
+            });
+        }
+        World {
+            lights: Arc::new(lights),
+            ..world
+        }
+        .with_needs()
+    }
+
+    #[test]
+    fn of_many_lights_a_probed_sample_is_the_samples_value_bit_for_bit() {
+        let world = under_all_kinds();
+        let (camera, settings) = (camera(), settings(2));
+        let (ids, values, _) = trace(&world, 2);
+        let mut left_out = 0;
+        for (id, value) in ids.iter().zip(values) {
+            let samples = Samples::One(id.index);
+            let tree = probe(&world, &camera, &settings, id.pixel, &samples).unwrap();
+            let bits = |color: Vec3| color.to_array().map(f32::to_bits);
+            let probed = tree.samples[0].value;
+            assert_eq!(bits(probed), bits(value), "{id:?}: {probed} and {value}");
+            assert_eq!(bits(tree.sum(0)), bits(value), "{id:?}");
+            let is_left_out = |end: RayEnd| usize::from(end == RayEnd::LeftOut);
+            left_out += tree.rays.iter().map(|r| is_left_out(r.end)).sum::<usize>();
+        }
+        assert!(left_out > 1000, "{left_out}");
+    }
+
+    #[test]
+    fn rays_to_faint_lights_tell_the_chance_with_which_they_are_asked_for() {
+        let world = under_all_kinds();
+        let (camera, settings) = (camera(), settings(1));
+        // How many are asked for, how many should be, and the variance of that.
+        let (mut asked, mut expected, mut variance) = (0.0, 0.0, 0.0);
+        for i in 0..settings.size.element_product() {
+            let pixel = UVec2::new(i % settings.size.x, i / settings.size.x);
+            let tree = probe(&world, &camera, &settings, pixel, &Samples::All).unwrap();
+            for ray in &tree.rays {
+                let Some(light) = ray.light.filter(|_| tree.leaves_first(ray)) else {
+                    continue;
+                };
+                let is_asked = ray.end != RayEnd::LeftOut;
+                if !is_asked {
+                    assert!(ray.chance < 1.0, "{ray:?}");
+                    let nothing = [ray.added, ray.carried, ray.radiance, ray.transmittance];
+                    assert_eq!(nothing, [Vec3::ZERO; 4], "{ray:?}");
+                    assert_eq!(ray.cost, Default::default(), "{ray:?}");
+                }
+                if ray.chance < 1.0 {
+                    // What it would add, as a part of what is always asked for.
+                    let weight = ray.weight * if is_asked { ray.chance } else { 1.0 };
+                    let part = mean(weight * light.reflected) / world.needs.faint;
+                    assert!((part / ray.chance - 1.0).abs() < 1e-3, "{part}, {ray:?}");
+                    let chance = f64::from(ray.chance);
+                    asked += f64::from(u8::from(is_asked));
+                    expected += chance;
+                    variance += chance * (1.0 - chance);
+                }
+            }
+        }
+        assert!(variance > 100.0, "{variance}");
+        let off = (asked - expected) / variance.sqrt();
+        assert!(off.abs() < 4.0, "{asked} instead of {expected}: {off} σ");
     }
 
     #[test]

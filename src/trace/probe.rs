@@ -333,8 +333,8 @@ impl Recorder for Recording<'_> {
 
     fn left_to_chance(&mut self, point: u32, chance: f32, is_asked: bool) {
         let ray = self.ray_of(Adding::Light(point));
+        ray.chance = chance;
         if is_asked {
-            ray.chance = chance;
             ray.weight /= chance;
         } else {
             ray.end = RayEnd::LeftOut;

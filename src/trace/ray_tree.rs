@@ -86,7 +86,7 @@ pub struct TracedRay {
     /// As many rays share what arrives at the surface where this one starts.
     pub count: u32,
     /// The probability with which the path went this way: 1, but for a choice between reflection
-    /// and transmission, and for faint light where there is much of it.
+    /// and transmission, and for faint light where there is much of it: what was left out has that chance, too.
     pub chance: f32,
     /// What its radiance is multiplied by on its way into its parent's. For light: the part of the
     /// light's samples and of the surface's opacity alone; `light.reflected` has the rest.

@@ -177,3 +177,91 @@ fn what_refers_to_nothing_or_means_nothing_is_told() {
         "{notes:?}"
     );
 }
+
+#[test]
+fn numbers_and_modes_that_gltf_does_not_have_are_told() {
+    let told = |notes: &[String], what: &str| {
+        let some = notes.iter().filter(|note| note.contains(what)).count();
+        assert_eq!(some, 1, "{what}: {notes:#?}");
+    };
+    let sampled = |sampler: Value| {
+        let base = json!({ "baseColorTexture": { "index": 1 }, "metallicFactor": 0.0 });
+        let (phong, notes) = pictured(
+            json!({ "pbrMetallicRoughness": base }),
+            json!([sampler.clone()]),
+        );
+        let map = phong.diffuse_map.expect("a picture");
+        assert_eq!((map.wrap_u, map.wrap_v), (Wrap::Repeat, Wrap::Repeat));
+        notes
+    };
+    for (key, number) in [
+        ("wrapS", 1),
+        ("wrapT", 33_070),
+        ("magFilter", 9987),
+        ("minFilter", 1),
+    ] {
+        told(&sampled(json!({ key: number })), key);
+    }
+    let known = json!({ "wrapS": 10_497, "wrapT": 10_497, "magFilter": 9729, "minFilter": 9984 });
+    assert_eq!(sampled(known), [""; 0]);
+
+    let pbr = |key: &str, value: Value| json!({ "pbrMetallicRoughness": { key: value } });
+    let of = |extension: &str, key: &str, value: Value| json!({ "extensions": { extension: { key: value } } });
+    let glossy = "KHR_materials_pbrSpecularGlossiness";
+    for material in [
+        pbr("baseColorFactor", json!([5.0, 0.0, 0.0, 1.0])),
+        pbr("baseColorFactor", json!([0.0, 0.0, 0.0, -1.0])),
+        pbr("metallicFactor", json!(1.5)),
+        pbr("roughnessFactor", json!(-0.1)),
+        of(glossy, "diffuseFactor", json!([0.0, 2.0, 0.0, 1.0])),
+        of(glossy, "specularFactor", json!([0.0, 2.0, 0.0])),
+        of(glossy, "glossinessFactor", json!(7)),
+        of("KHR_materials_specular", "specularFactor", json!(2)),
+        of(
+            "KHR_materials_transmission",
+            "transmissionFactor",
+            json!(-1),
+        ),
+        json!({ "emissiveFactor": [0.0, -1.0, 0.0] }),
+        json!({ "alphaMode": "MASK", "alphaCutoff": -1.0 }),
+    ] {
+        let (_, notes) = pictured(material, json!([]));
+        told(&notes, "outside glTF's ranges");
+    }
+    let (_, notes) = pictured(
+        json!({ "pbrMetallicRoughness": { "baseColorFactor": [0.0, 1.0, 0.5, 1.0],
+            "metallicFactor": 0.0, "roughnessFactor": 1 }, "emissiveFactor": [2.0, 0.0, 0.0] }),
+        json!([]),
+    );
+    assert_eq!(notes, [""; 0]);
+
+    let (_, notes) = document(plain(), |d| {
+        d["materials"] = json!([{}]);
+        d["meshes"][0]["primitives"][0]["material"] = json!(7);
+    });
+    told(&notes, "material 7, which there is not");
+    let (_, notes) = document(plain(), |d| {
+        d["nodes"][0]["rotation"] = json!([0.0, 0.0, 0.0, 5.0]);
+    });
+    told(&notes, "not of length 1");
+    let lit = |light: Value| {
+        let (_, notes) = document(plain(), |d| {
+            d["extensions"] = json!({ "KHR_lights_punctual": { "lights": [light] } });
+            d["nodes"][0]["extensions"] = json!({ "KHR_lights_punctual": { "light": 0 } });
+        });
+        notes
+    };
+    for (inner, outer) in [(1.0, 0.5), (-0.1, 0.5), (0.0, 2.0)] {
+        let spot = json!({ "innerConeAngle": inner, "outerConeAngle": outer });
+        let notes = lit(json!({ "type": "spot", "intensity": 1000, "spot": spot }));
+        told(&notes, "none of a cone");
+    }
+    let notes = lit(json!({ "type": "spot", "intensity": 1000 }));
+    assert!(!notes.iter().any(|note| note.contains("cone")), "{notes:?}");
+    let notes = lit(json!({ "type": "point", "intensity": -5.0 }));
+    told(&notes, "impossible numbers");
+    assert!(
+        !notes.iter().any(|note| note.contains("`type`")),
+        "{notes:?}"
+    );
+}

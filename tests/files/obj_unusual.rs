@@ -159,3 +159,19 @@ fn words_behind_the_corners_of_a_face_do_not_cost_the_face() {
         "{told:?}"
     );
 }
+
+#[test]
+fn words_of_an_mtl_that_are_none_of_the_format_s_are_told() {
+    for (line, what) in [
+        ("map_Kd -clamp maybe wall.png", "`-clamp`"),
+        ("illum 10", "`illum` of 10"),
+        ("illum 11", "`illum` that is none"),
+    ] {
+        let (_, told) = with_map(line);
+        assert!(told.contains(what), "{line}: {told}");
+    }
+    for line in ["map_Kd -clamp off wall.png", "illum 9"] {
+        let (_, told) = with_map(line);
+        assert!(!told.contains("a.mtl"), "{line}: {told}");
+    }
+}

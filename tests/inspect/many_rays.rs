@@ -4,9 +4,12 @@ use super::lights_and_rays::{EYE, camera, floor, lamp, matt, rays, screen};
 use super::{Scene, WHITE, expect, is_near, segment};
 use crate::analytic::{object, world};
 use glam::Vec3;
-use glassbox::inspect::{InspectSettings, System};
+use glassbox::inspect::{
+    Document, InspectSettings, Question, RayLine, System, answer, explanation,
+};
 use glassbox::scene::{PixelSampling, Projection};
-use glassbox::trace::{Camera, Lights, Material};
+use glassbox::trace::{Camera, Lights, Material, PointLight, RayEnd, Samples};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 #[test]
@@ -135,5 +138,89 @@ fn s16_the_aperture_the_focus_plane_and_the_lens_rays_stand_where_the_formula_sa
         rays.segments
             .iter()
             .any(|ray| (ray.ends[0] - EYE).length() > 0.1)
+    );
+}
+
+#[test]
+fn rays_that_chance_leaves_out_are_named_in_the_tree_the_table_the_sentences_and_the_json() {
+    let mut world = world(vec![object(1, &floor(), 0)], vec![matt(Vec3::ONE)]);
+    // One bright lamp, and two hundred of which each would add 1/10,000 of what that one adds.
+    let above = |id: u64, color: f32| PointLight {
+        id,
+        ..lamp(Vec3::Y * 2.0, Vec3::splat(color))
+    };
+    let mut points = vec![above(100, 100.0)];
+    points.extend((101..=300).map(|id| above(id, 0.01)));
+    world.lights = Arc::new(Lights {
+        points,
+        ..Lights::default()
+    });
+    let scene = Scene::of(world, camera());
+    let tree = scene.probe(Samples::All);
+    let names = BTreeMap::from([(1, "Floor".into()), (100, "Lamp".into())]);
+
+    // All faint ones are alike, and so are their chances.
+    let chance = tree.rays.last().unwrap().chance;
+    assert!(chance > 0.1 && chance < 0.5, "{chance}");
+    let left_out = |end: RayEnd| end == RayEnd::LeftOut;
+    let count = tree.rays.iter().filter(|ray| left_out(ray.end)).count();
+    let expected = 200.0 * (1.0 - chance);
+    assert!(
+        (count as f32 - expected).abs() < 30.0,
+        "{count}, {expected}"
+    );
+    let lines = RayLine::of(&tree, 0, &names);
+    let sentences = explanation(&tree, &names);
+    for (index, ray) in tree.rays.iter().enumerate() {
+        let Some(light) = ray.light else { continue };
+        let [to, radiance, adds] = [1, 3, 4].map(|cell| &lines[index].cells[cell]);
+        let sentence = |fate: &str| {
+            let name = if light.id == 100 {
+                "Lamp".into()
+            } else {
+                format!("#{}", light.id)
+            };
+            let text = format!("{name}: of 1 sample 1 {fate}");
+            assert!(sentences.contains(&text), "{text} is not in {sentences:#?}");
+        };
+        match ray.end {
+            RayEnd::Arrived => {
+                assert_eq!(ray.chance, if light.id == 100 { 1.0 } else { chance });
+                // One that was asked for stands for those that were not.
+                assert!(
+                    is_near(ray.weight * ray.chance, Vec3::ONE),
+                    "{}",
+                    ray.weight
+                );
+                sentence("arrives");
+            }
+            RayEnd::LeftOut => {
+                assert_eq!((ray.chance, ray.weight), (chance, Vec3::ONE));
+                assert_eq!((radiance.as_str(), adds.as_str()), ("0", "0"));
+                assert_eq!(*to, format!("#{}, left-out", light.id));
+                sentence("is so faint that chance left it out");
+            }
+            end => panic!("{end:?}"),
+        }
+    }
+    // The camera's ray, and those that were asked for.
+    assert_eq!(rays(&scene).segments.len(), tree.rays.len() - count);
+
+    let document = Document::new(("", ""), &scene.world, &scene.settings, &tree, &names);
+    let json = serde_json::to_value(&document).unwrap();
+    for (ray, json) in tree.rays.iter().zip(json["rays"].as_array().unwrap()) {
+        assert_eq!(json["end"], ray.end.name());
+        assert_eq!(json["chance"].as_f64(), Some(f64::from(ray.chance)));
+    }
+
+    let text = answer(Question::Black, &tree, &names);
+    assert!(text.starts_with("Floor is lit by Lamp and #1"), "{text}");
+    // Had the sample asked for none of them:
+    let mut none = tree;
+    none.rays
+        .retain(|ray| ray.light.is_none() || left_out(ray.end));
+    assert_eq!(
+        answer(Question::Black, &none, &names),
+        "Floor could be lit by none but lights so faint that this sample asked for none of them."
     );
 }

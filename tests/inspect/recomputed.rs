@@ -3,12 +3,12 @@
 
 use super::Scene;
 use crate::analytic::Numbers;
-use glam::{DVec3, UVec2};
+use glam::{DVec3, UVec2, Vec3};
 use glassbox::film::{Sum, render_samples};
 use glassbox::inspect::Document;
 use glassbox::io::builtin::SCENES;
 use glassbox::scene::Lighting;
-use glassbox::trace::{Environment, Lights, MovingLight, Samples, probe};
+use glassbox::trace::{Environment, Lights, MovingLight, PointLight, Samples, probe};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -131,7 +131,7 @@ impl Recomputed {
 
     fn transmittance(&self, ray: &Value) -> DVec3 {
         match ray["end"].as_str().unwrap() {
-            "blocked" => DVec3::ZERO,
+            "blocked" | "left-out" => DVec3::ZERO,
             "arrived" => ray["crossings"]
                 .as_array()
                 .unwrap()
@@ -371,12 +371,12 @@ fn so_they_are_with_every_effect_and_with_the_classic_lighting() {
     scene = open();
     scene.camera.optics.aperture_radius = 0.05;
     scene.camera.optics.focus_distance = 6.0;
-    scene.camera.optics.velocity = glam::Vec3::X * 0.3;
+    scene.camera.optics.velocity = Vec3::X * 0.3;
     scene.camera.optics.motion_samples = 8;
     check(&scene, "lens and motion", 60);
     scene = open();
     scene.world.environment = Environment {
-        background: glam::Vec3::new(0.4, 0.6, 0.9),
+        background: Vec3::new(0.4, 0.6, 0.9),
         lights: true,
         samples: 3,
         ..Environment::default()
@@ -390,7 +390,7 @@ fn so_they_are_with_every_effect_and_with_the_classic_lighting() {
     lights.moving = (ids.zip(1..))
         .map(|(id, speed)| MovingLight {
             id,
-            velocity: glam::Vec3::new(0.2, 0.1, -0.1) * speed as f32,
+            velocity: Vec3::new(0.2, 0.1, -0.1) * speed as f32,
             samples: 8,
         })
         .collect();
@@ -399,6 +399,18 @@ fn so_they_are_with_every_effect_and_with_the_classic_lighting() {
     scene.world.lights = Arc::new(lights);
     scene.world = scene.world.clone().with_needs();
     check(&scene, "moving lights", 60);
+    scene = open();
+    let mut lights = Lights::clone(&scene.world.lights);
+    let mut numbers = Numbers(9);
+    lights.points.extend((0..300).map(|i| PointLight {
+        id: 1000 + i,
+        position: numbers.point(-5.0, 5.0),
+        color: Vec3::splat(numbers.unit()),
+        cone: None,
+    }));
+    scene.world.lights = Arc::new(lights);
+    scene.world = scene.world.clone().with_needs();
+    check(&scene, "many lights, most left to chance", 60);
 }
 
 #[test]

@@ -130,16 +130,14 @@ pub(super) fn parts(bytes: &[u8]) -> Result<Parts<'_>, Problem> {
     let (Some(version), Some(length)) = (number(rest, 0), number(rest, 4)) else {
         return Err(Problem::Truncated("the header is incomplete".into()));
     };
-    let length = length as usize;
     if version == 1 {
         let text = "is glTF 1.0, and only 2.0 is read; export it again";
         return Err(Problem::Malformed(text.into()));
     }
-    if length < HEADER {
-        let text = format!("its header says that the file is {length} bytes long");
-        return Err(Problem::Malformed(text));
-    }
-    let mut fits = length <= bytes.len();
+    // A program that writes the length before it knows it may leave 0 there.
+    let told = Some(length as usize).filter(|&length| length >= HEADER);
+    let length = told.unwrap_or(bytes.len());
+    let mut fits = told.is_some() && length <= bytes.len();
     let (mut json, mut blob) = (None, None);
     let mut rest = &bytes[HEADER..];
     while !rest.is_empty() {

@@ -4,6 +4,7 @@
 use serde_json::Value;
 use std::cell::RefCell;
 use std::collections::HashSet;
+use std::ops::RangeInclusive;
 
 /// What says nothing about what is shown, or says it twice.
 const IRRELEVANT: [&str; 10] = [
@@ -113,6 +114,26 @@ impl<'a> Json<'a> {
     /// An index or a count under a key.
     pub fn index(self, key: &str) -> Option<usize> {
         self.get_as(key, Self::whole)
+    }
+
+    /// An index under a key that is one of these: others mean nothing.
+    pub fn one_of(self, key: &str, known: &[usize]) -> Option<usize> {
+        self.get_as(key, |json| {
+            json.whole().filter(|index| known.contains(index))
+        })
+    }
+
+    /// Whether a number under a key, or one of a list there, lies outside a range. It is not read by that.
+    pub fn is_outside(self, key: &str, range: RangeInclusive<f64>) -> bool {
+        let Some(value) = self.value.get(key) else {
+            return false;
+        };
+        let list = value.as_array().map(Vec::as_slice);
+        let mut numbers = list
+            .unwrap_or(std::slice::from_ref(value))
+            .iter()
+            .filter_map(Value::as_f64);
+        numbers.any(|number| !range.contains(&number))
     }
 
     /// A number under a key, finite.

@@ -32,6 +32,7 @@ pub(super) enum Lamp {
 
 /// A light; `None` where it is of no kind that there is, or its numbers make no sense.
 pub(super) fn lamp_of(light: Json) -> Option<Lamp> {
+    let kind = light.text("type")?;
     let [r, g, b] = light.numbers("color").unwrap_or([1.0; 3]);
     let intensity = light.number("intensity").unwrap_or(1.0) / LUMENS_PER_WATT;
     let numbers = [r, g, b, intensity];
@@ -39,7 +40,7 @@ pub(super) fn lamp_of(light: Json) -> Option<Lamp> {
         return None;
     }
     let color = LinearRgba::rgb(r, g, b);
-    let cone = match light.text("type")? {
+    let cone = match kind {
         "directional" => {
             return Some(Lamp::Directional(DirectionalLamp {
                 color,
@@ -49,11 +50,8 @@ pub(super) fn lamp_of(light: Json) -> Option<Lamp> {
         }
         "point" => None,
         "spot" => {
-            let spot = light.get("spot");
-            let angle = |key| spot.and_then(|spot| spot.number(key));
-            let outer = angle("outerConeAngle").unwrap_or(FRAC_PI_4);
+            let Cone { inner, outer } = cone_of(light);
             let outer = outer.clamp(0.0, FRAC_PI_2);
-            let inner = angle("innerConeAngle").unwrap_or(0.0);
             let inner = inner.clamp(0.0, outer);
             Some(Cone { inner, outer })
         }
@@ -64,6 +62,24 @@ pub(super) fn lamp_of(light: Json) -> Option<Lamp> {
         intensity,
         cone,
     }))
+}
+
+/// The cone of a spot as the file says it, which may be none.
+fn cone_of(light: Json) -> Cone {
+    let spot = light.get("spot");
+    let angle = |key| spot.and_then(|spot| spot.number(key));
+    Cone {
+        inner: angle("innerConeAngle").unwrap_or(0.0),
+        outer: angle("outerConeAngle").unwrap_or(FRAC_PI_4),
+    }
+}
+
+/// Whether a light is a spot whose angles are outside glTF's ranges. A right angle may be rounded up.
+pub(super) fn has_no_cone(light: Json) -> bool {
+    const ROUNDED: f32 = 1e-5;
+    let Cone { inner, outer } = cone_of(light);
+    let is_cone = 0.0 <= inner && inner <= outer && outer <= FRAC_PI_2 + ROUNDED;
+    light.text("type") == Some("spot") && !is_cone
 }
 
 /// A camera; `None` where its numbers make no sense.

@@ -78,6 +78,9 @@ pub(super) fn phong_of(document: &Document, index: usize, material: Json, name: 
         Some(glossy) => glossy.numbers("diffuseFactor"),
         None => pbr.and_then(|pbr| pbr.numbers("baseColorFactor")),
     };
+    if has_numbers_outside(material) {
+        note("numbers outside glTF's ranges, in", "clamped");
+    }
     let [red, green, blue, alpha] = base.unwrap_or([1.0; 4]).map(unit);
     let base = [red, green, blue];
     // Read in any case: what stands beside the exact numbers is not passed over.
@@ -152,6 +155,27 @@ pub(super) fn phong_of(document: &Document, index: usize, material: Json, name: 
     }
     phong.diffuse_map = base_picture;
     phong
+}
+
+/// Whether a number of a material is clamped.
+fn has_numbers_outside(material: Json) -> bool {
+    let of = |extension| material.extension(extension);
+    let pbr = material.get("pbrMetallicRoughness");
+    let glossy = of(SPECULAR_GLOSSINESS);
+    let parts = [
+        (pbr, "baseColorFactor"),
+        (pbr, "metallicFactor"),
+        (pbr, "roughnessFactor"),
+        (glossy, "diffuseFactor"),
+        (glossy, "specularFactor"),
+        (glossy, "glossinessFactor"),
+        (of("KHR_materials_specular"), "specularFactor"),
+        (of("KHR_materials_transmission"), "transmissionFactor"),
+    ];
+    let is_outside =
+        |(part, key): (Option<Json>, _)| part.is_some_and(|part| part.is_outside(key, 0.0..=1.0));
+    let below_0 = |key| material.is_outside(key, 0.0..=f64::INFINITY);
+    parts.into_iter().any(is_outside) || below_0("emissiveFactor") || below_0("alphaCutoff")
 }
 
 /// The material, and how much of it is metal.

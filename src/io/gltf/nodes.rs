@@ -5,7 +5,7 @@ use super::super::model::{Model, Node};
 use super::accessors::floats;
 use super::document::Document;
 use super::json::Json;
-use super::lamps::{Lamp, camera_of, lamp_of};
+use super::lamps::{Lamp, camera_of, has_no_cone, lamp_of};
 use super::material::default_phong;
 use super::placement::{Placement, placement_of};
 use super::primitive::read_primitive;
@@ -248,9 +248,10 @@ impl Reader<'_> {
                     }
                 }
             }
+            let material = self.material(json, &name);
             out.push(Node {
                 mesh: Some(name),
-                material: Some(self.material(json)),
+                material: Some(material),
                 ..Node::default()
             });
         }
@@ -275,11 +276,16 @@ impl Reader<'_> {
     }
 
     /// The material of a primitive; white and rough where it has none.
-    fn material(&mut self, primitive: Json) -> usize {
+    fn material(&mut self, primitive: Json, name: &str) -> usize {
         let count = self.document.json().list("materials").len();
         let own = primitive.index("material");
-        if let Some(own) = own.filter(|&own| own < count) {
-            return own;
+        match own {
+            Some(own) if own < count => return own,
+            Some(own) => {
+                let what = format!("material {own}, which there is not");
+                self.document.note(name, what, "white and rough");
+            }
+            None => {}
         }
         let materials = &mut self.model.materials;
         *self.white.get_or_insert_with(|| {
@@ -368,6 +374,9 @@ fn light_of(document: &Document, light: Json, note: &impl Fn(&str, &'static str)
     }
     if light.and_then(|light| light.get("range")).is_some() {
         note("the range of the light in", "light has none here");
+    }
+    if light.is_some_and(has_no_cone) {
+        note("angles that are none of a cone, of the light in", "clamped");
     }
     Some(content)
 }

@@ -41,6 +41,9 @@ pub(super) fn placement_of(node: Json, note: &impl Fn(&str, &'static str)) -> Pl
     }
 }
 
+/// How far the square of a rotation's length is from 1 where it was rounded, to bytes at worst.
+const ROUNDED: f32 = 0.03;
+
 fn transform_of(node: Json, note: &impl Fn(&str, &'static str)) -> Transform {
     Transform {
         translation: node.numbers("translation").unwrap_or([0.0; 3]).into(),
@@ -49,6 +52,9 @@ fn transform_of(node: Json, note: &impl Fn(&str, &'static str)) -> Transform {
             if turn.length_squared() == 0.0 {
                 note("a rotation of zeros, of", "not turned");
                 return Quat::IDENTITY;
+            }
+            if (turn.length_squared() - 1.0).abs() > ROUNDED {
+                note("a rotation that is not of length 1, of", "made so");
             }
             turn.normalize()
         }),

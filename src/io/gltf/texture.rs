@@ -56,6 +56,8 @@ pub(super) fn alpha_of(picture: &TextureSource) -> TextureSource {
 
 const NEAREST: usize = 9728;
 const LINEAR: usize = 9729;
+/// Both, and those two with mipmaps.
+const MIN_FILTERS: [usize; 6] = [NEAREST, LINEAR, 9984, 9985, 9986, 9987];
 const REPEAT: usize = 10_497;
 const CLAMP_TO_EDGE: usize = 33_071;
 const MIRRORED_REPEAT: usize = 33_648;
@@ -75,18 +77,19 @@ fn sampled(document: &Document, texture: usize, path: String) -> TextureSource {
         }
         return TextureSource::new(path);
     };
-    let wrap = |key| match sampler.index(key) {
+    // What none of glTF's modes is stays unread, and is told so.
+    let wrap = |key| match sampler.one_of(key, &[REPEAT, CLAMP_TO_EDGE, MIRRORED_REPEAT]) {
         Some(CLAMP_TO_EDGE) => Wrap::Clamp,
         Some(MIRRORED_REPEAT) => Wrap::Mirror,
         _ => Wrap::Repeat,
     };
     // How a picture is made smaller is a setting of the render.
-    sampler.index("minFilter");
+    sampler.one_of("minFilter", &MIN_FILTERS);
     TextureSource {
         path,
         wrap_u: wrap("wrapS"),
         wrap_v: wrap("wrapT"),
-        filter: match sampler.index("magFilter") {
+        filter: match sampler.one_of("magFilter", &[NEAREST, LINEAR]) {
             Some(NEAREST) => MapFilter::Nearest,
             Some(LINEAR) => MapFilter::Linear,
             _ => MapFilter::Setting,

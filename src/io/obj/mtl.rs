@@ -136,6 +136,10 @@ impl Reader<'_, '_> {
                 if known.is_none() && value.is_some() {
                     self.note("an `illum` that is none of 0 to 10", LEFT_OUT);
                 }
+                if known == Some(10) {
+                    let what = "an `illum` of 10, shadows on what is not seen";
+                    self.note(what, "its surface is seen");
+                }
                 material.illum = known.or(material.illum);
             }
             b"map_kd" => material.diffuse_map = self.map("map_Kd", rest),
@@ -357,7 +361,7 @@ impl Reader<'_, '_> {
             "mm" => numbers[0] == Some(0.0) && matches!(numbers[1], None | Some(1.0)),
             "clamp" => {
                 map.is_clamped = first.eq_ignore_ascii_case("on");
-                true
+                map.is_clamped || first.eq_ignore_ascii_case("off")
             }
             "cc" => first.eq_ignore_ascii_case("off"),
             "bm" if matches!(word, "norm" | "map_Bump") => {

@@ -120,7 +120,7 @@ fn figures(ray: &TracedRay, rays: &RayTree, names: &Names) -> Vec<Figure> {
     if ray.chance != 1.0 {
         lines.push((
             "chance",
-            "The probability with which the path went this way",
+            "The probability with which the path went this way, or with which so faint a light is asked for",
             ray.chance.to_string(),
         ));
     }
