@@ -30,6 +30,8 @@ pub enum Over {
     Entity,
     /// The view, where nothing is.
     Nothing,
+    /// The view, whatever is there.
+    Pixel,
     /// A debug ray.
     Ray,
     /// A box of a tree.

@@ -104,6 +104,11 @@ impl Notices {
         }
     }
 
+    /// Takes away what was said of a file that is not open any more; it can be read again.
+    pub fn close_notes(&mut self) {
+        self.shown.retain(|notice| notice.lines.is_empty());
+    }
+
     /// Takes all away.
     pub fn close_all(&mut self) {
         self.shown.clear();
@@ -114,5 +119,21 @@ impl Notices {
         if index < self.shown.len() {
             self.shown.remove(index);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn notes_of_a_file_go_when_another_is_opened_and_can_be_read_again() {
+        let mut notices = Notices::default();
+        notices.notes("house.obj", vec!["has no camera".into()]);
+        notices.fault("roof.png: cannot be read");
+        notices.close_notes();
+        let texts = |all: &[Notice]| all.iter().map(|one| one.text.clone()).collect::<Vec<_>>();
+        assert_eq!(texts(notices.shown()), ["roof.png: cannot be read"]);
+        assert_eq!(texts(notices.kept())[0], "house.obj: one note");
     }
 }

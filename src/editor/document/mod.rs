@@ -161,6 +161,7 @@ pub fn adopt(world: &mut World, name: impl Into<String>, path: Option<&Path>) {
     let mut document = world.resource_mut::<Document>();
     document.opened(name.into(), path, state);
     document.question = None;
+    world.resource_mut::<Notices>().close_notes();
     world.trigger(SceneOpened);
 }
 

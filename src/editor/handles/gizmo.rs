@@ -14,12 +14,13 @@ use super::snap::{Mover, landing_at};
 use super::typed::{TypedDrag, typed_place};
 use super::{ActiveGrip, Tool, Tools};
 use crate::scene::SceneId;
+use bevy::ecs::change_detection::DetectChangesMut;
 use bevy::ecs::component::Component;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::name::Name;
 use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
-use bevy::ecs::system::{Commands, Res, ResMut};
+use bevy::ecs::system::{Commands, Query, Res, ResMut};
 use bevy::ecs::world::World;
 use bevy::gizmos::transform_gizmo::{
     TransformGizmoAxis, TransformGizmoFocus, TransformGizmoMode, TransformGizmoSettings,
@@ -51,7 +52,7 @@ impl GizmoDrag {
 }
 
 #[derive(Clone)]
-struct Drag {
+pub(super) struct Drag {
     start: Transform,
     /// The handle, and where it points to in the world.
     handle: Option<(TransformGizmoAxis, Vec3)>,
@@ -103,7 +104,7 @@ pub(super) fn set_up(
     tools: Res<Tools>,
     eye: Res<Eye>,
     viewport: Res<Viewport>,
-    stand_in: bevy::ecs::system::Query<&Transform, With<StandIn>>,
+    stand_in: Query<&Transform, With<StandIn>>,
     mut settings: ResMut<TransformGizmoSettings>,
 ) {
     settings.mode = match tools.tool {
@@ -186,7 +187,8 @@ pub(super) fn place_stand_in(world: &mut World) {
     }
 }
 
-fn wanted_place(world: &mut World) -> Option<Transform> {
+/// Where the stand-in for the selection belongs; `None` where nothing is selected that can be moved.
+pub(super) fn wanted_place(world: &mut World) -> Option<Transform> {
     let tools = world.resource::<Tools>().clone();
     if let Some(grip) = active_grip(world, &tools) {
         return grips::place(world, grip).map(Transform::from_translation);
@@ -228,7 +230,9 @@ pub(super) fn carry(world: &mut World) {
     let drag = match (active, drag) {
         (false, None) => return,
         (true, None) => {
-            let drag = begin(world);
+            let start = world.resource::<TransformGizmoState>().start_transform;
+            let handle = handle(world, &start);
+            let drag = begin(world, start, handle);
             world.resource_mut::<GizmoDrag>().0 = Some(drag.clone());
             drag
         }
@@ -254,6 +258,20 @@ pub(super) fn carry(world: &mut World) {
     }
 }
 
+/// Arrows stand where the selection is, not where the pointer is already: Bevy moves the stand-in after the selection was
+/// moved, and without a look at what was typed or snapped to.
+pub(super) fn show_carried(
+    drag: Res<GizmoDrag>,
+    mut stand_ins: Query<&mut GlobalTransform, With<StandIn>>,
+) {
+    let Some(drag) = &drag.0 else {
+        return;
+    };
+    for mut place in &mut stand_ins {
+        place.set_if_neq(drag.carried.into());
+    }
+}
+
 /// Where other objects put the stand-in: anywhere, or along the arrow that is dragged.
 fn snapped(world: &mut World, drag: &Drag) -> Option<Transform> {
     let (axis, direction) = drag.handle.filter(|_| drag.tool == Tool::Move)?;
@@ -274,9 +292,12 @@ fn handle(world: &mut World, start: &Transform) -> Option<(TransformGizmoAxis, V
     Some((axis, axis_direction(axis, rotation, &eye).normalize()))
 }
 
-fn begin(world: &mut World) -> Drag {
-    let start = world.resource::<TransformGizmoState>().start_transform;
-    let handle = handle(world, &start);
+/// Takes hold of the selection by a handle: the axis, and where it points to in the world.
+pub(super) fn begin(
+    world: &mut World,
+    start: Transform,
+    handle: Option<(TransformGizmoAxis, Vec3)>,
+) -> Drag {
     world.resource_mut::<TypedDrag>().clear();
     let tools = world.resource::<Tools>().clone();
     let verb = match tools.tool {
@@ -328,7 +349,8 @@ fn begin(world: &mut World) -> Drag {
     }
 }
 
-fn apply(world: &mut World, drag: &Drag, now: &Transform) {
+/// Does to what is dragged what is done to the stand-in that comes to be there.
+pub(super) fn apply(world: &mut World, drag: &Drag, now: &Transform) {
     let start = &drag.start;
     let keys = world.resource::<ButtonInput<KeyCode>>();
     let evenly = keys.any_pressed([KeyCode::ShiftLeft, KeyCode::ShiftRight])
@@ -406,6 +428,37 @@ pub(in super::super) fn cancel(world: &mut World) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn arrows_stand_where_the_selection_was_carried_to_until_the_drag_ends() {
+        use bevy::ecs::system::RunSystemOnce;
+        let mut world = World::new();
+        let pointed = Transform::from_xyz(3.0, 0.0, 0.0);
+        let carried = Transform::from_xyz(2.0, 0.0, 0.0);
+        let drag = |carried| Drag {
+            start: Transform::IDENTITY,
+            handle: None,
+            carried,
+            tool: Tool::Move,
+            moved: Moved::Bodies(Vec::new()),
+            mover: Mover {
+                entities: Vec::new(),
+                room: None,
+            },
+        };
+        world.insert_resource(GizmoDrag(Some(drag(carried))));
+        let place = GlobalTransform::from(pointed);
+        let stand_in = world.spawn((StandIn, pointed, place)).id();
+        let mut shown = |world: &mut World| {
+            world.run_system_once(show_carried).unwrap();
+            *world.get::<GlobalTransform>(stand_in).unwrap()
+        };
+        assert_eq!(shown(&mut world), carried.into());
+        world.resource_mut::<GizmoDrag>().0 = Some(drag(pointed));
+        assert_eq!(shown(&mut world), pointed.into());
+        world.insert_resource(GizmoDrag(None));
+        assert_eq!(shown(&mut world), pointed.into());
+    }
 
     #[test]
     fn scaling_evenly_follows_the_axis_that_was_dragged() {

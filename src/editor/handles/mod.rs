@@ -11,6 +11,7 @@ mod focus;
 mod gizmo;
 mod grips;
 mod hold;
+mod keyed;
 mod snap;
 mod surface;
 mod typed;
@@ -20,17 +21,20 @@ pub(super) use focus::{focus, new_lens};
 pub(super) use gizmo::cancel;
 pub(super) use grips::{Grip, GripDrag, grip_at, grips_of_selection};
 pub(super) use hold::take_hold;
+pub(super) use keyed::{KeyedDrag, forget_keyed, note_command, type_axis_and_number};
 pub use snap::SnapTo;
 pub(super) use typed::{TypedDrag, type_into_drag};
 
 use super::command::{AddCommands, Command, Over, State, commands};
 use super::schedule::{Dispatch, EditorUpdate};
 use crate::view::HandleCameraPlugin;
-use bevy::app::{App, Plugin, PostUpdate, Startup};
+use bevy::app::{App, Plugin, PostUpdate, Startup, TransformGizmoRenderStep};
+use bevy::camera::CameraUpdateSystems;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy::gizmos::transform_gizmo::TransformGizmoSystems;
 use bevy::prelude::IntoScheduleConfigs;
+use bevy::transform::TransformSystems;
 use bevy_egui::EguiPrimaryContextPass;
 use std::f32::consts::PI;
 
@@ -101,6 +105,7 @@ impl Plugin for HandlesPlugin {
             .init_resource::<ActiveGrip>()
             .init_resource::<gizmo::GizmoDrag>()
             .init_resource::<TypedDrag>()
+            .init_resource::<KeyedDrag>()
             .add_systems(Startup, gizmo::spawn_stand_in)
             .add_systems(
                 EditorUpdate,
@@ -119,7 +124,12 @@ impl Plugin for HandlesPlugin {
             )
             .add_systems(
                 PostUpdate,
-                gizmo::forget_hover.before(bevy::camera::CameraUpdateSystems),
+                (
+                    gizmo::forget_hover.before(CameraUpdateSystems),
+                    gizmo::show_carried
+                        .after(TransformSystems::Propagate)
+                        .before(TransformGizmoRenderStep),
+                ),
             )
             .add_systems(EguiPrimaryContextPass, grips::draw_grips);
     }
@@ -127,11 +137,11 @@ impl Plugin for HandlesPlugin {
 
 fn commands() -> Vec<Command> {
     commands! {
-        "tool.move" "Move" ["W"] "Drag the arrows to move the selection; a number that is typed meanwhile says how far"
+        "tool.move" "Move" ["W"] "Drag the arrows to move the selection; a number that is typed meanwhile says how far. Without the pointer: then X, Y or Z, a number, Enter"
             => |world| world.resource_mut::<Tools>().tool = Tool::Move; button("tools", "Move"); state(|world| has(world, Tool::Move)),
-        "tool.turn" "Turn" ["E"] "Drag the rings to turn the selection; a number that is typed meanwhile says by how many degrees"
+        "tool.turn" "Turn" ["E"] "Drag the rings to turn the selection; a number that is typed meanwhile says by how many degrees. Without the pointer: then X, Y or Z, a number, Enter"
             => |world| world.resource_mut::<Tools>().tool = Tool::Turn; button("tools", "Turn"); state(|world| has(world, Tool::Turn)),
-        "tool.scale" "Scale" ["T"] "Drag the cubes to scale the selection; a number that is typed meanwhile says how many times"
+        "tool.scale" "Scale" ["T"] "Drag the cubes to scale the selection; a number that is typed meanwhile says how many times. Without the pointer: then X, Y or Z, a number, Enter"
             => |world| world.resource_mut::<Tools>().tool = Tool::Scale; button("tools", "Scale"); state(|world| has(world, Tool::Scale)),
         "tool.local" "World or local axes" ["L"] "Whether handles follow the world's axes or the object's own"
             => |world| flip(&mut world.resource_mut::<Tools>().local); button("tools", "Local"); state(|world| State::switch(world.resource::<Tools>().local)),

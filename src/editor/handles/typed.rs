@@ -26,9 +26,52 @@ impl TypedDrag {
         *self = Self::default();
     }
 
-    /// What to show of it; nothing where nothing was typed.
+    /// Waits for a number, and says for which.
+    pub fn ask(&mut self, label: String) {
+        *self = Self {
+            text: String::new(),
+            label,
+        };
+    }
+
+    pub fn push(&mut self, letters: &str) {
+        if self.text.len() + letters.len() <= MOST {
+            self.text.push_str(letters);
+        }
+    }
+
+    pub fn pop(&mut self) {
+        self.text.pop();
+    }
+
+    /// What to show of it; nothing where nothing was typed nor asked for.
     pub fn shown(&self) -> Option<String> {
-        (!self.text.is_empty()).then(|| format!("{}: {}", self.label, self.text))
+        (!self.label.is_empty()).then(|| format!("{}: {}", self.label, self.text))
+    }
+
+    /// Why a tool does nothing with it.
+    pub fn not_read(&self, tool: Tool) -> String {
+        let wanted = match tool {
+            Tool::Move => "a length",
+            Tool::Turn => "an angle",
+            Tool::Scale => "a factor",
+        };
+        format!("“{}” is not {wanted}", self.text)
+    }
+}
+
+/// What is done along or about which axis.
+pub(super) fn label(tool: Tool, axis: Option<Axis>) -> String {
+    let (verb, along) = match tool {
+        Tool::Move => ("Move", "along"),
+        Tool::Turn => ("Turn", "about"),
+        Tool::Scale => ("Scale", "along"),
+    };
+    match axis {
+        Some(Axis::X) => format!("{verb} {along} x"),
+        Some(Axis::Y) => format!("{verb} {along} y"),
+        Some(Axis::Z) => format!("{verb} {along} z"),
+        Some(Axis::View) | None => verb.into(),
     }
 }
 
@@ -53,27 +96,14 @@ pub(in super::super) fn type_into_drag(world: &mut World, input: &KeyboardInput)
             world.resource_mut::<TransformGizmoState>().active = false;
         }
         (_, KeyCode::Backspace) => {
-            typed.text.pop();
+            typed.pop();
+            if typed.text.is_empty() {
+                typed.clear();
+            }
         }
-        (Key::Character(letters), _) if typed.text.len() + letters.len() <= MOST => {
-            typed.text.push_str(letters);
-            let verb = match tool {
-                Tool::Move => "Move",
-                Tool::Turn => "Turn",
-                Tool::Scale => "Scale",
-            };
-            let along = match axis {
-                Some(Axis::X) => " along x",
-                Some(Axis::Y) => " along y",
-                Some(Axis::Z) => " along z",
-                _ => "",
-            };
-            let along = if tool == Tool::Turn {
-                along.replace("along", "about")
-            } else {
-                along.into()
-            };
-            typed.label = format!("{verb}{along}");
+        (Key::Character(letters), _) => {
+            typed.push(letters);
+            typed.label = label(tool, axis);
         }
         _ => return false,
     }

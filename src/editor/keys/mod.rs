@@ -14,7 +14,7 @@ pub(super) use name::{letter_key, named_key};
 
 use super::action::Action;
 use super::command::CommandTable;
-use super::handles::type_into_drag;
+use super::handles::{note_command, type_axis_and_number, type_into_drag};
 use super::notice::Notices;
 use super::pointer::{self, PointerUse};
 use super::preferences::Preferences;
@@ -123,7 +123,10 @@ fn press_keys(
             shift: modifiers.shift,
             key: meant_key(&input),
         };
-        if record(world, keys) || !keys.ctrl && type_into_drag(world, &input) {
+        let types = |world: &mut World| {
+            type_into_drag(world, &input) || type_axis_and_number(world, keys.key, &input)
+        };
+        if record(world, keys) || !keys.ctrl && types(world) {
             continue;
         }
         let viewport = world.resource::<Viewport>();
@@ -201,6 +204,7 @@ fn press(world: &mut World, keys: Keys, repeats: bool) {
     };
     if !repeats || command.repeats {
         let id = command.id.clone();
+        note_command(world, &id);
         world.write_message(Action::Run(id));
     }
 }

@@ -1,11 +1,12 @@
 //! Why a pixel is as it is, in one sentence beside it; and what the pointer is waited for with.
 
+use super::context_menu::ContextMenu;
 use super::says::Says;
 use crate::editor::action::Action;
 use crate::editor::document::SceneOpened;
 use crate::editor::inspection::DebugRay;
-use crate::editor::pick::to_points;
-use crate::editor::pointer::{Armed, PixelAsked};
+use crate::editor::pick::{self, to_points};
+use crate::editor::pointer::{Armed, PixelAsked, ask_pixel};
 use crate::editor::preferences::Preferences;
 use crate::editor::selection::Escaped;
 use crate::editor::trees::show_preset;
@@ -17,13 +18,15 @@ use bevy::ecs::observer::On;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Res, ResMut};
 use bevy::ecs::world::World;
-use bevy::math::Vec2;
+use bevy::math::{Ray3d, Vec2};
 use bevy_egui::egui::{
     self, Align2, Area, CursorIcon, Id, Label, Order, Rect, RichText, Stroke, vec2,
 };
 
 /// Points.
 const WIDTH: f32 = 300.0;
+/// How far away it is where a ray met nothing.
+const FAR: f32 = 1e5;
 
 /// What was asked and is being answered.
 #[derive(Resource, Default)]
@@ -43,23 +46,29 @@ impl Answer {
 /// A pixel that was asked about.
 struct Asked {
     question: Question,
-    /// Logical pixels of the window.
+    /// Logical pixels of the window, when it was asked.
     at: Vec2,
+    /// What the pixel saw from there.
+    ray: Option<Ray3d>,
     /// Which of the debug ray's shots it is.
     shots: u64,
     /// The sentence, of which rays with which names.
     known: Option<((u64, u64), String)>,
 }
 
-/// The next click in the view asks this.
-pub(super) fn arm(world: &mut World, question: Question) {
-    *world.resource_mut::<Armed>() = Armed::Why(question);
+/// Asks this of the pixel whose menu it was chosen from; from anywhere else the next click in the view does.
+pub(super) fn ask(world: &mut World, question: Question) {
+    match world.resource::<ContextMenu>().chosen_at() {
+        Some(at) => ask_pixel(world, question, at),
+        None => *world.resource_mut::<Armed>() = Armed::Why(question),
+    }
 }
 
 pub(super) fn note_question(asked: On<PixelAsked>, ray: Res<DebugRay>, mut answer: ResMut<Answer>) {
     answer.0 = Some(Asked {
         question: asked.question,
         at: asked.at,
+        ray: None,
         shots: ray.shots(),
         known: None,
     });
@@ -107,6 +116,10 @@ pub(super) fn answer_ui(
     let Some(asked) = &mut shown.0 else {
         return false;
     };
+    let offset = world.resource::<Viewport>().offset(asked.at);
+    if asked.ray.is_none() {
+        asked.ray = pick::ray(world, asked.at - offset);
+    }
     let ray = world.resource::<DebugRay>();
     if ray.shots() != asked.shots {
         shown.0 = None;
@@ -126,7 +139,13 @@ pub(super) fn answer_ui(
     let met = camera
         .and_then(|ray| ray.hit)
         .map(|hit| SceneId(hit.object));
-    let at = to_points(context, asked.at);
+    // The view may have moved since: the answer stays with what it is about.
+    let far = camera.map(|ray| ray.t * ray.direction.length());
+    let far = far.filter(|far| far.is_finite()).unwrap_or(FAR);
+    let seen = asked.ray.map(|ray| ray.get_point(far));
+    let seen = seen.and_then(|seen| pick::to_window(world, seen));
+    let at = seen.map_or(asked.at, |seen| seen + offset);
+    let at = to_points(context, at);
     let below = at.y < free.center().y;
     let right = at.x < free.center().x;
     let pivot = match (right, below) {

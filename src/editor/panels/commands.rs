@@ -34,11 +34,11 @@ pub(super) fn commands() -> Vec<Command> {
         "view.only-picture" "Only the picture" ["Ctrl+Space"] "Takes the panels away, so that the picture fills the window; again, or Escape, brings them back"
             => |world| flip(&mut world.resource_mut::<OnlyPicture>().0); menu("View", 5); over(&[Over::Nothing]),
         "why.black" "Why is this pixel black?" ["Shift+W"] "The next click in the view answers in a sentence what is in the way of the pixel's light"
-            => |world| answer::arm(world, Question::Black); menu("View/Rays and trees", 1); button("questions", "Why black?"); over(&[Over::Nothing, Over::Entity]),
+            => |world| answer::ask(world, Question::Black); menu("View/Rays and trees", 1); button("questions", "Why black?"); over(&[Over::Pixel]),
         "why.noisy" "Why is this pixel noisy?" [] "The next click in the view answers in a sentence what the pixel's samples differ in"
-            => |world| answer::arm(world, Question::Noisy); menu("View/Rays and trees", 1); over(&[Over::Nothing, Over::Entity]),
+            => |world| answer::ask(world, Question::Noisy); menu("View/Rays and trees", 1); over(&[Over::Pixel]),
         "why.color" "Why this colour?" [] "The next click in the view answers in a sentence what the pixel's colour is mixed of"
-            => |world| answer::arm(world, Question::Color); menu("View/Rays and trees", 1); over(&[Over::Nothing, Over::Entity]),
+            => |world| answer::ask(world, Question::Color); menu("View/Rays and trees", 1); over(&[Over::Pixel]),
         "help.keys" "Keys and mouse" ["F1", "?"] "Shows every key, and changes them"
             => |world| toggle(world, Dialog::Keys); menu("Help", 0),
         "help.palette" "Find a command…" ["Ctrl+P"] "Lists all commands, to be found by a few letters of their names"

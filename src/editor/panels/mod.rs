@@ -22,6 +22,7 @@
 //! | [`typed_drag`] | the number that is typed while a handle is dragged |
 //! | [`told`], [`readout`] | what is under the pointer: a line of the gizmos, a pixel |
 //! | [`context_menu`], [`palette`] | the table of commands: what fits a right click, and all of it |
+//! | [`screen_reader`] | nothing: tells the platform's screen readers what the others draw |
 //! | [`mixer`] | what each light adds, and a mix of them, in a window over the picture |
 //! | [`dialogs`] | what is in front of everything |
 
@@ -54,6 +55,7 @@ mod readout;
 mod reflected;
 mod save_form;
 mod says;
+mod screen_reader;
 mod several;
 mod state;
 mod status;
@@ -101,7 +103,7 @@ impl Plugin for PanelsPlugin {
         if !app.is_plugin_added::<EguiPlugin>() {
             app.add_plugins(EguiPlugin::default());
         }
-        app.add_plugins(PreferencesPlugin)
+        app.add_plugins((PreferencesPlugin, screen_reader::ScreenReaderPlugin))
             .init_resource::<Outline>();
         add_panels(app);
         order_pass(app);

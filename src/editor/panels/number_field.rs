@@ -384,7 +384,7 @@ impl NumberField<'_> {
         }
     }
 
-    /// All of its digits.
+    /// All of its digits that are meant: in the eighth of a computed one there is only what rounding left.
     fn text_to_edit(self, number: f64) -> String {
         let unit = self.quantity.unit.kept_per_shown();
         match (unit == 1.0, number.abs()) {
@@ -392,6 +392,7 @@ impl NumberField<'_> {
             (true, size) if size == 0.0 || (1e-5..1e9).contains(&size) || self.is_whole => {
                 match self.is_whole {
                     true => format!("{number}"),
+                    false if (1e-4..1e7).contains(&size) => significant(number, 7),
                     false => format!("{}", number as f32),
                 }
             }

@@ -33,6 +33,9 @@ const GRAB: f32 = 5.0;
 /// Parts of a region that are too small to be meant.
 const LEAST_REGION: f32 = 0.01;
 
+/// An end of a palette; between any two of them the distance is a number.
+const END: Quantity = Quantity::within(-1e30, 1e30, "");
+
 /// Dragging a frame that limits the traced view to a region.
 #[derive(Resource, Default)]
 pub(super) struct RegionDrag {
@@ -293,9 +296,8 @@ fn legend_body(
         .into_iter()
         .enumerate()
         {
-            let values = Quantity::ANY.step(speed.into());
-            if number(ui, says, &mut ends[i], values) && ends[0] < ends[1] {
-                entered = Some(ends);
+            if number(ui, says, &mut ends[i], END.step(speed.into())) {
+                entered = Some(in_order(ends, i, scale.high - scale.low));
             }
         }
         ui.label(scale.unit);
@@ -314,6 +316,17 @@ fn legend_body(
     };
     ui.weak(text);
     entered.filter(|[low, high]| low < high && low.is_finite() && high.is_finite())
+}
+
+/// The end that was entered stays, and takes the other one along where it went past it.
+fn in_order([low, high]: [f32; 2], entered: usize, span: f32) -> [f32; 2] {
+    // As far as numbers of that size can be told apart.
+    let span = span.max(1e-3 * low.abs().max(high.abs()));
+    match (low < high, entered) {
+        (true, _) => [low, high],
+        (false, 0) => [low, low + span],
+        (false, _) => [high - span, high],
+    }
 }
 
 /// Where the pointer is over the picture, whichever of two views of it that is: (0, 0) at the top left, (1, 1) opposite.
@@ -380,5 +393,45 @@ pub(super) fn value_under_pointer(
             };
             Some(value.into())
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::panels::tests::type_nonsense;
+
+    #[test]
+    fn nothing_that_is_typed_makes_a_palette_without_a_range() {
+        let scale = |range: &Option<[f32; 2]>| {
+            let [low, high] = range.unwrap_or([0.0, 40.0]);
+            Scale {
+                low,
+                high,
+                unit: "nodes",
+                low_is_bright: false,
+            }
+        };
+        let mut range = None;
+        let fields = type_nonsense(
+            &mut range,
+            |ui, range| *range = legend_body(ui, (View::Nodes, &scale(range)), *range, None),
+            |range, text| {
+                let [low, high] = range.unwrap_or([0.0, 40.0]);
+                let is_range = low < high && (high - low).is_finite();
+                assert!(is_range, "`{text}` gives {low} to {high}");
+            },
+        );
+        assert_eq!(fields, 2);
+        assert!(range.is_some(), "some of it is a number");
+    }
+
+    #[test]
+    fn an_end_past_the_other_takes_it_along() {
+        assert_eq!(in_order([3.0, 9.0], 0, 40.0), [3.0, 9.0]);
+        assert_eq!(in_order([50.0, 40.0], 0, 40.0), [50.0, 90.0]);
+        assert_eq!(in_order([0.0, -5.0], 1, 40.0), [-45.0, -5.0]);
+        let [low, high] = in_order([1e9, 40.0], 0, 40.0);
+        assert!(low == 1e9 && high > low);
     }
 }

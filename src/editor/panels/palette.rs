@@ -5,6 +5,7 @@ use crate::editor::action::Action;
 use crate::editor::command::{Command, CommandTable, State, shortcut};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
+use bevy_egui::egui::text::{LayoutJob, TextWrapping};
 use bevy_egui::egui::{
     self, Align2, FontId, Id, Key, Modal, Modifiers, Rect, ScrollArea, Sense, TextEdit, TextStyle,
     Ui, WidgetInfo, WidgetType, pos2, vec2,
@@ -164,13 +165,13 @@ fn row_ui(
         .x
         + 14.0;
     let room = Rect::from_x_y_ranges(left..=right.max(left), rect.y_range());
-    painter.with_clip_rect(room.intersect(ui.clip_rect())).text(
-        pos2(left, y),
-        Align2::LEFT_CENTER,
-        says,
-        small,
-        ink.gamma_multiply(0.7),
-    );
+    let mut says = LayoutJob::simple_singleline(says.to_owned(), small, ink.gamma_multiply(0.7));
+    says.wrap = TextWrapping::truncate_at_width(room.width());
+    let says = painter.layout_job(says);
+    let at = Align2::LEFT_CENTER.anchor_size(pos2(left, y), says.size());
+    painter
+        .with_clip_rect(room.intersect(ui.clip_rect()))
+        .galley(at.min, says, ink);
     response
 }
 

@@ -67,6 +67,8 @@ fn steps_ui(ui: &mut Ui, world: &mut World) {
         return;
     };
     let before = tools.clone();
+    // Those of a menu have no frames: nobody would see that these are fields.
+    ui.reset_style();
     ui.set_width(250.0);
     ui.horizontal(|ui| {
         ui.label("Move to");
@@ -207,5 +209,31 @@ fn view_name(view: View) -> &'static str {
         View::Error => "Error",
         View::BloomThreshold => "Bloom: bright",
         View::BloomLayer => "Bloom: added",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::panels::tests::type_nonsense;
+    use std::f32::consts::FRAC_PI_2;
+
+    #[test]
+    fn nothing_that_is_typed_makes_a_step_of_snapping_that_is_none() {
+        let mut world = World::new();
+        world.init_resource::<Tools>();
+        let before = world.resource::<Tools>().clone();
+        let fields = type_nonsense(&mut world, steps_ui, |world, text| {
+            let tools = world.resource::<Tools>();
+            for (step, range) in [
+                (tools.move_step, 1e-4..=1e4),
+                (tools.turn_step, 0.01..=FRAC_PI_2 + 1e-6),
+                (tools.scale_step, 0.01..=1.0),
+            ] {
+                assert!(range.contains(&step), "`{text}` gives {step}");
+            }
+        });
+        assert_eq!(fields, 3);
+        assert_ne!(*world.resource::<Tools>(), before, "some of it is a number");
     }
 }

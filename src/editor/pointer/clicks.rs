@@ -8,6 +8,7 @@ use super::super::inspection::hover::line_at;
 use super::super::inspection::{DebugRay, Inspected, Which};
 use super::super::selection::Selection;
 use super::super::trees::pair::TreePair;
+use super::super::viewport::Viewport;
 use super::super::{handles, pick};
 use super::{Armed, DOUBLE, PixelAsked, Pointer, RightClicked, STILL};
 use crate::inspect::{Question, Stands};
@@ -57,17 +58,25 @@ pub(super) fn answer_target(world: &mut World, at: Vec2) {
     match std::mem::take(&mut *world.resource_mut::<Armed>()) {
         Armed::No => {}
         Armed::Why(question) => {
-            if shoot_at(world, at) {
-                if question != Question::Black {
-                    world.resource_mut::<DebugRay>().which = Which::All;
-                }
-                let at = at + world.resource::<Pointer>().offset;
-                world.trigger(PixelAsked { question, at });
-            }
+            let offset = world.resource::<Pointer>().offset;
+            ask_pixel(world, question, at + offset);
         }
         Armed::Aim => handles::aim(world, at),
         Armed::Focus => handles::focus(world, at),
     }
+}
+
+/// Asks this of the pixel there, in either of two views.
+pub(in super::super) fn ask_pixel(world: &mut World, question: Question, in_window: Vec2) {
+    let offset = world.resource::<Viewport>().offset(in_window);
+    if !shoot_at(world, in_window - offset) {
+        return;
+    }
+    if question != Question::Black {
+        world.resource_mut::<DebugRay>().which = Which::All;
+    }
+    let at = in_window;
+    world.trigger(PixelAsked { question, at });
 }
 
 /// Chooses what is there, as a click does, and has its menu opened.

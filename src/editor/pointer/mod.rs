@@ -6,6 +6,8 @@
 
 mod clicks;
 
+pub(super) use clicks::ask_pixel;
+
 use super::action::Action;
 use super::command::Over;
 use super::handles::{self, GripDrag, grip_at};
@@ -184,6 +186,7 @@ fn go(world: &mut World, to: Vec2) {
 }
 
 fn press(world: &mut World, button: MouseButton) {
+    handles::forget_keyed(world);
     let (at, modifiers) = {
         let pointer = world.resource::<Pointer>();
         (pointer.at, pointer.modifiers)

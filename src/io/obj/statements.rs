@@ -10,8 +10,11 @@ use crate::io::budget::Growing;
 use std::collections::HashMap;
 use std::path::Path;
 
-/// The name of faces before any `o` or `g`, and after one without a name.
-const UNNAMED: &str = "unnamed_object";
+/// The name of faces before any `o` or `g`, and after one without a name: the file's.
+fn unnamed(file: &Path) -> String {
+    let name = file.file_stem().unwrap_or(file.as_os_str());
+    name.to_string_lossy().into_owned()
+}
 
 /// Reads a file's lines. Whatever one of them holds that cannot be used is noted, and the rest is read.
 pub(super) fn read_content(
@@ -36,7 +39,7 @@ pub(super) fn read_content(
         memory: Growing::of(&limits.memory),
         far_off: FarOff::default(),
     };
-    reader.object = reader.object_named(UNNAMED);
+    reader.object = reader.object_named(&unnamed(file));
     while let Some((number, line)) = lines.next()? {
         reader.line = number;
         reader.read(line)?;
@@ -113,9 +116,11 @@ impl Reader<'_> {
                 return self.read(&line);
             }
             b"o" | b"g" => {
-                let name = text(rest);
-                let name = if name.is_empty() { UNNAMED } else { &name };
-                self.object = self.object_named(name);
+                let name = match text(rest) {
+                    name if name.is_empty() => unnamed(self.file),
+                    name => name.into_owned(),
+                };
+                self.object = self.object_named(&name);
                 self.part = None;
             }
             b"usemtl" => {
@@ -427,4 +432,19 @@ fn exact(rest: &[u8]) -> [f64; 3] {
         let word = words.next().and_then(|word| std::str::from_utf8(word).ok());
         word.and_then(|word| word.parse().ok()).unwrap_or(0.0)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_has_no_name_is_called_as_its_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("pyramid.obj");
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no roof\nf 1 2 3\no\nf 3 2 1\n";
+        std::fs::write(&file, text).unwrap();
+        let content = read_content(&file, &Limits::default(), &mut Notes::default()).unwrap();
+        assert_eq!(content.objects, ["pyramid", "roof"]);
+    }
 }

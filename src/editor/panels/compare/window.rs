@@ -189,6 +189,7 @@ pub(in crate::editor::panels) fn window_ui(
             .default_pos(free.min + vec2(12.0, 12.0))
             .min_size(vec2(320.0, 260.0))
             .max_size(most)
+            .constrain_to(free)
             .show(context, |ui| {
                 crate::editor::panels::contained(ui, |ui| {
                     inner_ui(ui, world, &kept, &mut comparison);
@@ -349,7 +350,8 @@ fn figures_ui(ui: &mut Ui, figures: Option<Figures>) {
             .says("Root of the mean squared difference over all pixels and channels");
         ui.label(format!("relative {:.3} %", 100.0 * relative))
             .says("Root of the mean squared difference of the brightness, as parts of the first's");
-        ui.label(format!("{:+.3} % brighter", 100.0 * brighter))
+        let word = if brighter < 0.0 { "darker" } else { "brighter" };
+        ui.label(format!("{:.3} % {word}", 100.0 * brighter.abs()))
             .says("How much more light the second has in all: noise leaves it, an edit or an error does not");
     });
 }
@@ -377,8 +379,9 @@ mod tests {
     use crate::editor::action::Action;
     use crate::editor::document::adopt;
     use crate::editor::panels::compare::even_picture as picture;
-    use crate::editor::panels::tests::Desk;
+    use crate::editor::panels::tests::{Desk, SMALL, USUAL, type_nonsense};
     use crate::editor::panels::theme::assert_readable;
+    use crate::editor::viewport::Viewport;
     use bevy_egui::egui::Theme;
     use std::thread::sleep;
 
@@ -415,7 +418,7 @@ mod tests {
         desk.place_of("1: 16 spp");
         desk.place_of("2: 64 spp");
         wait_for(&mut desk, "RMSE 0.10000");
-        desk.place_of("+10.000 % brighter");
+        desk.place_of("10.000 % brighter");
         desk.click_on("Relative");
         let look = |desk: &mut Desk| {
             let kept = desk.world().resource::<KeptPictures>();
@@ -434,6 +437,39 @@ mod tests {
         desk.settle();
         assert!(desk.find("Difference").is_none());
         assert!(desk.world().resource::<KeptPictures>().all.is_empty());
+    }
+
+    #[test]
+    fn the_window_covers_no_panel_after_the_editors_became_small() {
+        let mut desk = Desk::open("cornell-box");
+        let mut kept = desk.world().resource_mut::<KeptPictures>();
+        kept.add(picture(1.0), 1.0);
+        kept.comparison = Some(Comparison::new(1));
+        let id = egui::Id::new("compare pictures");
+        for size in [USUAL, SMALL] {
+            desk.size = size;
+            desk.settle();
+            desk.settle();
+            let place = desk.context.memory(|memory| memory.area_rect(id)).unwrap();
+            let free = desk.world().resource::<Viewport>().rect;
+            let of = egui::Rect::from_x_y_ranges(free.min.x..=free.max.x, free.min.y..=free.max.y);
+            assert!(of.expand(1.0).contains_rect(place), "{place} in {of}");
+        }
+    }
+
+    #[test]
+    fn nothing_that_is_typed_makes_a_gain_that_is_none() {
+        let kept = KeptPictures::default();
+        let mut comparison = Comparison::new(1);
+        let fields = type_nonsense(
+            &mut comparison,
+            |ui, comparison| choices_ui(ui, &kept, comparison),
+            |comparison, text| {
+                let gain = comparison.look.gain;
+                assert!((0.01..=10_000.0).contains(&gain), "`{text}` gives {gain}");
+            },
+        );
+        assert_eq!(fields, 1);
     }
 
     #[test]

@@ -68,6 +68,7 @@ pub(super) fn mixer_ui(context: &egui::Context, free: egui::Rect, world: &mut Wo
             .min_width(300.0)
             .max_width(most.x)
             .resizable([true, false])
+            .constrain_to(free)
             .show(context, |ui| {
                 super::contained_in_width(ui, |ui| inner_ui(ui, rows, world, &mut mixer));
             });

@@ -293,6 +293,43 @@ fn each_question_about_a_pixel_waits_for_a_click_and_is_answered_in_a_sentence_u
 }
 
 #[test]
+fn the_menu_over_a_pixel_answers_for_that_pixel_and_that_over_a_row_asks_nothing() {
+    let question = "Why is this pixel black?";
+    let mut desk = Desk::open("cornell-box");
+    desk.world().init_resource::<Armed>();
+    let camera = desk.world().resource::<TracedCameras>().0[0].camera.clone();
+    let (pixel, size) = (UVec2::new(300, 400), UVec2::new(600, 480));
+    let row = Vec2::new(60.0, 300.0);
+    let over = Over::Entity;
+    desk.world().trigger(RightClicked { at: row, over });
+    desk.settle();
+    desk.place_of("Duplicate");
+    assert_eq!(desk.find(question), None, "a row has no pixel");
+    desk.key(Key::Escape);
+    let at = Vec2::new(640.0, 300.0);
+    desk.world().trigger(RightClicked { at, over });
+    desk.settle();
+    desk.click_on(question);
+    desk.settle();
+    // Nothing is traced here, which is said instead; no other click is waited for.
+    assert_eq!(*desk.world().resource::<Armed>(), Armed::No);
+    let told = desk.world().resource_mut::<Notices>().shown().to_vec();
+    assert!(
+        told.iter().any(|one| one.text.contains("traced view")),
+        "{told:?}"
+    );
+    desk.world().resource_mut::<DebugRay>().shoot(Shot {
+        pixel,
+        camera,
+        size,
+    });
+    desk.world().write_message(Action::run("why.black"));
+    desk.settle();
+    let armed = *desk.world().resource::<Armed>();
+    assert_eq!(armed, Armed::Why(Question::Black), "from anywhere else");
+}
+
+#[test]
 fn the_card_of_the_first_start_does_each_thing_with_a_click_and_comes_back_only_when_asked() {
     let mut desk = Desk::open("cornell-box");
     let card = "Three things to try";

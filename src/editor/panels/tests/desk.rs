@@ -32,6 +32,21 @@ fn is_in_row(at: Pos2, row: f32) -> bool {
     (at.y - row).abs() < 6.0
 }
 
+/// Where all controls of a kind are that a frame told screen readers of.
+pub fn bounds(output: &FullOutput, role: Role) -> Vec<egui::Rect> {
+    let update = output.platform_output.accesskit_update.as_ref();
+    let nodes = update.map_or(&[][..], |update| &update.nodes);
+    let controls = nodes.iter().filter(|(_, node)| node.role() == role);
+    controls.filter_map(|(_, node)| bounds_of(node)).collect()
+}
+
+/// Where a control is.
+pub fn bounds_of(node: &accesskit::Node) -> Option<egui::Rect> {
+    let bounds = node.bounds()?;
+    let [x0, y0, x1, y1] = [bounds.x0, bounds.y0, bounds.x1, bounds.y1].map(|side| side as f32);
+    Some(egui::Rect::from_x_y_ranges(x0..=x1, y0..=y1))
+}
+
 /// An editor without a window.
 pub struct Desk {
     pub app: App,
@@ -145,16 +160,7 @@ impl Desk {
 
     /// Where all controls of a kind are on the screen. The context has to speak to screen readers.
     pub fn bounds(&self, role: Role) -> Vec<egui::Rect> {
-        let update = self.output.platform_output.accesskit_update.as_ref();
-        let nodes = update.map_or(&[][..], |update| &update.nodes);
-        let controls = nodes.iter().filter(|(_, node)| node.role() == role);
-        let bounds = controls.filter_map(|(_, node)| node.bounds());
-        let rect = |bounds: accesskit::Rect| {
-            let [x0, y0, x1, y1] =
-                [bounds.x0, bounds.y0, bounds.x1, bounds.y1].map(|side| side as f32);
-            egui::Rect::from_x_y_ranges(x0..=x1, y0..=y1)
-        };
-        bounds.map(rect).collect()
+        bounds(&self.output, role)
     }
 
     /// The middles of all controls of a kind.

@@ -11,3 +11,4 @@ mod trees;
 mod typed;
 
 pub(super) use desk::{Desk, SMALL, USUAL};
+pub(super) use typed::type_nonsense;

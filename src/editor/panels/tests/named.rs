@@ -6,7 +6,7 @@ use super::super::hierarchy::Hierarchy;
 use super::super::inspector::{Inspector, Tab};
 use super::super::outline_rows::Filter;
 use super::super::palette::{OpenPalette, Palette};
-use super::desk::{Desk, LARGE};
+use super::desk::{self, Desk, LARGE};
 use crate::editor::action::Action;
 use crate::editor::inspection::{DebugRay, debug_ray::Shot};
 use crate::editor::notice::Notices;
@@ -15,6 +15,7 @@ use crate::io::builtin::SCENES;
 use crate::sync::TracedCameras;
 use bevy::math::UVec2;
 use bevy_egui::egui::accesskit::{Action as Request, Role};
+use bevy_egui::egui::{self, Key};
 use std::collections::BTreeSet;
 
 /// What can be clicked and has no name, with where it was seen.
@@ -111,5 +112,79 @@ fn whatever_can_be_clicked_in_any_panel_has_a_name() {
         "{} of {count} controls have no name:\n{}",
         list.len(),
         list.join("\n")
+    );
+}
+
+/// What is drawn over a place, as far as it can be told apart.
+fn drawn_at(desk: &Desk, place: egui::Rect) -> Vec<String> {
+    let shapes = desk.output.shapes.iter();
+    let there = shapes.filter(|shape| {
+        let bounds = shape.shape.visual_bounding_rect();
+        bounds.is_finite() && place.expand(3.0).contains_rect(bounds)
+    });
+    there.map(|shape| format!("{:?}", shape.shape)).collect()
+}
+
+#[test]
+fn tab_reaches_every_control_once_and_the_one_that_has_the_keys_is_seen() {
+    let mut desk = Desk::open("cornell-box");
+    desk.size = LARGE;
+    desk.context.enable_accesskit();
+    let (_, lamp) = desk.named("Lamp");
+    desk.select([lamp]);
+    let focus = |desk: &Desk| {
+        let update = desk
+            .output
+            .platform_output
+            .accesskit_update
+            .as_ref()
+            .unwrap();
+        let (_, node) = update.nodes.iter().find(|(id, _)| *id == update.focus)?;
+        let place = desk::bounds_of(node)?;
+        let name = node.label().or(node.description()).unwrap_or_default();
+        Some((update.focus, place, format!("{:?} {name}", node.role())))
+    };
+    let mut seen = BTreeSet::new();
+    let mut unseen = Vec::new();
+    for _ in 0..500 {
+        desk.key(Key::Tab);
+        let Some((id, place, name)) = focus(&desk) else {
+            continue;
+        };
+        if !seen.insert(id) {
+            break;
+        }
+        let with = drawn_at(&desk, place);
+        let focused = desk.context.memory(|memory| memory.focused()).unwrap();
+        desk.context
+            .memory_mut(|memory| memory.surrender_focus(focused));
+        desk.settle();
+        let is_seen = drawn_at(&desk, place) != with;
+        if !is_seen {
+            unseen.push(name);
+        }
+        desk.context
+            .memory_mut(|memory| memory.request_focus(focused));
+        desk.frame(Vec::new());
+    }
+    let update = desk
+        .output
+        .platform_output
+        .accesskit_update
+        .as_ref()
+        .unwrap();
+    let all = update
+        .nodes
+        .iter()
+        .filter(|(_, node)| node.supports_action(Request::Focus));
+    let missed: Vec<String> = all
+        .filter(|(id, node)| !seen.contains(id) && !node.is_disabled())
+        .map(|(_, node)| format!("{:?} {:?}", node.role(), node.label()))
+        .collect();
+    assert!(seen.len() > 40, "{} controls", seen.len());
+    assert!(missed.is_empty(), "Tab never reaches {missed:#?}");
+    assert!(
+        unseen.is_empty(),
+        "nobody sees that they have the keys: {unseen:#?}"
     );
 }

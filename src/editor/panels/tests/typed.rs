@@ -2,7 +2,7 @@
 
 use super::super::dialogs::{Dialog, Dialogs};
 use super::super::inspector::{Inspector, Tab};
-use super::desk::Desk;
+use super::desk::{Desk, bounds};
 use crate::editor::action::Action;
 use crate::editor::history::{History, undo};
 use crate::editor::inspection::choice::Side;
@@ -26,7 +26,7 @@ use bevy::math::UVec2;
 use bevy::reflect::PartialReflect;
 use bevy::transform::components::Transform;
 use bevy_egui::egui::accesskit::Role;
-use bevy_egui::egui::{Event, Key, Pos2};
+use bevy_egui::egui::{self, Event, Key, Modifiers, PointerButton, Pos2, RawInput, Rect, Ui, vec2};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
@@ -69,6 +69,64 @@ impl Desk {
         }
         self.settle();
     }
+}
+
+/// Types all of it into every number field of a piece of a panel, and has looked after each what came of it. Returns how
+/// many fields there are.
+pub fn type_nonsense<S>(
+    state: &mut S,
+    piece: impl Fn(&mut Ui, &mut S),
+    check: impl Fn(&S, &str),
+) -> usize {
+    let context = egui::Context::default();
+    context.enable_accesskit();
+    let mut time = 0.0;
+    let mut frame = |state: &mut S, events: Vec<Event>| {
+        // Slow enough that no two clicks are a double click.
+        time += 0.5;
+        let size = vec2(800.0, 600.0);
+        let input = RawInput {
+            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, size)),
+            time: Some(time),
+            events,
+            ..RawInput::default()
+        };
+        let output = context.run_ui(input, |ui| piece(ui, state));
+        bounds(&output, Role::SpinButton)
+    };
+    frame(state, Vec::new());
+    let count = frame(state, Vec::new()).len();
+    for field in 0..count {
+        for text in NONSENSE {
+            let at = frame(state, Vec::new())[field].center();
+            let button = |pressed| Event::PointerButton {
+                pos: at,
+                button: PointerButton::Primary,
+                pressed,
+                modifiers: Modifiers::NONE,
+            };
+            let key = |key| Event::Key {
+                key,
+                physical_key: None,
+                pressed: true,
+                repeat: false,
+                modifiers: Modifiers::NONE,
+            };
+            for event in [
+                Event::PointerMoved(at),
+                button(true),
+                button(false),
+                key(Key::Delete),
+                Event::Text(text.into()),
+                key(Key::Enter),
+            ] {
+                frame(state, vec![event]);
+            }
+            frame(state, Vec::new());
+            check(state, text);
+        }
+    }
+    count
 }
 
 /// Everything that is kept and has numbers, of all entities.
