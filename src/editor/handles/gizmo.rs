@@ -449,7 +449,7 @@ mod tests {
         world.insert_resource(GizmoDrag(Some(drag(carried))));
         let place = GlobalTransform::from(pointed);
         let stand_in = world.spawn((StandIn, pointed, place)).id();
-        let mut shown = |world: &mut World| {
+        let shown = |world: &mut World| {
             world.run_system_once(show_carried).unwrap();
             *world.get::<GlobalTransform>(stand_in).unwrap()
         };
