@@ -269,7 +269,9 @@ mod tests {
                     // What it would add, as a part of what is always asked for.
                     let weight = ray.weight * if is_asked { ray.chance } else { 1.0 };
                     let part = mean(weight * light.reflected) / world.needs.faint;
-                    assert!((part / ray.chance - 1.0).abs() < 1e-3, "{part}, {ray:?}");
+                    // Of light that grazes a surface the cosine has few digits.
+                    let off = (part - ray.chance).abs();
+                    assert!(off < 1e-4 + 1e-3 * ray.chance, "{part}, {ray:?}");
                     let chance = f64::from(ray.chance);
                     asked += f64::from(u8::from(is_asked));
                     expected += chance;
