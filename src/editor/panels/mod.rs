@@ -219,6 +219,7 @@ fn panels_ui(context: &egui::Context, world: &mut World) {
     with(world, |world, palette| {
         palette::palette_ui(context, world, palette)
     });
+    theme::ring_ui(context);
     gesture::note_gesture(context, world);
     let letters_taken = world.resource::<hierarchy::Hierarchy>().list_keys.focused;
     let twin = views.map(|[_, right]| right);

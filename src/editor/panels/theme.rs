@@ -3,8 +3,8 @@
 use super::super::preferences::{Preferences, ThemeChoice};
 use bevy_egui::egui::epaint::AlphaFromCoverage;
 use bevy_egui::egui::{
-    self, Color32, CornerRadius, FontFamily, FontId, Shadow, Stroke, Style, TextStyle, Theme,
-    ThemePreference, Visuals, vec2,
+    self, Color32, CornerRadius, FontFamily, FontId, Shadow, Stroke, StrokeKind, Style, TextStyle,
+    Theme, ThemePreference, Visuals, vec2,
 };
 
 /// Seconds from press to release that are still a click: where frames take long a press is seen late.
@@ -87,6 +87,28 @@ const LIGHT: Palette = Palette {
 /// The colour of what is chosen, dragged or drawn by the editor over the picture.
 pub(super) fn accent(ui: &egui::Ui) -> Color32 {
     ACCENT[usize::from(!ui.visuals().dark_mode)]
+}
+
+/// A ring around the control that Tab went to: rows and icons that are drawn by hand show it in no other way. What is typed
+/// into shows it by its cursor.
+pub(super) fn ring_ui(context: &egui::Context) {
+    if context.text_edit_focused() {
+        return;
+    }
+    let focused = context.memory(|memory| memory.focused());
+    let Some(control) = focused.and_then(|id| context.read_response(id)) else {
+        return;
+    };
+    if control.interact_rect.is_positive() {
+        let dark = context.theme() == Theme::Dark;
+        let ring = Stroke::new(1.5, ACCENT[usize::from(!dark)]);
+        context.layer_painter(control.layer_id).rect_stroke(
+            control.interact_rect,
+            3.0,
+            ring,
+            StrokeKind::Outside,
+        );
+    }
 }
 
 /// Makes egui look as the preferences say; cheap where it does already.
