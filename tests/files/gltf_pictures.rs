@@ -233,7 +233,10 @@ fn numbers_and_modes_that_gltf_does_not_have_are_told() {
             "metallicFactor": 0.0, "roughnessFactor": 1 }, "emissiveFactor": [2.0, 0.0, 0.0] }),
         json!([]),
     );
-    assert_eq!(notes, [""; 0]);
+    assert!(
+        !notes.iter().any(|note| note.contains("ranges")),
+        "{notes:?}"
+    );
 
     let (_, notes) = document(plain(), |d| {
         d["materials"] = json!([{}]);
