@@ -132,6 +132,7 @@ mod tests {
     use super::*;
     use crate::editor::headless_editor;
     use crate::editor::history::{History, undo};
+    use crate::editor::navigation::LookThrough;
     use crate::editor::selection::Selection;
     use crate::scene::{PointLamp, SceneId};
     use bevy::app::App;
@@ -165,6 +166,7 @@ mod tests {
             .init_resource::<Tools>()
             .init_resource::<PointerUse>()
             .init_resource::<Viewport>()
+            .init_resource::<LookThrough>()
             .init_resource::<ButtonInput<KeyCode>>();
         let lamp = (SceneId(1), PointLamp::default(), Transform::default());
         let lamp = app.world_mut().spawn(lamp).id();
