@@ -330,9 +330,10 @@ fn camera_rays_are_traced_once_however_often_lights_and_materials_are_edited() {
 
 #[test]
 fn while_materials_are_edited_what_hides_lights_from_first_hits_is_found_out_once() {
-    let render = start(&lit(), 4);
+    let world = lit();
+    let render = start(&world, 4);
     render.wait();
-    let mut now = lit();
+    let mut now = world.clone();
     let mut before = render.status().rays.shadow;
     let mut shadow_rays = |edited: World| {
         now = edited;
@@ -345,7 +346,7 @@ fn while_materials_are_edited_what_hides_lights_from_first_hits_is_found_out_onc
         before += more;
         (now.clone(), more)
     };
-    let (world, first) = shadow_rays(repainted(&lit(), 0, Vec3::splat(0.3)));
+    let (world, first) = shadow_rays(repainted(&world, 0, Vec3::splat(0.3)));
     let (world, second) = shadow_rays(repainted(&world, 0, Vec3::new(0.1, 0.4, 0.2)));
     assert!(
         0 < second && 4 * second < first,
