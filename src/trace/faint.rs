@@ -248,7 +248,7 @@ mod tests {
     #[test]
     fn rays_to_faint_lights_tell_the_chance_with_which_they_are_asked_for() {
         let world = under_all_kinds();
-        let (camera, settings) = (camera(), settings(1));
+        let (camera, settings) = (camera(), settings(4));
         // How many are asked for, how many should be, and the variance of that.
         let (mut asked, mut expected, mut variance) = (0.0, 0.0, 0.0);
         for i in 0..settings.size.element_product() {
