@@ -36,12 +36,11 @@ pub fn in_view(world: &World, camera: &Camera, settings: &RenderSettings) -> Opt
     let start = camera.position.abs().max_element() + reach;
     let objects = instances.iter().filter_map(|instance| {
         let bounds = instance.world_bounds()?;
-        let pad = Vec3::splat(instance.ray_pad() * start);
-        Some([bounds.min.into(), bounds.max.into()].map(|corner: Vec3| (corner, pad)))
+        let [min, max]: [Vec3; 2] = [bounds.min.into(), bounds.max.into()];
+        let pad = instance.ray_pad() * start;
+        Some([min - pad, max + pad])
     });
-    let mut boxes: Vec<[Vec3; 2]> = objects
-        .map(|[(min, pad), (max, _)]| [min - pad, max + pad])
-        .collect();
+    let mut boxes: Vec<[Vec3; 2]> = objects.collect();
     if settings.lighting == Lighting::Physical && world.needs.visible_lights {
         let lights = &world.lights;
         if !lights.moving.is_empty() {

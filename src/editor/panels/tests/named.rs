@@ -14,19 +14,20 @@ use crate::editor::preferences::Preferences;
 use crate::io::builtin::SCENES;
 use crate::sync::TracedCameras;
 use bevy::math::UVec2;
-use bevy_egui::egui::accesskit::{Action as Request, Role};
+use bevy_egui::egui::accesskit::{Action as Request, Role, TreeUpdate};
 use bevy_egui::egui::{self, Key};
 use std::collections::BTreeSet;
+
+/// What a screen reader is told.
+fn listed(desk: &Desk) -> &TreeUpdate {
+    let update = desk.output.platform_output.accesskit_update.as_ref();
+    update.expect("all controls are listed")
+}
 
 /// What can be clicked and has no name, with where it was seen.
 fn note_unnamed(desk: &mut Desk, place: &str, unnamed: &mut BTreeSet<String>) -> usize {
     desk.settle();
-    let update = desk
-        .output
-        .platform_output
-        .accesskit_update
-        .as_ref()
-        .unwrap();
+    let update = listed(desk);
     let mut count = 0;
     for (_, node) in &update.nodes {
         // What is read, and can be marked for copying, is its own name.
@@ -133,12 +134,7 @@ fn tab_reaches_every_control_once_and_the_one_that_has_the_keys_is_seen() {
     let (_, lamp) = desk.named("Lamp");
     desk.select([lamp]);
     let focus = |desk: &Desk| {
-        let update = desk
-            .output
-            .platform_output
-            .accesskit_update
-            .as_ref()
-            .unwrap();
+        let update = listed(desk);
         let (_, node) = update.nodes.iter().find(|(id, _)| *id == update.focus)?;
         let place = desk::bounds_of(node)?;
         let name = node.label().or(node.description()).unwrap_or_default();
@@ -167,12 +163,7 @@ fn tab_reaches_every_control_once_and_the_one_that_has_the_keys_is_seen() {
             .memory_mut(|memory| memory.request_focus(focused));
         desk.frame(Vec::new());
     }
-    let update = desk
-        .output
-        .platform_output
-        .accesskit_update
-        .as_ref()
-        .unwrap();
+    let update = listed(&desk);
     let all = update
         .nodes
         .iter()
