@@ -53,7 +53,7 @@ pub(super) struct Engine {
     pub(super) batch: BatchSize,
     pub(super) unmet: Unmet,
     pub(super) kept: Kept,
-    voids: Voids,
+    pub(super) voids: Voids,
     pub control: Control,
     /// The picture is complete at every such pixel of every such row; 0 before the first picture.
     divider: AtomicU32,
@@ -345,12 +345,15 @@ impl Engine {
             subject: &subject,
             batch: &self.batch,
             kept: (subject.edit > 0).then_some(&self.kept),
-            voids: Some(&self.voids),
             stopped: &|| self.must_stop(),
         };
         for chunk in &waiting {
             let tile = self.grid.tile(chunk.tile);
-            let taken = scratch.sum_chunk(&work, tile, chunk);
+            let color = self.voids.color_of(chunk.tile);
+            let taken = match color {
+                Some(color) => Some(scratch.see_nothing(color, tile, chunk)),
+                None => scratch.sum_chunk(&work, tile, chunk),
+            };
             let Some(taken) = taken else { break };
             rays += taken;
             done += 1;
@@ -359,8 +362,12 @@ impl Engine {
                 let edited = (self.number() != number).then(|| self.subject());
                 let subject = edited.as_ref().unwrap_or(&subject);
                 let mut state = self.tile_of(subject, chunk.tile as usize);
-                state.meet(scratch.met);
-                state.absorb(subject, chunk, scratch.sums.all(), taken.total())
+                if let Some(color) = color {
+                    state.absorb_even(subject, chunk, color, taken.total())
+                } else {
+                    state.meet(scratch.met);
+                    state.absorb(subject, chunk, scratch.sums.all(), taken.total())
+                }
             };
             // Pieces of a pass that an edit throws away have not been samples of the picture.
             if is_complete && chunk.planes.has(OWN) {

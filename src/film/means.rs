@@ -7,7 +7,27 @@ use super::tile_state::Pixels;
 use super::tiles::{BLOCK, BLOCK_PIXELS, HALF_PIXELS, TILE, TILE_PIXELS, Tile, pixel_in_tile};
 use super::unmet::{Reach, ReachColumns};
 use crate::instruction_sets::vectorized;
-use glam::UVec2;
+use glam::{UVec2, Vec3};
+
+/// How far pixels have moved whose samples were all of this colour: not at all.
+pub(super) fn unmoved(color: Vec3, count: u32, pixels: u64) -> Moves {
+    let reach = Reach::of(mean_of(&color.to_array()));
+    Moves {
+        count,
+        pixels: pixels as u32,
+        reach: Reach {
+            absolute: pixels as f64 * reach.absolute,
+            relative: pixels as f64 * reach.relative,
+        },
+        ..Moves::default()
+    }
+}
+
+/// Over the channels of a pixel.
+#[inline(always)]
+fn mean_of(color: &[f32]) -> f64 {
+    f64::from(color[0] + color[1] + color[2]) / CHANNELS as f64
+}
 
 /// What is known of a tile's pixels, in columns.
 pub(super) struct Means<'a> {
@@ -25,7 +45,7 @@ impl<'a> Means<'a> {
     pub fn of(colors: &TileColors, past: &'a PastMoves, counts: [u32; 2], extent: UVec2) -> Self {
         let mut means = [0.0; TILE_PIXELS];
         for (mean, color) in means.iter_mut().zip(colors.chunks_exact(CHANNELS)) {
-            *mean = f64::from(color[0] + color[1] + color[2]) / CHANNELS as f64;
+            *mean = mean_of(color);
         }
         let mut reach = ReachColumns::of(&means);
         let mut around = [f64::NAN; AROUND * AROUND];

@@ -171,7 +171,9 @@ impl Engine {
             (state.rays, state.samples)
         };
         let mut step = of;
-        if let Some(rays_a_sample) = rays.checked_div(samples) {
+        if self.voids.color_of(tile).is_some() {
+            // It takes none.
+        } else if let Some(rays_a_sample) = rays.checked_div(samples) {
             let rays = rays_a_sample.max(1) * TILE_PIXELS as u64;
             step = (CHUNK_RAYS / rays).max(1).next_power_of_two().min(of);
         } else if range.start > 0 {

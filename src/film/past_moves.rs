@@ -24,6 +24,11 @@ impl PastMoves {
         self.0.as_deref().unwrap_or(&NONE)
     }
 
+    /// Whether nothing has moved yet.
+    pub fn are_none(&self) -> bool {
+        self.0.is_none()
+    }
+
     fn columns_mut(&mut self) -> &mut Columns {
         self.0
             .get_or_insert_with(|| Box::new([[0.0; TILE_PIXELS]; 3]))

@@ -1,6 +1,5 @@
 //! The samples of a chunk: batch by batch, so that a render can stop between two of them.
 
-use super::Sum;
 use super::kept::Kept;
 use super::per_sample::{BatchPlaces, Run};
 use super::subject::Subject;
@@ -8,7 +7,6 @@ use super::sum_columns::SumColumns;
 use super::tile_state::Chunk;
 use super::tiles::{TILE_PIXELS, Tile, pixel_in_tile};
 use super::unmet::{NO_OCTAVES, Octaves, count_octave, count_octaves};
-use super::voids::Voids;
 use crate::trace::planes::OWN;
 use crate::trace::{
     FEW_LIGHTS, MaterialSet, PlaneSet, RayCounts, SampleId, Untinted, Workspace, radiance_in_planes,
@@ -154,8 +152,6 @@ pub(super) struct Work<'a> {
     pub batch: &'a BatchSize,
     /// What is known of samples from before.
     pub kept: Option<&'a Kept>,
-    /// Where nothing is to be seen.
-    pub voids: Option<&'a Voids>,
     /// Whether to leave it.
     pub stopped: &'a dyn Fn() -> bool,
 }
@@ -171,12 +167,6 @@ impl Scratch {
         places.clear();
         places.extend(tile.places(chunk.pixels));
         self.workspace.take_met();
-        if let Some(color) = work.voids.and_then(|voids| voids.color_of(chunk.tile)) {
-            rays.camera = self.sum_void(color, &places, chunk, subject.planes());
-            self.places = places;
-            self.met = MaterialSet::NONE;
-            return Some(rays);
-        }
         let rows = chunk.planes.rows(subject.planes());
         let complete = chunk.segments().all(|segment| {
             self.sums.extend(rows * TILE_PIXELS);
@@ -194,26 +184,16 @@ impl Scratch {
         Some(rays)
     }
 
-    /// Sums the samples of pixels at these places, of which all are the same; and says how many rays of the camera that saves.
-    fn sum_void(&mut self, color: Vec3, places: &[usize], chunk: &Chunk, planes: usize) -> u64 {
-        let rows = chunk.planes.rows(planes);
-        let own = chunk.planes.row(OWN);
-        let mut samples = 0;
-        for segment in chunk.segments() {
-            let first = self.sums.len();
-            self.sums.extend(rows * TILE_PIXELS);
-            let each = segment.end - segment.start;
-            samples += each * places.len() as u64;
-            if let Some(row) = own {
-                let sum = Sum::of_many(color, each);
-                for place in places {
-                    self.sums.set(first + row * TILE_PIXELS + place, &sum);
-                }
-            }
-        }
-        let value = own.map_or(Vec3::ZERO, |_| color);
+    /// Counts the samples of a chunk that are all of this colour, and says which rays that saves.
+    pub fn see_nothing(&mut self, color: Vec3, tile: Tile, chunk: &Chunk) -> RayCounts {
+        let samples = (chunk.range.end - chunk.range.start) * tile.count(chunk.pixels);
+        let is_seen = chunk.planes.has(OWN);
+        let value = if is_seen { color } else { Vec3::ZERO };
         count_octave(value, samples, &mut self.octaves);
-        if own.is_some() { samples } else { 0 }
+        RayCounts {
+            camera: if is_seen { samples } else { 0 },
+            ..RayCounts::default()
+        }
     }
 
     /// Adds these samples of the chunk, whose pixels lie at these places, to the segment's sums, which are the last ones.
@@ -426,7 +406,6 @@ mod tests {
                 subject: &subject,
                 batch: &batch,
                 kept: None,
-                voids: None,
                 stopped: &|| stops,
             };
             let done = scratch.sum_chunk(&work, tile, &chunk);

@@ -1,5 +1,6 @@
 //! A tile's light kept apart: the sums of each plane, and the picture that they are with their tints.
 
+use super::Sum;
 use super::past_moves::{PastMoves, squares};
 use super::plane_sums::PlaneSums;
 use super::subject::{MOST_PLANES, Subject};
@@ -170,6 +171,40 @@ impl TilePlanes {
         }
     }
 
+    /// Adds `count` samples to these planes of these pixels, of which none sees a light and all are of this colour: to those
+    /// that have none, the `first` of them by itself.
+    pub fn add_even(
+        &mut self,
+        pixels: Pixels,
+        planes: PlaneSet,
+        color: Vec3,
+        (first, count): (u32, u32),
+    ) {
+        self.update_past();
+        if planes.has(OWN) {
+            for half in pixels.halves() {
+                if self.counts()[half] == 0 && first > 1 {
+                    self.past.forget(Pixels::Half(half));
+                }
+            }
+            let sum = Sum::of_many(color, u64::from(count));
+            self.planes[OWN].sums.add_even(pixels, &sum);
+        }
+        for number in planes.of(self.planes.len()) {
+            pixels
+                .halves()
+                .for_each(|half| self.counts[number][half] += count);
+            self.changed = self.changed.with(number);
+        }
+    }
+
+    /// The mean of every pixel of each half, where all samples of each were the same.
+    pub fn even_means(&mut self) -> Option<[Vec3; 2]> {
+        self.update_past();
+        let plane = self.only().filter(|_| self.past.are_none())?;
+        plane.sums.even_means(self.counts())
+    }
+
     /// How far the picture moved when its samples doubled last, squared.
     fn squares(&self) -> [f32; TILE_PIXELS] {
         let mut all = [0.0; CHANNELS * TILE_PIXELS];
@@ -247,10 +282,11 @@ impl TilePlanes {
         [0, 1].map(|half| tint * (f64::from(goals[half]) / f64::from(counts[half].max(1))))
     }
 
-    /// The only plane there is, where it is the picture.
+    /// The only plane that has anything, where it is the picture.
     fn only(&self) -> Option<&Plane> {
-        let only = self.planes.first().filter(|_| self.planes.len() == 1)?;
-        (only.tint == Vec3::ONE && !only.sums.is_empty()).then_some(only)
+        let (only, others) = self.planes.split_first()?;
+        let is_all = others.iter().all(|plane| plane.sums.is_empty());
+        (is_all && only.tint == Vec3::ONE && !only.sums.is_empty()).then_some(only)
     }
 
     /// The means of the picture's pixels.
@@ -277,11 +313,11 @@ impl TilePlanes {
         self.update_past();
         FilmTile {
             sums: match self.only() {
-                Some(plane) => plane.sums.to_columns(),
+                Some(plane) => plane.sums.clone(),
                 None => {
                     let mut blend = Blend::new();
                     self.blend_into(|_| true, &mut blend);
-                    blend.sums().to_columns()
+                    blend.sums().to_columns().into()
                 }
             },
             past: self.past.clone(),
@@ -294,12 +330,10 @@ impl TilePlanes {
         if self.only().is_none() {
             return self.film_tile();
         }
-        let counts = self.counts();
-        let sums = std::mem::take(&mut self.planes[OWN].sums);
         FilmTile {
-            sums: sums.into_columns(),
+            counts: self.counts(),
+            sums: std::mem::take(&mut self.planes[OWN].sums),
             past: self.past,
-            counts,
         }
     }
 

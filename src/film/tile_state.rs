@@ -2,7 +2,7 @@
 //! is known of its error.
 
 use super::error::Moves;
-use super::means::Means;
+use super::means::{Means, unmoved};
 use super::subject::Subject;
 use super::sum_columns::{SumColumns, Sums, TileColors};
 use super::tile_planes::TilePlanes;
@@ -177,12 +177,36 @@ impl TileState {
         complete
     }
 
-    /// Adds `count` samples to every pixel of the chunk. The sums are of these planes.
-    fn commit(&mut self, subject: &Subject, chunk: &Chunk, of: PlaneSet, sums: Sums, count: u64) {
+    /// Takes the samples of a chunk that is a whole pass, and so completes it: all are of this colour and see no light.
+    pub fn absorb_even(
+        &mut self,
+        subject: &Subject,
+        chunk: &Chunk,
+        color: Vec3,
+        rays: u64,
+    ) -> bool {
+        let length = |range: Range<u64>| (range.end - range.start) as u32;
+        let first = chunk.segments().next().map_or(0, length);
+        let count = length(chunk.range.clone());
+        self.rays += rays;
+        self.samples += u64::from(count) * self.tile.count(chunk.pixels);
+        self.begin(subject);
+        (self.planes).add_even(chunk.pixels, chunk.planes, color, (first, count));
+        self.note_moves(chunk.pixels);
+        true
+    }
+
+    /// Has the planes and the tints of a subject.
+    fn begin(&mut self, subject: &Subject) {
         self.retint(subject);
         if self.planes.is_empty() {
             self.planes = TilePlanes::of(subject);
         }
+    }
+
+    /// Adds `count` samples to every pixel of the chunk. The sums are of these planes.
+    fn commit(&mut self, subject: &Subject, chunk: &Chunk, of: PlaneSet, sums: Sums, count: u64) {
+        self.begin(subject);
         let sums = (of, sums);
         (self.planes).add(chunk.pixels, chunk.planes, sums, count as u32, chunk.of);
     }
@@ -308,7 +332,12 @@ impl TileState {
                 ..Moves::default()
             };
         }
-        if pixels.halves().any(|half| counts[half] >= 2) {
+        if let Some(means) = self.planes.even_means() {
+            for half in pixels.halves().filter(|half| counts[*half] >= 2) {
+                let pixels = self.tile.count(Pixels::Half(half));
+                self.moves[half] = unmoved(means[half], counts[half], pixels);
+            }
+        } else if pixels.halves().any(|half| counts[half] >= 2) {
             let colors = self.planes.means();
             let means = Means::of(&colors, self.planes.past(), counts, self.tile.extent);
             for half in pixels.halves().filter(|half| counts[*half] >= 2) {
@@ -415,6 +444,69 @@ mod tests {
             Sum::default(),
             "outside the picture"
         );
+    }
+
+    #[test]
+    fn samples_that_are_all_alike_leave_what_their_sums_leave() {
+        let size = UVec2::splat(16);
+        let origin = UVec2::ZERO;
+        let tile = || {
+            TileState::new(Tile {
+                origin,
+                extent: size,
+            })
+        };
+        let color = Vec3::new(0.1, 7.0, 1e-30);
+        let (mut even, mut summed) = (tile(), tile());
+        for (range, pixels) in [
+            (0..4, Pixels::All),
+            (4..8, Pixels::Half(1)),
+            (8..11, Pixels::Half(1)),
+            (4..8, Pixels::Half(0)),
+        ] {
+            let length = range.end - range.start;
+            let chunk = chunk(range, length, pixels);
+            let mut sums = SumColumns::default();
+            for segment in chunk.segments() {
+                let first = sums.len();
+                sums.extend(TILE_PIXELS);
+                let sum = Sum::of_many(color, segment.end - segment.start);
+                let places = tile().tile.places(pixels);
+                places.for_each(|place| sums.set(first + place, &sum));
+            }
+            assert!(summed.absorb(&subject(), &chunk, sums.all(), 9));
+            assert!(even.absorb_even(&subject(), &chunk, color, 9));
+            assert_eq!(even.means(), summed.means());
+            assert_eq!(even.film_tile().sums, summed.film_tile().sums);
+            assert_eq!(
+                even.film_tile().past.columns(),
+                summed.film_tile().past.columns()
+            );
+            assert_eq!((even.rays, even.samples), (summed.rays, summed.samples));
+            assert_eq!(even.planes.counts(), summed.planes.counts());
+            for (even, summed) in even.moves().into_iter().zip(summed.moves()) {
+                let reach = |moves: Moves| [moves.reach.absolute, moves.reach.relative];
+                for (even, summed) in reach(even).into_iter().zip(reach(summed)) {
+                    assert!((even / summed - 1.0).abs() < 1e-12);
+                }
+                let others = |moves: Moves| (moves.absolute, moves.relative, moves.count);
+                assert_eq!(others(even), others(summed));
+                assert_eq!(even.pixels, summed.pixels);
+            }
+        }
+        // What comes in between, as it would from a file, is added to it.
+        let chunk = chunk(8..9, 1, Pixels::Half(0));
+        let mut sums = SumColumns::default();
+        sums.reset(TILE_PIXELS);
+        sums.add(0, &[Vec3::ONE; 4]);
+        for tile in [&mut even, &mut summed] {
+            tile.absorb(&subject(), &chunk, sums.all(), 1);
+        }
+        assert_eq!(even.take_film_tile().sums, summed.take_film_tile().sums);
+        // Of later samples by themselves it is not known how far they moved.
+        let mut later = tile();
+        later.absorb_even(&subject(), &self::chunk(4..8, 4, Pixels::All), color, 1);
+        assert_eq!(later.film_tile().past.columns()[0][0], f32::INFINITY);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! What a render leaves: sums and counts of every pixel.
 
 use super::past_moves::PastMoves;
+use super::plane_sums::PlaneSums;
 use super::sum_columns::{CHANNELS, SumColumns, TileColors};
 use super::tile_state::Pixels;
 use super::tiles::{TILE, TILE_PIXELS, Tile, TileGrid, half_of, place_in_tile};
@@ -115,7 +116,7 @@ impl Film {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct FilmTile {
     /// None where nothing arrived.
-    pub sums: SumColumns,
+    pub sums: PlaneSums,
     pub past: PastMoves,
     /// Samples of each pixel of each half.
     pub counts: [u32; 2],
@@ -124,24 +125,22 @@ pub(super) struct FilmTile {
 impl FilmTile {
     /// Pixels with these sums, of so many samples each.
     pub fn of_sums(sums: impl IntoIterator<Item = (usize, Sum)>, count: u32) -> Self {
-        let mut tile = Self {
-            counts: [count; 2],
-            ..Self::default()
-        };
-        tile.sums.reset(TILE_PIXELS);
-        tile.past.forget(Pixels::All);
+        let mut columns = SumColumns::default();
+        columns.reset(TILE_PIXELS);
         for (place, sum) in sums {
-            tile.sums.set(place, &sum);
+            columns.set(place, &sum);
         }
-        tile
+        let mut past = PastMoves::default();
+        past.forget(Pixels::All);
+        Self {
+            sums: columns.into(),
+            past,
+            counts: [count; 2],
+        }
     }
 
     pub fn sum(&self, place: usize) -> Sum {
-        if self.sums.is_empty() {
-            Sum::default()
-        } else {
-            self.sums.get(place)
-        }
+        self.sums.get(place)
     }
 
     pub fn count(&self, place: usize) -> u32 {
@@ -150,11 +149,7 @@ impl FilmTile {
 
     /// The means of all its pixels; black where nothing arrived.
     pub fn means(&self) -> TileColors {
-        if self.sums.is_empty() {
-            [0.0; CHANNELS * TILE_PIXELS]
-        } else {
-            self.sums.all().means(self.counts)
-        }
+        self.sums.means(self.counts)
     }
 
     /// Adds the samples of another one.
@@ -168,11 +163,7 @@ impl FilmTile {
             }
             self.counts[half] += other.counts[half];
         }
-        if self.sums.is_empty() {
-            self.sums = other.sums.clone();
-        } else if !other.sums.is_empty() {
-            self.sums.merge(0, other.sums.all());
-        }
+        self.sums.merge(&other.sums);
     }
 }
 

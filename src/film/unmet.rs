@@ -175,6 +175,19 @@ pub(super) struct Reach {
     pub relative: f64,
 }
 
+impl Reach {
+    /// Of a pixel with this value.
+    #[inline(always)]
+    pub fn of(value: f64) -> Self {
+        let value = value.max(0.0);
+        let absolute = (value * value + super::RELATIVE_FLOOR).sqrt();
+        Self {
+            absolute,
+            relative: 0.5 / (value + absolute),
+        }
+    }
+}
+
 /// The same of a tile's pixels, in columns.
 pub(super) struct ReachColumns {
     pub absolute: [f64; TILE_PIXELS],
@@ -198,9 +211,8 @@ vectorized! {
         let ReachColumns { absolute, relative } = columns;
         let errors = absolute.iter_mut().zip(relative);
         for (value, (absolute, relative)) in values.iter().zip(errors) {
-            let value = value.max(0.0);
-            *absolute = (value * value + super::RELATIVE_FLOOR).sqrt();
-            *relative = 0.5 / (value + *absolute);
+            let reach = Reach::of(*value);
+            (*absolute, *relative) = (reach.absolute, reach.relative);
         }
     }
 }

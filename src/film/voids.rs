@@ -2,14 +2,15 @@
 //! by itself, as it comes out of a file, they are most of the picture.
 
 use super::subject::Subject;
-use super::tiles::TileGrid;
+use super::tiles::{TILE, Tile, TileGrid};
 use crate::trace::in_view;
-use glam::Vec3;
+use glam::{UVec2, Vec3};
 
 /// Which tiles those are, and what their samples are.
 pub(super) struct Voids {
     color: Vec3,
-    /// Of each tile, whether it is one; empty where none is.
+    /// Of each tile, whether it is one; empty where none is. Those at the right and the lower end that are cut are none: their
+    /// memory has more pixels than the picture, which have no samples.
     tiles: Vec<bool>,
 }
 
@@ -33,7 +34,8 @@ impl Voids {
         let Some(rectangles) = in_view(world, camera, settings) else {
             return none;
         };
-        let mut tiles = vec![true; grid.count() as usize];
+        let whole = |tile: Tile| tile.extent == UVec2::splat(TILE);
+        let mut tiles: Vec<bool> = grid.tiles().map(whole).collect();
         for rectangle in rectangles {
             for tile in grid.within(Some(rectangle)).0 {
                 tiles[tile as usize] = false;
@@ -55,7 +57,6 @@ mod tests {
     use super::super::{Progressive, Sum};
     use super::*;
     use crate::trace::{Camera, SampleId, Workspace, radiance};
-    use glam::UVec2;
 
     const SIZE: UVec2 = UVec2::new(150, 90);
 
