@@ -9,7 +9,7 @@
 //! bright texel and a dark one is found as often as it shines. Nodes stand in the middles, each worth
 //! `max(luminance - mean, 0) · sin θ`, and 0 at the poles.
 
-use super::Texture;
+use super::{Texture, wrap};
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
@@ -171,7 +171,8 @@ impl DomeTable {
     fn cell(&self, map: &Texture, place: Vec2) -> Cell {
         let (width, height) = (map.width(), map.height());
         let x = place.x * width as f32 - 0.5;
-        let column = (x.floor() as i64).rem_euclid(i64::from(width)) as usize;
+        let whole = wrap::floor(x);
+        let column = (whole as i64).rem_euclid(i64::from(width)) as usize;
         let y = place.y * height as f32;
         let band = ((y + 0.5) as usize).min(height as usize);
         let down = match band {
@@ -181,7 +182,7 @@ impl DomeTable {
         };
         Cell {
             nodes: self.nodes(map, column, band),
-            across: x - x.floor(),
+            across: x - whole,
             down: down.clamp(0.0, 1.0),
         }
     }

@@ -251,8 +251,8 @@ impl Texture {
             let (x, fx) = split(column + turn);
             let y = y.clamp(0, i64::from(self.height) - 1) as u32;
             let [left, right] = [x, x + 1].map(|x| {
-                let x = wrap::texel(x, self.width, Wrap::Repeat);
-                self.texel(x, y, false)
+                let x = x.rem_euclid(i64::from(self.width));
+                self.texel(x as u32, y, false)
             });
             left.lerp(right, fx)
         };
@@ -262,7 +262,7 @@ impl Texture {
 
 /// Whole and fractional part.
 fn split(x: f32) -> (i64, f32) {
-    let floor = x.floor();
+    let floor = wrap::floor(x);
     (floor as i64, x - floor)
 }
 

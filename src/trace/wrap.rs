@@ -38,10 +38,10 @@ impl MapFilter {
 pub(super) fn inside(uv: Vec2, wrap: [Wrap; 2]) -> Vec2 {
     let uv = if uv.is_finite() { uv } else { Vec2::ZERO };
     if wrap == [Wrap::Repeat; 2] {
-        return uv - uv.floor();
+        return uv - Vec2::new(floor(uv.x), floor(uv.y));
     }
     let along = |x: f32, wrap| match wrap {
-        Wrap::Repeat => x - x.floor(),
+        Wrap::Repeat => x - floor(x),
         Wrap::Clamp => x.clamp(0.0, 1.0),
         // Of every two, the second is reversed.
         Wrap::Mirror => 1.0 - (x.rem_euclid(2.0) - 1.0).abs(),
@@ -49,10 +49,25 @@ pub(super) fn inside(uv: Vec2, wrap: [Wrap; 2]) -> Vec2 {
     Vec2::new(along(uv.x, wrap[0]), along(uv.y, wrap[1]))
 }
 
+/// [`f32::floor`], which is a call where nothing is known of the processor. (That of -0.0 is 0.0.)
+#[inline(always)]
+pub(super) fn floor(x: f32) -> f32 {
+    /// From here on all are whole.
+    const WHOLE: f32 = (1 << 23) as f32;
+    if x.abs() < WHOLE {
+        let whole = x as i32 as f32;
+        if whole > x { whole - 1.0 } else { whole }
+    } else {
+        x
+    }
+}
+
 /// The texel of `n` in a row that stands for this one, which lies one beyond them at most.
 pub(super) fn texel(i: i64, n: u32, wrap: Wrap) -> u32 {
     match wrap {
-        Wrap::Repeat => i.rem_euclid(i64::from(n)) as u32,
+        Wrap::Repeat if i < 0 => n - 1,
+        Wrap::Repeat if i >= i64::from(n) => 0,
+        Wrap::Repeat => i as u32,
         // A mirrored picture begins with the texel that it ended with.
         Wrap::Clamp | Wrap::Mirror => i.clamp(0, i64::from(n) - 1) as u32,
     }
@@ -112,6 +127,27 @@ mod tests {
         ] {
             let found = [Nearest, Bilinear, Mipmap].map(|setting| filter.with(setting));
             assert_eq!(found, expected, "{filter:?}");
+        }
+    }
+
+    #[test]
+    fn the_whole_part_is_that_of_the_standard_library() {
+        let bits = (0..=u32::MAX).step_by(4099);
+        let near_whole = (-70..70).flat_map(|i| [-1_i32, 0, 1].map(|by| (i as f32 / 2.0, by)));
+        let near_whole = near_whole.map(|(x, by)| x.to_bits().wrapping_add_signed(by));
+        for x in bits.chain(near_whole).map(f32::from_bits) {
+            let (found, expected) = (floor(x), x.floor());
+            assert!(found == expected || x.is_nan() && found.is_nan(), "{x:e}");
+        }
+    }
+
+    #[test]
+    fn a_repeated_row_has_one_texel_more_at_each_end() {
+        for n in [1, 2, 7, u32::MAX] {
+            for i in [-1, 0, 1, i64::from(n) - 1, i64::from(n)] {
+                let expected = i.rem_euclid(i64::from(n)) as u32;
+                assert_eq!(texel(i, n, Wrap::Repeat), expected, "{i} of {n}");
+            }
         }
     }
 
