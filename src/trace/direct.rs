@@ -6,7 +6,7 @@ use super::lamp::Lamp;
 use super::light_columns::Source;
 use super::light_frames::Frame;
 use super::lights::{LightPoint, MIDDLE};
-use super::numbers::Pairs;
+use super::numbers::{Pairs, draw_firsts};
 use super::radiance::Batch;
 use super::recorder::{Adding, LitPoint, Recorder};
 use super::replies::Replies;
@@ -120,7 +120,8 @@ impl<R: Recorder> Batch<'_, R> {
             let ShadowRays {
                 asking, chances, ..
             } = &mut *shadow_rays;
-            chances.draw(asking, Purpose::Faint(lamp.id()), self.settings);
+            let purpose = Purpose::Faint(lamp.id());
+            draw_firsts(chances, asking, purpose, self.settings);
         }
         self.answer(asked, vertices, shadow_rays);
         self.collect(asked, row, vertices, shadow_rays);
@@ -401,8 +402,8 @@ impl Asked<'_> {
 
     /// Whether the point of a question is.
     #[inline(always)]
-    fn is_asked(&self, value: Vec3, chances: &Pairs, question: usize) -> bool {
-        self.faint == 0.0 || chances.u[question] < self.chance(value)
+    fn is_asked(&self, value: Vec3, chances: &[f32], question: usize) -> bool {
+        self.faint == 0.0 || chances[question] < self.chance(value)
     }
 
     /// The point that numbers choose for a surface at `from`, by itself.

@@ -60,6 +60,29 @@ vectorized! {
 /// Fills two columns, for a purpose, from those of [`Asking`].
 type OfSobol = fn(u32, &[u32], &[u32], &[u64], &mut [f32], &mut [f32]);
 
+/// The first number of everyone's block for `purpose`.
+pub(super) fn draw_firsts(
+    numbers: &mut Vec<f32>,
+    asking: &Asking,
+    purpose: Purpose,
+    settings: &RenderSettings,
+) {
+    let Asking {
+        pixels,
+        paths,
+        indices,
+    } = asking;
+    numbers.resize(asking.len(), 0.0);
+    if settings.sequence == Sequence::Sobol {
+        sobol::firsts(purpose.key(), pixels, paths, indices, numbers);
+        return;
+    }
+    for (i, number) in numbers.iter_mut().enumerate() {
+        let sampler = Sampler::of_pixel(pixels[i], settings.sequence, settings.jitter);
+        [*number, ..] = sampler.block(indices[i], purpose, paths[i]);
+    }
+}
+
 /// Two numbers in [0, 1) for each who asked.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pairs {

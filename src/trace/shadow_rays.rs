@@ -29,7 +29,7 @@ pub(super) struct ShadowRays {
     pub asking: Asking,
     pub numbers: Pairs,
     /// Where there are many lights, the number of each question that decides whether it is asked if it is faint.
-    pub chances: Pairs,
+    pub chances: Vec<f32>,
     /// What is asked in columns, the same of every light; and whether it is there, and has the counts.
     pub columns: Columns,
     are_gathered: bool,

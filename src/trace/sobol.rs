@@ -71,20 +71,25 @@ fn scrambled(reversed: u32, seed: u32, key: u32) -> f32 {
     u32_to_f32_norm(owen_scramble_rev(reversed, scramble).reverse_bits())
 }
 
-/// Two numbers of a block, the last or the first, for the point `within` the sequence.
+/// Which numbers of a block: its first alone, its first two or its last two.
+const FIRST: u8 = 0;
+const FIRST_TWO: u8 = 1;
+const LAST_TWO: u8 = 2;
+
+/// Those numbers of a block, for the point `within` the sequence; the second is 0 where it is none of them.
 #[inline(always)]
-fn two<const LAST: bool>(seed: u32, within: u32) -> (f32, f32) {
+fn two<const WHICH: u8>(seed: u32, within: u32) -> (f32, f32) {
     let place = shuffled(within, seed);
-    if LAST {
-        (
-            scrambled(by_directions(place, &DIRECTIONS[0]), seed, KEYS[2]),
-            scrambled(by_directions(place, &DIRECTIONS[1]), seed, KEYS[3]),
-        )
-    } else {
-        (
+    match WHICH {
+        FIRST => (scrambled(place, seed, KEYS[0]), 0.0),
+        FIRST_TWO => (
             scrambled(place, seed, KEYS[0]),
             scrambled(second(place), seed, KEYS[1]),
-        )
+        ),
+        _ => (
+            scrambled(by_directions(place, &DIRECTIONS[0]), seed, KEYS[2]),
+            scrambled(by_directions(place, &DIRECTIONS[1]), seed, KEYS[3]),
+        ),
     }
 }
 
@@ -93,9 +98,9 @@ fn two<const LAST: bool>(seed: u32, within: u32) -> (f32, f32) {
 const LANES: usize = 32;
 
 /// The same of columns: of `pixels` their seeds, of `indices` the points. Their indices become numbers of 32 bits first:
-/// beside wider ones a register holds half as many.
+/// beside wider ones a register holds half as many. `v` stays empty where there is no second number.
 #[inline(always)]
-fn fill<const LAST: bool>(
+fn fill<const WHICH: u8>(
     key: u32,
     pixels: &[u32],
     paths: &[u32],
@@ -103,36 +108,41 @@ fn fill<const LAST: bool>(
     u: &mut [f32],
     v: &mut [f32],
 ) {
-    let mut first = 0;
     let [mut pixel, mut path, mut within, mut beyond] = [[0; LANES]; 4];
     let mut two_of = ([0.0; LANES], [0.0; LANES]);
-    for (u, v) in u.chunks_mut(LANES).zip(v.chunks_mut(LANES)) {
+    for (chunk, u) in u.chunks_mut(LANES).enumerate() {
         let count = u.len();
-        let some = first..first + count;
-        first += count;
+        let some = chunk * LANES..chunk * LANES + count;
         pixel[..count].copy_from_slice(&pixels[some.clone()]);
         path[..count].copy_from_slice(&paths[some.clone()]);
-        for (i, index) in indices[some].iter().enumerate() {
+        for (i, index) in indices[some.clone()].iter().enumerate() {
             within[i] = *index as u32 & ((1 << LENGTH_BITS) - 1);
             beyond[i] = (*index >> LENGTH_BITS) as u32;
         }
         if beyond == [0; LANES] {
             for i in 0..LANES {
                 let seed = block_seed(pixel[i], key, path[i], 0);
-                (two_of.0[i], two_of.1[i]) = two::<LAST>(seed, within[i]);
+                (two_of.0[i], two_of.1[i]) = two::<WHICH>(seed, within[i]);
             }
         } else {
             for i in 0..LANES {
                 let seed = block_seed(pixel[i], key, path[i], beyond[i]);
-                (two_of.0[i], two_of.1[i]) = two::<LAST>(seed, within[i]);
+                (two_of.0[i], two_of.1[i]) = two::<WHICH>(seed, within[i]);
             }
         }
         u.copy_from_slice(&two_of.0[..count]);
-        v.copy_from_slice(&two_of.1[..count]);
+        if WHICH != FIRST {
+            v[some].copy_from_slice(&two_of.1[..count]);
+        }
     }
 }
 
 vectorized! {
+    /// The first number of a block.
+    pub(super) fn firsts(key: u32, pixels: &[u32], paths: &[u32], indices: &[u64], u: &mut [f32]) {
+        fill::<FIRST>(key, pixels, paths, indices, u, &mut []);
+    }
+
     /// The first two numbers of a block.
     pub(super) fn pairs(
         key: u32,
@@ -142,7 +152,7 @@ vectorized! {
         u: &mut [f32],
         v: &mut [f32],
     ) {
-        fill::<false>(key, pixels, paths, indices, u, v);
+        fill::<FIRST_TWO>(key, pixels, paths, indices, u, v);
     }
 
     /// The last two numbers of a block.
@@ -154,7 +164,7 @@ vectorized! {
         u: &mut [f32],
         v: &mut [f32],
     ) {
-        fill::<true>(key, pixels, paths, indices, u, v);
+        fill::<LAST_TWO>(key, pixels, paths, indices, u, v);
     }
 }
 
@@ -185,6 +195,9 @@ mod tests {
         let [u, v, w, x] = &mut columns;
         pairs(Purpose::Gloss.key(), &pixels, &paths, &indices, u, v);
         last_pairs(Purpose::Gloss.key(), &pixels, &paths, &indices, w, x);
+        let mut alone = vec![0.0; count as usize];
+        firsts(Purpose::Gloss.key(), &pixels, &paths, &indices, &mut alone);
+        assert_eq!(alone, *u);
         for i in 0..count as usize {
             let sampler = Sampler::of_pixel(pixels[i], Sequence::Sobol, 1);
             let block = sampler.block(indices[i], Purpose::Gloss, paths[i]);
