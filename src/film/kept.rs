@@ -1,19 +1,21 @@
-//! What camera rays hit and what hides lights from there, kept while lights and materials are edited: those are in no ray's
-//! way.
+//! What rays hit and what hides lights from there, kept while lights and materials are edited: those are in no ray's way.
+//! Of camera rays, and of those that leave first hits where one of each sample does: in a mirror.
 //!
 //! Kept from the first edit on, since a render that nobody edits has no use for it.
 
 use super::per_sample::{BatchPlaces, PerSample};
 use super::tiles::TileGrid;
 use crate::bvh::Hit;
-use crate::trace::{RayCounts, Visibility, Workspace};
+use crate::trace::{RayCounts, SecondHit, Visibility, Workspace};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What edits leave true of a picture's samples.
 pub(super) struct Kept {
     /// None where a camera ray has not been traced yet.
     hits: PerSample<Option<Option<Hit>>>,
-    visibilities: PerSample<Visibility>,
+    second_hits: PerSample<SecondHit>,
+    /// From first hits and from second ones.
+    visibilities: [PerSample<Visibility>; 2],
     /// The last edit was of materials alone, so that the next one may be: else nobody needs to know what hid the lights.
     edits_materials: AtomicBool,
 }
@@ -22,14 +24,16 @@ impl Kept {
     pub fn new(grid: &TileGrid) -> Self {
         Self {
             hits: PerSample::new(grid),
-            visibilities: PerSample::new(grid),
+            second_hits: PerSample::new(grid),
+            visibilities: [0, 1].map(|_| PerSample::new(grid)),
             edits_materials: AtomicBool::new(false),
         }
     }
 
     /// What it takes now, in bytes.
     pub fn bytes(&self) -> u64 {
-        self.hits.bytes() + self.visibilities.bytes()
+        let [first, second] = &self.visibilities;
+        self.hits.bytes() + self.second_hits.bytes() + first.bytes() + second.bytes()
     }
 
     /// Something is edited: materials alone, or lights too.
@@ -37,7 +41,7 @@ impl Kept {
         self.edits_materials
             .store(materials_alone, Ordering::Relaxed);
         if !materials_alone {
-            self.visibilities.clear();
+            self.visibilities.iter().for_each(PerSample::clear);
         }
     }
 
@@ -51,10 +55,14 @@ impl Kept {
             });
             all
         });
+        let second_hits = workspace.second_hits();
+        second_hits.clear();
+        self.second_hits.read(of, |known| second_hits.push(known));
         if self.edits_materials.load(Ordering::Relaxed) {
-            let visibilities = workspace.visibilities();
-            visibilities.clear();
-            self.visibilities.read(of, |known| visibilities.push(known));
+            for (all, of_batch) in self.visibilities.iter().zip(workspace.visibilities()) {
+                of_batch.clear();
+                all.read(of, |known| of_batch.push(known));
+            }
         }
     }
 
@@ -64,9 +72,14 @@ impl Kept {
             let hits = workspace.camera_hits().iter();
             self.hits.write(of, hits.map(|hit| Some(*hit)));
         }
-        let visibilities = workspace.visibilities();
-        if !visibilities.is_empty() {
-            self.visibilities.write(of, visibilities.drain(..));
+        let second_hits = workspace.second_hits();
+        if !second_hits.is_empty() {
+            self.second_hits.write(of, second_hits.drain(..));
+        }
+        for (all, of_batch) in self.visibilities.iter().zip(workspace.visibilities()) {
+            if !of_batch.is_empty() {
+                all.write(of, of_batch.drain(..));
+            }
         }
     }
 }

@@ -29,7 +29,7 @@ pub struct FilmMemory {
     pub planes: usize,
     /// Of one of them.
     pub plane: u64,
-    /// What camera rays hit, and what hides lights from there, which is kept while lights and materials are edited.
+    /// What camera rays hit, and those that leave there, and what hides lights: kept while lights and materials are edited.
     pub hits: u64,
     /// Of all of it: the planes, what the others are together while one is edited, and those hits.
     pub total: u64,

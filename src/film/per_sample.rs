@@ -9,7 +9,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// What all of a picture's samples may take together, in bytes.
-const MOST_BYTES: u64 = 1 << 28;
+const MOST_BYTES: u64 = 1 << 27;
 
 /// Something of each sample; its default where nothing is known.
 pub(super) struct PerSample<T> {

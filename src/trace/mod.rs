@@ -63,6 +63,7 @@ mod recorder;
 mod replies;
 mod sampler;
 mod scatter;
+mod second_hits;
 mod segment_warp;
 pub mod shading;
 mod shadow_rays;
@@ -110,6 +111,7 @@ pub use ray_tree::{
 pub use receiver::Receivers;
 pub use recorder::LightKind;
 pub use sampler::{Purpose, Sampler};
+pub use second_hits::SecondHit;
 pub use segment_warp::{SegmentFrame, SegmentPlaces};
 pub use spot_cone::SpotCone;
 pub use sun_disc::SunDisc;

@@ -36,6 +36,12 @@ impl Paths {
         self.states.push(path);
     }
 
+    /// Whether each is the only one of its sample, and leaves a surface.
+    pub fn are_one_of_a_sample(&self) -> bool {
+        let mut pairs = self.states.windows(2);
+        self.straight.is_empty() && pairs.all(|pair| pair[0].sample < pair[1].sample)
+    }
+
     pub fn get(&self, i: usize, cone: Cone) -> Path {
         if self.states.is_empty() {
             Path::from_camera(i as u32, cone)

@@ -15,6 +15,7 @@ use super::paths::{Path, Paths};
 use super::planes::{OWN, PlaneSet, Planes};
 use super::recorder::{Adding, Recorder};
 use super::sampler::Sampler;
+use super::second_hits::{SecondHit, number};
 use super::shadow_rays::ShadowRays;
 use super::vertices::Vertices;
 use super::visibility::Visibility;
@@ -45,8 +46,10 @@ pub struct Workspace {
     hits: Vec<Option<Hit>>,
     /// The camera's are known.
     is_known: bool,
-    /// Of the samples' first hits, where somebody keeps it.
-    visibilities: Vec<Visibility>,
+    /// Of the samples' first hits and of their second ones, where somebody keeps it.
+    visibilities: [Vec<Visibility>; 2],
+    /// Where somebody keeps it.
+    second_hits: Vec<SecondHit>,
     behind: Behind,
     vertices: Vertices,
     shadow_rays: ShadowRays,
@@ -65,10 +68,17 @@ impl Workspace {
         self.is_known = fill(&mut self.camera_hits);
     }
 
-    /// What is known of the lights that something hides from the first hits of the next batch, one for each sample: what is
-    /// found out is added to it. Where there is none nothing is.
-    pub fn visibilities(&mut self) -> &mut Vec<Visibility> {
+    /// What is known of the lights that something hides from the first and from the second hits of the next batch, one for
+    /// each sample: what is found out is added to it. Where there is none nothing is, and there is none of second hits after a
+    /// batch that kept none.
+    pub fn visibilities(&mut self) -> &mut [Vec<Visibility>; 2] {
         &mut self.visibilities
+    }
+
+    /// The same of what rays hit that leave first hits, of samples of which one does at most. A ray of which it is known is not
+    /// traced.
+    pub fn second_hits(&mut self) -> &mut Vec<SecondHit> {
+        &mut self.second_hits
     }
 
     /// The materials that paths have met since this was asked last. The values of samples depend on no other material, those
@@ -184,7 +194,8 @@ fn evaluate<R: Recorder>(
         camera_hits,
         hits,
         is_known,
-        visibilities,
+        visibilities: [visibilities, second_visibilities],
+        second_hits,
         behind,
         vertices,
         shadow_rays,
@@ -206,9 +217,12 @@ fn evaluate<R: Recorder>(
         wanted,
         values,
         counts: RayCounts::default(),
-        visibilities: (visibilities.len() == samples.len()).then_some(&mut visibilities[..]),
+        visibilities: of_each(visibilities, samples),
         recorder,
     };
+    // Of the bounce that comes next.
+    let mut kept_next = Some((second_hits, second_visibilities));
+    let mut kept_now = None;
     if !is_known {
         batch.counts.camera += samples.len() as u64;
     }
@@ -217,7 +231,9 @@ fn evaluate<R: Recorder>(
     }
     let mut hits_now = camera_hits;
     while !paths.rays.is_empty() {
-        if !std::mem::take(&mut is_known) {
+        if let Some(known) = kept_now.take() {
+            batch.find_other_hits(paths, known, hits_now, behind);
+        } else if !std::mem::take(&mut is_known) {
             batch.find_nearest(paths, hits_now, behind);
         }
         next.clear();
@@ -229,9 +245,23 @@ fn evaluate<R: Recorder>(
         std::mem::swap(paths, next);
         hits_now = &mut *hits;
         batch.visibilities = None;
+        if let Some((hits, visibilities)) = kept_next.take() {
+            if !paths.rays.is_empty() && paths.are_one_of_a_sample() {
+                kept_now = of_each(hits, samples);
+                batch.visibilities = of_each(visibilities, samples);
+            } else {
+                hits.clear();
+                visibilities.clear();
+            }
+        }
         batch.recorder.next_bounce();
     }
     batch.counts
+}
+
+/// What is kept of each sample of a batch; `None` where it is not.
+fn of_each<'a, T>(kept: &'a mut [T], samples: &[SampleId]) -> Option<&'a mut [T]> {
+    (kept.len() == samples.len()).then_some(kept)
 }
 
 /// What the stages of a batch share.
@@ -246,7 +276,7 @@ pub(super) struct Batch<'a, R> {
     /// Plane by plane of those that are wanted, one for each sample.
     values: &'a mut [Vec3],
     pub counts: RayCounts,
-    /// Of the first hits, where it is kept; none at later bounces.
+    /// Of the hits of this bounce, where it is kept.
     pub visibilities: Option<&'a mut [Visibility]>,
     pub recorder: &'a mut R,
 }
@@ -266,15 +296,7 @@ impl<R: Recorder> Batch<'_, R> {
     fn find_nearest(&self, paths: &Paths, hits: &mut Vec<Option<Hit>>, behind: &mut Behind) {
         let aggregate = &self.world.aggregate;
         if paths.straight.is_empty() {
-            let features = &self.settings.features;
-            let is_scattered = features.glossy || features.translucency;
-            // Rays of neighbouring pixels are neighbours, and their mirrored ones often are.
-            let order = if paths.states.is_empty() || !is_scattered {
-                Order::Tile
-            } else {
-                Order::None
-            };
-            aggregate.closest_hits_in(order, &paths.rays, hits);
+            aggregate.closest_hits_in(self.order(paths), &paths.rays, hits);
             return;
         }
         let is_straight = |i: usize| paths.states[i].after.is_some();
@@ -295,6 +317,55 @@ impl<R: Recorder> Batch<'_, R> {
             let i = i as usize;
             let after = &paths.states[i].after;
             hits[i] = after.and_then(|after| aggregate.next_crossing(&paths.rays[i], &after));
+        }
+    }
+
+    /// The same where it is `known` of some samples, of which one ray goes on each: the others' is known then.
+    fn find_other_hits(
+        &mut self,
+        paths: &Paths,
+        known: &mut [SecondHit],
+        hits: &mut Vec<Option<Hit>>,
+        behind: &mut Behind,
+    ) {
+        hits.clear();
+        behind.others.clear();
+        behind.rays.clear();
+        for (i, (ray, path)) in paths.rays.iter().zip(&paths.states).enumerate() {
+            let number = number(ray);
+            let kept = &mut known[path.sample as usize];
+            let hit = kept.of(number);
+            if hit.is_some() {
+                let counts = &mut self.counts;
+                *if path.bounces > 0 {
+                    &mut counts.mirror
+                } else {
+                    &mut counts.transmission
+                } -= 1;
+            } else {
+                behind.others.push(i as u32);
+                behind.rays.push(*ray);
+                *kept = SecondHit::new(number);
+            }
+            hits.push(hit.flatten());
+        }
+        let order = self.order(paths);
+        let aggregate = &self.world.aggregate;
+        aggregate.closest_hits_in(order, &behind.rays, &mut behind.hits);
+        for (&i, hit) in behind.others.iter().zip(&behind.hits) {
+            hits[i as usize] = *hit;
+            known[paths.states[i as usize].sample as usize].found(*hit);
+        }
+    }
+
+    /// How rays follow each other. Those of neighbouring pixels are neighbours, and their mirrored ones often are.
+    fn order(&self, paths: &Paths) -> Order {
+        let features = &self.settings.features;
+        let is_scattered = features.glossy || features.translucency;
+        if paths.states.is_empty() || !is_scattered {
+            Order::Tile
+        } else {
+            Order::None
         }
     }
 

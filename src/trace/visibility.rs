@@ -1,4 +1,4 @@
-//! What hides lights from first hits, remembered from one evaluation of a sample to the next.
+//! What hides lights from first and second hits, remembered from one evaluation of a sample to the next.
 //!
 //! While only materials are edited nothing is put in the way of a shadow ray, and most are the same again: the points of
 //! lights hang on where a surface lies and faces, and of one with a highlight on how it reflects.
@@ -10,7 +10,7 @@ use std::hash::BuildHasher;
 /// Points of lights of which it is remembered: the first ones.
 const POINTS: u32 = u64::BITS;
 
-/// Which points of lights something hides from a sample's first hit, as far as that was found out.
+/// Which points of lights something hides from a sample's first or second hit, as far as that was found out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Visibility {
     /// What the points were chosen for.
@@ -47,10 +47,14 @@ impl Visibility {
     }
 }
 
-/// What the choice of points for a vertex hangs on besides its place, as a number that no other is likely to have.
+/// What the choice of points for a vertex hangs on, as a number that no other vertex of its sample is likely to have. The place
+/// of a first hit is not in it: no edit that leaves hits what they are moves it.
 pub(super) fn surface(vertices: &Vertices, i: usize) -> u64 {
     let bits = |vector: glam::Vec3| vector.to_array().map(f32::to_bits);
     let normal = bits(vertices.normal.get(i));
+    if !vertices.are_from_camera() {
+        return of_later(vertices, i, normal);
+    }
     if !vertices.has_highlight(i) {
         return FixedHasher.hash_one(normal);
     }
@@ -58,6 +62,19 @@ pub(super) fn surface(vertices: &Vertices, i: usize) -> u64 {
     let specular = bits(vertices.specular.get(i));
     let shininess = vertices.shininess[i].to_bits();
     FixedHasher.hash_one((normal, diffuse, specular, shininess))
+}
+
+/// The same of a later hit, with its place and its path.
+fn of_later(vertices: &Vertices, i: usize, normal: [u32; 3]) -> u64 {
+    let bits = |vector: glam::Vec3| vector.to_array().map(f32::to_bits);
+    let hit = &vertices.hits[i];
+    let place = (bits(vertices.position.get(i)), hit.instance, hit.triangle);
+    let name = vertices.path(i).name;
+    let reflects = vertices.has_highlight(i).then(|| {
+        let [diffuse, specular] = [&vertices.diffuse, &vertices.specular].map(|v| bits(v.get(i)));
+        (diffuse, specular, vertices.shininess[i].to_bits())
+    });
+    FixedHasher.hash_one((name, place, normal, reflects))
 }
 
 #[cfg(test)]
