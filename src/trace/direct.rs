@@ -16,7 +16,7 @@ use super::shadow_rays::{SHORT_OF_THE_LIGHT, Shadow, ShadowRays, shadow_ray};
 use super::transmittance::through;
 use super::vectors::{Vectors, column_vector};
 use super::vertices::Vertices;
-use super::visibility::surface;
+use super::visibility::{Chooser, bit};
 use crate::bvh::{Hit, Order, Ray};
 use crate::scene::Lighting;
 use glam::Vec3;
@@ -91,9 +91,17 @@ impl<R: Recorder> Batch<'_, R> {
         let Some(visibilities) = &mut self.visibilities else {
             return;
         };
+        let (mut first, mut single) = (0_u32, 0);
+        for lamp in self.world.lamps(self.settings) {
+            let samples = lamp.samples(self.settings);
+            if samples.is_none() {
+                single |= bit(first);
+            }
+            first = first.saturating_add(samples.unwrap_or(1));
+        }
         for i in 0..vertices.len() {
             let sample = vertices.path(i).sample as usize;
-            visibilities[sample].keep_of(surface(vertices, i));
+            visibilities[sample].keep_of(Chooser::of(vertices, i), single);
         }
     }
 

@@ -7,74 +7,86 @@ use super::vertices::Vertices;
 use bevy::platform::hash::FixedHasher;
 use std::hash::BuildHasher;
 
-/// Points of lights of which it is remembered: the first ones.
-const POINTS: u32 = u64::BITS;
-
 /// Which points of lights something hides from a sample's first or second hit, as far as that was found out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Visibility {
     /// What the points were chosen for.
-    surface: u64,
+    of: Chooser,
     /// A bit for each point: whether it was asked for, and whether something was in the way.
     asked: u64,
     hidden: u64,
 }
 
+/// What the choice of points for a vertex hangs on, as numbers that no other vertex of its sample is likely to have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Chooser {
+    /// Where it lies, faces and how it was reached.
+    place: u64,
+    /// How it reflects, where points of lights with an extent hang on that; else 0.
+    reflection: u64,
+}
+
 impl Visibility {
-    /// Forgets points that were chosen for another surface: as [`surface`] names them.
-    pub(super) fn keep_of(&mut self, surface: u64) {
-        if self.surface != surface {
-            *self = Self {
-                surface,
-                ..Self::default()
-            };
-        }
+    /// Forgets points that were chosen for another vertex; of one that reflects otherwise than before it keeps those of
+    /// lights that have one point, a bit for each in `single`.
+    pub(super) fn keep_of(&mut self, of: Chooser, single: u64) {
+        let kept = if self.of == of {
+            return;
+        } else if self.of.place == of.place {
+            single
+        } else {
+            0
+        };
+        *self = Self {
+            of,
+            asked: self.asked & kept,
+            hidden: self.hidden & kept,
+        };
     }
 
     /// Whether something hides a point. `None` where that is not known.
     #[inline(always)]
     pub(super) fn is_hidden(&self, point: u32) -> Option<bool> {
-        let has = |bits: u64| point < POINTS && bits >> point & 1 != 0;
+        let has = |bits: u64| bits & bit(point) != 0;
         has(self.asked).then(|| has(self.hidden))
     }
 
     #[inline(always)]
     pub(super) fn remember(&mut self, point: u32, is_hidden: bool) {
-        if point < POINTS {
-            self.asked |= 1 << point;
-            self.hidden |= u64::from(is_hidden) << point;
+        self.asked |= bit(point);
+        if is_hidden {
+            self.hidden |= bit(point);
         }
     }
 }
 
-/// What the choice of points for a vertex hangs on, as a number that no other vertex of its sample is likely to have. The place
-/// of a first hit is not in it: no edit that leaves hits what they are moves it.
-pub(super) fn surface(vertices: &Vertices, i: usize) -> u64 {
-    let bits = |vector: glam::Vec3| vector.to_array().map(f32::to_bits);
-    let normal = bits(vertices.normal.get(i));
-    if !vertices.are_from_camera() {
-        return of_later(vertices, i, normal);
-    }
-    if !vertices.has_highlight(i) {
-        return FixedHasher.hash_one(normal);
-    }
-    let diffuse = bits(vertices.diffuse.get(i));
-    let specular = bits(vertices.specular.get(i));
-    let shininess = vertices.shininess[i].to_bits();
-    FixedHasher.hash_one((normal, diffuse, specular, shininess))
+/// A bit for a point of a light. None of those behind the first 64, which are not remembered.
+#[inline(always)]
+pub(super) fn bit(point: u32) -> u64 {
+    1_u64.checked_shl(point).unwrap_or(0)
 }
 
-/// The same of a later hit, with its place and its path.
-fn of_later(vertices: &Vertices, i: usize, normal: [u32; 3]) -> u64 {
-    let bits = |vector: glam::Vec3| vector.to_array().map(f32::to_bits);
-    let hit = &vertices.hits[i];
-    let place = (bits(vertices.position.get(i)), hit.instance, hit.triangle);
-    let name = vertices.path(i).name;
-    let reflects = vertices.has_highlight(i).then(|| {
-        let [diffuse, specular] = [&vertices.diffuse, &vertices.specular].map(|v| bits(v.get(i)));
-        (diffuse, specular, vertices.shininess[i].to_bits())
-    });
-    FixedHasher.hash_one((name, place, normal, reflects))
+impl Chooser {
+    /// Of a vertex. The place of a first hit is not in it: no edit that leaves hits what they are moves it.
+    pub fn of(vertices: &Vertices, i: usize) -> Self {
+        let bits = |vector: glam::Vec3| vector.to_array().map(f32::to_bits);
+        let normal = bits(vertices.normal.get(i));
+        let reflection = if vertices.has_highlight(i) {
+            let colors = [&vertices.diffuse, &vertices.specular].map(|color| bits(color.get(i)));
+            FixedHasher.hash_one((colors, vertices.shininess[i].to_bits()))
+        } else {
+            0
+        };
+        let place = if vertices.are_from_camera() {
+            FixedHasher.hash_one(normal)
+        } else {
+            let hit = &vertices.hits[i];
+            let name = vertices.path(i).name;
+            let place = bits(vertices.position.get(i));
+            FixedHasher.hash_one((normal, place, hit.instance, hit.triangle, name))
+        };
+        Self { place, reflection }
+    }
 }
 
 #[cfg(test)]
@@ -82,9 +94,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_remembered_of_a_point_is_known_of_no_other_and_of_no_other_surface() {
+    fn what_is_remembered_of_a_point_is_known_of_no_other_and_of_no_other_vertex() {
+        let of = |place, reflection| Chooser { place, reflection };
         let mut visibility = Visibility::default();
-        visibility.keep_of(7);
+        visibility.keep_of(of(7, 1), 0);
         let points = [0, 1, 62, 63, 64, 1000];
         for (i, point) in points.into_iter().enumerate() {
             assert_eq!(visibility.is_hidden(point), None);
@@ -94,9 +107,13 @@ mod tests {
         let [yes, no] = [Some(true), Some(false)];
         assert_eq!(known, [yes, no, yes, no, None, None]);
         assert_eq!(visibility.is_hidden(2), None);
-        visibility.keep_of(7);
+        visibility.keep_of(of(7, 1), 0);
         assert_eq!(visibility.is_hidden(62), yes);
-        visibility.keep_of(8);
+        // It reflects otherwise: what hides a light without extent stays true.
+        visibility.keep_of(of(7, 2), bit(0) | bit(1));
+        let known = points.map(|point| visibility.is_hidden(point));
+        assert_eq!(known, [yes, no, None, None, None, None]);
+        visibility.keep_of(of(8, 2), u64::MAX);
         assert!(
             points
                 .iter()

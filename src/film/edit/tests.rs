@@ -358,9 +358,14 @@ fn while_materials_are_edited_what_hides_lights_is_found_out_once() {
     // Of lights that moved nothing is known, and who edits them has no use for it.
     let (world, _) = shadow_rays(edited(&world, |lights| lights.points[0].position.x += 0.1));
     let (world, first) = shadow_rays(repainted(&world, 1, Vec3::splat(0.2)));
-    let (_, second) = shadow_rays(repainted(&world, 1, Vec3::splat(0.3)));
+    let (world, second) = shadow_rays(repainted(&world, 1, Vec3::splat(0.3)));
     assert!(first > 0);
     assert_eq!(second, 0);
+    // What has a highlight chooses points on lights with an extent by it, and lights without one have theirs.
+    let (world, _) = shadow_rays(edited(&world, |lights| lights.points[0].position.x += 0.1));
+    let (world, first) = shadow_rays(repainted(&world, 2, Vec3::splat(0.2)));
+    let (_, second) = shadow_rays(repainted(&world, 2, Vec3::splat(0.3)));
+    assert!(0 < second && second < first, "{second}, {first}");
 }
 
 #[test]
