@@ -101,7 +101,7 @@ impl<R: Recorder> Batch<'_, R> {
         }
         for i in 0..vertices.len() {
             let sample = vertices.path(i).sample as usize;
-            visibilities[sample].keep_of(Chooser::of(vertices, i), single);
+            self.has_learnt |= visibilities[sample].keep_of(Chooser::of(vertices, i), single);
         }
     }
 
@@ -378,6 +378,7 @@ impl<R: Recorder> Batch<'_, R> {
             .aggregate
             .occlusions_in(Order::Light, rays, occluded);
         if let Some(visibilities) = &mut self.visibilities {
+            self.has_learnt |= !shadows.is_empty();
             for (shadow, occluded) in shadows.iter().zip(&*occluded) {
                 visibilities[shadow.sample as usize].remember(shadow.place, *occluded);
             }

@@ -69,13 +69,13 @@ impl Workspace {
     }
 
     /// What is known of the lights that something hides from the first and from the second hits of the next batch, one for
-    /// each sample: what is found out is added to it. Where there is none nothing is, and there is none of second hits after a
-    /// batch that kept none.
+    /// each sample: what is found out is added to it. Where there is none nothing is, and there is none after a batch that found
+    /// out nothing.
     pub fn visibilities(&mut self) -> &mut [Vec<Visibility>; 2] {
         &mut self.visibilities
     }
 
-    /// The same of what rays hit that leave first hits, of samples of which one does at most. A ray of which it is known is not
+    /// The same of what rays hit that leave first hits, where one of each sample does at most. A ray of which it is known is not
     /// traced.
     pub fn second_hits(&mut self) -> &mut Vec<SecondHit> {
         &mut self.second_hits
@@ -218,11 +218,18 @@ fn evaluate<R: Recorder>(
         values,
         counts: RayCounts::default(),
         visibilities: of_each(visibilities, samples),
+        has_learnt: false,
         recorder,
     };
     // Of the bounce that comes next.
-    let mut kept_next = Some((second_hits, second_visibilities));
+    let of_second = (
+        of_each(second_hits, samples),
+        of_each(second_visibilities, samples),
+    );
+    let mut kept_next = Some(of_second);
     let mut kept_now = None;
+    // Of first and of second hits: what hides lights from there, and of second ones what they are.
+    let (mut learnt, mut bounce, mut has_found) = ([false; 2], 0, false);
     if !is_known {
         batch.counts.camera += samples.len() as u64;
     }
@@ -232,7 +239,7 @@ fn evaluate<R: Recorder>(
     let mut hits_now = camera_hits;
     while !paths.rays.is_empty() {
         if let Some(known) = kept_now.take() {
-            batch.find_other_hits(paths, known, hits_now, behind);
+            has_found = batch.find_other_hits(paths, known, hits_now, behind);
         } else if !std::mem::take(&mut is_known) {
             batch.find_nearest(paths, hits_now, behind);
         }
@@ -245,18 +252,30 @@ fn evaluate<R: Recorder>(
         std::mem::swap(paths, next);
         hits_now = &mut *hits;
         batch.visibilities = None;
-        if let Some((hits, visibilities)) = kept_next.take() {
-            if !paths.rays.is_empty() && paths.are_one_of_a_sample() {
-                kept_now = of_each(hits, samples);
-                batch.visibilities = of_each(visibilities, samples);
-            } else {
-                hits.clear();
-                visibilities.clear();
-            }
+        if let Some(learnt) = learnt.get_mut(bounce) {
+            *learnt = std::mem::take(&mut batch.has_learnt);
+        }
+        bounce += 1;
+        if let Some((hits, visibilities)) = kept_next.take()
+            && paths.are_one_of_a_sample()
+        {
+            (kept_now, batch.visibilities) = (hits, visibilities);
         }
         batch.recorder.next_bounce();
     }
-    batch.counts
+    let counts = batch.counts;
+    // What was known before need not be kept again.
+    let [first, second] = learnt;
+    if !first {
+        visibilities.clear();
+    }
+    if !second {
+        second_visibilities.clear();
+    }
+    if !has_found {
+        second_hits.clear();
+    }
+    counts
 }
 
 /// What is kept of each sample of a batch; `None` where it is not.
@@ -276,8 +295,9 @@ pub(super) struct Batch<'a, R> {
     /// Plane by plane of those that are wanted, one for each sample.
     values: &'a mut [Vec3],
     pub counts: RayCounts,
-    /// Of the hits of this bounce, where it is kept.
+    /// Of the hits of this bounce, where it is kept; and whether they tell more than before.
     pub visibilities: Option<&'a mut [Visibility]>,
+    pub has_learnt: bool,
     pub recorder: &'a mut R,
 }
 
@@ -320,14 +340,15 @@ impl<R: Recorder> Batch<'_, R> {
         }
     }
 
-    /// The same where it is `known` of some samples, of which one ray goes on each: the others' is known then.
+    /// The same where it is `known` of some samples, of which one ray goes on each: the others' is known then. True where
+    /// there was one.
     fn find_other_hits(
         &mut self,
         paths: &Paths,
         known: &mut [SecondHit],
         hits: &mut Vec<Option<Hit>>,
         behind: &mut Behind,
-    ) {
+    ) -> bool {
         hits.clear();
         behind.others.clear();
         behind.rays.clear();
@@ -356,6 +377,7 @@ impl<R: Recorder> Batch<'_, R> {
             hits[i as usize] = *hit;
             known[paths.states[i as usize].sample as usize].found(*hit);
         }
+        !behind.others.is_empty()
     }
 
     /// How rays follow each other. Those of neighbouring pixels are neighbours, and their mirrored ones often are.

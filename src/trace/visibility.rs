@@ -28,10 +28,10 @@ pub(super) struct Chooser {
 
 impl Visibility {
     /// Forgets points that were chosen for another vertex; of one that reflects otherwise than before it keeps those of
-    /// lights that have one point, a bit for each in `single`.
-    pub(super) fn keep_of(&mut self, of: Chooser, single: u64) {
+    /// lights that have one point, a bit for each in `single`. True where it forgot anything.
+    pub(super) fn keep_of(&mut self, of: Chooser, single: u64) -> bool {
         let kept = if self.of == of {
-            return;
+            return false;
         } else if self.of.place == of.place {
             single
         } else {
@@ -42,6 +42,7 @@ impl Visibility {
             asked: self.asked & kept,
             hidden: self.hidden & kept,
         };
+        true
     }
 
     /// Whether something hides a point. `None` where that is not known.
