@@ -259,3 +259,95 @@ fn a_ray_that_leaves_beside_an_edge_or_a_corner_starts_on_the_right_side_of_all_
         &wrong[..wrong.len().min(8)]
     );
 }
+
+/// A closed convex body, as wide as 1 : 20 and a few steps of the coordinates thick, turned twice and far away; how many
+/// steps that is.
+fn thin_body(case: usize, random: &mut Random) -> (Aggregate, f32) {
+    let mesh = match case % 3 {
+        0 => sphere(3),
+        1 => cube(),
+        _ => sphere(1),
+    };
+    let distance = [148_376.0_f32, 12_345.678, 1e6][case % 3];
+    let step = distance.next_up() - distance;
+    let place = match case % 2 {
+        0 => distance * Vec3::new(1.0, 0.25, -0.5),
+        _ => distance * random.cube(),
+    };
+    let mut turn = || Quat::from_axis_angle(random.direction(), random.between(0.0, TAU));
+    let (outer, inner) = (turn(), turn());
+    let outer_scale = [
+        Vec3::ONE,
+        Vec3::new(-1.0, 1.0, 1.0),
+        Vec3::new(1.0, 1.5, 1.0),
+    ][case % 3];
+    let steps = random.between(2.0, 40.0);
+    let side = if case % 4 < 2 { 1.0 } else { -1.0 };
+    let transform = Affine3A::from_scale_rotation_translation(outer_scale, outer, place)
+        * Affine3A::from_quat(inner)
+        * Affine3A::from_scale(Vec3::new(side, 20.0, 0.5 * steps * step));
+    let velocity = random.cube() * if case.is_multiple_of(5) { 0.0 } else { 3.0 };
+    let tree = Arc::new(MeshTree::build(mesh, &BuildOptions::default()));
+    let instance = Instance::new(tree, &transform).and_then(|i| i.moving(velocity));
+    let instance = instance.expect("nothing flattens it");
+    let options = BuildOptions::default();
+    (Aggregate::build(vec![instance], &options), steps)
+}
+
+#[test]
+fn rays_that_leave_the_inside_of_a_far_thin_moving_body_stay_inside_down_to_two_steps() {
+    let mut random = Random::new(31);
+    let (mut left, mut outside) = (0, Vec::new());
+    for case in 0..300 {
+        let (scene, steps) = thin_body(case, &mut random);
+        let instance = &scene.instances()[0];
+        let triangles = instance.mesh.triangles();
+        for _ in 0..20 {
+            let time = random.unit();
+            let stands = instance.stands_at(time).as_dvec3();
+            let linear = instance.exact_linear();
+            // The planes of its sides, which it lies behind.
+            let planes: Vec<(DVec3, f64)> = (0..triangles.len() as u32)
+                .map(|i| {
+                    let [a, b, c] = triangles.corners(i).map(|p| linear * p.as_dvec3());
+                    let normal = (b - a).cross(c - a).normalize();
+                    let inwards = -normal * normal.dot(a).signum();
+                    (inwards, inwards.dot(a))
+                })
+                .collect();
+            let is_inside = |p: Vec3| {
+                let p = p.as_dvec3() - stands;
+                planes.iter().all(|(inwards, at)| inwards.dot(p) > *at)
+            };
+            let mut ray = Ray {
+                time,
+                ..Ray::new(stands.as_vec3(), random.direction())
+            };
+            if !is_inside(ray.origin) {
+                continue;
+            }
+            for _ in 0..50 {
+                let hit = scene.closest_hit(&ray).expect("the body is closed");
+                let point = instance.surface_point(&hit, time);
+                let direction =
+                    ray.direction - 2.0 * ray.direction.dot(point.normal) * point.normal;
+                ray = Ray {
+                    time,
+                    ..scene.leaving(&point, direction.normalize())
+                };
+                left += 1;
+                if !is_inside(ray.origin) {
+                    outside.push(format!("case {case}, {steps:.1} steps thick"));
+                    break;
+                }
+            }
+        }
+    }
+    assert!(left > 200_000, "only {left} rays");
+    assert!(
+        outside.is_empty(),
+        "{} of {left} rays start outside, among them {:?}",
+        outside.len(),
+        &outside[..outside.len().min(8)]
+    );
+}
