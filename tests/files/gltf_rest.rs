@@ -5,6 +5,7 @@ use super::models::objects;
 use bevy::math::Vec3;
 use bevy::mesh::{Mesh, Mesh3d};
 use bevy::prelude::Assets;
+use glassbox::scene::SceneId;
 use serde_json::json;
 
 #[test]
@@ -139,4 +140,144 @@ fn a_value_of_a_kind_that_is_none_of_its_own_is_told() {
         !notes.iter().any(|note| note.contains("`matrix`")),
         "{notes:#?}"
     );
+}
+
+#[test]
+fn a_place_that_is_written_and_read_again_is_the_same_to_the_last_bit() {
+    use bevy::math::Mat4;
+    use bevy::prelude::With;
+    use bevy::transform::components::Transform;
+    let turned = |x: f32, y: f32| Mat4::from_rotation_x(x) * Mat4::from_rotation_y(y);
+    let (mut app, _) = document(plain(), |d| {
+        let matrices = (0..40).map(|i| turned(0.37 * i as f32, 1.3 - 0.1 * i as f32));
+        let nodes = matrices.map(|m| json!({ "mesh": 0, "matrix": m.to_cols_array().to_vec() }));
+        d["nodes"] = nodes.collect();
+        d["nodes"][0] = json!({ "mesh": 0, "rotation": [0.5, 0.5, 0.5, 0.51] });
+        d["nodes"][1] = json!({ "mesh": 0, "rotation": [0.70710677, 0.0, 0.0, 0.70710677] });
+        d["scenes"] = json!([{ "nodes": (0..40).collect::<Vec<_>>() }]);
+    });
+    let places = |world: &mut bevy::prelude::World| -> Vec<Transform> {
+        let mut shown = world.query_filtered::<(&SceneId, &Transform), With<Mesh3d>>();
+        let mut all: Vec<_> = shown.iter(world).map(|(id, at)| (id.0, *at)).collect();
+        all.sort_by_key(|(id, _)| *id);
+        all.into_iter().map(|(_, at)| at).collect()
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.glb");
+    glassbox::io::save(app.world_mut(), &file).unwrap();
+    let (mut again, _) = super::app::opened(&file);
+    let (first, second) = (places(app.world_mut()), places(again.world_mut()));
+    assert_eq!(first.len(), 40);
+    let other = first.iter().zip(&second).find(|(a, b)| a != b);
+    assert_eq!(other, None);
+}
+
+/// A strip whose skin has two joints, after a change; `joints` and `weights` are those of each vertex.
+fn skinned(
+    joints: [u8; 4],
+    weights: [[f32; 4]; 5],
+    change: impl FnOnce(&mut serde_json::Value),
+) -> (bevy::prelude::App, Vec<String>) {
+    let primitive =
+        json!({ "attributes": { "POSITION": 0, "JOINTS_0": 3, "WEIGHTS_0": 4 }, "indices": 2 });
+    document(primitive, |d| {
+        let weights = weights.into_iter().flatten().flat_map(f32::to_le_bytes);
+        let bytes: Vec<u8> = joints.repeat(5).into_iter().chain(weights).collect();
+        let uri = format!("data:application/octet-stream;base64,{}", base64(&bytes));
+        let buffers = d["buffers"].as_array_mut().unwrap();
+        buffers.push(json!({ "byteLength": 100, "uri": uri }));
+        let views = d["bufferViews"].as_array_mut().unwrap();
+        views.push(json!({ "buffer": 1, "byteLength": 20 }));
+        views.push(json!({ "buffer": 1, "byteOffset": 20, "byteLength": 80 }));
+        let accessors = d["accessors"].as_array_mut().unwrap();
+        for (view, kind) in [(3, 5121), (4, 5126)] {
+            accessors.push(
+                json!({ "bufferView": view, "componentType": kind, "count": 5, "type": "VEC4" }),
+            );
+        }
+        d["skins"] = json!([{ "joints": [1, 2] }]);
+        d["nodes"] = json!([
+            { "mesh": 0, "skin": 0 },
+            { "translation": [0.0, 0.0, 2.0] },
+            { "translation": [0.0, 0.0, 4.0] },
+        ]);
+        d["scenes"] = json!([{ "nodes": [0, 1, 2] }]);
+        change(d);
+    })
+}
+
+#[test]
+fn what_a_skin_cannot_mean_is_told_and_the_rest_of_it_moves_the_mesh() {
+    let half = [[0.5, 0.5, 0.0, 0.0]; 5];
+    let height = |app: &mut bevy::prelude::App| corners(app)[0][0].z;
+    let of_skin = |notes: &[String]| {
+        let said = ["joint", "rotation"];
+        let said = notes
+            .iter()
+            .filter(|note| said.iter().any(|word| note.contains(word)));
+        said.cloned().collect::<Vec<_>>()
+    };
+    let (mut app, notes) = skinned([0, 1, 0, 0], half, |_| {});
+    assert_eq!((height(&mut app), of_skin(&notes)), (3.0, vec![]));
+    let mut some = half;
+    some[4] = [0.0; 4];
+    let negative = [[1.5, -0.5, 0.0, 0.0]; 5];
+    type Change = fn(&mut serde_json::Value);
+    let cases: [(_, _, Change, f32, &str); 5] = [
+        (
+            [0, 7, 0, 0],
+            half,
+            |_| {},
+            2.0,
+            "joints that its skin does not have",
+        ),
+        ([0, 1, 0, 0], negative, |_| {}, 2.0, "below 0 or no numbers"),
+        (
+            [0, 1, 0, 0],
+            some,
+            |_| {},
+            3.0,
+            "vertices that no joint moves",
+        ),
+        (
+            [0, 1, 0, 0],
+            half,
+            |d| d["skins"][0]["joints"] = json!([1, 99]),
+            1.0,
+            "a joint that is no node",
+        ),
+        (
+            [0, 1, 0, 0],
+            half,
+            |d| d["nodes"][1]["rotation"] = json!([0.0, 0.0, 0.0, 0.0]),
+            3.0,
+            "a rotation of zeros",
+        ),
+    ];
+    for (joints, weights, change, expected, what) in cases {
+        let (mut app, notes) = skinned(joints, weights, change);
+        let told = of_skin(&notes);
+        assert!(
+            told.len() == 1 && told[0].contains(what),
+            "{what}: {notes:#?}"
+        );
+        assert_eq!(height(&mut app), expected, "{what}");
+    }
+}
+
+#[test]
+fn what_a_morph_target_moves_besides_is_told() {
+    let primitive = json!({ "attributes": { "POSITION": 0 }, "indices": 2,
+        "targets": [{ "POSITION": 0, "COLOR_0": 0, "TEXCOORD_0": 1 }] });
+    let (_, notes) = document(primitive, |d| {
+        d["meshes"][0]["weights"] = json!([1.0, 0.5]);
+    });
+    for what in [
+        "`COLOR_0`",
+        "`TEXCOORD_0`",
+        "more weights than morph targets",
+    ] {
+        let told = notes.iter().filter(|note| note.contains(what)).count();
+        assert_eq!(told, 1, "{what}: {notes:#?}");
+    }
 }

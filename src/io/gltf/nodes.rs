@@ -7,7 +7,7 @@ use super::document::Document;
 use super::json::Json;
 use super::lamps::{Lamp, camera_of, has_no_cone, lamp_of};
 use super::material::default_phong;
-use super::placement::{Placement, placement_of};
+use super::placement::{Placement, placement_of, turn_of};
 use super::primitive::read_primitive;
 use super::read::name_of;
 use super::rest::{Nodes, Pose};
@@ -335,7 +335,7 @@ impl Reader<'_> {
                 translation: places.as_ref().map_or(Vec3::ZERO, |all| all[i].into()),
                 rotation: turns
                     .as_ref()
-                    .map_or(Quat::IDENTITY, |all| Quat::from_array(all[i]).normalize()),
+                    .map_or(Quat::IDENTITY, |all| turn_of(all[i], note)),
                 scale: scales.as_ref().map_or(Vec3::ONE, |all| all[i].into()),
             };
             if !transform.is_finite() {

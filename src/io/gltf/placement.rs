@@ -1,7 +1,7 @@
 //! Where a node stands below the one above it.
 
 use super::json::Json;
-use bevy::math::{DMat3, DVec3, Mat3, Mat4, Quat, Vec3};
+use bevy::math::{DMat3, DQuat, DVec3, Mat3, Mat4, Quat, Vec3};
 use bevy::transform::components::Transform;
 
 /// Where a node stands. Any linear map is a scaling between two turns, and a `Transform` has one turn: where an axis of
@@ -48,24 +48,40 @@ fn transform_of(node: Json, note: &impl Fn(&str, &'static str)) -> Transform {
     Transform {
         translation: node.numbers("translation").unwrap_or([0.0; 3]).into(),
         rotation: node.numbers("rotation").map_or(Quat::IDENTITY, |turn| {
-            let turn = Quat::from_array(turn);
-            if turn.length_squared() == 0.0 {
-                note("a rotation of zeros, of", "not turned");
-                return Quat::IDENTITY;
-            }
-            if (turn.length_squared() - 1.0).abs() > ROUNDED {
+            if (Quat::from_array(turn).length_squared() - 1.0).abs() > ROUNDED && turn != [0.0; 4] {
                 note("a rotation that is not of length 1, of", "made so");
             }
-            turn.normalize()
+            turn_of(turn, note)
         }),
         scale: node.numbers("scale").unwrap_or([1.0; 3]).into(),
     }
 }
 
+/// The turn that a file's four numbers mean. One whose length is 1 but for the rounding of its numbers keeps them: what
+/// is written and read again stands where it stood, to the last bit.
+pub(super) fn turn_of(numbers: [f32; 4], note: &impl Fn(&str, &'static str)) -> Quat {
+    /// Of the square of the length. Numbers of six digits are off by as much.
+    const DIGITS: f32 = 2e-6;
+    let turn = Quat::from_array(numbers);
+    if (turn.length_squared() - 1.0).abs() <= DIGITS {
+        return turn;
+    }
+    if numbers == [0.0; 4] {
+        note("a rotation of zeros, of", "not turned");
+        return Quat::IDENTITY;
+    }
+    // The squares of floats have a place among doubles, however small or large.
+    let exact = DQuat::from_array(numbers.map(f64::from));
+    exact.normalize().as_quat()
+}
+
 fn placement_of_matrix(matrix: Mat4) -> Placement {
     let linear = Mat3::from_mat4(matrix);
     let translation = matrix.w_axis.truncate();
-    let transform = Transform::from_matrix(matrix);
+    let mut transform = Transform::from_matrix(matrix);
+    if transform.rotation.is_finite() {
+        transform.rotation = transform.rotation.normalize();
+    }
     let largest = linear.to_cols_array().into_iter();
     let largest = largest.fold(0.0, |a: f32, b| a.max(b.abs()));
     // Between the rounding of a decomposition and what could be seen.

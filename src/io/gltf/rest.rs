@@ -5,7 +5,8 @@ use super::super::error::Problem;
 use super::accessors::{floats, joints};
 use super::document::Document;
 use super::json::Json;
-use bevy::math::{Affine3A, Mat4, Quat};
+use super::placement::turn_of;
+use bevy::math::{Affine3A, Mat4};
 
 /// How a mesh stands.
 #[derive(Clone, Debug, Default)]
@@ -26,10 +27,16 @@ pub(super) struct Vertices<'a> {
 impl Pose {
     /// Moves vertices to where they are at rest. What cannot be used is noted.
     pub fn apply(&self, document: &Document, primitive: Json, name: &str, vertices: &mut Vertices) {
-        for (target, &weight) in primitive.list("targets").zip(&self.weights) {
+        let targets = primitive.list("targets");
+        if self.weights.len() > targets.len() {
+            let what = "more weights than morph targets";
+            document.note(name, what, "those that are too many are left out");
+        }
+        for (target, &weight) in targets.zip(&self.weights) {
             if weight == 0.0 {
                 continue;
             }
+            target.mark();
             morph(
                 document,
                 target,
@@ -42,7 +49,7 @@ impl Pose {
             morph(document, target, "TANGENT", name, weight, vertices.tangents);
         }
         if !self.joints.is_empty()
-            && let Err(problem) = self.skin(document, primitive, vertices)
+            && let Err(problem) = self.skin(document, primitive, name, vertices)
         {
             document.note(name, format!("its skin: {problem}"), "shown without");
         }
@@ -52,12 +59,14 @@ impl Pose {
         &self,
         document: &Document,
         primitive: Json,
+        name: &str,
         vertices: &mut Vertices,
     ) -> Result<(), Problem> {
         let missing = || Problem::Malformed("it has no joints".to_owned());
         let attributes = primitive.get("attributes").ok_or_else(missing)?;
         let count = vertices.positions.len();
         let mut sums = vec![(Mat4::ZERO, 0.0_f32); count];
+        let (mut of_nothing, mut is_odd) = (false, false);
         for set in 0.. {
             let joints_of = attributes.index(&format!("JOINTS_{set}"));
             let weights_of = attributes.index(&format!("WEIGHTS_{set}"));
@@ -72,16 +81,45 @@ impl Pose {
             }
             for ((sum, joints), weights) in sums.iter_mut().zip(joints).zip(weights) {
                 for (joint, weight) in joints.into_iter().zip(weights) {
-                    let matrix = self.joints.get(joint as usize);
-                    if let Some(&matrix) = matrix.filter(|_| weight > 0.0 && weight.is_finite()) {
-                        sum.0 += Mat4::from(matrix) * weight;
-                        sum.1 += weight;
+                    if weight == 0.0 {
+                        continue;
+                    }
+                    let is_usable = weight > 0.0 && weight.is_finite();
+                    is_odd |= !is_usable;
+                    match self.joints.get(joint as usize).filter(|_| is_usable) {
+                        Some(&matrix) => {
+                            sum.0 += Mat4::from(matrix) * weight;
+                            sum.1 += weight;
+                        }
+                        None => of_nothing |= is_usable,
                     }
                 }
             }
         }
         if sums.iter().all(|(_, weight)| *weight == 0.0) {
             return Err(missing());
+        }
+        let is_unmoved = sums.iter().any(|(_, weight)| *weight == 0.0);
+        for (is_so, what, instead) in [
+            (
+                is_odd,
+                "weights of joints that are below 0 or no numbers",
+                "left out",
+            ),
+            (
+                of_nothing,
+                "weights of joints that its skin does not have",
+                "left out",
+            ),
+            (
+                is_unmoved,
+                "vertices that no joint moves",
+                "where they are without the skin",
+            ),
+        ] {
+            if is_so {
+                document.note(name, what, instead);
+            }
         }
         for (place, (matrix, weight)) in vertices.positions.iter_mut().zip(&sums) {
             if *weight > 0.0 {
@@ -194,8 +232,20 @@ impl<'a> Nodes<'a> {
             Some(accessor) => floats::<16>(self.document, accessor)?,
             None => Vec::new(),
         };
-        let joints = json.list("joints").enumerate().map(|(index, joint)| {
-            let world_from_joint = joint.whole().map(|joint| self.world_from(joint));
+        let joints = json.list("joints");
+        let note = |what: &str, instead: &'static str| {
+            self.document.note(&format!("skins[{skin}]"), what, instead);
+        };
+        if (1..joints.len()).contains(&bound.len()) {
+            let instead = "the last joints are taken without";
+            note("fewer inverseBindMatrices than joints", instead);
+        }
+        let joints = joints.enumerate().map(|(index, joint)| {
+            let node = joint.whole().filter(|&joint| joint < self.len());
+            if node.is_none() {
+                note("a joint that is no node", "it does not move");
+            }
+            let world_from_joint = node.map(|joint| self.world_from(joint));
             let joint_from_mesh = bound.get(index).map_or(Affine3A::IDENTITY, |matrix| {
                 Affine3A::from_mat4(Mat4::from_cols_array(matrix))
             });
@@ -212,12 +262,10 @@ fn parent_from(node: Json) -> Affine3A {
         None => {
             let translation = node.numbers("translation").unwrap_or([0.0; 3]);
             let rotation = node.numbers("rotation").unwrap_or([0.0, 0.0, 0.0, 1.0]);
+            // Noted where the node itself is read.
+            let rotation = turn_of(rotation, &|_: &str, _: &'static str| {});
             let scale = node.numbers("scale").unwrap_or([1.0; 3]);
-            Affine3A::from_scale_rotation_translation(
-                scale.into(),
-                Quat::from_array(rotation).normalize(),
-                translation.into(),
-            )
+            Affine3A::from_scale_rotation_translation(scale.into(), rotation, translation.into())
         }
     }
 }
