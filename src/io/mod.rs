@@ -57,6 +57,7 @@ mod sources;
 mod spawn;
 mod stl;
 mod text;
+mod vertex_colors;
 
 #[cfg(feature = "editor")]
 pub(crate) use budget::beside;

@@ -422,3 +422,81 @@ fn data_and_paths_are_found_as_programs_write_them() {
         assert_eq!(objects(app.world_mut())[0].2.len(), 1, "{uri}");
     }
 }
+
+#[test]
+fn integers_that_can_only_be_fractions_are_fractions_and_colours_stay_between_0_and_1() {
+    let primitive =
+        json!({ "attributes": { "POSITION": 0, "TEXCOORD_0": 1, "COLOR_0": 3 }, "indices": 2 });
+    let bytes = [[255_u8, 51, 0, 255]; 5].concat();
+    let floats = |color: [f32; 4]| -> Vec<u8> {
+        let all = [color; 5].into_iter().flatten();
+        all.flat_map(f32::to_le_bytes).collect()
+    };
+    for (bytes, kind, expected, what) in [
+        (bytes, 5121, [1.0, 0.2, 0.0, 1.0], "not `normalized`"),
+        (
+            floats([255.0, 51.0, 0.0, 1.0]),
+            5126,
+            [1.0, 0.2, 0.0, 1.0],
+            "above 1",
+        ),
+        (
+            floats([f32::NAN, -1.0, 1.5, 0.5]),
+            5126,
+            [0.0, 0.0, 1.0, 0.5],
+            "outside 0 to 1",
+        ),
+    ] {
+        let (mut app, notes) = document(primitive.clone(), |d| {
+            let uri = format!("data:application/octet-stream;base64,{}", base64(&bytes));
+            let buffers = d["buffers"].as_array_mut().unwrap();
+            buffers.push(json!({ "byteLength": bytes.len(), "uri": uri }));
+            let views = d["bufferViews"].as_array_mut().unwrap();
+            views.push(json!({ "buffer": 1, "byteLength": bytes.len() }));
+            d["accessors"][1]["normalized"] = json!(false);
+            let accessors = d["accessors"].as_array_mut().unwrap();
+            accessors.push(
+                json!({ "bufferView": 3, "componentType": kind, "count": 5, "type": "VEC4" }),
+            );
+        });
+        assert!(notes.iter().any(|note| note.contains(what)), "{notes:#?}");
+        let world = app.world_mut();
+        let handle = world.query::<&Mesh3d>().single(world).unwrap().0.clone();
+        let mesh = world.resource::<Assets<Mesh>>().get(&handle).unwrap();
+        let Some(VertexAttributeValues::Float32x4(colors)) = mesh.attribute(Mesh::ATTRIBUTE_COLOR)
+        else {
+            panic!("no colours");
+        };
+        let off = colors[0].iter().zip(expected).map(|(a, b)| (a - b).abs());
+        assert!(off.fold(0.0, f32::max) < 1e-6, "{colors:?}");
+        let Some(VertexAttributeValues::Float32x2(uvs)) = mesh.attribute(Mesh::ATTRIBUTE_UV_0)
+        else {
+            panic!("no texture coordinates");
+        };
+        assert_eq!(uvs[1], [1.0, 0.0]);
+    }
+}
+
+#[test]
+fn a_sparse_value_that_has_no_place_is_left_out() {
+    let (mut app, notes) = document(plain(), |d| {
+        // The indices are 3, which is a vertex, and, behind it, 255, which is none.
+        let uri = format!("data:application/octet-stream;base64,{}", base64(&[3, 255]));
+        let buffers = d["buffers"].as_array_mut().unwrap();
+        buffers.push(json!({ "byteLength": 2, "uri": uri }));
+        let views = d["bufferViews"].as_array_mut().unwrap();
+        views.push(json!({ "buffer": 1, "byteLength": 2 }));
+        d["accessors"][0]["sparse"] = json!({
+            "count": 2,
+            "indices": { "bufferView": 3, "componentType": 5121 },
+            "values": { "bufferView": 0, "byteOffset": 36 },
+        });
+    });
+    assert!(
+        notes
+            .iter()
+            .any(|note| note.contains("accessors[0].sparse")),
+        "{notes:#?}"
+    );
+    assert_eq!(corners(&mut app).len(), 2);
+}

@@ -308,3 +308,48 @@ fn a_byte_order_mark_and_what_microsoft_writes_for_no_number_do_not_cost_the_fil
         assert!(!told.is_empty(), "{none}");
     }
 }
+
+#[test]
+fn colours_up_to_255_are_those_in_whatever_numbers_they_are_written() {
+    let red = ["255 51 0"; 4];
+    let names = |kind: &str| {
+        let names = ["Red", "green", "blue"];
+        names
+            .map(|name| format!("property {kind} {name}\n"))
+            .concat()
+    };
+    for (kind, told) in [
+        ("uchar", 0),
+        ("int", 1),
+        ("ushort", 1),
+        ("float", 1),
+        ("double", 1),
+    ] {
+        let (mut app, notes) = open(square(&names(kind), "", red, &["4 0 1 2 3"]));
+        let (mut of_faces, _) = open(square("", &names(kind), [""; 4], &["4 0 1 2 3 255 51 0"]));
+        for app in [&mut app, &mut of_faces] {
+            let Some(VertexAttributeValues::Float32x4(colors)) =
+                attribute(app, Mesh::ATTRIBUTE_COLOR)
+            else {
+                panic!("no colours: {notes:?}");
+            };
+            // 51 of 255 as screens take it is 0.0331.
+            let off = colors[0].iter().zip([1.0, 0.0331, 0.0, 1.0]);
+            let off = off.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+            assert!(off < 1e-4, "{kind}: {colors:?}");
+        }
+        let colours = notes.iter().filter(|note| note.contains("colours"));
+        assert_eq!(colours.count(), told, "{kind}: {notes:?}");
+    }
+    // Those that reach further are what their type says.
+    let dark = ["65535 13107 0"; 4];
+    let (mut app, notes) = open(square(&names("ushort"), "", dark, &["4 0 1 2 3"]));
+    let colors = attribute(&mut app, Mesh::ATTRIBUTE_COLOR);
+    let Some(VertexAttributeValues::Float32x4(colors)) = colors else {
+        panic!("no colours: {notes:?}");
+    };
+    assert!(
+        (colors[0][1] - 0.0331).abs() < 1e-4 && notes.is_empty(),
+        "{colors:?} {notes:?}"
+    );
+}

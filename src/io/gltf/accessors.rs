@@ -61,6 +61,8 @@ struct Accessor<'a> {
     /// How many numbers a value has.
     width: usize,
     count: usize,
+    /// Its integers are fractions of the largest.
+    is_normalized: bool,
 }
 
 fn accessor(document: &Document, index: usize) -> Result<Accessor<'_>, Problem> {
@@ -76,10 +78,12 @@ fn accessor(document: &Document, index: usize) -> Result<Accessor<'_>, Problem> 
         Some("MAT4") => Some(16),
         _ => None,
     };
+    let kind = kind.ok_or_else(|| malformed("has no componentType that there is"))?;
     Ok(Accessor {
         json,
         index,
-        kind: kind.ok_or_else(|| malformed("has no componentType that there is"))?,
+        kind,
+        is_normalized: kind != Kind::F32 && json.is_true("normalized"),
         width: width.ok_or_else(|| malformed("has no type that can be used"))?,
         count: json
             .index("count")
@@ -88,6 +92,15 @@ fn accessor(document: &Document, index: usize) -> Result<Accessor<'_>, Problem> 
 }
 
 impl Accessor<'_> {
+    fn make_fractions(&mut self, document: &Document) {
+        if self.kind != Kind::F32 && !self.is_normalized {
+            let part = format!("accessors[{}]", self.index);
+            let what = "integers that are to be fractions and are not `normalized`";
+            document.note(&part, what, "read as if they were");
+            self.is_normalized = true;
+        }
+    }
+
     fn wrong_type(&self) -> Problem {
         Problem::Malformed(format!(
             "accessor {} holds {} of {:?}, which does not fit its use",
@@ -110,9 +123,23 @@ pub(super) fn floats<const N: usize>(
     floats_of(document, &accessor)
 }
 
-/// Colours: three or four floats, the fourth 1 where there is none.
+/// The same of what integers can only be fractions of, whether they are marked so or not.
+pub(super) fn fractions<const N: usize>(
+    document: &Document,
+    index: usize,
+) -> Result<Vec<[f32; N]>, Problem> {
+    let mut accessor = accessor(document, index)?;
+    if accessor.width != N {
+        return Err(accessor.wrong_type());
+    }
+    accessor.make_fractions(document);
+    floats_of(document, &accessor)
+}
+
+/// Colours: three or four floats, the fourth 1 where there is none. Integers are fractions.
 pub(super) fn colors(document: &Document, index: usize) -> Result<Vec<[f32; 4]>, Problem> {
-    let accessor = accessor(document, index)?;
+    let mut accessor = accessor(document, index)?;
+    accessor.make_fractions(document);
     match accessor.width {
         3 => {
             let colors = floats_of::<3>(document, &accessor)?;
@@ -127,8 +154,7 @@ fn floats_of<const N: usize>(
     document: &Document,
     accessor: &Accessor,
 ) -> Result<Vec<[f32; N]>, Problem> {
-    let kind = accessor.kind;
-    let is_normalized = kind != Kind::F32 && accessor.json.is_true("normalized");
+    let (kind, is_normalized) = (accessor.kind, accessor.is_normalized);
     let scale = if is_normalized { kind.scale() } else { 1.0 };
     let size = kind.size();
     elements(document, accessor, [0.0; N], |bytes| {
@@ -239,14 +265,14 @@ fn elements<T: Copy>(
         let with = part(sparse.get("values").ok_or_else(malformed)?, size)?;
         for (at, with) in at.zip(with) {
             let index = number(kind, at);
-            let Some(value) = values.get_mut(index as usize) else {
-                return Err(Problem::IndexOutOfRange {
-                    what: "sparse value",
-                    index: index.to_string(),
-                    count,
-                });
-            };
-            *value = read(with);
+            match values.get_mut(index as usize) {
+                Some(value) => *value = read(with),
+                None => {
+                    let part = format!("accessors[{}].sparse", accessor.index);
+                    let what = "a value in a place that there is not";
+                    document.note(&part, what, "left out");
+                }
+            }
         }
     }
     Ok(values)

@@ -161,6 +161,12 @@ impl Document {
         self.json().list(key).filter_map(Json::as_text)
     }
 
+    /// Whether the file says that it has something of an extension.
+    pub(super) fn uses(&self, extension: &str) -> bool {
+        self.extensions("extensionsUsed")
+            .any(|name| name == extension)
+    }
+
     fn check_version(&self) -> Result<(), FileError> {
         let json = self.json();
         let version = json.get("asset").and_then(|asset| asset.text("version"));

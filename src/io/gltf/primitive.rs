@@ -3,7 +3,8 @@
 use super::super::budget::mesh_bytes;
 use super::super::error::Problem;
 use super::super::model::triangle_mesh;
-use super::accessors::{colors, floats, indices};
+use super::super::vertex_colors::to_unit;
+use super::accessors::{colors, floats, fractions, indices};
 use super::document::Document;
 use super::json::Json;
 use super::pictures::placing_texture;
@@ -82,7 +83,12 @@ fn triangles(
     let texture = placing_texture(document, material);
     let set = texture.map_or(0, |texture| texture.set);
     let set = format!("TEXCOORD_{set}");
-    let mut uvs: Vec<[f32; 2]> = attribute(document, attributes, &set, name, count, floats);
+    // Integers may be texture coordinates as they are where that is said, and a texture's transform shrinks them.
+    let read_uvs = match document.uses("KHR_mesh_quantization") {
+        true => floats::<2>,
+        false => fractions::<2>,
+    };
+    let mut uvs: Vec<[f32; 2]> = attribute(document, attributes, &set, name, count, read_uvs);
     if texture.is_some() && uvs.is_empty() {
         let what = format!("no {set} for the pictures of its material");
         document.note(name, what, "shown without them");
@@ -96,7 +102,10 @@ fn triangles(
             *uv = transform.transform_point2(Vec2::from(*uv)).into();
         }
     }
-    let colors: Vec<[f32; 4]> = attribute(document, attributes, "COLOR_0", name, count, colors);
+    let mut colors: Vec<[f32; 4]> = attribute(document, attributes, "COLOR_0", name, count, colors);
+    if let Some((what, instead)) = to_unit(&mut colors) {
+        document.note(name, what, instead);
+    }
     let repaired = clear(&mut normals) | clear(&mut uvs) | clear(&mut tangents);
     if repaired {
         let what = "normals, tangents or texture coordinates that are not finite numbers";

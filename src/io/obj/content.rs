@@ -2,6 +2,7 @@
 
 use super::super::error::{FileError, Place, Problem};
 use super::super::notes::Notes;
+use super::super::vertex_colors::to_unit;
 use bevy::color::Srgba;
 use std::path::Path;
 
@@ -109,16 +110,11 @@ impl Content {
             });
             corners.truncate(kept);
         }
-        if content.colors.iter().flatten().any(|&value| value > 1.0) {
-            let what = "vertex colours above 1";
-            let instead = "read as numbers up to 255";
+        if let Some((what, instead)) = to_unit(&mut content.colors) {
             notes.add(file, Place::Whole, what, instead);
-            for value in content.colors.iter_mut().flatten() {
-                *value /= 255.0;
-            }
         }
         for value in content.colors.iter_mut().flatten() {
-            *value = Srgba::gamma_function(value.clamp(0.0, 1.0));
+            *value = Srgba::gamma_function(*value);
         }
     }
 }

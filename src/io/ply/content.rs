@@ -6,6 +6,7 @@ use super::super::error::{FileError, Place, Problem};
 use super::super::far_off::FarOff;
 use super::super::model::triangle_mesh;
 use super::super::notes::Notes;
+use super::super::vertex_colors::to_unit;
 use super::body::Fault;
 use bevy::color::Srgba;
 use bevy::mesh::Mesh;
@@ -88,8 +89,10 @@ pub(super) struct Content {
     pub normals: Vec<[f32; 3]>,
     /// v downwards.
     pub uvs: Vec<[f32; 2]>,
-    /// As screens take them, in [0, 1]; with alpha, which is linear.
+    /// As screens take them, divided by what a channel of 1 is; with alpha, which is linear.
     pub colors: Vec<[f32; 4]>,
+    /// What a channel of 1 is, by the numbers' type.
+    pub whole: [f64; 4],
     pub indices: Vec<u32>,
 }
 
@@ -105,6 +108,7 @@ impl Content {
             let what = "normals or texture coordinates that are not finite numbers";
             (work.notes).add(work.file, Place::Whole, what, "0 is taken for them");
         }
+        self.settle_colors(work);
         let is_colored = self.colors.iter().any(|&color| color != [1.0; 4]);
         let mut mesh = triangle_mesh(self.positions, self.normals, self.uvs, self.indices);
         if is_colored {
@@ -116,6 +120,31 @@ impl Content {
             mesh.insert_attribute(Mesh::ATTRIBUTE_COLOR, colors);
         }
         mesh
+    }
+
+    /// Brings colours into [0, 1]. Numbers up to 255 are written in every type, and nothing says so.
+    fn settle_colors(&mut self, work: &mut Work) {
+        const BYTE: f64 = 255.0;
+        let counted = |color: &[f32; 4], i: usize| f64::from(color[i]) * self.whole[i];
+        let is_wide = self.whole[..3].iter().all(|&whole| whole > BYTE);
+        let channels =
+            (self.colors.iter()).flat_map(|color| (0..3).map(move |i| counted(color, i)));
+        let largest = channels.fold(0.0, f64::max);
+        // Counted again with the rounding of floats.
+        if is_wide && (0.5..BYTE + 0.5).contains(&largest) {
+            let what = "vertex colours in wide integers, none above 255";
+            let instead = "read as numbers up to 255";
+            (work.notes).add(work.file, Place::Whole, what, instead);
+            for color in &mut self.colors {
+                for (channel, whole) in color.iter_mut().zip(self.whole) {
+                    let factor = (whole / BYTE).max(1.0) as f32;
+                    *channel = (*channel * factor).min(1.0);
+                }
+            }
+        }
+        if let Some((what, instead)) = to_unit(&mut self.colors) {
+            work.notes.add(work.file, Place::Whole, what, instead);
+        }
     }
 }
 

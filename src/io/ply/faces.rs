@@ -5,7 +5,7 @@ use super::super::polygon::Triangulator;
 use super::body::{Body, Fault};
 use super::content::{Content, Work};
 use super::header::{Element, Property};
-use super::vertices::unit;
+use super::vertices::whole_of;
 use bevy::math::Vec3;
 use bevy::platform::hash::RandomState;
 use std::collections::HashMap;
@@ -28,7 +28,8 @@ enum Slot {
 impl Slot {
     fn of(property: &Property) -> Self {
         let color = |channel| Self::Color(channel, property.scalar.whole());
-        match (property.name.as_str(), property.length.is_some()) {
+        let name = property.name.to_ascii_lowercase();
+        match (name.as_str(), property.length.is_some()) {
             ("vertex_indices" | "vertex_index", true) => Self::Corners,
             ("texcoord" | "texcoords", true) => Self::Uvs,
             ("red" | "r" | "diffuse_red", false) => color(0),
@@ -73,6 +74,12 @@ pub(super) fn read_faces(
 ) -> Result<(), Fault> {
     let slots = slots(element, content, work)?;
     let mut own = OwnCorners::of(&slots, content);
+    if own.has_colors {
+        content.whole = whole_of(slots.iter().filter_map(|slot| match *slot {
+            Slot::Color(channel, whole) => Some((channel, whole)),
+            _ => None,
+        }));
+    }
     let mut faces = Faces {
         count: content.positions.len(),
         polygon: Vec::new(),
@@ -89,7 +96,7 @@ pub(super) fn read_faces(
                 Slot::Corners => read_list(property, body, work, &mut corners)?,
                 Slot::Uvs => read_list(property, body, work, &mut uvs)?,
                 Slot::Color(channel, whole) => {
-                    color[channel] = unit(body.number(property.scalar)?, whole);
+                    color[channel] = (body.number(property.scalar)? / whole) as f32;
                 }
                 Slot::Nowhere => body.skip(property)?,
             }

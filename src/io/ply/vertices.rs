@@ -23,7 +23,7 @@ impl Slot {
             return Self::Nowhere;
         }
         let color = |channel| Self::Color(channel, property.scalar.whole());
-        match property.name.as_str() {
+        match property.name.to_ascii_lowercase().as_str() {
             "x" => Self::Position(0),
             "y" => Self::Position(1),
             "z" => Self::Position(2),
@@ -70,6 +70,12 @@ pub(super) fn read_vertices(
             (work.notes).add_named(work.file, Place::Whole, what, &property.name, "left out");
         }
     }
+    if has_colors {
+        content.whole = whole_of(slots.iter().filter_map(|slot| match *slot {
+            Slot::Color(channel, whole) => Some((channel, whole)),
+            _ => None,
+        }));
+    }
     for _ in 0..element.count {
         let (mut exact, mut normal, mut uv) = ([0.0; 3], [0.0; 3], [0.0; 2]);
         let mut color = [1.0_f32; 4];
@@ -83,7 +89,7 @@ pub(super) fn read_vertices(
                 Slot::Position(axis) => exact[axis] = number,
                 Slot::Normal(axis) => normal[axis] = number as f32,
                 Slot::Uv(axis) => uv[axis] = number as f32,
-                Slot::Color(channel, whole) => color[channel] = unit(number, whole),
+                Slot::Color(channel, whole) => color[channel] = (number / whole) as f32,
                 Slot::Nowhere => {}
             }
         }
@@ -108,9 +114,11 @@ pub(super) fn read_vertices(
     Ok(())
 }
 
-/// A colour's channel in [0, 1].
-pub(super) fn unit(number: f64, whole: f64) -> f32 {
-    let value = (number / whole) as f32;
-    // NaN becomes 0.
-    value.clamp(0.0, 1.0).max(0.0)
+/// What a colour's channels of 1 are; alpha's is 1 where there is none.
+pub(super) fn whole_of(channels: impl Iterator<Item = (usize, f64)>) -> [f64; 4] {
+    let mut all = [1.0; 4];
+    for (channel, whole) in channels {
+        all[channel] = whole;
+    }
+    all
 }
