@@ -175,3 +175,68 @@ fn words_of_an_mtl_that_are_none_of_the_format_s_are_told() {
         assert!(!told.contains("a.mtl"), "{line}: {told}");
     }
 }
+
+#[test]
+fn colours_that_zbrush_writes_in_comments_are_those_of_the_vertices() {
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n#MRGB ffff0000ff00ff00\n#MRGB ff0000ff\nf 1 2 3\n";
+    let (mut app, told) = obj(text);
+    let colors = attribute(&mut app, Mesh::ATTRIBUTE_COLOR);
+    let Some(VertexAttributeValues::Float32x4(colors)) = colors else {
+        panic!("no colours: {told:?}");
+    };
+    let [r, g, b] = [
+        [1.0, 0.0, 0.0, 1.0],
+        [0.0, 1.0, 0.0, 1.0],
+        [0.0, 0.0, 1.0, 1.0],
+    ];
+    assert_eq!(colors, [r, g, b]);
+    assert!(told.is_empty(), "{told:?}");
+    let (_, told) = obj(&text.replace("ff0000ff", "ff0000ffff0000ffzz"));
+    assert!(
+        told.len() == 1 && told[0].contains("of no vertex"),
+        "{told:?}"
+    );
+}
+
+#[test]
+fn colours_a_little_above_1_are_no_numbers_up_to_255() {
+    let text = "v 0 0 0 1.0001 0 0\nv 1 0 0 1 0 0\nv 0 1 0 1 0 0\nf 1 2 3\n";
+    let (mut app, told) = obj(text);
+    let colors = attribute(&mut app, Mesh::ATTRIBUTE_COLOR);
+    let Some(VertexAttributeValues::Float32x4(colors)) = colors else {
+        panic!("no colours: {told:?}");
+    };
+    assert_eq!(colors, [[1.0, 0.0, 0.0, 1.0]; 3]);
+    assert!(told.len() == 1 && told[0].contains("clamped"), "{told:?}");
+}
+
+#[test]
+fn a_picture_beside_the_obj_is_found_where_the_mtl_lies_elsewhere() {
+    let text = format!("mtllib lib/a.mtl\nusemtl a\n{SQUARE}f 1/1 2/2 3/3 4/4\n");
+    let mtl = "newmtl a\nmap_Kd wall.png\n";
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("lib")).unwrap();
+    write(folder.path(), "lib/a.mtl", mtl);
+    glassbox::io::write_picture(&folder.path().join("wall.png"), 1, 1, &[[0.5; 3]]).unwrap();
+    let (mut app, opened) = opened(&write(folder.path(), "a.obj", text));
+    let map = objects(app.world_mut())[0].1.diffuse_map.clone();
+    assert_eq!(map.map(|map| map.path).as_deref(), Some("wall.png"));
+    let told = opened.notes.lines();
+    assert!(
+        told.iter().any(|line| line.contains("folder is another")),
+        "{told:?}"
+    );
+}
+
+#[test]
+fn what_cannot_be_seen_is_told() {
+    for line in ["d 0", "Tr 1"] {
+        let text = format!("mtllib a.mtl\nusemtl a\n{SQUARE}f 1 2 3\n");
+        let mtl = format!("newmtl a\n{line}\n");
+        let (_, told, _folder) = open(&[("a.obj", text.as_bytes()), ("a.mtl", mtl.as_bytes())]);
+        assert!(
+            told.iter().any(|line| line.contains("opacity of 0")),
+            "{told:?}"
+        );
+    }
+}

@@ -107,6 +107,9 @@ pub(super) fn phong_of(document: &Document, index: usize, material: Json, name: 
         &mut phong,
         is_exact,
     );
+    if phong.opacity == 0.0 && phong.alpha == Alpha::Blend {
+        note("an opacity of 0, of", "it is not seen");
+    }
     if has_alpha {
         phong.opacity_map = base_picture.as_ref().map(alpha_of);
     }

@@ -1,7 +1,7 @@
 //! What the lines of an MTL say.
 
 use super::super::error::{FileError, Place};
-use super::super::names::Names;
+use super::super::names::{Found, Missing, Names};
 use super::super::notes::Notes;
 use super::parts::Placement;
 use super::text::{Lines, keyword, number, text, unquoted, values};
@@ -266,7 +266,18 @@ impl Reader<'_, '_> {
     }
 
     fn is_there(&mut self, name: &str) -> bool {
-        self.names.find(self.prefix, unquoted(name)).is_ok()
+        self.find(name).is_ok()
+    }
+
+    /// The file of this name seen from the MTL's folder, or else from the OBJ's, from where some programs see it.
+    fn find(&mut self, name: &str) -> Result<Found, Missing> {
+        let name = unquoted(name);
+        let found = self.names.find(self.prefix, name);
+        found.or_else(|missing| {
+            let Found { path, .. } = self.names.find("", name).map_err(|_| missing)?;
+            let is_guess = true;
+            Ok(Found { path, is_guess })
+        })
     }
 
     /// The picture of this name, or of what stands before a comment.
@@ -275,11 +286,11 @@ impl Reader<'_, '_> {
         let candidates = std::iter::once(name).chain(before_comment);
         let mut missing = None;
         for name in candidates {
-            match self.names.find(self.prefix, unquoted(name)) {
+            match self.find(name) {
                 Ok(found) => {
                     if found.is_guess {
                         let place = Place::Line(self.line);
-                        let what = "a picture whose name is spelt otherwise:";
+                        let what = "a picture whose name or folder is another:";
                         let instead = "the one that was found is shown";
                         self.notes
                             .add_named(self.file, place, what, &found.path, instead);

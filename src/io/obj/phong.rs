@@ -78,6 +78,9 @@ pub(super) fn phong_of(
     if material.refraction.is_some_and(|index| index != 1.0) && exact.opacity < 1.0 {
         note("refraction (Ni) of", "light goes straight through");
     }
+    if exact.opacity <= 0.0 {
+        note("an opacity of 0 (d 0, or Tr 1 alone), of", "it is not seen");
+    }
     let mut phong = clamp(exact.clone());
     if phong != exact {
         note("numbers outside Phong's ranges in", "clamped");

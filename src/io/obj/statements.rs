@@ -38,6 +38,7 @@ pub(super) fn read_content(
         places: HashMap::new(),
         memory: Growing::of(&limits.memory),
         far_off: FarOff::default(),
+        painted: 0,
     };
     reader.object = reader.object_named(&unnamed(file));
     while let Some((number, line)) = lines.next()? {
@@ -69,6 +70,8 @@ struct Reader<'a> {
     places: HashMap<(u32, Option<u32>), usize>,
     memory: Growing<'a>,
     far_off: FarOff,
+    /// Vertices that have a colour of a comment.
+    painted: usize,
 }
 
 #[derive(PartialEq, Eq, Hash)]
@@ -101,6 +104,7 @@ impl Reader<'_> {
             b"vn" => self.normal(rest),
             b"f" | b"fo" => return self.face(rest),
             b"" => {}
+            b"#MRGB" => self.painted(rest),
             _ if word[0] == b'#' => {}
             _ => return self.statement(word, rest),
         }
@@ -294,6 +298,30 @@ impl Reader<'_> {
             None => {}
         }
         Ok(())
+    }
+
+    /// Colours that ZBrush writes behind the vertices, in a comment: eight hexadecimal digits each, of which the first two
+    /// are a mask.
+    fn painted(&mut self, rest: &[u8]) {
+        let colors = &mut self.content.colors;
+        colors.resize(self.content.positions.len(), [1.0; 3]);
+        let (words, left) = rest.as_chunks::<8>();
+        let mut is_whole = left.is_empty();
+        for word in words {
+            let digits = std::str::from_utf8(word).ok();
+            let number = digits.and_then(|digits| u32::from_str_radix(digits, 16).ok());
+            match (number, colors.get_mut(self.painted)) {
+                (Some(number), Some(color)) => {
+                    let [_, rgb @ ..] = number.to_be_bytes();
+                    *color = rgb.map(|channel| f32::from(channel) / 255.0);
+                }
+                _ => is_whole = false,
+            }
+            self.painted += 1;
+        }
+        if !is_whole {
+            self.note("a comment of colours that are those of no vertex", LEFT_OUT);
+        }
     }
 
     fn texture_coordinate(&mut self, rest: &[u8]) {
