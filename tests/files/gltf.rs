@@ -106,6 +106,16 @@ fn strips_and_fans_become_triangles_that_face_the_same_way() {
 }
 
 #[test]
+fn corners_that_make_no_whole_triangle_are_told() {
+    let (mut app, notes) = document(plain(), |d| d["accessors"][2]["count"] = json!(5));
+    assert_eq!(corners(&mut app).len(), 1);
+    assert!(
+        notes.iter().any(|note| note.contains("too few for a last")),
+        "{notes:#?}"
+    );
+}
+
+#[test]
 fn a_sparse_accessor_replaces_what_it_names() {
     let (mut app, _) = document(plain(), |d| {
         // Vertex 2 becomes vertex 0's values; the index is the third byte of the indices.

@@ -115,6 +115,9 @@ fn triangles(
         Some(accessor) => indices(document, accessor)?,
         None => (0..u32::try_from(count).unwrap_or(u32::MAX)).collect(),
     };
+    if mode == TRIANGLES && !corners.len().is_multiple_of(3) {
+        document.note(name, "corners too few for a last triangle", "left out");
+    }
     let mut corners = triangles_of(mode, corners);
     let triangles = corners.len() as u64 / 3;
     if triangles > document.limits.triangles {
