@@ -1,6 +1,7 @@
 //! Any kind of material, mapped by a function of the app's.
 
 use super::derived::{DerivedPictures, Pictures};
+use super::returned::Returned;
 use super::unknown::KnownMaterials;
 use super::{Mapped, MappingSystems};
 use crate::scene::{NotTraced, Phong, PhongMaps};
@@ -89,7 +90,11 @@ pub(super) fn map_materials<M: Material>(
     edited: Query<Entity, Changed<MeshMaterial3d<M>>>,
     objects: Objects<M>,
     mut gone: RemovedComponents<MeshMaterial3d<M>>,
+    mut returned: Returned,
 ) {
+    for entity in returned.no_longer() {
+        LeftOut::note(&mut left_out, "material", entity, Vec::new());
+    }
     for entity in gone.read() {
         // What was taken away and given back is there.
         if objects.contains(entity) {
@@ -103,17 +108,20 @@ pub(super) fn map_materials<M: Material>(
     let changed: HashSet<_> = events
         .read()
         .filter_map(|event| match event {
-            AssetEvent::Added { id } | AssetEvent::Modified { id } => Some(*id),
+            AssetEvent::Added { id } | AssetEvent::Modified { id } | AssetEvent::Removed { id } => {
+                Some(*id)
+            }
             _ => None,
         })
         .collect();
     let all = derived.is_changed() || mapping.is_changed();
+    let edited = edited.iter().chain(returned.read());
     let edited: Vec<Entity> = if all || !changed.is_empty() {
         let worn = objects.iter();
         let worn = worn.filter(|(_, worn, _)| all || changed.contains(&worn.0.id()));
-        worn.map(|(entity, ..)| entity).chain(&edited).collect()
+        worn.map(|(entity, ..)| entity).chain(edited).collect()
     } else {
-        edited.iter().collect()
+        edited.collect()
     };
     if edited.is_empty() {
         return;
@@ -127,6 +135,13 @@ pub(super) fn map_materials<M: Material>(
             continue;
         };
         let Some(material) = assets.get(&worn.0) else {
+            // Bevy draws nothing of it until it is there.
+            let what = "its material is not loaded; drawn without it".to_owned();
+            LeftOut::note(&mut left_out, "material", entity, vec![what]);
+            if mapped.is_some() {
+                let mut entity = commands.entity(entity);
+                entity.try_remove::<(Phong, PhongMaps, Mapped<(Phong, PhongMaps)>)>();
+            }
             continue;
         };
         let surface = (mapping.0)(material, &mut pictures);

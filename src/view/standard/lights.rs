@@ -1,11 +1,13 @@
 //! Bevy's lights as ours.
 
 use super::Mapped;
+use super::returned::Returned;
 use crate::scene::{Cone, DirectionalLamp, NotTraced, ParallelogramLamp, PointLamp};
 use crate::sync::LeftOut;
 use crate::view::TracedView;
 use crate::view::raster::RasterTwin;
 use bevy::camera::Exposure;
+use bevy::ecs::entity::EntityHashSet;
 use bevy::ecs::query::QueryFilter;
 use bevy::ecs::schedule::ScheduleConfigs;
 use bevy::ecs::system::ScheduleSystem;
@@ -195,6 +197,7 @@ fn map_lights<Theirs: Maps<Ours>, Ours: Component + Clone + PartialEq>(
     lights: Lights<Theirs, Ours>,
     mut gone: RemovedComponents<Theirs>,
     kept: Query<(), Or<(With<RasterTwin>, Theirs::Kept)>>,
+    mut returned: Returned,
     mut left_out: ResMut<LeftOut>,
 ) {
     for entity in gone.read() {
@@ -206,9 +209,14 @@ fn map_lights<Theirs: Maps<Ours>, Ours: Component + Clone + PartialEq>(
             entity.try_remove::<(Ours, Mapped<Ours>)>();
         }
     }
+    for entity in returned.no_longer() {
+        LeftOut::note(&mut left_out, "light", entity, Vec::new());
+    }
+    let returned: EntityHashSet = returned.read().collect();
     for (entity, theirs, place, mapped) in &lights {
         let has_moved = place.as_ref().is_some_and(|place| place.is_changed());
-        if !theirs.is_changed() && !exposure.is_changed() && !has_moved {
+        let is_known = !theirs.is_changed() && !exposure.is_changed() && !has_moved;
+        if is_known && !returned.contains(&entity) {
             continue;
         }
         LeftOut::note(&mut left_out, "light", entity, theirs.left_out(exposure.0));

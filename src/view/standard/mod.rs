@@ -42,7 +42,7 @@
 //! | `GlobalAmbientLight`, a camera's `AmbientLight`, light probes, fog, atmospheres | named |
 //! | `NotShadowCaster`, `NotShadowReceiver`, `RenderLayers`, `Lightmap` of objects | named |
 //! | skinned and morphed meshes | as they stand in this frame, in every frame in which a view traces them |
-//! | meshes and textures of `RenderAssetUsages::RENDER_WORLD` alone | named |
+//! | meshes and textures of `RenderAssetUsages::RENDER_WORLD` alone, materials that are not loaded | named |
 
 mod add_material;
 mod backs;
@@ -52,6 +52,7 @@ mod material;
 mod objects;
 mod pose;
 mod poses;
+mod returned;
 mod sky;
 mod surroundings;
 mod unknown;

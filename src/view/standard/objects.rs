@@ -1,5 +1,6 @@
 //! What Bevy's objects have besides mesh and material.
 
+use super::returned::Returned;
 use crate::scene::NotTraced;
 use crate::sync::LeftOut;
 use crate::view::RASTER_LAYER;
@@ -33,6 +34,7 @@ pub(super) fn name_flags(
     mut receives: RemovedComponents<NotShadowReceiver>,
     mut no_lightmap: RemovedComponents<Lightmap>,
     mut no_layers: RemovedComponents<RenderLayers>,
+    mut returned: Returned,
     mut left_out: ResMut<LeftOut>,
 ) {
     let gone = (no_mesh.read())
@@ -40,7 +42,8 @@ pub(super) fn name_flags(
         .chain(receives.read())
         .chain(no_lightmap.read())
         .chain(no_layers.read());
-    for entity in gone.chain(&edited) {
+    let others: Vec<Entity> = (returned.no_longer()).chain(&edited).chain(gone).collect();
+    for entity in others.into_iter().chain(returned.read()) {
         let what = objects.get(entity).map(names).unwrap_or_default();
         LeftOut::note(&mut left_out, "object", entity, what);
     }

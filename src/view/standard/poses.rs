@@ -1,6 +1,7 @@
 //! Skinned and morphed meshes, traced as they stand in this frame.
 
 use super::pose::{Bend, bent};
+use super::returned::Returned;
 use crate::scene::NotTraced;
 use crate::sync::{LeftOut, PosedMesh, TreeBuilding};
 use crate::view::TracedView;
@@ -133,14 +134,20 @@ pub(super) fn pose_meshes(
     }
 }
 
-/// An object whose skin and weights were taken away stands as its mesh is.
+/// An object whose skin and weights were taken away stands as its mesh is, and one that returns is bent anew.
 pub(super) fn straighten(
     mut commands: Commands,
     mut no_skin: RemovedComponents<SkinnedMesh>,
     mut no_morph: RemovedComponents<MeshMorphWeights>,
     bent: Query<(), Bends>,
+    mut returned: Returned,
     mut left_out: ResMut<LeftOut>,
 ) {
+    for entity in returned.read() {
+        if let Ok(mut entity) = commands.get_entity(entity) {
+            entity.try_remove::<Pose>();
+        }
+    }
     for entity in no_skin.read().chain(no_morph.read()) {
         if bent.contains(entity) {
             continue;
