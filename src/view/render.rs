@@ -28,6 +28,8 @@ pub struct TracedRender {
     pub(super) shown: Option<PrintInfo>,
     /// Why it never renders again.
     pub(super) failed: Option<String>,
+    /// Why it does not render as things are.
+    pub(super) refused: Option<String>,
     /// Of which render it was said that it has ended.
     pub(super) told: Option<u64>,
     /// Whose backs it sees, of all that there are.

@@ -124,7 +124,7 @@ pub struct Converged {
 }
 
 /// Triggered on a view, or on what [`render_reference`](super::render_reference) spawned, when it
-/// cannot render.
+/// cannot render; once for each reason. A view goes on when that is gone.
 #[derive(EntityEvent, Clone, Debug, PartialEq, Eq)]
 pub struct Failed {
     /// The view.
@@ -244,11 +244,22 @@ fn follow(
         let refusal = own
             .size
             .and_then(|size| film_size::refusal(size, adapter.largest_side()));
+        let is_nowhere = seen_from.is_none() && !matches!(projection, Projection::Custom(_));
+        let nowhere = is_nowhere
+            .then(|| "its place is not a finite one; nothing is traced for it".to_owned());
         let size = seen_size(view, camera).map(|size| own.size.unwrap_or(size));
         let size = size.filter(|_| refusal.is_none());
         let has_picture = seen_from.is_some() && refusal.is_none();
-        let refusal = refusal.into_iter().collect();
-        LeftOut::note(&mut left_out, "film of view", entity, refusal);
+        let refused = refusal.as_ref().or(nowhere.as_ref());
+        if render.refused.as_ref() != refused {
+            render.refused = refused.cloned();
+            if let Some(problem) = render.refused.clone() {
+                commands.trigger(Failed { entity, problem });
+            }
+        }
+        let notes = |note: Option<String>| note.into_iter().collect();
+        LeftOut::note(&mut left_out, "film of view", entity, notes(refusal));
+        LeftOut::note(&mut left_out, "place of view", entity, notes(nowhere));
         if !has_picture && render.shown.take().is_some() {
             // It has no picture, and the one before is none of it.
             commands.entity(entity).try_remove::<Screen>();
@@ -409,9 +420,13 @@ fn show_prints(
 
 #[cfg(test)]
 mod tests {
+    use super::super::StandardMappingPlugin;
     use super::*;
+    use crate::app::headless_app_with;
+    use bevy::ecs::resource::Resource;
     use bevy::ecs::world::World;
     use bevy::math::Vec3;
+    use bevy::transform::components::Transform;
 
     #[test]
     fn a_twin_shows_what_its_view_shows_and_nothing_once_that_shows_nothing() {
@@ -441,5 +456,48 @@ mod tests {
         world.despawn(view);
         world.run_system(show).unwrap();
         assert!(world.get::<Screen>(twin).is_none());
+    }
+
+    /// Of what a view was told that it cannot be rendered.
+    #[derive(Resource, Default)]
+    struct Told(Vec<String>);
+
+    #[test]
+    fn a_view_that_cannot_be_rendered_says_so_once_for_each_reason() {
+        let mut app = headless_app_with((StandardMappingPlugin, TracedViewPlugin));
+        app.init_resource::<Told>()
+            .add_observer(|failed: On<Failed>, mut told: ResMut<Told>| {
+                told.0.push(failed.problem.clone());
+            });
+        let view = app.world_mut().spawn(TracedView::default()).id();
+        let told = |app: &mut App| {
+            for _ in 0..3 {
+                app.update();
+            }
+            std::mem::take(&mut app.world_mut().resource_mut::<Told>().0)
+        };
+        let of_size = |size| ViewSettings {
+            size: Some(size),
+            ..ViewSettings::default()
+        };
+        assert_eq!(told(&mut app), [""; 0]);
+        for _ in 0..2 {
+            let nowhere = Transform::from_xyz(f32::NAN, 0.0, 0.0);
+            app.world_mut().entity_mut(view).insert(nowhere);
+            let said = "its place is not a finite one; nothing is traced for it";
+            assert_eq!(told(&mut app), [said]);
+            let problems = &app.world().resource::<Traced>().problems;
+            assert_eq!(problems.len(), 1, "{problems:#?}");
+            let mut camera = app.world_mut().entity_mut(view);
+            camera.insert((Transform::IDENTITY, of_size(UVec2::ZERO)));
+            assert!(matches!(&told(&mut app)[..], [said] if said.contains("has none")));
+            app.world_mut()
+                .entity_mut(view)
+                .insert(of_size(UVec2::splat(1 << 31)));
+            assert!(matches!(&told(&mut app)[..], [said] if said.contains("of memory")));
+            app.world_mut().entity_mut(view).remove::<ViewSettings>();
+            assert_eq!(told(&mut app), [""; 0]);
+            assert!(app.world().resource::<Traced>().problems.is_empty());
+        }
     }
 }

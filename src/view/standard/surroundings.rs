@@ -60,6 +60,7 @@ pub(super) fn name_incomplete(
             "exposure",
             "picture of view",
             "film of view",
+            "place of view",
             "sky of view",
             "view",
             "traced camera",
