@@ -5,6 +5,7 @@
 mod hostile;
 mod lasting;
 mod own_picture;
+mod picking;
 mod pictures;
 mod second_window;
 mod side_by_side;
