@@ -101,7 +101,7 @@ impl TracedInstances {
                 (Some(row), Some(place)) => {
                     let known = &mut self.rows[place];
                     difference.objects |= !row.same_object(known);
-                    difference.rows |= !Arc::ptr_eq(&row.instance, &known.instance);
+                    difference.rows |= !known.stands_as(&row);
                     *known = row;
                 }
                 (Some(row), None) => comes.push(row),
@@ -142,12 +142,9 @@ impl TracedInstances {
             self.stale = false;
             self.begun_objects = self.objects;
             let instances = self.rows.iter().map(|row| row.instance.clone());
-            let instances: Vec<Arc<Instance>> = instances.collect();
+            let instances: Vec<Instance> = instances.collect();
             let (objects, options) = (self.objects, self.options);
-            let work = move || {
-                let instances = instances.iter().map(|instance| (**instance).clone());
-                (objects, Aggregate::build(instances.collect(), &options))
-            };
+            let work = move || (objects, Aggregate::build(instances, &options));
             if at_once {
                 self.show(Some(work()), draft);
             } else {
@@ -192,8 +189,9 @@ pub(super) struct Row {
     pub mesh: Arc<trace::Mesh>,
     /// Samples that its motion asks for; 0 where it stands still.
     pub motion_samples: u32,
-    /// Where its mesh stands, and how it moves; shared with the thread that builds the tree over all.
-    instance: Arc<Instance>,
+    /// Where its mesh stands, and how it moves. It lies here and is copied for each tree over all: of thousands that move, an
+    /// allocation each would take as long as all else.
+    instance: Instance,
 }
 
 impl Row {
@@ -203,6 +201,16 @@ impl Row {
             && self.entity == other.entity
             && self.motion_samples == other.motion_samples
             && Arc::ptr_eq(&self.mesh, &other.mesh)
+    }
+
+    /// True where its mesh is that one, and stands there and moves so.
+    fn stands_as(&self, other: &Self) -> bool {
+        let instance = &other.instance;
+        self.stands(
+            &other.mesh,
+            instance.world_from_object(),
+            instance.velocity(),
+        )
     }
 
     /// True where this mesh stands in this place and moves so.
@@ -369,7 +377,7 @@ fn read(
         None => {
             let instance = Instance::new(mesh.tree.clone(), &transform);
             match instance.and_then(|instance| instance.moving(velocity)) {
-                Ok(instance) => Arc::new(instance),
+                Ok(instance) => instance,
                 Err(fault) => {
                     reader.note(Fault::Transform(fault));
                     return None;
