@@ -356,7 +356,7 @@ impl NumberField<'_> {
         let font = ui.style().drag_value_text_style.resolve(ui.style());
         let with_unit = |digits| self.text(number, digits) + &self.quantity.unit.suffix();
         let texts = [with_unit(5), with_unit(4), with_unit(3)];
-        let bare = [5, 4, 3].map(|digits| self.text(number, digits));
+        let bare = [5, 4, 3, 2].map(|digits| self.text(number, digits));
         let shortest = format!("{:.1e}", number / self.quantity.unit.kept_per_shown());
         let mut last = String::new();
         for text in texts.into_iter().chain(bare).chain([shortest]) {

@@ -22,6 +22,7 @@ use bevy::ecs::entity::Entity;
 use bevy::ecs::name::Name;
 use bevy::ecs::query::With;
 use bevy::math::{Rect, UVec2, Vec2};
+use bevy::transform::components::Transform;
 use bevy_egui::egui::{Event, Id, Key, Modifiers, Pos2, vec2};
 use std::time::Instant;
 
@@ -68,6 +69,24 @@ fn a_number_that_is_dragged_changes_its_component_and_no_other_as_one_step() {
     assert_eq!((after.color, after.cone), (before.color, before.cone));
     let history = desk.world().resource::<crate::editor::history::History>();
     assert_eq!(history.position(), steps + 1);
+}
+
+#[test]
+fn a_number_that_does_not_fit_its_field_loses_digits_before_it_gets_an_exponent() {
+    let mut desk = Desk::open("cornell-box");
+    let (lamp, id) = desk.named("Lamp");
+    desk.select([id]);
+    for (x, shown) in [
+        (-0.039_72, "-0.04"),
+        (0.039_72, "0.0397"),
+        (-3.97e-7, "-4e-7"),
+    ] {
+        let mut place = desk.world().get_mut::<Transform>(lamp).unwrap();
+        place.translation.x = x;
+        desk.settle();
+        let field = desk.place_beside("Position", shown);
+        assert!(field.x > 0.0);
+    }
 }
 
 #[test]
