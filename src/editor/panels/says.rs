@@ -25,7 +25,7 @@ impl Says for Response {
 }
 
 /// Tells screen readers what a control does. One without a text of its own is called as the row that it stands in, or else
-/// by what it does.
+/// by what it does, and so is one whose text is a picture: ⏸ is no word.
 pub(super) fn name_control(control: &Response, what: &str) {
     if !control.sense.interactive() {
         return;
@@ -33,11 +33,19 @@ pub(super) fn name_control(control: &Response, what: &str) {
     let context = &control.ctx;
     let row: Option<String> = context.data(|data| data.get_temp(row_id()));
     context.accesskit_node_builder(control.id, |node| {
-        if node.label().is_none_or(str::is_empty) {
+        let label = node.label().unwrap_or_default();
+        if label.is_empty() {
             node.set_label(row.as_deref().unwrap_or(what));
+        } else if !can_be_told(label) {
+            node.set_label(what);
         }
         node.set_description(what);
     });
+}
+
+/// Whether there is a word or a number in it.
+pub(super) fn can_be_told(name: &str) -> bool {
+    name.chars().any(char::is_alphanumeric)
 }
 
 /// Draws the controls of a row that is called so.

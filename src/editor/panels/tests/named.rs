@@ -6,6 +6,7 @@ use super::super::hierarchy::Hierarchy;
 use super::super::inspector::{Inspector, Tab};
 use super::super::outline_rows::Filter;
 use super::super::palette::{OpenPalette, Palette};
+use super::super::says::can_be_told;
 use super::desk::{self, Desk, LARGE};
 use crate::editor::action::Action;
 use crate::editor::inspection::{DebugRay, debug_ray::Shot};
@@ -36,11 +37,12 @@ fn note_unnamed(desk: &mut Desk, place: &str, unnamed: &mut BTreeSet<String>) ->
             continue;
         }
         count += 1;
-        let named = node.label().is_some_and(|label| !label.trim().is_empty());
+        let named = node.label().is_some_and(can_be_told);
         if !named && node.labelled_by().is_empty() {
             unnamed.insert(format!(
-                "{place}: {:?} of value {:?} at {:?}",
+                "{place}: {:?} {:?} of value {:?} at {:?}",
                 node.role(),
+                node.label(),
                 node.value(),
                 node.bounds()
             ));
