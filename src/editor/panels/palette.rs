@@ -7,8 +7,8 @@ use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy_egui::egui::text::{LayoutJob, TextWrapping};
 use bevy_egui::egui::{
-    self, Align2, FontId, Id, Key, Modal, Modifiers, Rect, ScrollArea, Sense, TextEdit, TextStyle,
-    Ui, WidgetInfo, WidgetType, pos2, vec2,
+    self, Align2, Color32, FontId, Id, Key, Modal, Modifiers, Rect, ScrollArea, Sense, TextEdit,
+    TextStyle, Ui, WidgetInfo, WidgetType, pos2, vec2,
 };
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -126,12 +126,17 @@ fn row_ui(
         (false, hovered) => (
             match hovered {
                 true => visuals.widgets.noninteractive.bg_stroke.color,
-                false => egui::Color32::TRANSPARENT,
+                false => Color32::TRANSPARENT,
             },
             visuals.text_color(),
         ),
     };
     let ready = state.why_not.is_none();
+    // Why it cannot be run is to be read too.
+    let faint = match chosen {
+        true => ink.gamma_multiply(0.7),
+        false => visuals.weak_text_color(),
+    };
     let ink = if ready { ink } else { ink.gamma_multiply(0.5) };
     let says = state.why_not.as_deref().unwrap_or(&command.help);
     if chosen || response.hovered() {
@@ -153,25 +158,20 @@ fn row_ui(
     }
     let mark = if state.on == Some(true) { "✔ " } else { "" };
     let name = format!("{mark}{}", command.title(state));
-    let left = painter
-        .text(
-            pos2(rect.min.x + 8.0, y),
-            Align2::LEFT_CENTER,
-            name,
-            font,
-            ink,
-        )
-        .max
-        .x
-        + 14.0;
-    let room = Rect::from_x_y_ranges(left..=right.max(left), rect.y_range());
-    let mut says = LayoutJob::simple_singleline(says.to_owned(), small, ink.gamma_multiply(0.7));
-    says.wrap = TextWrapping::truncate_at_width(room.width());
-    let says = painter.layout_job(says);
-    let at = Align2::LEFT_CENTER.anchor_size(pos2(left, y), says.size());
-    painter
-        .with_clip_rect(room.intersect(ui.clip_rect()))
-        .galley(at.min, says, ink);
+    let line = |left: f32, text: String, font: FontId, ink: Color32| {
+        let room = Rect::from_x_y_ranges(left..=right.max(left), rect.y_range());
+        let mut line = LayoutJob::simple_singleline(text, font, ink);
+        line.wrap = TextWrapping::truncate_at_width(room.width());
+        let line = painter.layout_job(line);
+        let at = Align2::LEFT_CENTER.anchor_size(pos2(left, y), line.size());
+        // Where there is no room for more, an ellipsis says nothing.
+        if line.size().x <= room.width() {
+            painter.galley(at.min, line, ink);
+        }
+        at.max.x + 14.0
+    };
+    let left = line(rect.min.x + 8.0, name, font, ink);
+    line(left, says.to_owned(), small, faint);
     response
 }
 

@@ -6,6 +6,7 @@ use crate::editor::inspection::Inspected;
 use crate::editor::inspection::list::Row;
 use crate::inspect::{COLUMNS, Column, Heading, Names, RaySettings};
 use crate::trace::{RayEnd, RayTree, TracedRay, srgb};
+use bevy_egui::egui::text::{LayoutJob, TextWrapping};
 use bevy_egui::egui::{
     self, Align, Align2, Color32, FontFamily, FontId, Pos2, Rect, ScrollArea, Sense, Stroke, Ui,
     WidgetInfo, WidgetType, pos2, vec2,
@@ -291,7 +292,11 @@ fn cell_text(
         painter.text(at, Align2::RIGHT_CENTER, text, font, ink);
     } else {
         let font = FontId::new(12.0, FontFamily::Proportional);
-        painter.text(pos2(left, y), Align2::LEFT_CENTER, text, font, ink);
+        let mut line = LayoutJob::simple_singleline(text, font, ink);
+        line.wrap = TextWrapping::truncate_at_width((cell.max.x - MARGIN - left).max(0.0));
+        let line = painter.layout_job(line);
+        let at = Align2::LEFT_CENTER.anchor_size(pos2(left, y), line.size());
+        painter.galley(at.min, line, ink);
     }
 }
 

@@ -1,6 +1,6 @@
 //! The ray inspector as a person meets it.
 
-use super::super::tests::{Desk, SMALL, USUAL};
+use super::super::tests::{Desk, SMALL, USUAL, texts};
 use super::RaysPanel;
 use crate::editor::action::Action;
 use crate::editor::inspection::choice::Side;
@@ -10,8 +10,10 @@ use crate::editor::notice::Notices;
 use crate::editor::preferences::Preferences;
 use crate::editor::viewport::Viewport;
 use crate::inspect::InspectSettings;
-use crate::scene::RenderSettings;
+use crate::scene::{RenderSettings, SceneId};
 use crate::sync::TracedCameras;
+use bevy::ecs::name::Name;
+use bevy::ecs::query::With;
 use bevy::math::UVec2;
 use bevy_egui::egui::{Event, vec2};
 use std::time::{Duration, Instant};
@@ -103,6 +105,30 @@ fn a_row_that_is_clicked_is_the_chosen_ray_and_one_chosen_in_the_view_is_scrolle
     // Chosen again it is chosen no more.
     desk.click_on(&name);
     assert_eq!(desk.world().resource::<Inspected>().ray(), None);
+}
+
+#[test]
+fn names_that_are_longer_than_a_column_end_in_an_ellipsis() {
+    let mut desk = open("cornell-box");
+    let long = "A name that is longer than any column of the list is wide";
+    let mut names = desk.world().query_filtered::<&mut Name, With<SceneId>>();
+    for mut name in names.iter_mut(desk.app.world_mut()) {
+        name.set(long);
+    }
+    shoot(&mut desk, Which::First);
+    let texts = texts(&desk);
+    let listed = texts.iter().filter(|(text, place, clip)| {
+        text.contains(long) && clip.height() < 30.0 && clip.intersects(*place)
+    });
+    let mut count = 0;
+    for (text, place, clip) in listed {
+        assert!(
+            place.right() < clip.right(),
+            "{text:?}: {place:?} in {clip:?}"
+        );
+        count += 1;
+    }
+    assert!(count > 1, "{count} names are listed");
 }
 
 #[test]

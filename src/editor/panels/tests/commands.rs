@@ -2,23 +2,28 @@
 
 use super::super::dialogs::{Dialog, Dialogs};
 use super::super::palette::OpenPalette;
-use super::Desk;
+use super::{Desk, SMALL, USUAL, texts};
 use crate::editor::command::{AddCommands, Command, CommandTable, Over, State};
 use crate::editor::inspection::debug_ray::Shot;
 use crate::editor::inspection::{DebugRay, Which};
 use crate::editor::keys::Keys;
 use crate::editor::notice::Notices;
+use crate::editor::pick;
 use crate::editor::pointer::{Armed, PixelAsked, RightClicked};
 use crate::editor::preferences::Preferences;
 use crate::editor::selection::Selection;
+use crate::editor::viewport::{EditorCamera, Viewport};
 use crate::editor::{Action, edits};
 use crate::inspect::{InspectPreset, InspectSettings, Names, Question, answer};
 use crate::scene::SceneId;
 use crate::sync::TracedCameras;
+use bevy::camera::{Camera, CameraProjection, PerspectiveProjection, RenderTargetInfo};
+use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
-use bevy::math::{UVec2, Vec2};
-use bevy_egui::egui::{CursorIcon, Event, Key, PointerButton, Pos2};
+use bevy::math::{Quat, UVec2, Vec2};
+use bevy::transform::components::Transform;
+use bevy_egui::egui::{CursorIcon, Event, Key, PointerButton, Pos2, Shape};
 use std::collections::HashSet;
 use std::time::Instant;
 
@@ -137,6 +142,42 @@ fn the_palette_finds_by_letters_and_runs_what_is_chosen_with_the_arrows() {
     desk.click_on("Edit");
     desk.click_on("Delete");
     assert!(desk.ids().is_empty());
+}
+
+#[test]
+fn names_and_explanations_of_the_palette_end_in_an_ellipsis_before_its_keys() {
+    let long = "which takes more words to say than there is room for in any row of the palette, or in two of them";
+    let names = [
+        "Start the game".to_owned(),
+        format!("Start the game, {long}"),
+    ];
+    for (name, size) in names.iter().flat_map(|name| [(name, SMALL), (name, USUAL)]) {
+        let mut row = start();
+        row.name = name.clone().into();
+        row.help = format!("Begins the first level, {long}").into();
+        let mut desk = with_row(row);
+        desk.size = size;
+        palette(&mut desk, "Start the game");
+        let texts = texts(&desk);
+        let place = |wanted: &str| {
+            let mut found = texts.iter().filter(|(text, ..)| text == wanted);
+            found.next().map(|(_, place, _)| *place)
+        };
+        let keys = place("Ctrl+Shift+G").expect("its keys");
+        let title = place(name).expect("its name");
+        assert!(title.right() < keys.left(), "{title:?} beside {keys:?}");
+        let says = texts
+            .iter()
+            .filter(|(text, ..)| text.starts_with("Begins the"));
+        let in_row = says.filter(|(_, place, _)| (place.center().y - keys.center().y).abs() < 6.0);
+        for (text, place, _) in in_row {
+            let fits = place.left() >= title.right() && place.right() < keys.left();
+            assert!(
+                fits || place.width() < 1.0,
+                "{text:?}: {place:?} beside {keys:?}"
+            );
+        }
+    }
 }
 
 #[test]
@@ -290,6 +331,99 @@ fn each_question_about_a_pixel_waits_for_a_click_and_is_answered_in_a_sentence_u
         assert_eq!(desk.world().resource::<Selection>().ids(), [SceneId(met)]);
         assert_eq!(desk.find(&sentence), None);
     }
+}
+
+/// Puts the window's camera somewhere, as the renderer would tell it.
+fn look_from(desk: &mut Desk, place: Transform) {
+    let [width, height, _] = desk.size;
+    let mut cameras =
+        (desk.world()).query_filtered::<(&mut Camera, &mut Transform), With<EditorCamera>>();
+    let (mut camera, mut stands) = cameras.single_mut(desk.world()).unwrap();
+    *stands = place;
+    let projection = PerspectiveProjection {
+        aspect_ratio: width / height,
+        ..PerspectiveProjection::default()
+    };
+    camera.computed.clip_from_view = projection.get_clip_from_view();
+    camera.computed.target_info = Some(RenderTargetInfo {
+        physical_size: UVec2::new(width as u32, height as u32),
+        scale_factor: 1.0,
+    });
+}
+
+/// The middle of the cross that an answer belongs to.
+fn cross(desk: &Desk) -> Pos2 {
+    let picture = desk.app.world().resource::<Viewport>().rect;
+    let arms = (desk.output.shapes.iter()).filter_map(|clipped| match &clipped.shape {
+        Shape::LineSegment { points, stroke } if stroke.width == 1.2 => Some(points[0]),
+        _ => None,
+    });
+    // Icons of the list are drawn in lines, too.
+    let arms = arms.filter(|arm| picture.contains(Vec2::new(arm.x, arm.y)));
+    let arms: Vec<Pos2> = arms.collect();
+    assert_eq!(arms.len(), 4, "the arms of one cross: {arms:?}");
+    let sum = arms
+        .iter()
+        .fold(Vec2::ZERO, |sum, arm| sum + Vec2::new(arm.x, arm.y));
+    Pos2::new(sum.x / 4.0, sum.y / 4.0)
+}
+
+#[test]
+fn an_answer_and_its_cross_stay_with_what_they_are_about_when_the_view_moves() {
+    let mut desk = Desk::open("cornell-box");
+    desk.world().init_resource::<Armed>();
+    let before = Transform::from_xyz(0.0, 0.27, 1.08);
+    look_from(&mut desk, before);
+    let at = Vec2::new(600.0, 300.0);
+    let seen_along = pick::ray(desk.world(), at).expect("a view");
+    let camera = desk.world().resource::<TracedCameras>().0[0].camera.clone();
+    let mut ray = desk.world().resource_mut::<DebugRay>();
+    ray.which = Which::First;
+    ray.shoot(Shot {
+        pixel: UVec2::new(300, 400),
+        camera,
+        size: UVec2::new(600, 480),
+    });
+    let question = Question::Black;
+    desk.world().trigger(PixelAsked { question, at });
+    desk.settle();
+    let start = Instant::now();
+    while desk.world().resource::<DebugRay>().is_busy() {
+        assert!(start.elapsed().as_secs() < 60, "no rays came");
+        desk.settle();
+    }
+    desk.settle();
+    let rays = desk.world().resource::<DebugRay>().rays().unwrap().clone();
+    let far = rays.rays[0].t * rays.rays[0].direction.length();
+    let names = &desk.world().resource::<Names>().things;
+    let sentence = answer(question, &rays, names);
+    let is_at = |cross: Pos2, wanted: Vec2| cross.distance(Pos2::new(wanted.x, wanted.y)) < 0.1;
+    let there = cross(&desk);
+    assert!(is_at(there, at), "{there:?}, not {at}");
+    let beside = desk.place_of(&sentence) - there;
+    let mut moved = Vec::new();
+    for place in [
+        Transform::from_xyz(0.1, 0.27, 1.08),
+        Transform::from_xyz(0.05, 0.2, 1.3).with_rotation(Quat::from_rotation_y(-0.05)),
+        before,
+    ] {
+        look_from(&mut desk, place);
+        desk.draw(Vec::new());
+        let wanted = pick::to_window(desk.world(), seen_along.get_point(far)).unwrap();
+        let there = cross(&desk);
+        assert!(is_at(there, wanted), "{there:?}, not {wanted}");
+        desk.draw(Vec::new());
+        let text = desk.place_of(&sentence) - there;
+        assert!(
+            (text - beside).length() < 1.0,
+            "the sentence lies {text:?} from it, not {beside:?}"
+        );
+        moved.push(wanted.distance(at));
+    }
+    assert!(
+        moved[0] > 20.0 && moved[1] > 20.0 && moved[2] < 0.1,
+        "{moved:?}"
+    );
 }
 
 #[test]

@@ -231,7 +231,7 @@ fn a_message_hides_nothing_of_the_picture_and_is_found_again_once_it_is_closed()
 }
 
 /// The places of all texts, with what they are cut off at.
-fn texts(desk: &Desk) -> Vec<(String, Rect, Rect)> {
+pub fn texts(desk: &Desk) -> Vec<(String, Rect, Rect)> {
     fn search(shape: &Shape, clip: Rect, found: &mut Vec<(String, Rect, Rect)>) {
         match shape {
             Shape::Text(shape) => {

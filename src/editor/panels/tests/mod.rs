@@ -11,4 +11,5 @@ mod trees;
 mod typed;
 
 pub(super) use desk::{Desk, SMALL, USUAL};
+pub(super) use drawn::texts;
 pub(super) use typed::type_nonsense;
