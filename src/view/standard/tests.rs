@@ -378,7 +378,7 @@ fn a_material_that_is_not_loaded_or_goes_is_named_and_what_wears_it_is_drawn_wit
         ["material 1: its material is not loaded; drawn without it"]
     );
     assert!(app.world().get::<Phong>(object).is_none());
-    let mut materials = app.world_mut().resource_mut::<Assets<StandardMaterial>>();
+    let materials = app.world_mut().resource_mut::<Assets<StandardMaterial>>();
     let waits = materials.reserve_handle();
     let other = MeshMaterial3d(waits.clone());
     app.world_mut().entity_mut(object).insert(other);
