@@ -136,7 +136,7 @@ pub fn triangle_count(shape: &Shape) -> Result<u64, ShapeError> {
         }
         | Shape::Head { segments, rings } => {
             let (columns, rows) = grid(("segments", segments), ("rings", rings, 2))?;
-            2 * columns.saturating_mul(rows - 1)
+            columns.saturating_mul(rows - 1).saturating_mul(2)
         }
         Shape::Cylinder { segments, .. } => 4 * at_least("segments", segments, 3)?,
         Shape::Torus {

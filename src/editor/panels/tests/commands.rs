@@ -414,9 +414,11 @@ fn an_answer_and_its_cross_stay_with_what_they_are_about_when_the_view_moves() {
         assert!(is_at(there, wanted), "{there:?}, not {wanted}");
         desk.draw(Vec::new());
         let text = desk.place_of(&sentence) - there;
+        // At its right or at its left, where there is room.
+        let is_beside = text.x.abs() < 1.2 * beside.x.abs() && (text.y - beside.y).abs() < 1.0;
         assert!(
-            (text - beside).length() < 1.0,
-            "the sentence lies {text:?} from it, not {beside:?}"
+            is_beside,
+            "the sentence lies {text:?} from it, and lay {beside:?} from it"
         );
         moved.push(wanted.distance(at));
     }
