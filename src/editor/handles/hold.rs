@@ -18,6 +18,7 @@ use bevy::gizmos::transform_gizmo::{
 };
 use bevy::math::{Quat, Ray3d, Vec2, Vec3};
 use bevy::transform::components::{GlobalTransform, Transform};
+use bevy::window::{PrimaryWindow, Window};
 
 /// The gizmo as it stands.
 struct Stand {
@@ -77,7 +78,27 @@ pub(in super::super) fn take_hold(world: &mut World, at: Vec2) -> bool {
     true
 }
 
-/// The handle that is nearest to a place, and near enough, as Bevy's gizmo chooses it.
+/// Has the handle lit up that a press would take hold of: Bevy's gizmo chooses another one in its middle.
+pub(super) fn hover(world: &mut World) {
+    let state = world.resource::<TransformGizmoState>();
+    if state.active || state.hovered_axis.is_none() {
+        return;
+    }
+    let mut windows = world.query_filtered::<&Window, With<PrimaryWindow>>();
+    let at = windows.single(world).ok().and_then(Window::cursor_position);
+    let Some((at, (camera, eye))) = at.zip(pick::camera(world)) else {
+        return;
+    };
+    let Some(stand) = stand(world, &eye) else {
+        return;
+    };
+    let settings = world.resource::<TransformGizmoSettings>();
+    let handle = nearest_handle(settings, &stand, &camera, &eye, at);
+    world.resource_mut::<TransformGizmoState>().hovered_axis = handle;
+}
+
+/// The handle that is nearest to a place, and near enough, as Bevy's gizmo chooses it; but all of the circle in the middle
+/// moves along the view. An arrow that points at the viewer would be nearer there, and carry things far away.
 fn nearest_handle(
     settings: &TransformGizmoSettings,
     stand: &Stand,
@@ -101,7 +122,7 @@ fn nearest_handle(
             (Mode::Translate, Axis::View) => {
                 let edge = origin + eye.right() * (VIEW_CIRCLE_MAJOR * stand.scale);
                 let middle = seen(origin)?;
-                (at.distance(middle) - seen(edge)?.distance(middle)).abs()
+                (at.distance(middle) - seen(edge)?.distance(middle)).max(0.0)
             }
             (Mode::Translate | Mode::Scale, _) => {
                 let [from, to] = [AXIS_START_OFFSET, settings.axis_length]
@@ -110,7 +131,8 @@ fn nearest_handle(
             }
         })
     };
-    [Axis::X, Axis::Y, Axis::Z, Axis::View]
+    // The first of those that are as near.
+    [Axis::View, Axis::X, Axis::Y, Axis::Z]
         .into_iter()
         .filter_map(|axis| Some((axis, distance(axis)?)))
         .filter(|(_, distance)| *distance < settings.axis_hit_distance)
@@ -129,5 +151,53 @@ fn drag_start(mode: Mode, axis: Axis, direction: Vec3, ray: Ray3d, origin: Vec3)
             let from_origin = intersect_plane(ray, normal, origin)? - origin;
             Some(origin + direction * from_origin.dot(direction))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::camera::{CameraProjection, PerspectiveProjection, RenderTargetInfo};
+    use bevy::math::UVec2;
+
+    #[test]
+    fn the_middle_of_the_gizmo_moves_along_the_view_even_where_an_arrow_points_at_the_viewer() {
+        let mut camera = Camera::default();
+        camera.computed.clip_from_view = PerspectiveProjection::default().get_clip_from_view();
+        camera.computed.target_info = Some(RenderTargetInfo {
+            physical_size: UVec2::splat(600),
+            scale_factor: 1.0,
+        });
+        let settings = TransformGizmoSettings {
+            axis_hit_distance: 12.0,
+            ..TransformGizmoSettings::default()
+        };
+        let stand = Stand {
+            entity: Entity::PLACEHOLDER,
+            place: Transform::IDENTITY,
+            rotation: Quat::IDENTITY,
+            scale: 1.0,
+        };
+        // Slightly from above, and from where all arrows can be seen.
+        for from in [Vec3::new(0.0, 0.4, 8.0), Vec3::new(4.0, 3.0, 6.0)] {
+            let eye = Transform::from_translation(from).looking_at(Vec3::ZERO, Vec3::Y);
+            let eye = GlobalTransform::from(eye);
+            let at = |point: Vec3| camera.world_to_viewport(&eye, point).unwrap();
+            let handle = |at: Vec2| nearest_handle(&settings, &stand, &camera, &eye, at);
+            let middle = at(Vec3::ZERO);
+            let radius = at(0.9 * VIEW_CIRCLE_MAJOR * eye.right()).distance(middle);
+            for direction in [Vec2::ZERO, Vec2::X, Vec2::NEG_X, Vec2::Y, Vec2::NEG_Y] {
+                let inside = middle + radius * direction;
+                assert_eq!(handle(inside), Some(Axis::View), "{direction}");
+            }
+            assert_eq!(handle(at(0.8 * Vec3::X)), Some(Axis::X));
+            assert_eq!(handle(at(0.8 * Vec3::Y)), Some(Axis::Y));
+            assert_eq!(handle(middle + Vec2::new(-200.0, 0.0)), None);
+        }
+        let eye = Transform::from_xyz(4.0, 3.0, 6.0).looking_at(Vec3::ZERO, Vec3::Y);
+        let eye = GlobalTransform::from(eye);
+        let tip = camera.world_to_viewport(&eye, 0.8 * Vec3::Z).unwrap();
+        let handle = nearest_handle(&settings, &stand, &camera, &eye, tip);
+        assert_eq!(handle, Some(Axis::Z));
     }
 }

@@ -126,6 +126,10 @@ impl Plugin for HandlesPlugin {
                 PostUpdate,
                 (
                     gizmo::forget_hover.before(CameraUpdateSystems),
+                    hold::hover
+                        .run_if(gizmo::has_the_pointer)
+                        .after(TransformGizmoSystems)
+                        .before(TransformGizmoRenderStep),
                     gizmo::show_carried
                         .after(TransformSystems::Propagate)
                         .before(TransformGizmoRenderStep),
