@@ -144,7 +144,8 @@ fn assign_ui(ui: &mut Ui, world: &mut World, entities: &[Entity], owner: Entity)
             .says(says);
     });
     if is_shared {
-        ui.horizontal(|ui| {
+        // In a narrow panel the button is below.
+        ui.horizontal_wrapped(|ui| {
             ui.weak(match count {
                 1 => "Shared, and used by this object alone.".to_owned(),
                 _ => format!("Shared by {}.", counted(count as u64, "object")),
