@@ -149,9 +149,8 @@ impl TracedInstances {
                 self.show(Some(work()), draft);
             } else {
                 thread.start(work);
-                // A longer one would not be there in time, and the frame would wait for nothing.
-                let in_time = self.took <= PATIENCE;
-                let wait = if in_time { PATIENCE } else { Duration::ZERO };
+                let is_short = self.took <= SHORT;
+                let wait = if is_short { PATIENCE } else { Duration::ZERO };
                 self.show(thread.finished(wait), draft);
             }
         }
@@ -178,9 +177,11 @@ impl TracedInstances {
     }
 }
 
-/// So long a frame waits for the tree over the objects where the one before took no longer: that of a thousand is
-/// there by then, and nothing lags behind the hand.
-const PATIENCE: Duration = Duration::from_micros(2000);
+/// A frame waits for the tree over the objects where the one before took no longer: that of a thousand, so that nothing lags
+/// behind the hand. That of thousands would take half of what a frame has for all of this.
+const SHORT: Duration = Duration::from_millis(1);
+/// So long it waits.
+const PATIENCE: Duration = Duration::from_millis(2);
 
 /// One object as the top level sees it.
 pub(super) struct Row {
