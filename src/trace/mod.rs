@@ -44,6 +44,7 @@ mod light_frames;
 pub mod lights;
 mod material;
 mod mipmap;
+mod nearest;
 mod needs;
 mod normal_map;
 mod numbers;

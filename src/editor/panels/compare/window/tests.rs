@@ -1,0 +1,129 @@
+use super::*;
+use crate::editor::action::Action;
+use crate::editor::document::adopt;
+use crate::editor::panels::compare::even_picture as picture;
+use crate::editor::panels::tests::{Desk, SMALL, USUAL, type_nonsense};
+use crate::editor::panels::theme::assert_readable;
+use crate::editor::viewport::Viewport;
+use bevy_egui::egui::Theme;
+use std::thread::sleep;
+
+/// Frames until the window has this text.
+fn wait_for(desk: &mut Desk, text: &str) {
+    let start = Instant::now();
+    while desk.find(text).is_none() {
+        assert!(start.elapsed() < Duration::from_secs(60), "never {text:?}");
+        sleep(Duration::from_millis(5));
+        desk.settle();
+    }
+}
+
+#[test]
+fn two_kept_pictures_are_compared_in_figures_and_another_scene_forgets_them() {
+    let mut desk = Desk::open("cornell-box");
+    adopt(desk.world(), "cornell-box", None);
+    desk.world().write_message(Action::run("compare.open"));
+    desk.settle();
+    assert!(desk.find("Difference").is_none(), "nothing was kept");
+    let mut kept = desk.world().resource_mut::<KeptPictures>();
+    kept.add(picture(1.0), 16.0);
+    kept.add(picture(1.1), 64.0);
+    desk.settle();
+    desk.click_on("Compare");
+    // A window that appears is measured before it is drawn.
+    desk.settle();
+    desk.place_of("One of the pictures is not there.");
+    let mut kept = desk.world().resource_mut::<KeptPictures>();
+    let comparison = kept.comparison.as_mut().unwrap();
+    assert_eq!(comparison.sides, [Side::Kept(2), Side::Now]);
+    comparison.sides = [Side::Kept(1), Side::Kept(2)];
+    desk.settle();
+    desk.place_of("1: 16 spp");
+    desk.place_of("2: 64 spp");
+    wait_for(&mut desk, "RMSE 0.10000");
+    desk.place_of("10.000 % brighter");
+    desk.click_on("Relative");
+    let look = |desk: &mut Desk| {
+        let kept = desk.world().resource::<KeptPictures>();
+        let comparison = kept.comparison.as_ref().unwrap();
+        let drawn = comparison.drawn.as_ref().map(|drawn| drawn.look);
+        (comparison.look, drawn)
+    };
+    assert_eq!(look(&mut desk).0.how, How::Relative);
+    let start = Instant::now();
+    while look(&mut desk).1 != Some(look(&mut desk).0) {
+        assert!(start.elapsed() < Duration::from_secs(60), "never drawn");
+        sleep(Duration::from_millis(5));
+        desk.settle();
+    }
+    desk.world().write_message(Action::Open("triangle".into()));
+    desk.settle();
+    assert!(desk.find("Difference").is_none());
+    assert!(desk.world().resource::<KeptPictures>().all.is_empty());
+}
+
+#[test]
+fn the_window_covers_no_panel_after_the_editors_became_small() {
+    let mut desk = Desk::open("cornell-box");
+    let mut kept = desk.world().resource_mut::<KeptPictures>();
+    kept.add(picture(1.0), 1.0);
+    kept.comparison = Some(Comparison::new(1));
+    let id = egui::Id::new("compare pictures");
+    for size in [USUAL, SMALL] {
+        desk.size = size;
+        desk.settle();
+        desk.settle();
+        let place = desk.context.memory(|memory| memory.area_rect(id)).unwrap();
+        let free = desk.world().resource::<Viewport>().rect;
+        let of = egui::Rect::from_x_y_ranges(free.min.x..=free.max.x, free.min.y..=free.max.y);
+        assert!(of.expand(1.0).contains_rect(place), "{place} in {of}");
+    }
+}
+
+#[test]
+fn nothing_that_is_typed_makes_a_gain_that_is_none() {
+    let kept = KeptPictures::default();
+    let mut comparison = Comparison::new(1);
+    let fields = type_nonsense(
+        &mut comparison,
+        |ui, comparison| choices_ui(ui, &kept, comparison),
+        |comparison, text| {
+            let gain = comparison.look.gain;
+            assert!((0.01..=10_000.0).contains(&gain), "`{text}` gives {gain}");
+        },
+    );
+    assert_eq!(fields, 1);
+}
+
+#[test]
+fn the_names_of_both_pictures_can_be_read_in_both_themes() {
+    for (theme, inks) in [Theme::Dark, Theme::Light].into_iter().zip(INKS) {
+        for ink in inks {
+            assert_readable(theme, ink, "of a picture");
+        }
+    }
+}
+
+#[test]
+fn what_is_seen_of_a_comparison_is_written_pixel_by_pixel() {
+    let level = |x: usize, y: usize| Color32::from_gray((10 * y + x) as u8);
+    let pixels = (0..6 * 4).map(|i| level(i % 6, i / 6)).collect();
+    let whole = ColorImage::new([6, 4], pixels);
+    let bytes = png_of(&whole, [UVec2::new(1, 2), UVec2::new(4, 3)]).unwrap();
+    let read = image::load_from_memory(&bytes).unwrap().to_rgba8();
+    assert_eq!(read.dimensions(), (4, 2));
+    for (x, y, pixel) in read.enumerate_pixels() {
+        let expected = level(x as usize + 1, y as usize + 2);
+        assert_eq!(pixel.0, expected.to_array(), "pixel {x}, {y}");
+    }
+}
+
+#[test]
+fn more_than_a_few_kept_pictures_drop_the_oldest() {
+    let mut kept = KeptPictures::default();
+    for _ in 0..=super::super::MOST {
+        kept.add(picture(1.0), 1.0);
+    }
+    assert_eq!(kept.all.len(), super::super::MOST);
+    assert!(kept.find(1).is_none() && kept.find(2).is_some());
+}

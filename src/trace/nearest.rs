@@ -1,0 +1,102 @@
+//! What the rays of a bounce hit: all of them together, those behind a hit one by one, and those of which it is known from
+//! before not at all.
+
+use super::paths::Paths;
+use super::radiance::Batch;
+use super::recorder::Recorder;
+use super::second_hits::{SecondHit, number};
+use crate::bvh::{Hit, Order, Ray};
+
+/// Rays that go on behind a hit are asked one by one, all others together: their numbers, the rays and what they hit.
+#[derive(Default)]
+pub(super) struct Behind {
+    others: Vec<u32>,
+    rays: Vec<Ray>,
+    hits: Vec<Option<Hit>>,
+}
+
+impl<R: Recorder> Batch<'_, R> {
+    /// What every path's ray hits.
+    pub(super) fn find_nearest(
+        &self,
+        paths: &Paths,
+        hits: &mut Vec<Option<Hit>>,
+        behind: &mut Behind,
+    ) {
+        let aggregate = &self.world.aggregate;
+        if paths.straight.is_empty() {
+            aggregate.closest_hits_in(self.order(paths), &paths.rays, hits);
+            return;
+        }
+        let is_straight = |i: usize| paths.states[i].after.is_some();
+        let others = (0..paths.rays.len()).filter(|&i| !is_straight(i));
+        behind.others.clear();
+        behind.others.extend(others.map(|i| i as u32));
+        behind.rays.clear();
+        behind
+            .rays
+            .extend(behind.others.iter().map(|&i| paths.rays[i as usize]));
+        aggregate.closest_hits(&behind.rays, &mut behind.hits);
+        hits.clear();
+        hits.resize(paths.rays.len(), None);
+        for (&i, hit) in behind.others.iter().zip(&behind.hits) {
+            hits[i as usize] = *hit;
+        }
+        for &i in &paths.straight {
+            let i = i as usize;
+            let after = &paths.states[i].after;
+            hits[i] = after.and_then(|after| aggregate.next_crossing(&paths.rays[i], &after));
+        }
+    }
+
+    /// The same where it is `known` of some samples, of which one ray goes on each: the others' is known then. True where
+    /// there was one.
+    pub(super) fn find_other_hits(
+        &mut self,
+        paths: &Paths,
+        known: &mut [SecondHit],
+        hits: &mut Vec<Option<Hit>>,
+        behind: &mut Behind,
+    ) -> bool {
+        hits.clear();
+        behind.others.clear();
+        behind.rays.clear();
+        for (i, (ray, path)) in paths.rays.iter().zip(&paths.states).enumerate() {
+            let number = number(ray);
+            let kept = &mut known[path.sample as usize];
+            let hit = kept.of(number);
+            if hit.is_some() {
+                let counts = &mut self.counts;
+                *if path.bounces > 0 {
+                    &mut counts.mirror
+                } else {
+                    &mut counts.transmission
+                } -= 1;
+            } else {
+                behind.others.push(i as u32);
+                behind.rays.push(*ray);
+                *kept = SecondHit::new(number);
+            }
+            hits.push(hit.flatten());
+        }
+        let order = self.order(paths);
+        let aggregate = &self.world.aggregate;
+        aggregate.closest_hits_in(order, &behind.rays, &mut behind.hits);
+        for (&i, hit) in behind.others.iter().zip(&behind.hits) {
+            hits[i as usize] = *hit;
+            known[paths.states[i as usize].sample as usize].found(*hit);
+        }
+        !behind.others.is_empty()
+    }
+
+    /// How rays follow each other. Those of neighbouring pixels are neighbours, and their mirrored ones often are.
+    fn order(&self, paths: &Paths) -> Order {
+        let features = &self.settings.features;
+        let is_scattered = features.glossy || features.translucency;
+        if paths.states.is_empty() || !is_scattered {
+            Order::Tile
+        } else {
+            Order::None
+        }
+    }
+}
