@@ -250,7 +250,9 @@ impl Engine {
 
     /// Becomes what the edit that waits wants, while nothing is traced.
     pub(super) fn take_edit(&self) {
-        let Some(mut edit) = lock(&self.edits).take() else {
+        // Held to the end: another edit that came in between would be compared with what is rendered no longer, and lost.
+        let mut waiting = lock(&self.edits);
+        let Some(mut edit) = waiting.take() else {
             return;
         };
         self.edit_waits.store(false, Ordering::Relaxed);
