@@ -60,7 +60,7 @@ impl PlaneSums {
             _ if self.is_empty() => *self = others.clone(),
             Some(even) => (0..2).for_each(|half| self.add_even(Pixels::Half(half), &even[half])),
             None if others.is_empty() => {}
-            None => self.as_sums().merge(0, others.to_columns().all()),
+            None => self.as_sums().merge(0, others.columns().all()),
         }
     }
 
@@ -133,6 +133,7 @@ impl PlaneSums {
     }
 
     /// A copy of the sums.
+    #[cfg(test)]
     pub fn to_columns(&self) -> SumColumns {
         self.columns().into_owned()
     }

@@ -306,12 +306,7 @@ fn each_question_about_a_pixel_waits_for_a_click_and_is_answered_in_a_sentence_u
         desk.world().trigger(PixelAsked { question, at });
         desk.settle();
         assert_eq!(desk.find(waits), None);
-        let start = Instant::now();
-        while desk.world().resource::<DebugRay>().is_busy() {
-            assert!(start.elapsed().as_secs() < 60, "no rays came");
-            desk.settle();
-        }
-        desk.settle();
+        wait_for_rays(&mut desk);
         let rays = desk.world().resource::<DebugRay>().rays().unwrap().clone();
         let names = &desk.world().resource::<Names>().things;
         let sentence = answer(question, &rays, names);
@@ -351,6 +346,16 @@ fn look_from(desk: &mut Desk, place: Transform) {
     });
 }
 
+/// Until the rays of the pixel that was asked about are there.
+fn wait_for_rays(desk: &mut Desk) {
+    let start = Instant::now();
+    while desk.world().resource::<DebugRay>().is_busy() {
+        assert!(start.elapsed().as_secs() < 60, "no rays came");
+        desk.settle();
+    }
+    desk.settle();
+}
+
 /// The middle of the cross that an answer belongs to.
 fn cross(desk: &Desk) -> Pos2 {
     let picture = desk.app.world().resource::<Viewport>().rect;
@@ -387,12 +392,7 @@ fn an_answer_and_its_cross_stay_with_what_they_are_about_when_the_view_moves() {
     let question = Question::Black;
     desk.world().trigger(PixelAsked { question, at });
     desk.settle();
-    let start = Instant::now();
-    while desk.world().resource::<DebugRay>().is_busy() {
-        assert!(start.elapsed().as_secs() < 60, "no rays came");
-        desk.settle();
-    }
-    desk.settle();
+    wait_for_rays(&mut desk);
     let rays = desk.world().resource::<DebugRay>().rays().unwrap().clone();
     let far = rays.rays[0].t * rays.rays[0].direction.length();
     let names = &desk.world().resource::<Names>().things;
