@@ -1,26 +1,24 @@
-//! A render: what it reads, what it has, and the passes that add samples until a rule ends it.
+//! A render: what it reads, what it has, and what it says of itself. [`Engine::run`] adds samples to it.
 
 use super::control::{Control, Signal};
 use super::edit::Edit;
 use super::kept::Kept;
 use super::past_moves::PAST_BYTES;
-use super::pool::{SharedPool, Turn};
+use super::pool::SharedPool;
 use super::preview::Preview;
 use super::queue::Queue;
-use super::sample_chunk::{BatchSize, Scratch, Work, with_scratch};
+use super::sample_chunk::BatchSize;
 use super::status::{Ending, State, Status, TrendPoint, seconds_left};
 use super::subject::Subject;
 use super::tile_planes::{BLEND_BYTES, PLANE_BYTES};
 use super::tile_state::TileState;
-use super::tiles::{TILE_PIXELS, Tile, TileGrid};
+use super::tiles::{Tile, TileGrid};
 use super::unmet::Unmet;
 use super::voids::Voids;
 use super::{FilmMemory, lock};
 use crate::trace::RayCounts;
-use crate::trace::planes::OWN;
 use bevy::math::URect;
 use glam::{UVec2, Vec2};
-use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, OnceLock, PoisonError, RwLock};
@@ -76,20 +74,11 @@ pub(super) struct Engine {
     pub(super) pace: OnceLock<f64>,
 }
 
-/// Why threads stop before the queue is empty.
-enum Interruption {
-    End(Ending),
-    Edit,
-}
-
 /// Another number for each render and each of its edits.
 fn next_number() -> u64 {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     COUNT.fetch_add(1, Ordering::Relaxed) + 1
 }
-
-/// Small chunks are taken as so many samples at once: some tenths of a millisecond in a plain scene.
-const SAMPLES_AT_ONCE: u64 = 2048;
 
 /// What the threads report.
 #[derive(Clone, Debug, Default)]
@@ -198,20 +187,6 @@ impl Engine {
         lock(&self.queue).set_focus(focus);
     }
 
-    /// Renders until a rule, or a cancel, ends it. `told` hears of progress, from any thread.
-    pub fn run(&self, told: &(dyn Fn(&Self) + Sync)) -> Ending {
-        self.reopen();
-        self.take_edit();
-        if self.has_begun() {
-            self.update_moves();
-            self.note_error();
-        }
-        self.control.start_watch();
-        let ending = self.run_passes(told);
-        self.end(ending);
-        ending
-    }
-
     /// The render has ended. What was said first counts.
     pub fn end(&self, ending: Ending) {
         self.control.stop_watch();
@@ -232,163 +207,8 @@ impl Engine {
         }
     }
 
-    fn run_passes(&self, told: &(dyn Fn(&Self) + Sync)) -> Ending {
-        loop {
-            if self.begins_coarse.swap(false, Ordering::Relaxed)
-                && let Some(ending) = self.start_coarse()
-            {
-                return ending;
-            }
-            self.begun.store(true, Ordering::Release);
-            let chunks = match self.next_pass() {
-                Ok(chunks) => chunks,
-                Err(ending) => return ending,
-            };
-            {
-                let mut queue = lock(&self.queue);
-                queue.clear();
-                chunks.into_iter().for_each(|chunk| queue.push(chunk));
-            }
-            match self.run_queue(told) {
-                Some(Interruption::End(ending)) => return ending,
-                // What comes next is another question now.
-                Some(Interruption::Edit) => continue,
-                None => {}
-            }
-            self.set_divider(1);
-            *lock(&self.preview) = None;
-            self.note_error();
-            told(self);
-        }
-    }
-
-    /// Works on the threads that trace. What waits does so outside, lest a paused render keeps a thread
-    /// from others.
-    pub(super) fn on_threads<R: Send>(&self, work: impl FnOnce(Turn) -> R + Send) -> R {
-        match &self.pool {
-            Some(pool) => pool.install(work),
-            None => work(Turn::ENDLESS),
-        }
-    }
-
-    /// Works on what is queued until nothing is left, or something else ends the render.
-    fn run_queue(&self, told: &(dyn Fn(&Self) + Sync)) -> Option<Interruption> {
-        loop {
-            let waiting = lock(&self.queue).len();
-            let go_on = |turn: Turn| {
-                if !turn.is_over() && !self.must_stop() && with_scratch(|s| self.run_some(s)) {
-                    told(self);
-                }
-            };
-            self.on_threads(|turn| {
-                let turns = (0..waiting).into_par_iter().with_max_len(1);
-                turns.for_each(|_| go_on(turn));
-            });
-            if let Some(ending) = self.interrupted() {
-                return Some(Interruption::End(ending));
-            }
-            if self.edit_waits.load(Ordering::Relaxed) {
-                self.take_edit();
-                return Some(Interruption::Edit);
-            }
-            if lock(&self.queue).len() == 0 {
-                return None;
-            }
-        }
-    }
-
-    /// Whether work has to stop, for good or for a while.
-    pub(super) fn must_stop(&self) -> bool {
-        self.control.signal() != Signal::Go
-            || self.edit_waits.load(Ordering::Relaxed)
-            || self.time_is_up()
-    }
-
-    fn time_is_up(&self) -> bool {
-        self.limit.is_some_and(|limit| {
-            self.divider.load(Ordering::Relaxed) == 1 && self.control.elapsed() >= limit
-        })
-    }
-
-    /// Waits out a pause; says what ends the render.
-    pub(super) fn interrupted(&self) -> Option<Ending> {
-        if self.control.signal() == Signal::Pause {
-            self.control.stop_watch();
-            self.control.wait_while_paused();
-            self.control.start_watch();
-        }
-        match self.control.signal() {
-            Signal::Cancel => Some(Ending::Cancelled),
-            _ if self.time_is_up() => Some(Ending::Time),
-            _ => None,
-        }
-    }
-
-    /// Works on what waits in front: on several chunks where they are small, so that threads do not get in each other's way
-    /// more often than they have to. False where nothing was done.
-    fn run_some(&self, scratch: &mut Scratch) -> bool {
-        let mut waiting = std::mem::take(&mut scratch.chunks);
-        {
-            let mut queue = lock(&self.queue);
-            // Of a few, some are left for every thread.
-            let share = queue.len() * TILE_PIXELS / (2 * rayon::current_num_threads());
-            queue.pop(&self.grid, SAMPLES_AT_ONCE.min(share as u64), &mut waiting);
-        }
-        if waiting.is_empty() {
-            scratch.chunks = waiting;
-            return false;
-        }
-        let (number, subject) = (self.number(), self.subject());
-        scratch.octaves.fill(0);
-        let (mut rays, mut samples, mut done) = (RayCounts::default(), 0, 0);
-        let work = Work {
-            subject: &subject,
-            batch: &self.batch,
-            kept: (subject.edit > 0).then_some(&self.kept),
-            stopped: &|| self.must_stop(),
-        };
-        for chunk in &waiting {
-            let tile = self.grid.tile(chunk.tile);
-            let color = self.voids.color_of(chunk.tile);
-            let taken = match color {
-                Some(color) => Some(scratch.see_nothing(color, tile, chunk)),
-                None => scratch.sum_chunk(&work, tile, chunk),
-            };
-            let Some(taken) = taken else { break };
-            rays += taken;
-            done += 1;
-            let is_complete = {
-                // Its tints may be others by now.
-                let edited = (self.number() != number).then(|| self.subject());
-                let subject = edited.as_ref().unwrap_or(&subject);
-                let mut state = self.tile_of(subject, chunk.tile as usize);
-                if let Some(color) = color {
-                    state.absorb_even(subject, chunk, color, taken.total())
-                } else {
-                    state.meet(scratch.met);
-                    state.absorb(subject, chunk, scratch.sums.all(), taken.total())
-                }
-            };
-            // Pieces of a pass that an edit throws away have not been samples of the picture.
-            if is_complete && chunk.planes.has(OWN) {
-                samples += tile.count(chunk.pixels) * chunk.of;
-            }
-        }
-        if done > 0 {
-            self.unmet.met(&scratch.octaves);
-            self.done.fetch_add(samples, Ordering::Relaxed);
-            self.note_rays(rays);
-        }
-        if done < waiting.len() {
-            let mut queue = lock(&self.queue);
-            waiting.drain(done..).for_each(|chunk| queue.push(chunk));
-        }
-        waiting.clear();
-        scratch.chunks = waiting;
-        done > 0
-    }
-
-    fn note_error(&self) {
+    /// Notes the error of the picture as it is now.
+    pub(super) fn note_error(&self) {
         let Some(error) = self.error() else { return };
         let point = TrendPoint {
             samples: self.samples(),
@@ -407,6 +227,12 @@ impl Engine {
         self.done.load(Ordering::Relaxed) as f64 / pixels.max(1.0)
     }
 
+    /// So many samples have entered pixels, which took these rays.
+    pub(super) fn note_samples(&self, samples: u64, rays: RayCounts) {
+        self.done.fetch_add(samples, Ordering::Relaxed);
+        self.note_rays(rays);
+    }
+
     /// So many samples are no more.
     pub(super) fn forget_samples(&self, samples: u64) {
         self.done.fetch_sub(samples, Ordering::Relaxed);
@@ -415,6 +241,11 @@ impl Engine {
     /// Whether its coarse pictures are behind it, and what it has can be edited.
     pub(super) fn has_begun(&self) -> bool {
         self.begun.load(Ordering::Acquire)
+    }
+
+    /// They are.
+    pub(super) fn set_begun(&self) {
+        self.begun.store(true, Ordering::Release);
     }
 
     /// How long a sample of every pixel took before the first edit that sets the clock back.
@@ -433,6 +264,13 @@ impl Engine {
     /// It goes on.
     pub(super) fn reopen(&self) {
         lock(&self.progress).ending = None;
+    }
+
+    /// Whether it may take no longer, and has a picture.
+    pub(super) fn time_is_up(&self) -> bool {
+        let is_over = |limit| self.control.elapsed() >= limit;
+        self.limit
+            .is_some_and(|limit| self.divider.load(Ordering::Relaxed) == 1 && is_over(limit))
     }
 
     /// The picture is complete at every such pixel of every such row.

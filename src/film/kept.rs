@@ -6,7 +6,7 @@
 use super::per_sample::{BatchPlaces, PerSample};
 use super::tiles::TileGrid;
 use crate::bvh::Hit;
-use crate::trace::{RayCounts, SecondHit, Visibility, Workspace};
+use crate::trace::{Known, RayCounts, SecondHit, Visibility};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What edits leave true of a picture's samples.
@@ -46,8 +46,8 @@ impl Kept {
     }
 
     /// Tells what is known of samples that are evaluated next.
-    pub fn tell(&self, of: BatchPlaces, workspace: &mut Workspace) {
-        workspace.know_camera_hits(|hits| {
+    pub fn tell(&self, of: BatchPlaces, samples: &mut Known) {
+        samples.know_camera_hits(|hits| {
             let mut all = true;
             self.hits.read(of, |hit| {
                 all &= hit.is_some();
@@ -55,11 +55,11 @@ impl Kept {
             });
             all
         });
-        let second_hits = workspace.second_hits();
+        let second_hits = samples.second_hits();
         second_hits.clear();
         self.second_hits.read(of, |known| second_hits.push(known));
         if self.edits_materials.load(Ordering::Relaxed) {
-            for (all, of_batch) in self.visibilities.iter().zip(workspace.visibilities()) {
+            for (all, of_batch) in self.visibilities.iter().zip(samples.visibilities()) {
                 of_batch.clear();
                 all.read(of, |known| of_batch.push(known));
             }
@@ -67,16 +67,16 @@ impl Kept {
     }
 
     /// Keeps what was found out about them.
-    pub fn learn(&self, of: BatchPlaces, rays: RayCounts, workspace: &mut Workspace) {
+    pub fn learn(&self, of: BatchPlaces, rays: RayCounts, samples: &mut Known) {
         if rays.camera > 0 {
-            let hits = workspace.camera_hits().iter();
+            let hits = samples.camera_hits().iter();
             self.hits.write(of, hits.map(|hit| Some(*hit)));
         }
-        let second_hits = workspace.second_hits();
+        let second_hits = samples.second_hits();
         if !second_hits.is_empty() {
             self.second_hits.write(of, second_hits.drain(..));
         }
-        for (all, of_batch) in self.visibilities.iter().zip(workspace.visibilities()) {
+        for (all, of_batch) in self.visibilities.iter().zip(samples.visibilities()) {
             if !of_batch.is_empty() {
                 all.write(of, of_batch.drain(..));
             }

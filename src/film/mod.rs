@@ -62,6 +62,7 @@ mod unmet;
 mod view_transform;
 pub mod views;
 mod voids;
+mod work;
 
 pub use agx::agx;
 pub use bloom::{bloom_layer, bloom_threshold, with_bloom};

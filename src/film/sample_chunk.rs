@@ -243,7 +243,10 @@ impl Scratch {
             let tile = chunk.tile;
             if let Some(kept) = kept {
                 let runs = &self.runs;
-                kept.tell(BatchPlaces { tile, places, runs }, &mut self.workspace);
+                kept.tell(
+                    BatchPlaces { tile, places, runs },
+                    &mut self.workspace.known,
+                );
             }
             let taken = self.evaluate_samples(subject, wanted, batch);
             if let Some(kept) = kept {
@@ -252,7 +255,7 @@ impl Scratch {
                     places,
                     runs: &self.runs,
                 };
-                kept.learn(of, taken, &mut self.workspace);
+                kept.learn(of, taken, &mut self.workspace.known);
             }
             rays += taken;
             let whole = is_whole.then_some(first);

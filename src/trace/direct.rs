@@ -88,7 +88,7 @@ impl<R: Recorder> Batch<'_, R> {
 
     /// What is known of the lights that something hides from first hits holds for the points that they ask for now.
     fn recall(&mut self, vertices: &Vertices) {
-        let Some(visibilities) = &mut self.visibilities else {
+        let Some(visibilities) = &mut self.known.visibilities else {
             return;
         };
         let (mut first, mut single) = (0_u32, 0);
@@ -101,7 +101,7 @@ impl<R: Recorder> Batch<'_, R> {
         }
         for i in 0..vertices.len() {
             let sample = vertices.path(i).sample as usize;
-            self.has_learnt |= visibilities[sample].keep_of(Chooser::of(vertices, i), single);
+            self.known.has_learnt |= visibilities[sample].keep_of(Chooser::of(vertices, i), single);
         }
     }
 
@@ -332,7 +332,7 @@ impl<R: Recorder> Batch<'_, R> {
                 continue;
             }
             let place = asked.first.saturating_add(question as u32 - firsts[vertex]);
-            if let Some(visibilities) = &self.visibilities
+            if let Some(visibilities) = &self.known.visibilities
                 && let Some(is_hidden) = visibilities[sample as usize].is_hidden(place)
             {
                 if !is_hidden {
@@ -377,8 +377,8 @@ impl<R: Recorder> Batch<'_, R> {
         self.world
             .aggregate
             .occlusions_in(Order::Light, rays, occluded);
-        if let Some(visibilities) = &mut self.visibilities {
-            self.has_learnt |= !shadows.is_empty();
+        if let Some(visibilities) = &mut self.known.visibilities {
+            self.known.has_learnt |= !shadows.is_empty();
             for (shadow, occluded) in shadows.iter().zip(&*occluded) {
                 visibilities[shadow.sample as usize].remember(shadow.place, *occluded);
             }

@@ -38,6 +38,7 @@ mod first_hit;
 mod footprint;
 mod gains;
 mod in_view;
+mod known;
 mod lamp;
 mod light_columns;
 mod light_frames;
@@ -94,6 +95,7 @@ pub use first_hit::{FirstHit, central_hits, central_ray, first_hits};
 pub use footprint::Cone;
 pub use gains::Gains;
 pub use in_view::in_view;
+pub use known::Known;
 pub use lamp::Lamp;
 pub use lights::{
     DirectionalLight, LightPoint, Lights, MovingLight, ParallelogramLight, PointLight, SegmentLight,

@@ -16,13 +16,24 @@ pub(super) struct Behind {
 }
 
 impl<R: Recorder> Batch<'_, R> {
-    /// What every path's ray hits.
-    pub(super) fn find_nearest(
-        &self,
+    /// What every path's ray hits, where that is not known.
+    pub(super) fn find_hits(
+        &mut self,
         paths: &Paths,
         hits: &mut Vec<Option<Hit>>,
         behind: &mut Behind,
     ) {
+        if paths.states.is_empty() && !self.known.has_camera_hits() {
+            self.counts.camera += paths.rays.len() as u64;
+        }
+        if let Some(known) = self.known.take_hits() {
+            self.find_other_hits(paths, known, hits, behind);
+        } else if !self.known.has_camera_hits() {
+            self.find_nearest(paths, hits, behind);
+        }
+    }
+
+    fn find_nearest(&self, paths: &Paths, hits: &mut Vec<Option<Hit>>, behind: &mut Behind) {
         let aggregate = &self.world.aggregate;
         if paths.straight.is_empty() {
             aggregate.closest_hits_in(self.order(paths), &paths.rays, hits);
@@ -49,15 +60,14 @@ impl<R: Recorder> Batch<'_, R> {
         }
     }
 
-    /// The same where it is `known` of some samples, of which one ray goes on each: the others' is known then. True where
-    /// there was one.
-    pub(super) fn find_other_hits(
+    /// The same where it is `known` of some samples, of which one ray goes on each: the others' is known then.
+    fn find_other_hits(
         &mut self,
         paths: &Paths,
         known: &mut [SecondHit],
         hits: &mut Vec<Option<Hit>>,
         behind: &mut Behind,
-    ) -> bool {
+    ) {
         hits.clear();
         behind.others.clear();
         behind.rays.clear();
@@ -86,7 +96,9 @@ impl<R: Recorder> Batch<'_, R> {
             hits[i as usize] = *hit;
             known[paths.states[i as usize].sample as usize].found(*hit);
         }
-        !behind.others.is_empty()
+        if !behind.others.is_empty() {
+            self.known.found_hits();
+        }
     }
 
     /// How rays follow each other. Those of neighbouring pixels are neighbours, and their mirrored ones often are.

@@ -11,15 +11,14 @@
 //! ```
 
 use super::camera_rays::CameraRays;
+use super::known::{Known, KnownNow};
 use super::nearest::Behind;
 use super::paths::{Path, Paths};
 use super::planes::{OWN, PlaneSet, Planes};
 use super::recorder::{Adding, Recorder};
 use super::sampler::Sampler;
-use super::second_hits::SecondHit;
 use super::shadow_rays::ShadowRays;
 use super::vertices::Vertices;
-use super::visibility::Visibility;
 use super::{Camera, Cone, MaterialSet, ParallelogramLight, RayCounts, World};
 use crate::bvh::{Hit, Ray};
 use crate::scene::{Lighting, RenderSettings};
@@ -42,46 +41,16 @@ pub struct Workspace {
     /// Of this bounce, and of the next one.
     paths: Paths,
     next: Paths,
-    /// Of the camera rays, and of those of later bounces.
-    camera_hits: Vec<Option<Hit>>,
+    /// Of the samples of the batch that comes, or was.
+    pub known: Known,
+    /// Of later bounces than the camera's.
     hits: Vec<Option<Hit>>,
-    /// The camera's are known.
-    is_known: bool,
-    /// Of the samples' first hits and of their second ones, where somebody keeps it.
-    visibilities: [Vec<Visibility>; 2],
-    /// Where somebody keeps it.
-    second_hits: Vec<SecondHit>,
     behind: Behind,
     vertices: Vertices,
     shadow_rays: ShadowRays,
 }
 
 impl Workspace {
-    /// What the camera rays of the last batch hit, one for each sample.
-    pub fn camera_hits(&self) -> &[Option<Hit>] {
-        &self.camera_hits
-    }
-
-    /// `fill` may put what the camera rays of the next batch hit into an empty list, one for each sample, where it is known
-    /// from before: true where it did. They are not traced then.
-    pub fn know_camera_hits(&mut self, fill: impl FnOnce(&mut Vec<Option<Hit>>) -> bool) {
-        self.camera_hits.clear();
-        self.is_known = fill(&mut self.camera_hits);
-    }
-
-    /// What is known of the lights that something hides from the first and from the second hits of the next batch, one for
-    /// each sample: what is found out is added to it. Where there is none nothing is, and there is none after a batch that found
-    /// out nothing.
-    pub fn visibilities(&mut self) -> &mut [Vec<Visibility>; 2] {
-        &mut self.visibilities
-    }
-
-    /// The same of what rays hit that leave first hits, where one of each sample does at most. A ray of which it is known is not
-    /// traced.
-    pub fn second_hits(&mut self) -> &mut Vec<SecondHit> {
-        &mut self.second_hits
-    }
-
     /// The materials that paths have met since this was asked last. The values of samples depend on no other material, those
     /// apart that let light through.
     pub fn take_met(&mut self) -> MaterialSet {
@@ -184,16 +153,12 @@ fn evaluate<R: Recorder>(
         camera_rays,
         paths,
         next,
-        camera_hits,
+        known,
         hits,
-        is_known,
-        visibilities: [visibilities, second_visibilities],
-        second_hits,
         behind,
         vertices,
         shadow_rays,
     } = workspace;
-    let mut is_known = std::mem::take(is_known) && camera_hits.len() == samples.len();
     let cone = Cone::of_pixel(camera, settings.size);
     if next.rays.len() > paths.rays.len() {
         // Written over: to make them anew takes as long.
@@ -201,6 +166,7 @@ fn evaluate<R: Recorder>(
     }
     let image_plane = camera.image_plane(settings.size);
     camera_rays.of(world, &image_plane, settings, samples, paths.of_camera());
+    let (known_now, mut hits_now) = known.by_bounce(samples.len());
     let mut batch = Batch {
         world,
         settings,
@@ -210,32 +176,14 @@ fn evaluate<R: Recorder>(
         wanted,
         values,
         counts: RayCounts::default(),
-        visibilities: of_each(visibilities, samples),
-        has_learnt: false,
+        known: known_now,
         recorder,
     };
-    // Of the bounce that comes next.
-    let of_second = (
-        of_each(second_hits, samples),
-        of_each(second_visibilities, samples),
-    );
-    let mut kept_next = Some(of_second);
-    let mut kept_now = None;
-    // Of first and of second hits: what hides lights from there, and of second ones what they are.
-    let (mut learnt, mut bounce, mut has_found) = ([false; 2], 0, false);
-    if !is_known {
-        batch.counts.camera += samples.len() as u64;
-    }
     for ray in &paths.rays {
         batch.recorder.camera_ray(ray);
     }
-    let mut hits_now = camera_hits;
     while !paths.rays.is_empty() {
-        if let Some(known) = kept_now.take() {
-            has_found = batch.find_other_hits(paths, known, hits_now, behind);
-        } else if !std::mem::take(&mut is_known) {
-            batch.find_nearest(paths, hits_now, behind);
-        }
+        batch.find_hits(paths, hits_now, behind);
         next.clear();
         batch.find_vertices(paths, cone, hits_now, vertices);
         if settings.features.shading {
@@ -244,36 +192,12 @@ fn evaluate<R: Recorder>(
         batch.continue_paths(vertices, paths, next);
         std::mem::swap(paths, next);
         hits_now = &mut *hits;
-        batch.visibilities = None;
-        if let Some(learnt) = learnt.get_mut(bounce) {
-            *learnt = std::mem::take(&mut batch.has_learnt);
-        }
-        bounce += 1;
-        if let Some((hits, visibilities)) = kept_next.take()
-            && paths.are_one_of_a_sample()
-        {
-            (kept_now, batch.visibilities) = (hits, visibilities);
-        }
+        batch.known.next_bounce(paths);
         batch.recorder.next_bounce();
     }
-    let counts = batch.counts;
-    // What was known before need not be kept again.
-    let [first, second] = learnt;
-    if !first {
-        visibilities.clear();
-    }
-    if !second {
-        second_visibilities.clear();
-    }
-    if !has_found {
-        second_hits.clear();
-    }
+    let (counts, found) = (batch.counts, batch.known.found());
+    known.keep(found);
     counts
-}
-
-/// What is kept of each sample of a batch; `None` where it is not.
-fn of_each<'a, T>(kept: &'a mut [T], samples: &[SampleId]) -> Option<&'a mut [T]> {
-    (kept.len() == samples.len()).then_some(kept)
 }
 
 /// What the stages of a batch share.
@@ -288,9 +212,7 @@ pub(super) struct Batch<'a, R> {
     /// Plane by plane of those that are wanted, one for each sample.
     values: &'a mut [Vec3],
     pub counts: RayCounts,
-    /// Of the hits of this bounce, where it is kept; and whether they tell more than before.
-    pub visibilities: Option<&'a mut [Visibility]>,
-    pub has_learnt: bool,
+    pub known: KnownNow<'a>,
     pub recorder: &'a mut R,
 }
 
