@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Time and error of one scene, by Glassbox and, where it is installed, by Mitsuba 3 on the same machine in turns.
+"""Time and error of one scene, by Glassbox and, where they are installed, by Mitsuba 3 and by Blender's Cycles on the same
+machine in turns.
 
-    python3 -m venv v && v/bin/pip install numpy OpenEXR mitsuba     # and LLVM's library, for Mitsuba's fast variant
+    python3 -m venv v && v/bin/pip install numpy OpenEXR mitsuba bpy # and LLVM's library, for Mitsuba's fast variant
     v/bin/python benches/peers.py target/release/glassbox model.obj [--size 800] [--threads 2] [--runs 5]
 
 The scene is a model scaled to a cube of edge 1, matt, all of one grey, under one square lamp of radiance 10 that faces down and
@@ -123,6 +124,71 @@ class Mitsuba:
         return picture, time.time() - start
 
 
+class Cycles:
+    def __init__(self, corners, size, threads):
+        import bpy, mathutils
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        scene = bpy.context.scene
+        render, cycles = scene.render, scene.cycles
+        render.engine, render.use_persistent_data = "CYCLES", True
+        render.threads_mode, render.threads = "FIXED", threads
+        render.resolution_x = render.resolution_y = size
+        render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
+        render.filepath = os.path.join(tempfile.mkdtemp(), "picture.exr")
+        cycles.device, cycles.pixel_filter_type = "CPU", "BOX"
+        cycles.use_adaptive_sampling = cycles.use_denoising = False
+        cycles.max_bounces = cycles.sample_clamp_direct = 0
+        model = bpy.data.meshes.new("model")
+        model.from_pydata(corners.reshape(-1, 3).tolist(), [], np.arange(3 * len(corners)).reshape(-1, 3).tolist())
+        matt = bpy.data.materials.new("matt")
+        matt.use_nodes = True
+        nodes, links = matt.node_tree.nodes, matt.node_tree.links
+        nodes.clear()
+        surface = nodes.new("ShaderNodeBsdfDiffuse")
+        surface.inputs["Color"].default_value = (GREY, GREY, GREY, 1.0)
+        links.new(surface.outputs[0], nodes.new("ShaderNodeOutputMaterial").inputs["Surface"])
+        model.materials.append(matt)
+        first, second = map(np.array, EDGES)
+        lamp = bpy.data.lights.new("lamp", "AREA")
+        lamp.shape, lamp.size, lamp.size_y = "RECTANGLE", np.linalg.norm(first), np.linalg.norm(second)
+        # Its energy is what a matt lamp sends out in watts: radiance times pi times area.
+        lamp.energy = RADIANCE * np.pi * lamp.size * lamp.size_y
+        camera = bpy.data.cameras.new("camera")
+        camera.sensor_fit, camera.angle_y = "VERTICAL", np.radians(FIELD_OF_VIEW)
+        back = EYE / np.linalg.norm(EYE)
+        right = np.cross(UP, back)
+        right /= np.linalg.norm(right)
+        # A lamp shines and a camera looks along its -z.
+        along = first / lamp.size
+        behind = np.cross(second, first)
+        behind /= np.linalg.norm(behind)
+        for name, data, axes, place in (
+                ("model", model, np.eye(3), np.zeros(3)),
+                ("lamp", lamp, [along, np.cross(behind, along), behind], np.array(CORNER) + (first + second) / 2),
+                ("camera", camera, [right, np.cross(back, right), back], EYE)):
+            thing = bpy.data.objects.new(name, data)
+            scene.collection.objects.link(thing)
+            matrix = np.eye(4)
+            matrix[:3, :3], matrix[:3, 3] = np.stack(axes, 1), place
+            thing.matrix_world = mathutils.Matrix(matrix.tolist())
+            if name == "lamp":
+                thing.visible_camera = False
+            if name == "camera":
+                scene.camera = thing
+        self.bpy, self.scene, self.name = bpy, scene, f"Cycles {bpy.app.version_string}"
+
+    def render(self, spp, seed):
+        self.scene.cycles.samples, self.scene.cycles.seed = spp, seed
+        # What is kept from picture to picture is the whole picture else.
+        self.scene.update_tag()
+        start = time.time()
+        self.bpy.ops.render.render(write_still=True)
+        seconds = time.time() - start
+        channels = OpenEXR.File(self.scene.render.filepath).channels()
+        picture = next(iter(channels.values())).pixels
+        return picture[..., :3].astype("f4"), seconds
+
+
 def main():
     options = argparse.ArgumentParser()
     options.add_argument("glassbox")
@@ -134,10 +200,11 @@ def main():
     corners = triangles(options.model)
     with tempfile.TemporaryDirectory() as folder:
         renderers = [Glassbox(options.glassbox, folder, corners, options.size, options.threads)]
-        try:
-            renderers.append(Mitsuba(corners, options.size, options.threads))
-        except ImportError as error:
-            print(f"without Mitsuba: {error}", file=sys.stderr)
+        for peer in (Mitsuba, Cycles):
+            try:
+                renderers.append(peer(corners, options.size, options.threads))
+            except ImportError as error:
+                print(f"without {peer.__name__}: {error}", file=sys.stderr)
         references = []
         for renderer in renderers:
             renderer.render(1, 0)
