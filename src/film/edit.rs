@@ -10,7 +10,7 @@ use super::lock;
 use super::subject::{MOST_APART, Subject};
 use crate::scene::Lighting;
 use crate::trace::planes::OWN;
-use crate::trace::{Gains, Lamp, Lights, MaterialSet, World, samples_per_pixel};
+use crate::trace::{Gains, Lamp, Lights, MaterialSet, World, other_points, samples_per_pixel};
 use glam::Vec3;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -258,7 +258,8 @@ impl Engine {
         self.edit_waits.store(false, Ordering::Relaxed);
         let needs_rays = edit.needs_rays();
         let old = self.subject();
-        self.kept.edit(edit.leaves_lights(&old));
+        let moved = other_points(&old.light.world, &edit.subject.light.world, &old.settings);
+        self.kept.edit(edit.leaves_lights(&old), moved);
         let arrangement = old.arrangement.wrapping_add(1);
         edit.subject.arrangement = arrangement;
         self.set_subject(edit.subject);

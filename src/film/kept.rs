@@ -1,13 +1,14 @@
 //! What rays hit and what hides lights from there, kept while lights and materials are edited: those are in no ray's way.
 //! Of camera rays, and of those that leave first hits where one of each sample does: in a mirror.
 //!
-//! Kept from the first edit on, since a render that nobody edits has no use for it.
+//! Of first samples from the start, since every edit begins with them, and of later ones from the first edit on: a render that
+//! nobody edits has no use for it.
 
 use super::per_sample::{BatchPlaces, PerSample};
 use super::tiles::TileGrid;
 use crate::bvh::Hit;
 use crate::trace::{Known, RayCounts, SecondHit, Visibility};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// What edits leave true of a picture's samples.
 pub(super) struct Kept {
@@ -16,7 +17,10 @@ pub(super) struct Kept {
     second_hits: PerSample<SecondHit>,
     /// From first hits and from second ones.
     visibilities: [PerSample<Visibility>; 2],
-    /// The last edit was of materials alone, so that the next one may be: else nobody needs to know what hid the lights.
+    /// Points of lights that have moved since somebody needed to know what hides them, a bit for each.
+    moved: AtomicU64,
+    /// The last edit was of materials alone, or there was none, so that the next one may be: else nobody needs to know what
+    /// hid the lights.
     edits_materials: AtomicBool,
 }
 
@@ -26,7 +30,8 @@ impl Kept {
             hits: PerSample::new(grid),
             second_hits: PerSample::new(grid),
             visibilities: [0, 1].map(|_| PerSample::new(grid)),
-            edits_materials: AtomicBool::new(false),
+            moved: AtomicU64::new(0),
+            edits_materials: AtomicBool::new(true),
         }
     }
 
@@ -36,13 +41,26 @@ impl Kept {
         self.hits.bytes() + self.second_hits.bytes() + first.bytes() + second.bytes()
     }
 
-    /// Something is edited: materials alone, or lights too.
-    pub fn edit(&self, materials_alone: bool) {
+    /// Something is edited: materials alone, or lights too. Of those the points `moved` that have a bit there; all of them
+    /// where there is none. On the current rayon pool.
+    pub fn edit(&self, materials_alone: bool, moved: Option<u64>) {
         self.edits_materials
             .store(materials_alone, Ordering::Relaxed);
-        if !materials_alone {
+        let Some(moved) = moved else {
             self.visibilities.iter().for_each(PerSample::clear);
-        }
+            self.moved.store(0, Ordering::Relaxed);
+            return;
+        };
+        let moved = moved | self.moved.load(Ordering::Relaxed);
+        let rest = if materials_alone && moved != 0 {
+            for visibilities in &self.visibilities {
+                visibilities.change(|known| known.forget(moved));
+            }
+            0
+        } else {
+            moved
+        };
+        self.moved.store(rest, Ordering::Relaxed);
     }
 
     /// Tells what is known of samples that are evaluated next.

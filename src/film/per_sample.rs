@@ -4,6 +4,7 @@
 
 use super::lock;
 use super::tiles::{TILE_PIXELS, TileGrid};
+use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -80,6 +81,17 @@ impl<T: Copy + Default> PerSample<T> {
             for (place, value) in of.places[run.clone()].iter().zip(own) {
                 tile[first + *place] = value;
             }
+        }
+    }
+
+    /// Changes all that is known. On the current rayon pool.
+    pub fn change(&self, change: impl Fn(&mut T) + Sync)
+    where
+        T: Send,
+    {
+        if self.bytes() > 0 {
+            let tiles = self.tiles.par_iter();
+            tiles.for_each(|tile| lock(tile).iter_mut().for_each(&change));
         }
     }
 

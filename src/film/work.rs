@@ -2,10 +2,13 @@
 
 use super::control::Signal;
 use super::engine::Engine;
+use super::kept::Kept;
 use super::lock;
 use super::pool::Turn;
 use super::sample_chunk::{Scratch, Work, with_scratch};
 use super::status::Ending;
+use super::subject::Subject;
+use super::tile_state::Chunk;
 use super::tiles::TILE_PIXELS;
 use crate::trace::RayCounts;
 use crate::trace::planes::OWN;
@@ -139,13 +142,13 @@ impl Engine {
         let (number, subject) = (self.number(), self.subject());
         scratch.octaves.fill(0);
         let (mut rays, mut samples, mut done) = (RayCounts::default(), 0, 0);
-        let work = Work {
-            subject: &subject,
-            batch: &self.batch,
-            kept: (subject.edit > 0).then_some(&self.kept),
-            stopped: &|| self.must_stop(),
-        };
         for chunk in &waiting {
+            let work = Work {
+                subject: &subject,
+                batch: &self.batch,
+                kept: self.kept_of(&subject, chunk),
+                stopped: &|| self.must_stop(),
+            };
             let tile = self.grid.tile(chunk.tile);
             let color = self.voids.color_of(chunk.tile);
             let taken = match color {
@@ -183,5 +186,12 @@ impl Engine {
         waiting.clear();
         scratch.chunks = waiting;
         done > 0
+    }
+
+    /// Where what edits leave true of a chunk's samples is kept, if it is.
+    fn kept_of(&self, subject: &Subject, chunk: &Chunk) -> Option<&Kept> {
+        let may_be_edited = self.mode.watched && subject.stays_apart;
+        let is_first = may_be_edited && chunk.range == (0..1);
+        (subject.edit > 0 || is_first).then_some(&self.kept)
     }
 }

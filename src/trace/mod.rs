@@ -121,6 +121,6 @@ pub use sun_disc::SunDisc;
 pub use surface::Surface;
 pub use texels::Texels;
 pub use texture::{Texture, TextureError};
-pub use visibility::Visibility;
+pub use visibility::{Visibility, other_points};
 pub use world::{Mesh, Object, World};
 pub use wrap::Reading;

@@ -4,6 +4,8 @@
 //! lights hang on where a surface lies and faces, and of one with a highlight on how it reflects.
 
 use super::vertices::Vertices;
+use super::{Lamp, World};
+use crate::scene::RenderSettings;
 use bevy::platform::hash::FixedHasher;
 use std::hash::BuildHasher;
 
@@ -45,6 +47,12 @@ impl Visibility {
         true
     }
 
+    /// Forgets these points, a bit for each.
+    pub fn forget(&mut self, points: u64) {
+        self.asked &= !points;
+        self.hidden &= !points;
+    }
+
     /// Whether something hides a point. `None` where that is not known.
     #[inline(always)]
     pub(super) fn is_hidden(&self, point: u32) -> Option<bool> {
@@ -65,6 +73,26 @@ impl Visibility {
 #[inline(always)]
 pub(super) fn bit(point: u32) -> u64 {
     1_u64.checked_shl(point).unwrap_or(0)
+}
+
+/// Which points of lights lie elsewhere in another world with the same surroundings, a bit for each. `None` where points are
+/// numbered otherwise there.
+pub fn other_points(old: &World, new: &World, settings: &RenderSettings) -> Option<u64> {
+    let named = |lamp: Lamp| (lamp.kind(), lamp.id(), lamp.samples(settings));
+    let mut lamps = new.lamps(settings);
+    let (mut first, mut others) = (0_u32, 0);
+    for was in old.lamps(settings) {
+        let is = lamps.next().filter(|is| named(*is) == named(was))?;
+        let velocity = |world: &World| world.lights.velocity(was.id());
+        let is_same = was.is_same(is) && velocity(old) == velocity(new);
+        let end = first.saturating_add(is.samples(settings).unwrap_or(1));
+        if !(is_same || matches!(is, Lamp::Dome(_))) {
+            let points = first..end.min(u64::BITS);
+            others |= points.fold(0, |all, point| all | bit(point));
+        }
+        first = end;
+    }
+    lamps.next().is_none().then_some(others)
 }
 
 impl Chooser {
@@ -114,6 +142,9 @@ mod tests {
         visibility.keep_of(of(7, 2), bit(0) | bit(1));
         let known = points.map(|point| visibility.is_hidden(point));
         assert_eq!(known, [yes, no, None, None, None, None]);
+        visibility.forget(bit(0));
+        let known = points.map(|point| visibility.is_hidden(point));
+        assert_eq!(known, [None, no, None, None, None, None]);
         visibility.keep_of(of(8, 2), u64::MAX);
         assert!(
             points
