@@ -241,7 +241,7 @@ pub(super) static CASES: &[Case] = &[
     ),
     case(
         39,
-        "800 sheets against 400, crossed one by one",
+        "800 sheets against 400: across a ray, slanted, turned, in one place",
         "at most 2.2 times the visits",
         transparency::sheets,
     ),
