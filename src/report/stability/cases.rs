@@ -223,8 +223,8 @@ pub(super) static CASES: &[Case] = &[
     ),
     case(
         36,
-        "rays from hits in closed rooms, to 148376 m",
-        "0 pixels see the outside",
+        "rays from hits in closed rooms, to 148376 m, and in panes there",
+        "0 pixels see the outside; no ray starts there, in panes thinner than 6 steps of f32 one in a thousand at most",
         rooms::closed,
     ),
     case(
@@ -296,7 +296,7 @@ pub(super) static CASES: &[Case] = &[
     case(
         48,
         "closed rooms whose walls are objects of their own",
-        "measured and stated; nothing is promised",
+        "measured and stated for sheets; 0 through walls of 10 cm that fill the corners",
         rooms::of_objects,
     ),
 ];
