@@ -127,13 +127,13 @@ pub(super) static CASES: &[Case] = &[
     ),
     case(
         20,
-        "a light in the receiver's plane",
+        "a light of each kind in the receiver's plane",
         "0, finite",
         light::in_the_plane,
     ),
     case(
         21,
-        "the shading point on the light, or 1e-45 from it",
+        "the shading point on a light of each kind, or 1e-45 from it",
         "finite",
         light::on_the_light,
     ),
