@@ -16,7 +16,7 @@
 //!
 //! What is left: a hit that is far from every edge is lifted by its whole error (`super::surface_point`), three steps and
 //! a half at most, and nothing is asked. Two parallel sides that lie closer than six steps of the coordinates, a pane of
-//! 9 cm that stands 148 km away, may let such a ray out, one in a thousand.
+//! 9 cm that stands 148 km away, may let such a ray out, one in a thousand at most (a test and the report count them).
 
 use glam::{DVec3, Vec3};
 

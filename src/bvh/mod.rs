@@ -15,7 +15,8 @@
 //! 4. An [`Aggregate`] holds the instances, and a tree over them ([`Levels::Two`]) or over all their triangles
 //!    ([`Levels::One`]). Moving an instance rebuilds this one only.
 //! 5. A [`Ray`] asks it for the nearest hit ([`Aggregate::closest_hit`]), for any ([`Aggregate::occluded`]), for the next
-//!    one behind a hit, for all, for how much of a light passes them; one ray at a time or in batches. They walk a wide form of the trees, many boxes and
+//!    one behind a hit ([`MultiHit`] where there are many), for all, for how much of a light passes them; one ray at a time or
+//!    in batches. They walk a wide form of the trees, many boxes and
 //!    triangles at once (`wide`). It is one walk, whatever is asked ([`Aggregate`] → `levels` → `leaves` → `wide::walk` →
 //!    `wide::block` → `triangle`), and a [`Visitor`] may watch its every node and triangle.
 //!    Of a batch whose [`Order`] says that its rays go the same way, many walk together (`wide::packet`).
@@ -53,6 +54,7 @@ mod leaves;
 mod levels;
 mod median;
 pub(crate) mod mesh_tree;
+mod multi_hit;
 mod options;
 mod order;
 mod packets;
@@ -84,6 +86,7 @@ pub use depth::MAX_DEPTH;
 pub use epo::{EPO_SAMPLES, epo};
 pub use instance::{Instance, SingularTransform};
 pub use mesh_tree::MeshTree;
+pub use multi_hit::MultiHit;
 pub use options::{BuildOptions, Builder, Levels, Preset};
 pub use order::Order;
 pub use ray::{Hit, Ray, TriangleId};

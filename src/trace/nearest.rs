@@ -5,7 +5,7 @@ use super::paths::Paths;
 use super::radiance::Batch;
 use super::recorder::Recorder;
 use super::second_hits::{SecondHit, number};
-use crate::bvh::{Hit, Order, Ray};
+use crate::bvh::{Hit, MultiHit, Order, Ray};
 
 /// Rays that go on behind a hit are asked one by one, all others together: their numbers, the rays and what they hit.
 #[derive(Default)]
@@ -13,6 +13,15 @@ pub(super) struct Behind {
     others: Vec<u32>,
     rays: Vec<Ray>,
     hits: Vec<Option<Hit>>,
+    /// Of each sample the ray that went on last; none where none has gone on yet.
+    crossing: Vec<MultiHit>,
+}
+
+impl Behind {
+    /// A batch begins, perhaps in another world.
+    pub fn begin(&mut self) {
+        self.crossing.iter_mut().for_each(MultiHit::forget);
+    }
 }
 
 impl<R: Recorder> Batch<'_, R> {
@@ -53,10 +62,15 @@ impl<R: Recorder> Batch<'_, R> {
         for (&i, hit) in behind.others.iter().zip(&behind.hits) {
             hits[i as usize] = *hit;
         }
+        let crossing = &mut behind.crossing;
+        if crossing.len() < self.samples.len() {
+            crossing.resize_with(self.samples.len(), MultiHit::default);
+        }
         for &i in &paths.straight {
-            let i = i as usize;
-            let after = &paths.states[i].after;
-            hits[i] = after.and_then(|after| aggregate.next_crossing(&paths.rays[i], &after));
+            let (ray, path) = (&paths.rays[i as usize], &paths.states[i as usize]);
+            let crossing = &mut crossing[path.sample as usize];
+            hits[i as usize] = (path.after)
+                .and_then(|after| crossing.next_crossing(aggregate, ray, &after, &mut ()));
         }
     }
 

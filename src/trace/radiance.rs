@@ -182,6 +182,7 @@ fn evaluate<R: Recorder>(
     for ray in &paths.rays {
         batch.recorder.camera_ray(ray);
     }
+    behind.begin();
     while !paths.rays.is_empty() {
         batch.find_hits(paths, hits_now, behind);
         next.clear();

@@ -8,6 +8,7 @@ mod instances;
 mod leaks;
 mod magnitude;
 mod malformed;
+mod multi_hit;
 mod spawned;
 mod transmit;
 mod trees;

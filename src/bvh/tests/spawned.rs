@@ -13,7 +13,10 @@ use super::{
 };
 use crate::bvh::{
     Aggregate, BuildOptions, Hit, Instance, MeshTree, Ray,
-    hard_cases::spawned::{self_hits, triangles_of_all_sizes},
+    hard_cases::spawned::{
+        OUTSIDE_OF_THIN_PANES, SAFE_PANE, mirrored_inside, outside_of_panes, self_hits,
+        triangles_of_all_sizes,
+    },
 };
 
 #[test]
@@ -300,46 +303,11 @@ fn rays_that_leave_the_inside_of_a_far_thin_moving_body_stay_inside_down_to_two_
     let (mut left, mut outside) = (0, Vec::new());
     for case in 0..300 {
         let (scene, steps) = thin_body(case, &mut random);
-        let instance = &scene.instances()[0];
-        let triangles = instance.mesh.triangles();
         for _ in 0..20 {
-            let time = random.unit();
-            let stands = instance.stands_at(time).as_dvec3();
-            let linear = instance.exact_linear();
-            // The planes of its sides, which it lies behind.
-            let planes: Vec<(DVec3, f64)> = (0..triangles.len() as u32)
-                .map(|i| {
-                    let [a, b, c] = triangles.corners(i).map(|p| linear * p.as_dvec3());
-                    let normal = (b - a).cross(c - a).normalize();
-                    let inwards = -normal * normal.dot(a).signum();
-                    (inwards, inwards.dot(a))
-                })
-                .collect();
-            let is_inside = |p: Vec3| {
-                let p = p.as_dvec3() - stands;
-                planes.iter().all(|(inwards, at)| inwards.dot(p) > *at)
-            };
-            let mut ray = Ray {
-                time,
-                ..Ray::new(stands.as_vec3(), random.direction())
-            };
-            if !is_inside(ray.origin) {
-                continue;
-            }
-            for _ in 0..50 {
-                let hit = scene.closest_hit(&ray).expect("the body is closed");
-                let point = instance.surface_point(&hit, time);
-                let direction =
-                    ray.direction - 2.0 * ray.direction.dot(point.normal) * point.normal;
-                ray = Ray {
-                    time,
-                    ..scene.leaving(&point, direction.normalize())
-                };
-                left += 1;
-                if !is_inside(ray.origin) {
-                    outside.push(format!("case {case}, {steps:.1} steps thick"));
-                    break;
-                }
+            let (rays, ends_outside) = mirrored_inside(&scene, 50, &mut random);
+            left += rays;
+            if ends_outside {
+                outside.push(format!("case {case}, {steps:.1} steps thick"));
             }
         }
     }
@@ -349,5 +317,20 @@ fn rays_that_leave_the_inside_of_a_far_thin_moving_body_stay_inside_down_to_two_
         "{} of {left} rays start outside, among them {:?}",
         outside.len(),
         &outside[..outside.len().min(8)]
+    );
+}
+
+#[test]
+fn rays_that_leave_the_sides_of_a_far_pane_stay_in_it_from_six_steps_on_and_mostly_below() {
+    let mut random = Random::new(37);
+    let (left, outside) = outside_of_panes(150, [SAFE_PANE, 12.0], &mut random);
+    assert!(left > 100_000, "only {left} rays");
+    assert_eq!(outside, 0, "of {left} rays start outside");
+    let (left, outside) = outside_of_panes(150, [2.0, SAFE_PANE], &mut random);
+    assert!(left > 100_000, "only {left} rays");
+    let most = OUTSIDE_OF_THIN_PANES * left as f64;
+    assert!(
+        outside as f64 <= most,
+        "{outside} of {left} rays start outside"
     );
 }

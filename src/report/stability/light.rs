@@ -9,8 +9,8 @@ use crate::film::{Picture, render};
 use crate::report::table::digits;
 use crate::scene::{PixelSampling, RenderSettings};
 use crate::trace::{
-    Camera, DirectionalLight, Environment, FirstHit, Lights, Material, ParallelogramLight, Texels,
-    Texture, World, central_hits,
+    Camera, DirectionalLight, Environment, FirstHit, Lights, Material, ParallelogramLight,
+    PointLight, SegmentLight, SpotCone, Texels, Texture, World, central_hits,
 };
 use glam::{Quat, UVec2, Vec3};
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
@@ -109,6 +109,46 @@ pub(super) fn contact(effort: &Effort) -> Outcome {
     .require(lit == 0, format!("{lit} lit places"))
 }
 
+/// A lamp of each kind that has a place: there, along these two directions.
+fn lamps_at(at: Vec3, [a, b]: [Vec3; 2]) -> [Arc<Lights>; 4] {
+    let spot = PointLight {
+        id: 9,
+        position: at,
+        color: Vec3::ONE,
+        cone: Some(SpotCone::new(-at.normalize_or(b), 0.5, 1.5)),
+    };
+    let segment = SegmentLight {
+        id: 9,
+        ends: [at - 0.05 * a, at + 0.05 * a],
+        colors: [Vec3::ONE; 2],
+        samples: 1,
+    };
+    let panel = ParallelogramLight {
+        id: 9,
+        corner: at - 0.05 * (a + b),
+        edges: [0.1 * a, 0.1 * b],
+        colors: [Vec3::ONE; 4],
+        two_sided: true,
+        visible: false,
+        samples: 1,
+    };
+    [
+        point_light(at),
+        Arc::new(Lights {
+            points: vec![spot],
+            ..Lights::default()
+        }),
+        Arc::new(Lights {
+            segments: vec![segment],
+            ..Lights::default()
+        }),
+        Arc::new(Lights {
+            parallelograms: vec![panel],
+            ..Lights::default()
+        }),
+    ]
+}
+
 pub(super) fn in_the_plane(effort: &Effort) -> Outcome {
     let mut random = Random::new(effort.seed + 20);
     let (mut lit, mut odd) = (0, 0);
@@ -119,15 +159,18 @@ pub(super) fn in_the_plane(effort: &Effort) -> Outcome {
         let patch = quad(-0.01 * a - 0.01 * b, 0.02 * a, 0.02 * b);
         let mut scene = world(vec![flat(1, &patch, 0)], vec![Material::default()]);
         let around = random.between(0.0, TAU);
-        scene.lights =
-            point_light(random.between(0.1, 5.0) * (around.cos() * a + around.sin() * b));
+        let at = random.between(0.1, 5.0) * (around.cos() * a + around.sin() * b);
         let camera = Camera::looking_at(0.005 * n + 0.001 * a, 0.001 * a, b, 0.5);
-        let value = central_radiance(&scene, &camera, &once()).0;
-        lit += usize::from(value != Vec3::ZERO);
-        odd += usize::from(!value.is_finite());
+        for lights in lamps_at(at, [a, b]) {
+            scene.lights = lights;
+            let scene = scene.clone().with_needs();
+            let value = central_radiance(&scene, &camera, &once()).0;
+            lit += usize::from(value != Vec3::ZERO);
+            odd += usize::from(!value.is_finite());
+        }
     }
     Outcome::new(
-        probes,
+        4 * probes,
         format!("{lit} values other than 0, {odd} not finite"),
     )
     .require(lit == 0, format!("{lit} values other than 0"))
@@ -136,27 +179,27 @@ pub(super) fn in_the_plane(effort: &Effort) -> Outcome {
 pub(super) fn on_the_light(_: &Effort) -> Outcome {
     let mut odd = 0;
     let (mut pixels, mut brightest) = (0, 0.0_f32);
-    for exponent in [1, 3, 6, 9, 12, 20, 30, 38, 45] {
-        let above = 10f32.powi(-exponent);
-        let floor = quad(Vec3::new(-2.0, 0.0, -2.0), Vec3::Z * 4.0, Vec3::X * 4.0);
-        let mut scene = world(vec![flat(1, &floor, 0)], vec![Material::default()]);
-        scene.lights = point_light(Vec3::new(0.3, above, 0.1));
-        let eye = Vec3::new(0.3, 1.0, 0.1);
-        let camera = Camera::looking_at(eye, Vec3::new(0.3, 0.0, 0.1), Vec3::Z, 0.5);
-        for pixel in [PixelSampling::Center, PixelSampling::Area] {
-            let settings = RenderSettings {
-                size: UVec2::splat(33),
-                spp: 4,
-                pixel,
-                ..RenderSettings::default()
-            };
-            let picture = render(&scene, &camera, &settings, &|_, _| {}).picture;
-            odd += picture.pixels.iter().filter(|p| !p.is_finite()).count();
-            brightest = picture
-                .pixels
-                .iter()
-                .fold(brightest, |most, p| most.max(p.x));
-            pixels += picture.pixels.len();
+    let floor = quad(Vec3::new(-2.0, 0.0, -2.0), Vec3::Z * 4.0, Vec3::X * 4.0);
+    let eye = Vec3::new(0.3, 1.0, 0.1);
+    let camera = Camera::looking_at(eye, Vec3::new(0.3, 0.0, 0.1), Vec3::Z, 0.5);
+    let heights = [1, 3, 6, 9, 12, 20, 30, 38, 45].map(|exponent| 10f32.powi(-exponent));
+    for above in heights.into_iter().chain([0.0]) {
+        for lights in lamps_at(Vec3::new(0.3, above, 0.1), [Vec3::X, Vec3::Z]) {
+            let mut scene = world(vec![flat(1, &floor, 0)], vec![Material::default()]);
+            scene.lights = lights;
+            let scene = scene.with_needs();
+            for pixel in [PixelSampling::Center, PixelSampling::Area] {
+                let settings = RenderSettings {
+                    size: UVec2::splat(33),
+                    spp: 4,
+                    pixel,
+                    ..RenderSettings::default()
+                };
+                let picture = render(&scene, &camera, &settings, &|_, _| {}).picture;
+                odd += picture.pixels.iter().filter(|p| !p.is_finite()).count();
+                brightest = (picture.pixels.iter()).fold(brightest, |most, p| most.max(p.x));
+                pixels += picture.pixels.len();
+            }
         }
     }
     Outcome::new(

@@ -109,14 +109,16 @@ pub(super) fn not_light(_: &Effort) -> Outcome {
     app.update();
     let mut images = app.world_mut().resource_mut::<Assets<Image>>();
     let environment = images.add(floats(4, &texels));
-    let diffuse = images.add(floats(4, &texels));
-    let opacity = images.add(floats(1, &[f32::NAN; 4]));
-    app.insert_resource(EnvironmentMap(Some(environment)));
+    let wrong_map = |images: &mut Assets<Image>| Some(images.add(floats(4, &texels)));
     let maps = PhongMaps {
-        diffuse: Some(diffuse),
-        opacity: Some(opacity),
-        ..PhongMaps::default()
+        diffuse: wrong_map(&mut images),
+        specular: wrong_map(&mut images),
+        mirror: wrong_map(&mut images),
+        emission: wrong_map(&mut images),
+        normal: wrong_map(&mut images),
+        opacity: Some(images.add(floats(1, &[f32::NAN; 4]))),
     };
+    app.insert_resource(EnvironmentMap(Some(environment)));
     let mesh = crate::scene::MeshSource::Shape(crate::scene::Shape::default());
     let transform = bevy::transform::components::Transform::default();
     app.world_mut()
@@ -126,6 +128,10 @@ pub(super) fn not_light(_: &Effort) -> Outcome {
     let notes: Vec<String> = traced.problems.iter().map(ToString::to_string).collect();
     let counts = [
         ("4 texels", "diffuse"),
+        ("4 texels", "specular"),
+        ("4 texels", "mirror"),
+        ("4 texels", "emission"),
+        ("4 texels", "normal"),
         ("1 texels", "opacity"),
         ("4 texels", "its map"),
     ];
@@ -143,6 +149,7 @@ pub(super) fn not_light(_: &Effort) -> Outcome {
         finite &= light.is_finite();
         (least, most) = (least.min(light.x), most.max(light.x));
     }
+    let mut others_are_0 = true;
     for texture in traced.world.textures.iter() {
         for filter in [TextureFilter::Bilinear, TextureFilter::Mipmap] {
             for u in around.clone() {
@@ -152,6 +159,12 @@ pub(super) fn not_light(_: &Effort) -> Outcome {
                 finite &= color.is_finite() && opacity.is_finite() && color.min_element() >= 0.0;
             }
         }
+        let texel = |i: u8| {
+            let uv = Vec2::new((f32::from(i) + 0.5) / 4.0, 0.5);
+            texture.sample(uv, 0.0, TextureFilter::Nearest, false).x
+        };
+        others_are_0 &= [1, 2, 3].iter().all(|&i| texel(i) == 0.0);
+        most = most.max(texel(0));
     }
     let figures = format!(
         "{} notes; light from {} to {}",
@@ -159,16 +172,20 @@ pub(super) fn not_light(_: &Effort) -> Outcome {
         digits(f64::from(least), 2),
         digits(f64::from(most), 2)
     );
-    Outcome::new(9, figures)
+    Outcome::new(25, figures)
         .require(
-            told && notes.len() == 3,
+            told && notes.len() == counts.len(),
             format!("{} notes: {}", notes.len(), notes.join("; ")),
         )
         .require(
             finite,
             "a texel that is not finite, or less than 0, is read",
         )
-        .require(least >= 0.0 && most > 1e18, "infinite is not bright")
+        .require(others_are_0, "NaN or a negative number is not 0")
+        .require(
+            least >= 0.0 && (most / f32::MAX.sqrt() - 1.0).abs() < 1e-6,
+            format!("infinite is {most:e}"),
+        )
 }
 
 pub(super) fn unwritable(_: &Effort) -> Outcome {

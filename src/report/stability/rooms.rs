@@ -1,8 +1,10 @@
 //! Cases of closed rooms: whoever is inside sees nothing of the outside, wherever the room stands.
 
+use super::parallel::pieces;
 use super::scenes::{placed, quad, world};
 use super::{Effort, Outcome};
 use crate::bvh::hard_cases::meshes::{cube, mesh, moved};
+use crate::bvh::hard_cases::spawned::{OUTSIDE_OF_THIN_PANES, SAFE_PANE, outside_of_panes};
 use crate::bvh::{Aggregate, BuildOptions, Instance, Levels, Triangles};
 use crate::film::render;
 use crate::report::table::digits;
@@ -249,19 +251,56 @@ pub(super) fn closed(effort: &Effort) -> Outcome {
             }
         }
     }
-    let figures = format!("{} of {rooms_seen} rooms leak", faults.len());
+    let leaking = faults.len();
+    let panes = |steps: [f32; 2], seed: u64| {
+        // A pane is some thousand rays.
+        let panes = (effort.rays / 500).clamp(100, 20_000);
+        let found = pieces(panes, effort.seed + seed, |random, count| {
+            outside_of_panes(count, steps, random)
+        });
+        let add = |sum: (usize, usize), found: (usize, usize)| (sum.0 + found.0, sum.1 + found.1);
+        found.into_iter().fold((0, 0), add)
+    };
+    let (thick, thick_outside) = panes([SAFE_PANE, 12.0], 36);
+    let (thin, thin_outside) = panes([2.0, SAFE_PANE], 37);
+    let share = thin_outside as f64 / thin.max(1) as f64;
+    let figures = format!(
+        "{leaking} of {rooms_seen} rooms leak; in panes of 6 to 12 steps of the coordinates {thick_outside} of {thick} rays \
+         start outside, in thinner ones {thin_outside} of {thin}",
+    );
     Outcome {
-        counted: counted as u64,
-        figures,
         faults,
+        ..Outcome::new(counted + thick + thin, figures)
     }
+    .require(
+        thick_outside == 0,
+        format!("{thick_outside} rays start outside of a pane"),
+    )
+    .require(
+        share <= OUTSIDE_OF_THIN_PANES,
+        format!("{share:.1e} of the rays start outside of thin panes"),
+    )
 }
 
-/// The six walls of a box of 2 m, an object each, placed by its transform; how much wider than the box they are.
-fn six_walls(turn: Quat, at: Vec3, wider: f32) -> Vec<(Instance, Object)> {
-    let half = 1.0 + wider;
-    let corner = Vec3::new(-half, 0.0, -half);
-    let wall = quad(corner, Vec3::Z * 2.0 * half, Vec3::X * 2.0 * half);
+/// The walls of a box of 2 m, an object each, placed by its transform.
+#[derive(Clone, Copy)]
+enum Walls {
+    /// So much wider than the box.
+    Thin(f32),
+    /// Cuboids of 10 cm that fill the corners, all of them.
+    Thick,
+}
+
+fn six_walls(turn: Quat, at: Vec3, walls: Walls) -> Vec<(Instance, Object)> {
+    let wall = match walls {
+        Walls::Thin(wider) => {
+            let half = 1.0 + wider;
+            let corner = Vec3::new(-half, 0.0, -half);
+            let wall = quad(corner, Vec3::Z * 2.0 * half, Vec3::X * 2.0 * half);
+            mesh(wall.to_vec(), vec![[0, 1, 2], [3, 4, 5]])
+        }
+        Walls::Thick => moved(&cube(), |p| p * Vec3::new(1.1, 0.05, 1.1) - 0.05 * Vec3::Y),
+    };
     let turns = [
         Quat::IDENTITY,
         Quat::from_rotation_x(PI),
@@ -273,26 +312,27 @@ fn six_walls(turn: Quat, at: Vec3, wider: f32) -> Vec<(Instance, Object)> {
     let walls = turns.iter().zip(1u64..).map(|(own, id)| {
         let turn = turn * *own;
         let transform = Affine3A::from_rotation_translation(turn, at - turn * Vec3::Y);
-        let indices = vec![[0, 1, 2], [3, 4, 5]];
-        placed(id, mesh(wall.to_vec(), indices), Vec::new(), &transform, 0)
+        placed(id, wall.clone(), Vec::new(), &transform, 0)
     });
     walls.collect()
 }
 
-/// Rooms whose walls are objects of their own. Nothing is promised of them: where two objects touch, each is rounded by
-/// its own transform, so there are cracks, and a start beside the edge of one knows nothing of the other.
+/// Rooms whose walls are objects of their own. Nothing is promised of sheets: where two objects touch, each is rounded by
+/// its own transform, so there are cracks, and a start beside the edge of one knows nothing of the other. Walls that are
+/// thick and fill the corners hold: a start in another wall is still before its outer side.
 pub(super) fn of_objects(effort: &Effort) -> Outcome {
     let settings = settings(effort, true);
-    let (mut counted, mut figures) = (0, Vec::new());
-    for (name, wider) in [
-        ("edge to edge", 0.0),
-        ("walls that go on behind each other", 0.25),
+    let (mut counted, mut figures, mut through_thick) = (0, Vec::new(), 0);
+    for (name, walls) in [
+        ("edge to edge", Walls::Thin(0.0)),
+        ("walls that go on behind each other", Walls::Thin(0.25)),
+        ("walls of 10 cm", Walls::Thick),
     ] {
         for (turn, way) in [(Quat::IDENTITY, "upright"), (turned(), "turned")] {
             let parts = [0.0, 100.0, 12_345.678].map(|distance| {
                 let at = Vec3::new(distance, 0.25 * distance, -0.5 * distance);
                 let [(_, mirror, outside), _] = kinds();
-                let world = outside(world(six_walls(turn, at, wider), vec![mirror]));
+                let world = outside(world(six_walls(turn, at, walls), vec![mirror]));
                 let mut camera = Camera::looking_at(
                     Vec3::ZERO,
                     turn * Vec3::new(-0.5, -0.4, -1.0),
@@ -302,6 +342,9 @@ pub(super) fn of_objects(effort: &Effort) -> Outcome {
                 camera.position = at + turn * Vec3::new(0.3, 0.2, 0.6);
                 let (leaks, pixels) = seen(&world, &camera, &settings);
                 counted += pixels;
+                if matches!(walls, Walls::Thick) {
+                    through_thick += leaks;
+                }
                 format!("{} %", digits(100.0 * leaks as f64 / pixels as f64, 2))
             });
             figures.push(format!("{name}, {way}: {}", parts.join(", ")));
@@ -313,5 +356,9 @@ pub(super) fn of_objects(effort: &Effort) -> Outcome {
             "pixels that see the outside at 0, 100 and 12,346 m: {}",
             figures.join("; ")
         ),
+    )
+    .require(
+        through_thick == 0,
+        format!("{through_thick} pixels see the outside through thick walls"),
     )
 }

@@ -3,12 +3,12 @@
 use super::scenes::{central_radiance, flat, once, placed, quad, world};
 use super::{Effort, Outcome};
 use crate::bvh::hard_cases::meshes::soup;
-use crate::bvh::{Counters, Hit, Ray};
+use crate::bvh::{Counters, Hit, MultiHit, Ray};
 use crate::film::render;
 use crate::report::table::digits;
 use crate::scene::RenderSettings;
 use crate::trace::{Camera, Environment, Lights, Material, ParallelogramLight, World};
-use glam::{Affine3A, UVec2, Vec3};
+use glam::{Affine3A, Quat, UVec2, Vec3};
 use std::sync::Arc;
 
 fn pane(opacity: f32) -> Material {
@@ -132,28 +132,55 @@ struct Visits {
     passing: Vec3,
 }
 
+/// How sheets of 2 m lie on the way of a ray along z.
+#[derive(Clone, Copy)]
+enum Lie {
+    /// Across it, 1 cm apart.
+    Across,
+    /// Slanted, on 1 m: the boxes around all of them overlap.
+    Slanted,
+    /// On 1 m, each turned another way.
+    Turned,
+    /// All in one place.
+    Together,
+}
+
+impl Lie {
+    fn sheet(self, i: u32, count: u32) -> [Vec3; 6] {
+        let on_1_m = i as f32 / count as f32;
+        let (turn, z) = match self {
+            Self::Across => ([0.0; 2], 0.01 * i as f32),
+            Self::Slanted => ([0.8, 0.7], on_1_m),
+            Self::Turned => ([(1.1 * i as f32).sin(), (1.7 * i as f32).cos()], on_1_m),
+            Self::Together => ([0.0; 2], 0.0),
+        };
+        let turn = Quat::from_rotation_x(turn[0]) * Quat::from_rotation_y(turn[1]);
+        square(0.0).map(|p| turn * p + z * Vec3::Z)
+    }
+}
+
 /// Through `count` sheets: of one mesh, or an object each.
-fn visits(count: u32, one_mesh: bool) -> Visits {
-    let sheet = |i: u32| square(i as f32 * 0.01);
-    let triangles = |corners: &[Vec3; 6]| {
-        let [a, b, c, d, e, f] = *corners;
+fn visits(count: u32, lie: Lie, one_mesh: bool) -> Visits {
+    let triangles = |corners: [Vec3; 6]| {
+        let [a, b, c, d, e, f] = corners;
         [[a, b, c], [d, e, f]]
     };
     let objects = if one_mesh {
-        let all = (0..count).flat_map(|i| triangles(&sheet(i)));
+        let all = (0..count).flat_map(|i| triangles(lie.sheet(i, count)));
         vec![placed(1, soup(all), Vec::new(), &Affine3A::IDENTITY, 0)]
     } else {
         (0..count)
-            .map(|i| flat(u64::from(i) + 1, &sheet(i), 0))
+            .map(|i| flat(u64::from(i) + 1, &lie.sheet(i, count), 0))
             .collect()
     };
     let scene = world(objects, vec![pane(0.5)]);
-    let ray = Ray::new(Vec3::new(0.1, 0.3, -1.0), Vec3::new(0.001, 0.002, 1.0));
+    let ray = Ray::new(Vec3::new(0.1, 0.13, -1.0), Vec3::new(0.0001, 0.0002, 1.0));
     let (mut cost, mut crossed) = (Counters::default(), 0);
+    let mut crossing = MultiHit::default();
     let mut next = scene.aggregate.closest_hit_with(&ray, &mut cost);
     while let Some(hit) = next {
         crossed += 1;
-        next = scene.aggregate.next_crossing_with(&ray, &hit, &mut cost);
+        next = crossing.next_crossing(&scene.aggregate, &ray, &hit, &mut cost);
     }
     let visits = |cost: Counters| cost.nodes + cost.triangles;
     let mut of_light = Counters::default();
@@ -169,39 +196,64 @@ fn visits(count: u32, one_mesh: bool) -> Visits {
 
 pub(super) fn sheets(_: &Effort) -> Outcome {
     let counts = [400, 800, 5_000, 10_000];
-    let (mut straight, mut to_light, mut wrong) = (0.0_f64, 0.0_f64, 0);
-    for one_mesh in [true, false] {
-        let all = counts.map(|count| visits(count, one_mesh));
-        for (visits, count) in all.iter().zip(counts) {
-            let exact = [
-                1.0,
-                f64::from(0.999_f32).powi(count as i32),
-                0.5_f64.powi(count as i32),
-            ];
-            let bound = f64::from(count) * f64::from(f32::EPSILON) / 2.0;
-            let is_exact = (0..3).all(|i| {
-                let off = (f64::from(visits.passing[i]) - exact[i]).abs();
-                off <= bound * exact[i] + f64::from(f32::MIN_POSITIVE)
-            });
-            wrong += usize::from(!is_exact || visits.crossed != count);
+    let (mut straight, mut to_light, mut wrong, mut crossed) = (Vec::new(), 0.0_f64, 0, 0);
+    for (name, lie) in [
+        ("across the ray", Lie::Across),
+        ("slanted", Lie::Slanted),
+        ("each turned another way", Lie::Turned),
+        ("in one place", Lie::Together),
+    ] {
+        let mut most = 0.0_f64;
+        for one_mesh in [true, false] {
+            // Where boxes overlap, thousands cost what their pairs do, over 512.
+            let counts = match lie {
+                Lie::Across => &counts[..],
+                _ => &counts[..2],
+            };
+            let all: Vec<Visits> = counts
+                .iter()
+                .map(|&count| visits(count, lie, one_mesh))
+                .collect();
+            for (visits, &count) in all.iter().zip(counts) {
+                let exact = [
+                    1.0,
+                    f64::from(0.999_f32).powi(count as i32),
+                    0.5_f64.powi(count as i32),
+                ];
+                let bound = f64::from(count) * f64::from(f32::EPSILON) / 2.0;
+                let is_exact = (0..3).all(|i| {
+                    let off = (f64::from(visits.passing[i]) - exact[i]).abs();
+                    off <= bound * exact[i] + f64::from(f32::MIN_POSITIVE)
+                });
+                wrong += usize::from(!is_exact || visits.crossed != count);
+                crossed += count as usize;
+            }
+            let more = |of: fn(&Visits) -> u64, few: &Visits, many: &Visits| {
+                of(many) as f64 / of(few) as f64
+            };
+            most = most.max(more(|v| v.straight, &all[0], &all[1]));
+            for pair in all.chunks_exact(2) {
+                to_light = to_light.max(more(|v| v.to_light, &pair[0], &pair[1]));
+            }
         }
-        let [few, many, half, whole] = &all;
-        let more = |of: fn(&Visits) -> u64, few, many| of(many) as f64 / of(few) as f64;
-        straight = straight.max(more(|v| v.straight, few, many));
-        to_light =
-            (to_light.max(more(|v| v.to_light, few, many))).max(more(|v| v.to_light, half, whole));
+        straight.push((name, most));
     }
-    Outcome::new(
-        2 * counts.iter().sum::<u32>() as usize,
+    let figures: Vec<String> = (straight.iter())
+        .map(|(name, most)| format!("{name} {}", digits(*most, 3)))
+        .collect();
+    let outcome = Outcome::new(
+        crossed,
         format!(
-            "visits through 800 sheets against 400 at most {}; of a ray to a light, and through 10000 against 5000, {}",
-            digits(straight, 3),
+            "visits through 800 sheets against 400 at most, {}; of a ray to a light, and through 10000 against 5000, {}",
+            figures.join(", "),
             digits(to_light, 3)
         ),
     )
-    .require(straight <= 2.2, format!("{straight} times the visits"))
     .require(to_light <= 2.2, format!("{to_light} times the visits to a light"))
-    .require(wrong == 0, format!("{wrong} numbers of sheets are not crossed once each"))
+    .require(wrong == 0, format!("{wrong} numbers of sheets are not crossed once each"));
+    (straight.iter()).fold(outcome, |outcome, (name, most)| {
+        outcome.require(*most <= 2.2, format!("{name}: {most} times the visits"))
+    })
 }
 
 /// A floor under a lamp, and a sheet of opacity 0 before the camera, or none.
