@@ -9,6 +9,7 @@ mod picking;
 mod pictures;
 mod second_window;
 mod side_by_side;
+mod switched_off;
 
 use bevy::app::{PluginGroup, PluginsState};
 use bevy::camera::{RenderTarget, Viewport};
