@@ -4,6 +4,8 @@
 
 mod hostile;
 mod lasting;
+#[cfg(target_os = "linux")]
+mod minute;
 mod own_picture;
 mod picking;
 mod pictures;
