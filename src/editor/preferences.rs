@@ -19,7 +19,7 @@ pub const CONFIG_VARIABLE: &str = "GLASSBOX_CONFIG_DIR";
 
 /// The file's name.
 const FILE: &str = "preferences.ron";
-/// How many files are remembered.
+/// How many files, and how many folders, are remembered.
 const MOST_RECENT: usize = 10;
 /// How long preferences stand still before they are written: dragging a border is one change.
 const SETTLE: Duration = Duration::from_millis(700);
@@ -86,6 +86,8 @@ pub struct Preferences {
     pub keys: Bindings,
     /// Files that were opened or saved, the newest first.
     pub recent: Vec<PathBuf>,
+    /// Folders of what was opened, imported or written, the newest first.
+    pub recent_folders: Vec<PathBuf>,
 }
 
 impl Default for Preferences {
@@ -107,17 +109,27 @@ impl Default for Preferences {
             hint_seen: false,
             keys: Bindings::default(),
             recent: Vec::new(),
+            recent_folders: Vec::new(),
         }
     }
 }
 
 impl Preferences {
-    /// Puts a file at the head of the recent ones.
+    /// Puts a file at the head of the recent ones, and its folder at that of the recent folders.
     pub fn remember(&mut self, file: &Path) {
-        let file = std::path::absolute(file).unwrap_or_else(|_| file.to_path_buf());
-        self.recent.retain(|other| *other != file);
-        self.recent.insert(0, file);
-        self.recent.truncate(MOST_RECENT);
+        let whole = std::path::absolute(file).unwrap_or_else(|_| file.to_path_buf());
+        put_first(&mut self.recent, whole);
+        self.remember_folder_of(file);
+    }
+
+    /// Puts the folder of a file at the head of the recent ones.
+    pub fn remember_folder_of(&mut self, file: &Path) {
+        // Where the working folder is gone, a relative path leads nowhere.
+        if let Ok(whole) = std::path::absolute(file)
+            && let Some(folder) = whole.parent()
+        {
+            put_first(&mut self.recent_folders, folder.to_path_buf());
+        }
     }
 
     /// Takes a file out of the recent ones: it is gone.
@@ -142,6 +154,13 @@ impl Preferences {
         self.rays_height = within(self.rays_height, 120.0, 2000.0, default.rays_height);
         self.pixel_size = self.pixel_size.clamp(1, 8);
         self.recent.truncate(MOST_RECENT);
+        self.recent_folders.truncate(MOST_RECENT);
+        if self.recent_folders.is_empty() {
+            // They were not kept before.
+            for file in self.recent.clone().iter().rev() {
+                self.remember_folder_of(file);
+            }
+        }
         self
     }
 
@@ -175,6 +194,12 @@ impl Preferences {
         replace_file(&folder.join(FILE), |out| out.write_all(text.as_bytes()))
             .map_err(|error| error.to_string())
     }
+}
+
+fn put_first(paths: &mut Vec<PathBuf>, path: PathBuf) {
+    paths.retain(|other| *other != path);
+    paths.insert(0, path);
+    paths.truncate(MOST_RECENT);
 }
 
 fn read(file: &Path) -> Result<Option<Preferences>, String> {
@@ -321,5 +346,26 @@ mod tests {
             names,
             ["10", "14", "13", "12", "11", "9", "8", "7", "6", "5"]
         );
+    }
+    #[test]
+    fn folders_are_remembered_once_each_the_newest_first_and_those_of_an_older_file_come_from_its_files()
+     {
+        let mut preferences = Preferences::default();
+        for file in ["/a/1.scn.ron", "/b/2.scn.ron", "/a/3.scn.ron"] {
+            preferences.remember(Path::new(file));
+        }
+        preferences.remember_folder_of(Path::new("/models/cup.obj"));
+        preferences.remember_folder_of(Path::new("/b/2.scn.ron"));
+        let folders = ["/b", "/models", "/a"].map(PathBuf::from);
+        assert_eq!(preferences.recent_folders, folders);
+        assert_eq!(preferences.recent.len(), 3, "an import is no file to open");
+        let folder = tempfile::tempdir().unwrap();
+        preferences.save(folder.path()).unwrap();
+        let (again, _) = Preferences::load(folder.path());
+        assert_eq!(again.recent_folders, folders);
+        let older = "(recent: [\"/a/3.scn.ron\", \"/b/2.scn.ron\", \"/a/1.scn.ron\"])";
+        fs::write(folder.path().join(FILE), older).unwrap();
+        let (older, _) = Preferences::load(folder.path());
+        assert_eq!(older.recent_folders, ["/a", "/b"].map(PathBuf::from));
     }
 }

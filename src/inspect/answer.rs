@@ -37,10 +37,7 @@ pub fn answer(question: Question, tree: &RayTree, names: &BTreeMap<u64, String>)
 /// Where the light of the first sample's camera ray is blocked, and through mirrors.
 pub(super) fn black(tree: &RayTree, names: &BTreeMap<u64, String>) -> String {
     let of = Tree { tree, names };
-    let camera = (0..)
-        .zip(&tree.rays)
-        .find(|(_, ray)| ray.kind == RayKind::Camera);
-    let Some((index, camera)) = camera else {
+    let Some((index, camera)) = of.camera() else {
         return "Nothing was traced there.".into();
     };
     let sentence = match camera.end {
@@ -57,15 +54,55 @@ pub(super) fn black(tree: &RayTree, names: &BTreeMap<u64, String>) -> String {
     format!("{sentence}.")
 }
 
+/// The ray that leaves the mirror which the first sample shows, behind what is transparent too; `None` where the sentence
+/// on why the pixel is black speaks of no mirror.
+pub fn mirror_ray(tree: &RayTree) -> Option<&TracedRay> {
+    let names = &BTreeMap::new();
+    let of = Tree { tree, names };
+    let (mut index, mut ray) = of.camera()?;
+    for _ in 0..MIRRORS {
+        let light = of.light(index);
+        (index, ray) = of.bounce(index, ray, &light)?;
+        if is_mirrored(ray.kind) {
+            return tree.rays.get(index as usize);
+        }
+    }
+    None
+}
+
+fn is_mirrored(kind: RayKind) -> bool {
+    matches!(kind, RayKind::Mirror | RayKind::Gloss)
+}
+
 struct Tree<'a> {
     tree: &'a RayTree,
     names: &'a BTreeMap<u64, String>,
 }
 
-impl Tree<'_> {
-    fn children(&self, parent: u32) -> impl Iterator<Item = (u32, &TracedRay)> {
+impl<'a> Tree<'a> {
+    fn camera(&self) -> Option<(u32, &'a TracedRay)> {
+        let mut rays = (0..).zip(&self.tree.rays);
+        rays.find(|(_, ray)| ray.kind == RayKind::Camera)
+    }
+
+    fn children(&self, parent: u32) -> impl Iterator<Item = (u32, &'a TracedRay)> + use<'a> {
         let rays = (0..).zip(&self.tree.rays);
         rays.filter(move |(_, ray)| ray.parent == Some(parent))
+    }
+
+    /// The ray by which a surface is seen, where it is more mirror or glass than it is lit itself.
+    fn bounce(&self, index: u32, ray: &TracedRay, light: &Light) -> Option<(u32, &'a TracedRay)> {
+        let mut children = self.children(index);
+        let (child_index, child) = children.find(|(_, child)| child.light.is_none())?;
+        let hit = ray.hit.as_ref();
+        let follows = match child.kind {
+            _ if !light.arrives => true,
+            kind if is_mirrored(kind) => {
+                hit.is_some_and(|hit| hit.mirror.max_element() > hit.diffuse.max_element())
+            }
+            _ => hit.is_some_and(|hit| hit.opacity < 0.5),
+        };
+        follows.then_some((child_index, child))
     }
 
     /// What the surface is called, and a clause on where its light is; through what is more mirror or glass than it is
@@ -74,22 +111,12 @@ impl Tree<'_> {
         let hit = ray.hit.map(|hit| named(self.names, hit.object));
         let name = hit.unwrap_or_else(|| "a surface".into());
         let light = self.light(index);
-        let bounce = self
-            .children(index)
-            .find(|(_, child)| child.light.is_none());
-        let follows = |child: &TracedRay| match child.kind {
-            _ if !light.arrives => true,
-            RayKind::Mirror | RayKind::Gloss => ray
-                .hit
-                .is_some_and(|hit| hit.mirror.max_element() > hit.diffuse.max_element()),
-            _ => ray.hit.is_some_and(|hit| hit.opacity < 0.5),
-        };
-        let bounce = bounce.filter(|(_, child)| mirrors > 0 && follows(child));
+        let bounce = self.bounce(index, ray, &light).filter(|_| mirrors > 0);
         let Some((child_index, child)) = bounce else {
             return (name, light.clause);
         };
         let verb = match child.kind {
-            RayKind::Mirror | RayKind::Gloss => "is a mirror that sees",
+            kind if is_mirrored(kind) => "is a mirror that sees",
             _ => "is transparent, and behind it is",
         };
         let seen = match (child.end, child.met_light) {

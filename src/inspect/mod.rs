@@ -59,7 +59,7 @@ mod visits;
 mod wide_boxes;
 
 pub use addition::{Addition, Statement};
-pub use answer::{Question, answer};
+pub use answer::{Question, answer, mirror_ray};
 pub use box_range::BoxRange;
 pub(crate) use builders::corners;
 pub use builders::{

@@ -4,11 +4,14 @@
 
 mod hostile;
 mod lasting;
+#[cfg(target_os = "linux")]
+mod minute;
 mod own_picture;
 mod picking;
 mod pictures;
 mod second_window;
 mod side_by_side;
+mod switched_off;
 
 use bevy::app::{PluginGroup, PluginsState};
 use bevy::camera::{RenderTarget, Viewport};

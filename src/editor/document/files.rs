@@ -40,7 +40,10 @@ pub(super) fn perform_now(world: &mut World, task: FileTask) {
         }
         FileTask::Open(path) => open_file(world, &path, false),
         FileTask::Import(path) => match edits::import(world, &path) {
-            Ok(()) => world.resource_mut::<Document>().give_up(),
+            Ok(()) => {
+                world.resource_mut::<Document>().give_up();
+                remember_folder_of(world, &path);
+            }
             Err(error) => dialog::refuse(world, error.to_string()),
         },
         FileTask::SaveAs(path) => save_to(world, &path),
@@ -135,6 +138,13 @@ fn remember(world: &mut World, path: &Path) {
     }
 }
 
+/// What is imported or exported is no document to open again; more may lie in its folder.
+fn remember_folder_of(world: &mut World, path: &Path) {
+    if let Some(mut preferences) = world.get_resource_mut::<Preferences>() {
+        preferences.remember_folder_of(path);
+    }
+}
+
 /// Opens the scene's file again, as another program has left it.
 pub(super) fn reload(world: &mut World, path: &Path) {
     let files = world.get_resource::<SceneFiles>();
@@ -181,6 +191,7 @@ pub(super) fn write_to(world: &mut World, path: &Path) {
     notices.tell(format!("{verb} {}", path_text(path)));
     notices.notes(&name, notes.lines());
     if !is_scene {
+        remember_folder_of(world, path);
         return;
     }
     // Saving numbers what has no number yet.

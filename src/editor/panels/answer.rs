@@ -1,6 +1,7 @@
 //! Why a pixel is as it is, in one sentence beside it; and what the pointer is waited for with.
 
 use super::context_menu::ContextMenu;
+use super::mirror_picture::MirrorPicture;
 use super::says::Says;
 use crate::editor::action::Action;
 use crate::editor::document::SceneOpened;
@@ -12,7 +13,7 @@ use crate::editor::selection::Escaped;
 use crate::editor::trees::show_preset;
 use crate::editor::viewport::Viewport;
 use crate::inspect::{InspectPreset, Names, Question, answer};
-use crate::scene::SceneId;
+use crate::scene::{RenderSettings, SceneId};
 use crate::trace::RayKind;
 use bevy::ecs::observer::On;
 use bevy::ecs::resource::Resource;
@@ -54,6 +55,8 @@ struct Asked {
     shots: u64,
     /// The sentence, of which rays with which names.
     known: Option<((u64, u64), String)>,
+    /// What the mirror sees that the sentence is about.
+    mirror: MirrorPicture,
 }
 
 /// Asks this of the pixel whose menu it was chosen from; from anywhere else the next click in the view does.
@@ -71,6 +74,7 @@ pub(super) fn note_question(asked: On<PixelAsked>, ray: Res<DebugRay>, mut answe
         ray: None,
         shots: ray.shots(),
         known: None,
+        mirror: MirrorPicture::default(),
     });
 }
 
@@ -134,6 +138,11 @@ pub(super) fn answer_ui(
     {
         asked.known = Some((of, answer(asked.question, rays, &names.things)));
     }
+    // What a pixel's noise comes from is no question of what is seen.
+    if asked.question != Question::Noisy && !ray.is_busy() {
+        let output = &world.resource::<RenderSettings>().output;
+        asked.mirror.update(context, ray, output);
+    }
     let text = asked.known.as_ref().map_or("…", |(_, text)| text);
     let camera = rays.and_then(|rays| rays.rays.iter().find(|ray| ray.kind == RayKind::Camera));
     let met = camera
@@ -169,6 +178,7 @@ pub(super) fn answer_ui(
             egui::Frame::popup(ui.style()).show(ui, |ui| {
                 ui.set_max_width(WIDTH.min(free.width() - 20.0));
                 ui.add(Label::new(RichText::new(text).strong()).wrap());
+                asked.mirror.show(ui);
                 ui.horizontal(|ui| {
                     for (name, says, what) in [
                         (

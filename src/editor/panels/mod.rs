@@ -19,6 +19,7 @@
 //! | [`tree_pair`] | two views beside each other, with two builders' trees |
 //! | [`rays`] | the ray inspector, below the picture or over it |
 //! | [`answer`], [`first_steps`] | why a pixel is as it is; three things to try |
+//! | [`mirror_picture`] | what the mirror sees that an answer is about |
 //! | [`typed_drag`] | the number that is typed while a handle is dragged |
 //! | [`told`], [`readout`] | what is under the pointer: a line of the gizmos, a pixel |
 //! | [`context_menu`], [`palette`] | the table of commands: what fits a right click, and all of it |
@@ -41,6 +42,7 @@ mod inspector;
 mod kind_icons;
 mod line_legend;
 mod menu_bar;
+mod mirror_picture;
 mod mixer;
 mod notices;
 mod number_field;

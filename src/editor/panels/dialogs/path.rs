@@ -13,6 +13,8 @@ use std::fs;
 use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 use std::time::{Duration, Instant};
 
+/// Recent folders that are offered.
+const OFFERED: usize = 6;
 /// Files and folders of one folder that are looked at.
 const MOST: usize = 2000;
 /// How often a folder is looked at again.
@@ -22,6 +24,8 @@ const AGAIN: Duration = Duration::from_secs(1);
 pub(in super::super) struct PathForm {
     text: String,
     is_new: bool,
+    /// Folders that were used before and are there.
+    recent: Vec<PathBuf>,
     listing: Option<Listing>,
 }
 
@@ -34,12 +38,15 @@ struct Listing {
 }
 
 impl PathForm {
-    /// Begins with a path.
-    pub fn new(suggestion: &Path) -> Self {
+    /// Begins with a path. Of the folders those are offered that are there now: asked once, as a disk that is far away
+    /// may be slow to answer.
+    pub fn new(suggestion: &Path, recent: &[PathBuf]) -> Self {
         let text = suggestion.display().to_string();
+        let there = recent.iter().filter(|folder| folder.is_dir());
         Self {
             text,
             is_new: true,
+            recent: there.take(OFFERED).cloned().collect(),
             listing: None,
         }
     }
@@ -144,7 +151,6 @@ pub(super) fn path_ui(
     ui: &mut Ui,
     form: &mut PathForm,
     purpose: Purpose,
-    recent: &[PathBuf],
     refused: Option<&str>,
 ) -> Option<Answer> {
     ui.label(match purpose {
@@ -191,7 +197,7 @@ pub(super) fn path_ui(
     }
     ui.add_space(4.0);
     ui.horizontal_wrapped(|ui| {
-        for folder in recent.iter().take(6) {
+        for folder in &form.recent {
             let name = path_text(folder);
             let says = "What lies in a folder that was used before";
             if ui.small_button(&name).says(says).clicked() {
@@ -268,7 +274,7 @@ mod tests {
         for name in ["scene.scn.ron", "b.obj", "notes.txt", ".hidden.obj"] {
             fs::write(folder.path().join(name), "").unwrap();
         }
-        let mut form = PathForm::new(&folder.path().join(""));
+        let mut form = PathForm::new(&folder.path().join(""), &[]);
         let all = form.fitting(Purpose::Open);
         assert_eq!(all, ["Scenes/", "scans/", "b.obj", "scene.scn.ron"]);
         assert_eq!(
@@ -286,5 +292,18 @@ mod tests {
         assert!(form.text.ends_with("/Scenes/"), "{}", form.text);
         form.text = "/no/such/folder/x".into();
         assert!(form.fitting(Purpose::Open).is_empty());
+    }
+
+    #[test]
+    fn recent_folders_are_offered_in_their_order_where_they_are_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        for name in ["new", "old"] {
+            fs::create_dir(at(name)).unwrap();
+        }
+        fs::write(at("file"), "").unwrap();
+        let recent = ["new", "gone", "file", "old"].map(at);
+        let form = PathForm::new(Path::new(""), &recent);
+        assert_eq!(form.recent, ["new", "old"].map(at));
     }
 }

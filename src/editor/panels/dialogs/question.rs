@@ -9,7 +9,7 @@ use crate::editor::preferences::Preferences;
 use crate::editor::texts::path_text;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{self, Key, Ui};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Shows the document's question, if one is open; true where it is.
 pub(super) fn question_ui(
@@ -54,11 +54,12 @@ pub(super) fn question_ui(
             suggestion,
             refused,
         } => {
-            let recent = recent_folders(world);
-            let form = dialogs
-                .typed_path
-                .get_or_insert_with(|| PathForm::new(suggestion));
-            answered = path_ui(ui, form, *purpose, &recent, refused.as_deref());
+            let form = dialogs.typed_path.get_or_insert_with(|| {
+                let preferences = world.get_resource::<Preferences>();
+                let recent = preferences.map_or(&[][..], |all| &all.recent_folders);
+                PathForm::new(suggestion, recent)
+            });
+            answered = path_ui(ui, form, *purpose, refused.as_deref());
         }
         Question::Waiting { .. } => {
             ui.label("The desktop's own dialog waits for an answer.");
@@ -194,18 +195,4 @@ pub(super) fn whole_path_ui(ui: &mut Ui, path: &Path) {
     if !path.as_os_str().is_empty() && Path::new(&whole) != path {
         ui.weak(whole);
     }
-}
-
-/// The folders of what was opened or saved last.
-fn recent_folders(world: &World) -> Vec<PathBuf> {
-    let Some(preferences) = world.get_resource::<Preferences>() else {
-        return Vec::new();
-    };
-    let mut folders: Vec<PathBuf> = Vec::new();
-    for folder in preferences.recent.iter().filter_map(|file| file.parent()) {
-        if folder.is_absolute() && !folders.iter().any(|known| known == folder) {
-            folders.push(folder.to_path_buf());
-        }
-    }
-    folders
 }

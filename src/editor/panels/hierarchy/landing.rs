@@ -54,23 +54,36 @@ pub(super) fn drag_ui(
     may(&dropped).then(|| Deed::Drop(dropped.0.clone(), parent))
 }
 
-/// Not below itself, and not where all of it is already.
-fn may_land(outline: &Outline, ids: &[SceneId], target: Option<usize>) -> bool {
-    let places = || ids.iter().filter_map(|&id| outline.place(id));
-    let below = |at: usize| target.is_some_and(|t| (at..outline.items[at].end).contains(&t));
-    !places().any(below) && places().any(|at| outline.parent(at) != target)
+/// Those that a drop there would move: not what is there already, nor what comes along with what it is below.
+fn moved(outline: &Outline, ids: &[SceneId], target: Option<usize>) -> Vec<SceneId> {
+    let above = |at: usize| std::iter::successors(outline.parent(at), |&at| outline.parent(at));
+    let moves = |id: &SceneId| {
+        outline.place(*id).is_some_and(|at| {
+            let comes_along = above(at).any(|above| ids.contains(&outline.items[above].id));
+            outline.parent(at) != target && !comes_along
+        })
+    };
+    ids.iter().copied().filter(moves).collect()
 }
 
-/// The row before which the first of them would stand, below that parent.
+/// Not below itself, and not where all of it is already.
+fn may_land(outline: &Outline, ids: &[SceneId], target: Option<usize>) -> bool {
+    let mut places = ids.iter().filter_map(|&id| outline.place(id));
+    let below = |at: usize| target.is_some_and(|t| (at..outline.items[at].end).contains(&t));
+    !places.any(below) && !moved(outline, ids, target).is_empty()
+}
+
+/// The row before which the first of those that move would stand, below that parent.
 fn landing(outline: &Outline, rows: &[Row], ids: &[SceneId], target: Option<usize>) -> usize {
-    let first = ids.iter().min().copied().unwrap_or_default();
+    let first = moved(outline, ids, target).into_iter().min();
+    let first = first.unwrap_or_default();
     let (from, to, depth) = match target {
         Some(at) => (at + 1, outline.items[at].end, outline.items[at].depth + 1),
         None => (0, outline.items.len(), 0),
     };
     let later = (from..to).find(|&at| {
         let item = &outline.items[at];
-        item.depth == depth && item.id > first && !ids.contains(&item.id)
+        item.depth == depth && item.id > first
     });
     let place = later.unwrap_or(to);
     let shown = rows.iter().position(|row| match row {
@@ -140,5 +153,11 @@ mod tests {
         assert!(may(12, place(10)) && may(13, None));
         assert!(!may(10, place(12)) && !may(10, place(10)));
         assert!(!may(13, place(10)), "it is there already");
+        // Of several those count that move.
+        let all = |ids: &[u64]| ids.iter().map(|&id| SceneId(id)).collect::<Vec<_>>();
+        let (some, target) = (all(&[11, 21]), place(10));
+        assert_eq!(landing(outline, &rows, &some, target), 4, "after the door");
+        let along = all(&[10, 13]);
+        assert!(!may_land(outline, &along, None), "the door comes along");
     }
 }

@@ -23,9 +23,10 @@ use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy::math::{Quat, UVec2, Vec2};
 use bevy::transform::components::Transform;
-use bevy_egui::egui::{CursorIcon, Event, Key, PointerButton, Pos2, Shape};
+use bevy_egui::egui::accesskit::Role;
+use bevy_egui::egui::{CursorIcon, Event, Key, PointerButton, Pos2, Shape, vec2};
 use std::collections::HashSet;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// How often the command of an app was run.
 #[derive(Resource, Default)]
@@ -426,6 +427,56 @@ fn an_answer_and_its_cross_stay_with_what_they_are_about_when_the_view_moves() {
         moved[0] > 20.0 && moved[1] > 20.0 && moved[2] < 0.1,
         "{moved:?}"
     );
+}
+
+#[test]
+fn an_answer_about_a_mirror_shows_what_the_mirror_sees_and_another_does_not() {
+    let mut desk = Desk::open("cornell-box");
+    desk.context.enable_accesskit();
+    desk.world().init_resource::<Armed>();
+    let camera = desk.world().resource::<TracedCameras>().0[0].camera.clone();
+    let size = UVec2::new(600, 480);
+    // In the mirror block, and on the floor before it.
+    for (pixel, is_mirror) in [([225, 220], true), ([300, 450], false)] {
+        let mut ray = desk.world().resource_mut::<DebugRay>();
+        ray.which = Which::First;
+        ray.shoot(Shot {
+            pixel: pixel.into(),
+            camera: camera.clone(),
+            size,
+        });
+        let at = Vec2::new(600.0, 300.0);
+        let question = Question::Black;
+        desk.world().trigger(PixelAsked { question, at });
+        desk.settle();
+        wait_for_rays(&mut desk);
+        let rays = desk.world().resource::<DebugRay>().rays().unwrap().clone();
+        let names = &desk.world().resource::<Names>().things;
+        let sentence = answer(question, &rays, names);
+        assert_eq!(sentence.contains("is a mirror"), is_mirror, "{sentence}");
+        let pictures = |desk: &Desk| {
+            let bounds = desk.bounds(Role::Image).into_iter();
+            bounds
+                .filter(|bounds| bounds.size() == vec2(240.0, 160.0))
+                .count()
+        };
+        assert_eq!(pictures(&desk), usize::from(is_mirror), "{sentence}");
+        let start = Instant::now();
+        while is_mirror && !has_texture(&desk, "mirror") {
+            assert!(start.elapsed().as_secs() < 60, "no picture came");
+            std::thread::sleep(Duration::from_millis(5));
+            desk.settle();
+        }
+        assert_eq!(pictures(&desk), usize::from(is_mirror), "{sentence}");
+    }
+    assert!(!has_texture(&desk, "mirror"), "it went with its answer");
+}
+
+/// Whether egui holds a texture of that name.
+fn has_texture(desk: &Desk, name: &str) -> bool {
+    let textures = desk.context.tex_manager();
+    let textures = textures.read();
+    textures.allocated().any(|(_, meta)| meta.name == name)
 }
 
 #[test]

@@ -5,6 +5,7 @@ mod commands;
 mod desk;
 mod drawn;
 mod foreign;
+mod kept;
 mod named;
 mod operated;
 mod trees;
