@@ -19,6 +19,8 @@ pub(super) struct Kept {
     visibilities: [PerSample<Visibility>; 2],
     /// Points of lights that have moved since somebody needed to know what hides them, a bit for each.
     moved: AtomicU64,
+    /// Something was edited. Before that nothing is told: a piece of a pass that is begun again takes the rays that it took.
+    is_edited: AtomicBool,
     /// The last edit was of materials alone, or there was none, so that the next one may be: else nobody needs to know what
     /// hid the lights.
     edits_materials: AtomicBool,
@@ -31,6 +33,7 @@ impl Kept {
             second_hits: PerSample::new(grid),
             visibilities: [0, 1].map(|_| PerSample::new(grid)),
             moved: AtomicU64::new(0),
+            is_edited: AtomicBool::new(false),
             edits_materials: AtomicBool::new(true),
         }
     }
@@ -44,6 +47,7 @@ impl Kept {
     /// Something is edited: materials alone, or lights too. Of those the points `moved` that have a bit there; all of them
     /// where there is none. On the current rayon pool.
     pub fn edit(&self, materials_alone: bool, moved: Option<u64>) {
+        self.is_edited.store(true, Ordering::Relaxed);
         self.edits_materials
             .store(materials_alone, Ordering::Relaxed);
         let Some(moved) = moved else {
@@ -65,21 +69,21 @@ impl Kept {
 
     /// Tells what is known of samples that are evaluated next.
     pub fn tell(&self, of: BatchPlaces, samples: &mut Known) {
+        let is_edited = self.is_edited.load(Ordering::Relaxed);
         samples.know_camera_hits(|hits| {
-            let mut all = true;
-            self.hits.read(of, |hit| {
-                all &= hit.is_some();
-                hits.push(hit.flatten());
-            });
+            let mut all = is_edited;
+            if is_edited {
+                self.hits.read(of, |hit| {
+                    all &= hit.is_some();
+                    hits.push(hit.flatten());
+                });
+            }
             all
         });
-        let second_hits = samples.second_hits();
-        second_hits.clear();
-        self.second_hits.read(of, |known| second_hits.push(known));
+        tell(&self.second_hits, of, is_edited, samples.second_hits());
         if self.edits_materials.load(Ordering::Relaxed) {
             for (all, of_batch) in self.visibilities.iter().zip(samples.visibilities()) {
-                of_batch.clear();
-                all.read(of, |known| of_batch.push(known));
+                tell(all, of, is_edited, of_batch);
             }
         }
     }
@@ -99,5 +103,20 @@ impl Kept {
                 all.write(of, of_batch.drain(..));
             }
         }
+    }
+}
+
+/// What is known of each sample of a batch: nothing where nothing may be told.
+fn tell<T: Copy + Default>(
+    all: &PerSample<T>,
+    of: BatchPlaces,
+    may_tell: bool,
+    batch: &mut Vec<T>,
+) {
+    batch.clear();
+    if may_tell {
+        all.read(of, |known| batch.push(known));
+    } else {
+        batch.resize(of.count(), T::default());
     }
 }

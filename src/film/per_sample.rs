@@ -32,6 +32,13 @@ pub(super) struct BatchPlaces<'a> {
     pub runs: &'a [Run],
 }
 
+impl BatchPlaces<'_> {
+    /// How many samples they are.
+    pub fn count(&self) -> usize {
+        self.runs.iter().map(|(_, run)| run.len()).sum()
+    }
+}
+
 impl<T: Copy + Default> PerSample<T> {
     /// What those of one sample of a tile take.
     const TILE_BYTES: u64 = (TILE_PIXELS * size_of::<T>()) as u64;
