@@ -24,8 +24,10 @@ const LONGEST_SAMPLE: Duration = Duration::from_millis(100);
 /// many: once, and what follows is of that light alone.
 const LARGEST_PART: f64 = 0.8;
 
-/// What the way to where lights are asked for takes, as a part of what asking for a light takes.
+/// What the way to where lights are asked for takes, as a part of what asking for a light takes; and what the rays take that
+/// lead there, where they are not known.
 const WAY: f64 = 0.5;
+const RAYS: f64 = 0.5;
 
 /// What a render shall be of, and of each of its planes the number of the one that has the same light now.
 pub(super) struct Edit {
@@ -97,14 +99,14 @@ impl Edit {
     }
 
     /// About which part of a whole sample that takes which has to be rendered, where that part of all tiles is emptied: the way
-    /// to where lights are asked for, whose first hits are kept, half as much as a light.
+    /// to where lights are asked for, half as much as a light, and those lights. What rays hit there is known.
     fn part_of_sample(&self, emptied: f64) -> f64 {
         let planes = &self.subject.light.planes;
         let lights = self.subject.world.lights.count();
         let stale = (0..lights).filter(|light| self.from[planes.of_light(*light)].is_none());
         let of_others = match stale.count() {
             0 => 0.0,
-            stale => (WAY + stale as f64) / (WAY + lights as f64),
+            stale => (WAY + stale as f64) / (RAYS + WAY + lights as f64),
         };
         emptied + (1.0 - emptied) * of_others
     }

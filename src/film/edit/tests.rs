@@ -291,13 +291,13 @@ fn a_light_that_moves_among_many_takes_a_part_of_a_sample() {
     };
     assert_eq!(
         part(&|lights| lights.points[0].position.x += 0.1),
-        1.5 / 5.5
+        1.5 / 6.0
     );
     let two = |lights: &mut Lights| {
         lights.points[0].position.x += 0.1;
         lights.segments[0].ends[0].x += 0.1;
     };
-    assert_eq!(part(&two), 2.5 / 5.5);
+    assert_eq!(part(&two), 2.5 / 6.0);
 }
 
 #[test]
