@@ -2,7 +2,8 @@
 //! Of camera rays, and of those that leave first hits where one of each sample does: in a mirror.
 //!
 //! Of first samples from the start, since every edit begins with them, and of later ones from the first edit on: a render that
-//! nobody edits has no use for it.
+//! nobody edits has no use for it. What hides lights is kept from the first edit on alone: to name what it is known of takes a
+//! tenth of a sample, and who turns the view waits for that.
 
 use super::per_sample::{BatchPlaces, PerSample};
 use super::tiles::TileGrid;
@@ -21,8 +22,7 @@ pub(super) struct Kept {
     moved: AtomicU64,
     /// Something was edited. Before that nothing is told: a piece of a pass that is begun again takes the rays that it took.
     is_edited: AtomicBool,
-    /// The last edit was of materials alone, or there was none, so that the next one may be: else nobody needs to know what
-    /// hid the lights.
+    /// The last edit was of materials alone, so that the next one may be: else nobody needs to know what hid the lights.
     edits_materials: AtomicBool,
 }
 
@@ -34,7 +34,7 @@ impl Kept {
             visibilities: [0, 1].map(|_| PerSample::new(grid)),
             moved: AtomicU64::new(0),
             is_edited: AtomicBool::new(false),
-            edits_materials: AtomicBool::new(true),
+            edits_materials: AtomicBool::new(false),
         }
     }
 

@@ -152,7 +152,7 @@ fn film_ui(ui: &mut Ui, world: &mut World) {
         };
         row(ui, "Planes", says, |ui| ui.label(planes).says(says));
         if film.hits > 0 {
-            let says = "What camera rays and the mirrored ones after them hit, and what hides lights from there: edits of lights and materials do not trace those rays again. Of each pixel's first sample it is kept from the start, of others once something is edited, as far as 128 MB go for each";
+            let says = "What camera rays and the mirrored ones after them hit, of each pixel's first sample from the start and of others once something is edited, and while materials are edited what hides lights from there: those rays are not traced again. As far as 128 MB go for each";
             row(ui, "First hits", says, |ui| {
                 ui.label(Size(film.hits).to_string()).says(says)
             });
