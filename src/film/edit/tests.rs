@@ -370,7 +370,7 @@ fn while_materials_are_edited_what_hides_lights_is_found_out_once() {
     let (world, second) = shadow_rays(repainted(&world, 2, Vec3::splat(0.3)));
     assert!(0 < second && second < first, "{second}, {first}");
     // Of lights that are numbered otherwise nothing is known.
-    let (world, _) = shadow_rays(edited(&world, |lights| drop(lights.points.remove(0))));
+    let (world, _) = shadow_rays(edited(&world, |lights| _ = lights.points.remove(0)));
     let (_, first) = shadow_rays(repainted(&world, 1, Vec3::splat(0.1)));
     assert!(first > 0);
 }
