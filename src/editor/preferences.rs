@@ -347,6 +347,7 @@ mod tests {
             ["10", "14", "13", "12", "11", "9", "8", "7", "6", "5"]
         );
     }
+
     #[test]
     fn folders_are_remembered_once_each_the_newest_first_and_those_of_an_older_file_come_from_its_files()
      {
