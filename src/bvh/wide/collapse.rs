@@ -1,4 +1,4 @@
-//! Which levels of a binary tree to leave out, so that nodes of eight children cost rays least.
+//! Which levels of a binary tree to leave out, so that nodes of sixteen children cost rays least.
 //!
 //! Dynamic programming on the surface area heuristic, as Ylitie, Karras, Laine, "Efficient Incoherent Ray Traversal on
 //! GPUs Through Compressed Wide BVHs" (HPG 2017), section 3.1: the least cost of a subtree as at most n children of
@@ -7,12 +7,9 @@
 
 use obvhs::bvh2::Bvh2;
 
-use super::super::stats;
+use super::{super::stats, node::WIDTH};
 
-/// Children of a node.
-const WIDTH: usize = 8;
-
-/// What testing a node's eight boxes costs, and choosing among them.
+/// What testing a node's boxes costs, and choosing among them.
 const COST_NODE: f32 = 1.0;
 /// What testing a leaf's block of triangles costs. Measured: with a ratio to a node of 0.4 to 2, rays meet the same
 /// number of nodes and of blocks within 1 %.
@@ -22,7 +19,7 @@ const COST_BLOCK: f32 = 1.0;
 #[derive(Clone, Copy)]
 pub(super) struct Plan {
     /// As at most `n` children, where `splits[n - 1]` children go to the first half; 0 where it makes no more than n - 1
-    /// of them, and for n = 1. For n = 8 always a split: how the children of a wide node are divided.
+    /// of them, and for n = 1. For n = 16 always a split: how the children of a wide node are divided.
     splits: [u8; WIDTH],
     /// As a single child: whether it is a leaf.
     pub(super) is_leaf: bool,
@@ -173,7 +170,7 @@ impl Planning<'_> {
     }
 }
 
-/// The nodes of the binary tree that become the children of the wide node at `root`, which is no leaf: two to eight.
+/// The nodes of the binary tree that become the children of the wide node at `root`, which is no leaf: two to sixteen.
 pub(super) fn children(tree: &Bvh2, plans: &[Plan], root: usize) -> ([usize; WIDTH], usize) {
     let mut found = [0; WIDTH];
     let mut count = 0;

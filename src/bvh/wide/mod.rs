@@ -1,6 +1,6 @@
-//! The form of a tree that rays walk: eight boxes a node, eight triangles a leaf, tested at once.
+//! The form of a tree that rays walk: sixteen boxes a node, eight triangles a leaf, tested at once.
 //!
-//! A [`Bvh2`](obvhs::bvh2::Bvh2) from any builder is [`collapse`]d into [`WideTree`]: nodes of up to eight children, in
+//! A [`Bvh2`](obvhs::bvh2::Bvh2) from any builder is [`collapse`]d into [`WideTree`]: nodes of up to sixteen children, in
 //! which the SAH says which levels to leave out. Its leaves are [`TriangleBlock`]s (or instances, in the top tree).
 //! [`walk`] takes a ray through it, and [`walk_packet`] many that go the same way.
 //!
@@ -33,7 +33,7 @@ pub(crate) use block::{Sight, TriangleBlock};
 pub(crate) use lanes::answer_with_each;
 pub(crate) use lanes::{Eight, InstructionSet, Lanes, Query, answer, by_axis};
 #[cfg(test)]
-pub(crate) use node::LEAF;
+pub(crate) use node::{LEAF, WIDTH};
 pub(crate) use packet::{
     Answers, Found, Group, PacketLeaves, PacketRays, View, Ways, lanes_of, largest_size,
     walk_packet,

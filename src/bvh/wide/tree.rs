@@ -15,13 +15,13 @@ use crate::bvh::split_plane::primitives_below;
 /// What a wide tree is like, in numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WideStats {
-    /// Nodes of up to eight children; leaves are not nodes.
+    /// Nodes of up to sixteen children; leaves are not nodes.
     pub nodes: usize,
     /// Leaves.
     pub leaves: usize,
     /// Blocks of up to eight triangles, one a leaf as a rule; 0 in a tree over instances.
     pub blocks: usize,
-    /// Children a node has on average, up to 8; 0 without nodes.
+    /// Children a node has on average, up to 16; 0 without nodes.
     pub children_per_node: f64,
     /// Triangles a block holds on average, up to 8; 0 without blocks.
     pub triangles_per_block: f64,
@@ -156,6 +156,9 @@ pub(crate) struct WideTree {
     /// A node or a leaf, as a child is numbered; `None` in a tree over nothing.
     pub(super) root: Option<u32>,
     leaves: usize,
+    /// Whether no node has more than eight children: the other half need not be tested then. For the whole tree and not
+    /// for each node, because a processor can foresee that.
+    pub(super) is_narrow: bool,
     /// Which node of the binary tree each node stands for, and each leaf, by its number.
     sources: [Vec<u32>; 2],
     /// Entries of a stack that the walk needs.
@@ -198,6 +201,7 @@ impl WideTree {
             held,
         } = conversion.convert();
         let mut wide = Self {
+            is_narrow: nodes.iter().all(|node| node.children().count() <= 8),
             nodes,
             root: Some(0),
             leaves,

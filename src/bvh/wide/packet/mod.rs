@@ -1,7 +1,7 @@
 //! Packets: rays that go the same way walk a tree together, each in a lane.
 //!
 //! A packet's rays are sorted into [`Group`]s, whose directions have the same signs and the same longest component. A
-//! group walks the tree once: eight boxes are tested against bounds of all its rays ([`View::span`]), a box that any ray
+//! group walks the tree once: a node's boxes are tested against bounds of all its rays ([`View::span`]), a box that any ray
 //! may enter is tested against all of them when its turn comes, and a triangle against all that entered its leaf. Where
 //! no more than [`FEW_RAYS`] go on, they go on alone.
 //!
@@ -22,5 +22,5 @@ pub(crate) use rays::{Group, PacketRays, Ways, largest_size};
 pub(crate) use view::View;
 pub(crate) use walk::{PacketLeaves, walk_packet};
 
-/// So many rays of a packet go on alone: for them a node's eight boxes at once are less work than one box for all.
+/// So many rays of a packet go on alone: for them eight boxes at once are less work than one box for all.
 pub(crate) const FEW_RAYS: u32 = 2;

@@ -5,8 +5,7 @@ use crate::bvh::wide::{Eight, InstructionSet, Lanes, by_axis, node::WideNode};
 
 /// What the tests need of a group of rays in a tree's space.
 pub(crate) struct View<S: InstructionSet> {
-    /// The rows of a node that hold the faces which the rays meet first, axis by axis. Those they meet last are their
-    /// neighbours.
+    /// Which faces the rays meet first, axis by axis: the lower ones (0) or the upper.
     near: [usize; 3],
     /// What those are measured from, ray by ray.
     pub(super) near_origin: [S::Packet; 3],
@@ -68,7 +67,7 @@ impl<S: InstructionSet> View<S> {
             bounds.most_inverse[axis] = S::Eight::splat(largest(mask, inverse));
         }
         Self {
-            near: by_axis!(|axis| 2 * axis + usize::from(backwards[axis])),
+            near: by_axis!(|axis| usize::from(backwards[axis])),
             near_origin,
             far_origin,
             inverse: rays.inverse,
@@ -91,9 +90,17 @@ impl<S: InstructionSet> View<S> {
 
     /// Which children any ray may enter, if none ends behind `limit`, and where the first does at the earliest.
     #[inline(always)]
-    pub(super) fn span(&self, node: &WideNode, limit: f32) -> (u32, S::Eight) {
-        let near = by_axis!(|axis| node.row(self.near[axis]));
-        let far = by_axis!(|axis| node.row(self.near[axis] ^ 1));
+    pub(super) fn span(&self, node: &WideNode, limit: f32) -> (u32, [S::Eight; 2]) {
+        let (first, entries) = self.span_half(node, 0, limit);
+        let (second, more) = self.span_half(node, 1, limit);
+        (first | second << 8, [entries, more])
+    }
+
+    /// [`Self::span`], of eight children.
+    #[inline(always)]
+    fn span_half(&self, node: &WideNode, half: usize, limit: f32) -> (u32, S::Eight) {
+        let near = by_axis!(|axis| node.faces(axis, self.near[axis], half));
+        let far = by_axis!(|axis| node.faces(axis, self.near[axis] ^ 1, half));
         self.bounds.span(near, far, limit)
     }
 
@@ -117,10 +124,10 @@ impl<S: InstructionSet> View<S> {
     /// Which rays enter a child, no later than at their limits.
     #[inline(always)]
     pub(super) fn enter(&self, node: &WideNode, child: u32, limit: S::Packet) -> u32 {
-        let child = child as usize % 8;
-        let [x, y, z] = by_axis!(|axis| self.near(axis, node.row(self.near[axis])[child]));
+        let [x, y, z] = by_axis!(|axis| self.near(axis, node.face(axis, self.near[axis], child)));
         let entry = x.max(y).max(z).max(S::Packet::splat(0.0));
-        let [x, y, z] = by_axis!(|axis| self.far(axis, node.row(self.near[axis] ^ 1)[child]));
+        let [x, y, z] =
+            by_axis!(|axis| self.far(axis, node.face(axis, self.near[axis] ^ 1, child)));
         let exit = x.min(y).min(z).min(limit);
         S::Packet::bits(entry.le(exit))
     }

@@ -3,7 +3,11 @@
 use super::{FEW_RAYS, Found, View};
 use crate::bvh::{
     goal::Goal,
-    wide::{InstructionSet, Lanes, WideTree, node::LEAF, walk::WINDOW},
+    wide::{
+        InstructionSet, Lanes, WideTree,
+        node::{LEAF, WIDTH},
+        walk::entries_of,
+    },
 };
 
 /// What the leaves of a tree hold, as [`super::super::Leaves`].
@@ -25,7 +29,7 @@ pub(crate) trait PacketLeaves<S: InstructionSet> {
 /// Walks a tree with those rays of a group, and visits each leaf that any of them reaches. What waits is a place, a node
 /// and which of its children, and is tested when its turn comes.
 ///
-/// The stack holds the tree's [`WideTree::most_pending`] and [`WINDOW`] more, and what the leaves need.
+/// The stack holds the tree's [`WideTree::most_pending`] and [`WIDTH`] more, and what the leaves need.
 #[inline(always)]
 pub(crate) fn walk_packet<S: InstructionSet, G: Goal>(
     tree: &WideTree,
@@ -47,22 +51,22 @@ pub(crate) fn walk_packet<S: InstructionSet, G: Goal>(
     loop {
         let (mut hits, entries) = view.span(&tree.nodes[next as usize], found.farthest);
         if hits != 0 {
-            let entries = entries.to_array();
-            let window = &mut stack[pending..pending + WINDOW];
+            let entries = entries_of(entries);
+            let window = &mut stack[pending..pending + WIDTH];
             let mut count = 0;
             while hits != 0 {
                 let child = hits.trailing_zeros();
                 hits &= hits - 1;
-                let entry = u64::from(entries[child as usize % 8].to_bits());
-                let new = entry << 32 | u64::from(next << 3 | child);
+                let entry = u64::from(entries[child as usize % WIDTH].to_bits());
+                let new = entry << 32 | u64::from(next << 4 | child);
                 let mut place = count;
                 if G::NEAREST_FIRST {
-                    while place > 0 && window[(place - 1) % 8] < new {
-                        window[place % 8] = window[(place - 1) % 8];
+                    while place > 0 && window[(place - 1) % WIDTH] < new {
+                        window[place % WIDTH] = window[(place - 1) % WIDTH];
                         place -= 1;
                     }
                 }
-                window[place % 8] = new;
+                window[place % WIDTH] = new;
                 count += 1;
             }
             pending += count;
@@ -77,7 +81,7 @@ pub(crate) fn walk_packet<S: InstructionSet, G: Goal>(
                 continue;
             }
             let place = waiting as u32;
-            let (node, child) = (&tree.nodes[place as usize >> 3], place & 7);
+            let (node, child) = (&tree.nodes[place as usize >> 4], place & 15);
             let lanes = lanes & if G::ANY { found.active } else { lanes };
             let entered = view.enter(node, child, found.limit) & lanes;
             if entered == 0 {

@@ -151,7 +151,7 @@ fn table(rows: &[BuilderFigures]) -> Vec<Row> {
         ),
         (
             "Wide nodes",
-            "Of the form that pictures are traced through: up to eight children each",
+            "Of the form that pictures are traced through: up to sixteen children each",
             |row| Some(row.wide_nodes as f64),
             Neither,
         ),
