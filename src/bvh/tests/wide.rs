@@ -261,7 +261,7 @@ fn fault(tree: &MeshTree) -> Option<String> {
         if child & LEAF == 0 {
             visited += 1;
             let children = &nodes[child as usize];
-            if !(2..=8).contains(&children.len()) {
+            if !(2..=WIDTH).contains(&children.len()) {
                 return Some(format!("node {child} has {} children", children.len()));
             }
             if !children.iter().all(|(inner, _)| within(inner)) {

@@ -14,7 +14,7 @@ use crate::bvh::{
 };
 
 /// Entries of a stack that ordinary meshes of a million triangles get by with: they need 90 to 130.
-pub(crate) const FEW: usize = 192;
+pub(crate) const FEW: usize = 160;
 /// Entries that every tree gets by with: two levels of trees no deeper than [`MAX_DEPTH`], fifteen a node.
 pub(crate) const MANY: usize = 2 * (WIDTH - 1) * MAX_DEPTH + WIDTH;
 
@@ -222,26 +222,31 @@ pub(crate) fn walk_from<E: Eight, G: Goal, V: Visitor>(
                         entry = entry_of(near);
                         continue;
                     }
+                    // The third without a branch, which nothing could foresee; what is nearest does not wait for the rest.
+                    let third = waiting(node, &entries, hits.trailing_zeros());
+                    hits &= hits - 1;
+                    let (mut near, third) = (near.min(third), near.max(third));
                     let window = &mut stack[pending..pending + WIDTH];
-                    (window[0], window[1]) = (far, near);
+                    (window[0], window[1]) = (far.max(third), far.min(third));
                     let mut count = 2;
                     while hits != 0 {
                         let new = waiting(node, &entries, hits.trailing_zeros());
                         hits &= hits - 1;
+                        let farther = near.max(new);
+                        near = near.min(new);
                         let mut place = count;
-                        while place > 0 && window[(place - 1) % WIDTH] < new {
+                        while place > 0 && window[(place - 1) % WIDTH] < farther {
                             window[place % WIDTH] = window[(place - 1) % WIDTH];
                             place -= 1;
                         }
-                        window[place % WIDTH] = new;
+                        window[place % WIDTH] = farther;
                         count += 1;
                     }
-                    let near = window[(count - 1) % WIDTH];
-                    prefetch::<E, G, V>(tree, leaves, window[(count - 2) % WIDTH] as u32);
-                    watched.put_off(&window[..count - 1]);
+                    prefetch::<E, G, V>(tree, leaves, window[(count - 1) % WIDTH] as u32);
+                    watched.put_off(&window[..count]);
                     next = near as u32;
                     entry = entry_of(near);
-                    pending += count - 1;
+                    pending += count;
                 } else {
                     next = node.child(first);
                     let entries = entries_of(entries);
