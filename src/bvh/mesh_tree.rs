@@ -24,8 +24,6 @@ const PARALLEL_SIZE: usize = 1 << 13;
 pub struct MeshTree {
     triangles: Triangles,
     tree: Bvh2,
-    /// The numbers of the triangles that are traced, in leaf order.
-    order: Vec<u32>,
     pub(super) wide: WideTree,
     pub(super) blocks: Vec<TriangleBlock>,
     wedges: Wedges,
@@ -43,7 +41,7 @@ impl MeshTree {
             .with_min_len(PARALLEL_SIZE)
             .filter(|&triangle| triangles.is_traced(triangle))
             .collect();
-        let ((tree, order, wide, blocks), wedges) = rayon::join(
+        let ((tree, wide, blocks), wedges) = rayon::join(
             || tree_over(&triangles, &numbers, options),
             || Wedges::of(&triangles, &numbers),
         );
@@ -56,7 +54,6 @@ impl MeshTree {
             wedges,
             triangles,
             tree,
-            order,
             wide,
             blocks,
             build_time: start.elapsed(),
@@ -68,20 +65,20 @@ impl MeshTree {
         &self.triangles
     }
 
-    /// The tree over those triangles that are traced. Its primitives are positions in a list without the others:
-    /// [`Self::triangle_at`] names the triangle. Boxes are widened by a few units in the last place.
+    /// The tree over those triangles that are traced. Its primitives are their numbers. Boxes are widened by a few units in
+    /// the last place.
     pub fn tree(&self) -> &Bvh2 {
         &self.tree
     }
 
     /// The number of the triangle at a place in leaf order (`first_index ..` of a leaf).
     pub fn triangle_at(&self, place: usize) -> u32 {
-        self.order[place]
+        self.tree.primitive_indices[place]
     }
 
     /// How many triangles are traced.
     pub fn traced(&self) -> usize {
-        self.order.len()
+        self.tree.primitive_indices.len()
     }
 
     /// The box around all traced triangles (a few units in the last place wider), or `None` when there is none.
@@ -103,7 +100,6 @@ impl MeshTree {
     pub fn bytes(&self) -> usize {
         size_of_val(self.triangles.positions())
             + size_of_val(self.triangles.indices())
-            + size_of_val(self.order.as_slice())
             + size_of_val(self.tree.nodes.as_slice())
             + size_of_val(self.tree.primitive_indices.as_slice())
             + self.wide.bytes()
@@ -151,28 +147,29 @@ impl MeshTree {
 
     /// The padded box of a triangle by its place in leaf order, in object space.
     pub(crate) fn box_at(&self, place: usize) -> Aabb {
-        let corners = self.triangles.corners(self.order[place]);
+        let corners = self.triangles.corners(self.triangle_at(place));
         triangle_box(corners.map(Vec3A::from))
     }
 }
 
-/// The tree over the triangles of these numbers, those in the order of its leaves, and both in the form in which rays walk it.
+/// The tree over the triangles of these numbers, and both in the form in which rays walk it.
 fn tree_over(
     triangles: &Triangles,
     numbers: &[u32],
     options: &BuildOptions,
-) -> (Bvh2, Vec<u32>, WideTree, Vec<TriangleBlock>) {
+) -> (Bvh2, WideTree, Vec<TriangleBlock>) {
     let boxes: Vec<Aabb> = (numbers.par_iter().with_min_len(PARALLEL_SIZE))
         .map(|&triangle| triangle_box(triangles.corners(triangle).map(Vec3A::from)))
         .collect();
-    let tree = build_tree(&boxes, options);
+    let mut tree = build_tree(&boxes, options);
     drop(boxes);
-    let slots = tree.primitive_indices.iter();
-    let order: Vec<u32> = slots.map(|&slot| numbers[slot as usize]).collect();
+    for primitive in &mut tree.primitive_indices {
+        *primitive = numbers[*primitive as usize];
+    }
     let (wide, blocks) = WideTree::new(&tree, TriangleBlock::CAPACITY, |places, blocks| {
-        TriangleBlock::append(&order[places], triangles, blocks);
+        TriangleBlock::append(&tree.primitive_indices[places], triangles, blocks);
     });
-    (tree, order, wide, blocks)
+    (tree, wide, blocks)
 }
 
 /// A ray in a mesh's own space, with what the slab test needs.

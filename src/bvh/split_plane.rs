@@ -19,16 +19,15 @@ pub struct SplitPlane {
 /// the children it is the one along which the centroids extend farthest (`Median`'s rule).
 ///
 /// `None` for a leaf, and where no plane does that (clustering knows no planes, and duplicates have none).
-/// `box_of` gives the box of a primitive. O(n) for a node over n primitives.
-pub fn split_plane(tree: &Bvh2, node: usize, box_of: impl Fn(u32) -> Aabb) -> Option<SplitPlane> {
+/// `box_at` gives the box of the primitive at a place in leaf order. O(n) for a node over n primitives.
+pub fn split_plane(tree: &Bvh2, node: usize, box_at: impl Fn(usize) -> Aabb) -> Option<SplitPlane> {
     let parent = tree.nodes.get(node).filter(|node| !node.is_leaf())?;
     let child = parent.first_index as usize;
     let centroids = |node: usize| {
-        let primitives = &tree.primitive_indices[primitives_below(tree, node)];
-        primitives.iter().fold(
+        primitives_below(tree, node).fold(
             (Vec3A::INFINITY, Vec3A::NEG_INFINITY),
-            |(min, max), &primitive| {
-                let b = box_of(primitive);
+            |(min, max), place| {
+                let b = box_at(place);
                 let centroid = b.min * 0.5 + b.max * 0.5;
                 (min.min(centroid), max.max(centroid))
             },
@@ -95,6 +94,11 @@ mod tests {
             .collect()
     }
 
+    /// The boxes by their places in the order of the leaves.
+    fn in_order<'a>(tree: &'a Bvh2, boxes: &'a [Aabb]) -> impl Fn(usize) -> Aabb + 'a {
+        |place| boxes[tree.primitive_indices[place] as usize]
+    }
+
     #[test]
     fn a_row_of_points_is_halved_between_its_middle_points() {
         let boxes = row(10);
@@ -104,7 +108,7 @@ mod tests {
         };
         let tree = build_tree(&boxes, &options);
         assert_eq!(
-            split_plane(&tree, 0, |i| boxes[i as usize]),
+            split_plane(&tree, 0, in_order(&tree, &boxes)),
             Some(SplitPlane {
                 axis: 1,
                 position: 4.5
@@ -126,7 +130,7 @@ mod tests {
                 .collect();
             let without = inner
                 .iter()
-                .filter(|&&node| split_plane(&tree, node, |i| boxes[i as usize]).is_none())
+                .filter(|&&node| split_plane(&tree, node, in_order(&tree, &boxes)).is_none())
                 .count();
             assert_eq!(without, 0, "{builder:?}: of {} inner nodes", inner.len());
         }
@@ -157,7 +161,7 @@ mod tests {
         let boxes = vec![Aabb::from_point(Vec3A::ONE); 20];
         let tree = build_tree(&boxes, &BuildOptions::default());
         for node in 0..=tree.nodes.len() {
-            assert_eq!(split_plane(&tree, node, |i| boxes[i as usize]), None);
+            assert_eq!(split_plane(&tree, node, in_order(&tree, &boxes)), None);
         }
     }
 }

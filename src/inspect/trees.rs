@@ -193,18 +193,9 @@ impl<'a> TreeView<'a> {
             self.world.aggregate.options().builder,
             Builder::Median | Builder::Sah
         );
-        let indices = &self.tree.primitive_indices;
-        let mut places = Vec::new();
-        if by_centroids {
-            places = vec![0; indices.len()];
-            for (place, &slot) in indices.iter().enumerate() {
-                places[slot as usize] = place;
-            }
-        }
         SplitPlanes {
             view: self,
             by_centroids,
-            places,
         }
     }
 }
@@ -213,8 +204,6 @@ impl<'a> TreeView<'a> {
 pub(super) struct SplitPlanes<'a> {
     view: &'a TreeView<'a>,
     pub by_centroids: bool,
-    /// The place in the leaf order of each primitive.
-    places: Vec<usize>,
 }
 
 impl SplitPlanes<'_> {
@@ -223,13 +212,10 @@ impl SplitPlanes<'_> {
         if !self.by_centroids {
             return gap_plane(tree, node as usize);
         }
-        let box_of = |slot: u32| {
-            let place = self.places[slot as usize];
-            match self.view.instance() {
-                Some((_, instance)) => instance.mesh.box_at(place),
-                None => world.aggregate.box_at(place).unwrap_or_default(),
-            }
+        let box_at = |place: usize| match self.view.instance() {
+            Some((_, instance)) => instance.mesh.box_at(place),
+            None => world.aggregate.box_at(place).unwrap_or_default(),
         };
-        split_plane(tree, node as usize, box_of)
+        split_plane(tree, node as usize, box_at)
     }
 }

@@ -69,8 +69,7 @@ pub(super) fn measure(
         .iter()
         .map(|aggregate| {
             let mesh = &aggregate.instances()[0].mesh;
-            let slots: Vec<u32> = traced(mesh.triangles());
-            let corners = |slot: u32| mesh.triangles().corners(slots[slot as usize]);
+            let corners = |triangle: u32| mesh.triangles().corners(triangle);
             (mesh.stats(), epo(mesh.tree(), corners), mesh.bytes())
         })
         .collect();
@@ -109,11 +108,4 @@ pub(super) fn measure(
         y: Axis::linear("million diffuse rays a second, one thread"),
         series,
     });
-}
-
-/// Numbers of the triangles that are in the tree, in the order of its primitives.
-fn traced(triangles: &crate::bvh::Triangles) -> Vec<u32> {
-    (0..triangles.len() as u32)
-        .filter(|&triangle| triangles.is_traced(triangle))
-        .collect()
 }
