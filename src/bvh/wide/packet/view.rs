@@ -88,10 +88,19 @@ impl<S: InstructionSet> View<S> {
         }
     }
 
-    /// Which children any ray may enter, if none ends behind `limit`, and where the first does at the earliest.
+    /// Which children any ray may enter, if none ends behind `limit`, and where the first does at the earliest. The second
+    /// half of them is left out where the tree `is_narrow`.
     #[inline(always)]
-    pub(super) fn span(&self, node: &WideNode, limit: f32) -> (u32, [S::Eight; 2]) {
+    pub(super) fn span(
+        &self,
+        node: &WideNode,
+        limit: f32,
+        is_narrow: bool,
+    ) -> (u32, [S::Eight; 2]) {
         let (first, entries) = self.span_half(node, 0, limit);
+        if is_narrow {
+            return (first, [entries, entries]);
+        }
         let (second, more) = self.span_half(node, 1, limit);
         (first | second << 8, [entries, more])
     }

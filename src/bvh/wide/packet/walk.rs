@@ -49,7 +49,8 @@ pub(crate) fn walk_packet<S: InstructionSet, G: Goal>(
     let mut pending = 0;
     let mut next = root;
     loop {
-        let (mut hits, entries) = view.span(&tree.nodes[next as usize], found.farthest);
+        let (mut hits, entries) =
+            view.span(&tree.nodes[next as usize], found.farthest, tree.is_narrow);
         if hits != 0 {
             let entries = entries_of(entries);
             let window = &mut stack[pending..pending + WIDTH];
