@@ -77,16 +77,15 @@ impl Status {
     }
 
     /// The exponent s of the relative error's decline, error ~ seconds^-s, over the last passes;
-    /// plain random sampling has 0.5. `None` before there are two passes, or where nothing declines.
+    /// plain random sampling has 0.5. `None` before the passes took two doublings of time, or where nothing declines.
     pub fn decline(&self) -> Option<f64> {
         let last = self.trend.last()?;
-        // Two doublings: one alone is too noisy, and older ones say little of what comes.
+        // Two doublings: fewer are too noisy, and older ones say little of what comes.
         let before = self
             .trend
             .iter()
             .rev()
-            .find(|p| 4.0 * p.seconds <= last.seconds);
-        let before = before.or(self.trend.first())?;
+            .find(|p| 4.0 * p.seconds <= last.seconds)?;
         let time = (last.seconds / before.seconds).ln();
         let error = (before.error.relative() / last.error.relative()).ln();
         let slope = error / time;
@@ -177,6 +176,20 @@ mod tests {
         ] {
             assert_eq!(duration_text(seconds), text);
         }
+    }
+
+    #[test]
+    fn a_decline_is_told_once_the_passes_took_two_doublings_of_time() {
+        let mut status = status();
+        // The picture was late, and the passes after it took hardly any time: t^-10 and more says nothing.
+        for point in &mut status.trend {
+            point.seconds += 8.0;
+        }
+        assert_eq!(status.decline(), None);
+        status.trend[0].seconds = 4.0;
+        assert!(status.decline().is_some());
+        status.trend.clear();
+        assert_eq!(status.decline(), None);
     }
 
     #[test]
