@@ -10,6 +10,7 @@
 //! | [`list`] | the rays as a table: sorted, filtered, folded |
 //! | [`names`] | learns what objects, lights and materials are called |
 //! | [`json`] | all of it as text |
+//! | [`questions`] | three ready-made choices of what is drawn |
 //! | [`choice`] | which ray and which node are meant, and what keys do to them |
 //!
 //! Here are the facts and what is drawn in the view; the panels that show them are in `panels/rays`.
@@ -23,12 +24,14 @@ pub(super) mod json;
 pub(super) mod list;
 pub(super) mod lit;
 mod names;
+mod questions;
 
 pub(super) use choice::{Inspected, shoot_pixel};
 pub(super) use debug_ray::{DebugRay, Which};
 pub(super) use draw::Drawings;
 pub(super) use drawn_set::{DrawnSet, Source};
 pub(super) use hover::Hovered;
+pub(super) use questions::{preset_settings, show_preset};
 
 use super::command::AddCommands;
 use super::document::SceneOpened;
@@ -62,6 +65,7 @@ impl Plugin for RaysPlugin {
             .add_observer(choice::let_go)
             .add_commands(choice::commands())
             .add_commands(debug_ray::commands())
+            .add_commands(questions::commands())
             .add_systems(
                 PostUpdate,
                 (

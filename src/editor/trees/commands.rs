@@ -2,9 +2,7 @@
 
 use crate::editor::command::{Command, Over, State, commands};
 use crate::editor::notice::Notices;
-use crate::inspect::{
-    BoxChoice, BoxRange, BoxSettings, InspectPreset, InspectSettings, TreeChoice, TreeForm,
-};
+use crate::inspect::{BoxChoice, BoxRange, BoxSettings, InspectSettings, TreeChoice, TreeForm};
 use crate::sync::Traced;
 use crate::trace;
 use bevy::ecs::resource::Resource;
@@ -42,12 +40,6 @@ pub(super) fn commands() -> Vec<Command> {
     commands! {
         "lines.show" "Show the tracer's lines" ["G"] "All that is drawn of rays and trees, off and on again as it was"
             => toggle_lines; menu("View/Rays and trees", 0); over(&[Over::Ray, Over::Box]); state(|world| State::switch(world.resource::<InspectSettings>().on)),
-        "lines.why-black" "Draw why a pixel is black" [] "Draws the rays of a pixel in the light that they carry: point at it and press R"
-            => |world| ask(world, InspectPreset::WhyBlack); menu("View/Rays and trees", 1),
-        "lines.is-tree-good" "Is this tree good?" [] "Draws the trees' boxes by what they cost, and what a pixel's rays visit of them"
-            => |world| ask(world, InspectPreset::IsTheTreeGood); menu("View/Rays and trees", 1),
-        "lines.noise" "Where is my noise from?" [] "Draws what is chosen at random for a pixel: point at it and press R"
-            => |world| ask(world, InspectPreset::WhereIsTheNoiseFrom); menu("View/Rays and trees", 1),
         "lines.pair" "Two trees side by side" [] "Two views from one place: over the left one the boxes of one builder's trees, over the right one another's, with their counts (tab BVH)"
             => toggle_pair; menu("View/Rays and trees", 2); state(is_pair_shown),
         "boxes.previous-leaf" "Previous leaf" ["A"] "One leaf back, while one leaf of the trees is drawn"
@@ -79,22 +71,6 @@ fn toggle_pair(world: &mut World) {
 fn is_pair_shown(world: &World) -> State {
     let inspect = world.resource::<InspectSettings>();
     State::switch(inspect.pair.on && inspect.on)
-}
-
-fn ask(world: &mut World, preset: InspectPreset) {
-    show_preset(world, preset);
-    world.resource_mut::<Notices>().tell(preset.says());
-}
-
-/// Draws what answers a question.
-pub(in crate::editor) fn show_preset(world: &mut World, preset: InspectPreset) {
-    let mut inspect = world.resource_mut::<InspectSettings>();
-    // How many lines a machine can draw is no part of the question.
-    let max_lines = inspect.max_lines;
-    *inspect = InspectSettings {
-        max_lines,
-        ..preset.settings()
-    };
 }
 
 fn draws_a_leaf(world: &World) -> State {

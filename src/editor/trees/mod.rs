@@ -14,7 +14,7 @@ mod commands;
 pub(super) mod measure;
 pub(super) mod pair;
 
-pub(super) use commands::{BoxRanges, show_preset};
+pub(super) use commands::BoxRanges;
 pub(super) use pair::LEFT_TREES_LAYER;
 
 use super::command::AddCommands;

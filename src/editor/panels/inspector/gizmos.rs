@@ -3,7 +3,7 @@
 use super::super::fields::{properties_ui, section};
 use super::super::says::Says;
 use super::boxes::boxes_ui;
-use crate::editor::inspection::{DebugRay, Which};
+use crate::editor::inspection::{preset_settings, show_preset};
 use crate::inspect::{InspectPreset, InspectSettings};
 use bevy::ecs::world::World;
 use bevy_egui::egui::{Button, Label, RichText, Ui};
@@ -68,13 +68,8 @@ pub(super) fn gizmos_ui(ui: &mut Ui, world: &mut World) {
             let answers = is_answer(preset, &settings);
             let button = Button::selectable(answers, preset.question());
             if ui.add(button).says(preset.says()).clicked() {
-                settings = answer(preset, &settings);
-                // Noise is what samples differ in.
-                if preset == InspectPreset::WhereIsTheNoiseFrom
-                    && let Some(mut ray) = world.get_resource_mut::<DebugRay>()
-                {
-                    ray.which = Which::All;
-                }
+                show_preset(world, preset);
+                settings = world.resource::<InspectSettings>().clone();
             }
         }
     });
@@ -98,16 +93,8 @@ pub(super) fn gizmos_ui(ui: &mut Ui, world: &mut World) {
     }
 }
 
-/// The settings that answer a question. How many lines a machine can draw is no part of it.
-fn answer(preset: InspectPreset, settings: &InspectSettings) -> InspectSettings {
-    InspectSettings {
-        max_lines: settings.max_lines,
-        ..preset.settings()
-    }
-}
-
 fn is_answer(preset: InspectPreset, settings: &InspectSettings) -> bool {
-    *settings == answer(preset, settings)
+    *settings == preset_settings(preset, settings)
 }
 
 #[cfg(test)]

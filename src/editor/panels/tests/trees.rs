@@ -5,7 +5,7 @@ use super::desk::{Desk, USUAL};
 use crate::bvh::Builder;
 use crate::editor::action::Action;
 use crate::editor::history::History;
-use crate::editor::inspection::Inspected;
+use crate::editor::inspection::{DebugRay, Inspected, Which};
 use crate::editor::trees::measure::{BUILDERS, Measurements, Stale};
 use crate::editor::trees::pair::{SideState, TreePair};
 use crate::editor::viewport::Viewport;
@@ -337,6 +337,12 @@ fn each_question_sets_its_lines_and_the_master_switch_keeps_them() {
             ..preset.settings()
         };
         assert_eq!(*desk.world().resource::<InspectSettings>(), wanted);
+        // Noise is what samples differ in, and so all of them are asked for.
+        let which = match preset {
+            InspectPreset::WhereIsTheNoiseFrom => Which::All,
+            _ => Which::First,
+        };
+        assert_eq!(desk.world().resource::<DebugRay>().which, which, "{id}");
         assert!(desk.find(preset.says()).is_some(), "{}", preset.question());
         desk.world().write_message(Action::run("lines.show"));
         desk.settle();
