@@ -3,6 +3,7 @@
 use super::Failure;
 use super::output::say;
 use crate::app::headless_app;
+use crate::inspect::counted;
 use crate::io::place::world_from;
 use crate::io::{FileNote, LoadProblems, OpenOptions, SceneSource, open};
 use crate::scene::{
@@ -193,15 +194,19 @@ fn print(checked: &Checked) -> Result<(), Failure> {
     if let Some(error) = &checked.error {
         return say(one_line(&format!("{file}: cannot be shown: {error}")));
     }
-    let notes = match checked.notes.len() {
+    let notes = match checked.notes.len() as u64 {
         0 => "nothing to note".to_owned(),
-        1 => "1 note".to_owned(),
-        count => format!("{count} notes"),
+        count => counted(count, "note"),
     };
-    say(one_line(&format!(
-        "{file}: {} objects, {} triangles, {} materials, {} lights, {} cameras; {notes}",
-        checked.objects, checked.triangles, checked.materials, checked.lights, checked.cameras,
-    )))?;
+    let holds = [
+        (checked.objects, "object"),
+        (checked.triangles, "triangle"),
+        (checked.materials, "material"),
+        (checked.lights, "light"),
+        (checked.cameras, "camera"),
+    ]
+    .map(|(number, what)| counted(number as u64, what));
+    say(one_line(&format!("{file}: {}; {notes}", holds.join(", "))))?;
     for note in &checked.notes {
         say(format_args!("  {}", one_line(&note.line)))?;
     }

@@ -10,7 +10,7 @@ use super::stage::{SceneArgs, Stage, with_threads};
 use crate::film::{FirstHits, develop, render};
 use crate::inspect::{
     Document, InspectSettings, LineSet, Overlay, Pattern, RayLine, StepKind, Subject, Traversal,
-    aligned, draw_over, draw_pattern, explanation, lines, pattern, sources,
+    aligned, counted, draw_over, draw_pattern, explanation, lines, pattern, sources,
 };
 use crate::io::{PictureFormat, check_picture, check_writable, write_picture};
 use crate::scene::RenderSettings;
@@ -238,16 +238,15 @@ impl Picked<'_> {
     fn print(&self) -> Result<(), Failure> {
         let Some(rays) = self.rays else { return Ok(()) };
         let value = rays.mean();
-        let count = rays.samples.len();
         say(format_args!(
-            "pixel {},{} of `{}`: {:.5} {:.5} {:.5}, the mean of {count} sample{}",
+            "pixel {},{} of `{}`: {:.5} {:.5} {:.5}, the mean of {}",
             rays.pixel.x,
             rays.pixel.y,
             self.camera.name,
             value.x,
             value.y,
             value.z,
-            if count == 1 { "" } else { "s" }
+            counted(rays.samples.len() as u64, "sample")
         ))?;
         for sentence in explanation(rays, self.names) {
             say(format_args!("  {sentence}"))?;
@@ -270,7 +269,8 @@ impl Picked<'_> {
         }));
         let rows: Vec<Vec<String>> = rows.into_iter().map(Vec::from).collect();
         say(format_args!("\n{}", aligned(&rows)))?;
-        let equal = (0..count as u32).all(|i| rays.sum(i) == rays.samples[i as usize].value);
+        let mut samples = (0..).zip(&rays.samples);
+        let equal = samples.all(|(i, sample)| rays.sum(i) == sample.value);
         let first = rays.samples.first().map_or(0, |sample| sample.index);
         say(format_args!(
             "rays of sample {first} (for every sample, what its rays add sums to its value, bit for \
@@ -371,15 +371,18 @@ fn steps_text(traversal: &Traversal) -> String {
             stack.join(" "),
         ]);
     }
-    let count = |kind: StepKind| traversal.steps.iter().filter(|s| s.kind == kind).count();
+    let count = |kind: StepKind| {
+        let of_kind = traversal.steps.iter().filter(|s| s.kind == kind);
+        of_kind.count() as u64
+    };
     format!(
-        "{}{} nodes entered, {} boxes missed, {} pruned, {} triangles tested; \
+        "{}{} entered, {} missed, {} pruned, {} tested; \
          the walk that traces pictures, through the trees' wide form\n",
         aligned(&rows),
-        count(StepKind::Entered),
-        count(StepKind::Missed),
+        counted(count(StepKind::Entered), "node"),
+        counted(count(StepKind::Missed), "box"),
         count(StepKind::Pruned),
-        count(StepKind::Hit) + count(StepKind::NotHit),
+        counted(count(StepKind::Hit) + count(StepKind::NotHit), "triangle"),
     )
 }
 

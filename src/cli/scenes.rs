@@ -3,6 +3,7 @@
 use super::Failure;
 use super::output::say;
 use crate::app::headless_app;
+use crate::inspect::{counted, plural};
 use crate::io::builtin::SCENES;
 use crate::io::{OpenOptions, SceneSource, open};
 use crate::scene::{DirectionalLamp, ParallelogramLamp, PointLamp, SegmentLamp};
@@ -43,9 +44,11 @@ pub(super) fn run(args: Scenes) -> Result<(), Failure> {
         shows,
     } in lines
     {
-        let plural = if lights == 1 { " " } else { "s" };
+        // As wide as each other: what follows stands in columns.
+        let what = plural(triangles as u64, "triangle");
+        let lights = counted(lights as u64, "light");
         say(format_args!(
-            "{name:width$}  {triangles:>6} triangles  {lights} light{plural}  {shows}"
+            "{name:width$}  {triangles:>6} {what:9}  {lights:8}  {shows}"
         ))?;
     }
     Ok(())

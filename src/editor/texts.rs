@@ -1,6 +1,7 @@
 //! Numbers and paths as texts: with a narrow space between thousands, with the plural they ask for, from the root or
 //! from home.
 
+use crate::inspect::plural;
 use crate::io::SceneFiles;
 use bevy::ecs::world::World;
 use std::env::home_dir;
@@ -8,8 +9,7 @@ use std::path::{Component, Path, PathBuf};
 
 /// `1 light`, `12 345 triangles`.
 pub(super) fn counted(number: u64, what: &str) -> String {
-    let s = if number == 1 { "" } else { "s" };
-    format!("{} {what}{s}", grouped(number))
+    format!("{} {}", grouped(number), plural(number, what))
 }
 
 /// With a narrow space between thousands.

@@ -1,6 +1,7 @@
 //! Where a pixel's value comes from, and where its noise: the same sum of rays, sorted by what they
 //! were for.
 
+use super::count::counted;
 use super::document::named;
 use crate::trace::{RayEnd, RayKind, RayTree, TracedRay};
 use glam::{DVec3, Vec3};
@@ -222,12 +223,8 @@ impl Fate {
                 if self.left_out == 1 { "it" } else { "them" },
             ));
         }
-        let plural = if self.samples == 1 { "" } else { "s" };
-        format!(
-            "{light}: of {} sample{plural} {}",
-            self.samples,
-            parts.join(", ")
-        )
+        let samples = counted(self.samples.into(), "sample");
+        format!("{light}: of {samples} {}", parts.join(", "))
     }
 }
 

@@ -19,7 +19,7 @@
 //!
 //! Beside lines: [`pattern`], where the samples of a pixel lie; [`Traversal`], the way of a ray
 //! through the trees step by step, and [`Stepper`], which plays it; [`tell`], what a line stands for in words and numbers;
-//! [`answer()`], questions about a pixel in a sentence; [`Column`], rays as a table; [`Addition`], what they add up to; [`legend()`], what the colours of the lines mean; [`compare_builders`], each builder's tree in numbers; [`TreeCounts`], what a view's rays look at of the trees;
+//! [`answer()`], questions about a pixel in a sentence; [`Column`], rays as a table; [`counted`], a number with its plural; [`Addition`], what they add up to; [`legend()`], what the colours of the lines mean; [`compare_builders`], each builder's tree in numbers; [`TreeCounts`], what a view's rays look at of the trees;
 //! [`draw_over`], lines over a picture without a GPU; [`Document`], all of it as one file.
 
 mod addition;
@@ -29,6 +29,7 @@ mod boxes;
 mod builders;
 mod color;
 mod column;
+mod count;
 mod document;
 mod explain;
 mod legend;
@@ -67,6 +68,7 @@ pub use builders::{
     compare_builders_told, csv, markdown, rebuilt, same_geometry,
 };
 pub use column::{COLUMNS, Column, Heading, color_text, metres, vector_text};
+pub use count::{cost_text, counted, left_out_text, plural};
 pub use document::{Document, RayLine, named};
 pub use explain::{Cause, Source, explanation, sources};
 pub use legend::{Meaning, legend};

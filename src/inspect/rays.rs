@@ -2,6 +2,7 @@
 
 use super::boxes::outline;
 use super::color::{BLOCKED, BLUE, DARK, GREEN, RED, YELLOW, of_radiance};
+use super::count::left_out_text;
 use super::line_set::{LineSet, Stands, Thinned};
 use super::settings::{MissColor, RaySettings};
 use super::{Subject, System};
@@ -51,10 +52,7 @@ pub(super) fn rays(subject: &Subject) -> LineSet {
         });
     }
     if tree.left_out > 0 {
-        set.notes.push(format!(
-            "{} samples of the pixel were left out: there were too many rays",
-            tree.left_out
-        ));
+        set.notes.push(left_out_text(tree.left_out));
     }
     set
 }

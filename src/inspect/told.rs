@@ -1,6 +1,7 @@
 //! What a line stands for, in words and numbers.
 
 use super::column::{color_text, meets, metres, vector_text};
+use super::count::{cost_text, counted};
 use super::{InspectSettings, Names, NodeFacts, Stands, System, TreeForm, TreeView};
 use crate::bvh::Levels;
 use crate::trace::{RayTree, World};
@@ -105,8 +106,8 @@ pub fn node_told(world: &World, instance: Option<u32>, node: u32, names: &Names)
     } = facts;
     let two = world.aggregate.options().levels == Levels::Two;
     let what = match (instance, two) {
-        (None, true) => "objects",
-        _ => "triangles",
+        (None, true) => "object",
+        _ => "triangle",
     };
     let part = 100.0 * cost / tree_cost.max(f64::MIN_POSITIVE);
     let children = match children {
@@ -122,7 +123,7 @@ pub fn node_told(world: &World, instance: Option<u32>, node: u32, names: &Names)
             .and("tree", tree_name(world, instance, names)?)
             .and("level", depth.to_string())
             .and("children", children)
-            .and("holds", format!("{primitives} {what}"))
+            .and("holds", counted(primitives.into(), what))
             .and("size", size_text(&view.corners(node)))
             .and("SAH", format!("{part:.2} % of the tree's {tree_cost:.2}"))
             .and("from", vector_text(min))
@@ -161,12 +162,6 @@ fn ray_told(rays: &RayTree, index: u32, names: &Names) -> Option<Told> {
     Some(
         told.and("brings", color_text(ray.radiance))
             .and("adds", color_text(ray.added))
-            .and(
-                "cost",
-                format!(
-                    "{} nodes, {} boxes, {} triangles",
-                    cost.nodes, cost.boxes, cost.triangles
-                ),
-            ),
+            .and("cost", cost_text(&cost)),
     )
 }

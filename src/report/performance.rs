@@ -3,7 +3,7 @@
 use super::timing::median;
 use crate::bvh::{BuildOptions, Builder, Levels};
 use crate::film::{Ending, Picture, render_while};
-use crate::inspect::{build_time, builder_name, rebuilt};
+use crate::inspect::{build_time, builder_name, counted, rebuilt};
 use crate::scene::RenderSettings;
 use crate::trace::{Camera, World, samples_per_pixel};
 use bevy::platform::collections::HashSet;
@@ -277,8 +277,12 @@ impl Performance {
     /// What was rendered, and how: one line.
     pub fn caption(&self) -> String {
         format!(
-            "{}x{}, {} spp, {} threads, {} renderings a builder, taking turns",
-            self.size.x, self.size.y, self.spp, self.threads, self.test.runs
+            "{}x{}, {} spp, {}, {} a builder, taking turns",
+            self.size.x,
+            self.size.y,
+            self.spp,
+            counted(self.threads as u64, "thread"),
+            counted(self.test.runs.into(), "rendering")
         )
     }
 

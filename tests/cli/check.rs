@@ -20,7 +20,7 @@ fn files_are_told_apart_by_what_cannot_be_shown_of_them() {
     let out = succeeds(at, &["check", "whole.obj", "part.obj", "cornell-box"]);
     let lines: Vec<&str> = out.lines().collect();
     assert!(
-        lines[0].starts_with("whole.obj: 1 objects, 1 triangles"),
+        lines[0].starts_with("whole.obj: 1 object, 1 triangle,"),
         "{out}"
     );
     assert!(lines[0].ends_with("nothing to note"), "{out}");

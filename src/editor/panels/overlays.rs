@@ -313,7 +313,7 @@ fn legend_body(
         }
     });
     let text = match under {
-        Some(under) if under.value.is_finite() => format!("{} {}", under.text(kind), scale.unit),
+        Some(under) if under.value.is_finite() => under.with_unit(kind, scale.unit),
         Some(under) => under.text(kind),
         None => "move the pointer over the picture for its value".into(),
     };

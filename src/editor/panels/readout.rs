@@ -44,10 +44,7 @@ pub(super) fn readout_ui(ui: &Ui, free: Rect, world: &mut World, known: &mut Und
             (Some(id), None) => format!("#{}", id.0),
             (None, _) => "nothing".into(),
         }),
-        view => value.map(|value| {
-            let unit = unit.map_or("", |scale| scale.unit);
-            format!("{} {unit}", value.text(view))
-        }),
+        view => value.map(|value| value.with_unit(view, unit.map_or("", |scale| scale.unit))),
     };
     let text = text.unwrap_or_default();
     note_hint(ui.ctx(), format!("pixel {}, {}: {text}", pixel.x, pixel.y));
@@ -66,6 +63,16 @@ impl PixelValue {
     pub fn text(self, view: View) -> String {
         let at_most = if self.is_bound { "at most " } else { "" };
         format!("{at_most}{}", value_text(view, self.value))
+    }
+
+    /// The same with a unit, which is a plural where things are counted.
+    pub fn with_unit(self, view: View, unit: &str) -> String {
+        let is_counted = matches!(view, View::Nodes | View::Triangles | View::Samples);
+        let unit = match unit.strip_suffix('s') {
+            Some(one) if is_counted && self.value == 1.0 => one,
+            _ => unit,
+        };
+        format!("{} {unit}", self.text(view))
     }
 }
 
@@ -107,5 +114,11 @@ mod tests {
         };
         assert_eq!(bound.text(View::Error), "at most 0.01000");
         assert_eq!(PixelValue::from(12.0).text(View::Samples), "12");
+        for (value, text) in [(1.0, "1 sample"), (2.0, "2 samples"), (0.0, "0 samples")] {
+            let said = PixelValue::from(value).with_unit(View::Samples, "samples");
+            assert_eq!(said, text);
+        }
+        let depth = PixelValue::from(1.0).with_unit(View::Depth, "m");
+        assert_eq!(depth, "1.0000 m");
     }
 }

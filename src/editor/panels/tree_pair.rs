@@ -3,7 +3,7 @@
 
 use super::overlays::label_within;
 use super::status::memory_text;
-use crate::editor::texts::{counted, grouped};
+use crate::editor::texts::counted;
 use crate::editor::trees::of_setting;
 use crate::editor::trees::pair::{Side, SideState, TreePair};
 use crate::inspect::{InspectSettings, TreeCounts};
@@ -57,12 +57,10 @@ fn lines(counts: &TreeCounts) -> Vec<String> {
         of_pixel,
     } = counts;
     let mut lines = vec![format!(
-        "{}, {}, {levels} levels, {}, built in {:.1} ms",
+        "{}, {}, {}, {}, built in {:.1} ms",
         counted(*nodes, "node"),
-        match leaves {
-            1 => "1 leaf".into(),
-            leaves => format!("{} leaves", grouped(*leaves)),
-        },
+        counted(*leaves, "leaf"),
+        counted((*levels).into(), "level"),
         memory_text(*bytes),
         build_time.as_secs_f64() * 1e3
     )];
@@ -79,10 +77,10 @@ fn lines(counts: &TreeCounts) -> Vec<String> {
     ));
     if let Some(cost) = of_pixel {
         lines.push(format!(
-            "the pixel's rays: {} boxes, {} nodes, {} triangles",
-            grouped(cost.boxes),
-            grouped(cost.nodes),
-            grouped(cost.triangles)
+            "the pixel's rays: {}, {}, {}",
+            counted(cost.boxes, "box"),
+            counted(cost.nodes, "node"),
+            counted(cost.triangles, "triangle")
         ));
     }
     lines

@@ -2,7 +2,7 @@
 
 use super::Bench;
 use crate::bvh::node_cost;
-use crate::inspect::{InspectSettings, Names, Stands, System, node_told, tell};
+use crate::inspect::{InspectSettings, Names, Stands, System, TreeView, node_told, tell};
 use crate::sync::Traced;
 
 #[test]
@@ -21,6 +21,11 @@ fn a_node_is_told_with_the_figures_of_its_tree() {
     assert_eq!(figure("holds"), format!("{} objects", world.objects.len()));
     let part = 100.0 * node_cost(top, 0) / crate::bvh::sah_cost(top);
     assert!(figure("SAH").starts_with(&format!("{part:.2} %")));
+    let tree = TreeView::of(world, None).unwrap();
+    let holds_one = |node: &u32| tree.facts(*node).is_some_and(|facts| facts.primitives == 1);
+    let leaf = (0..top.nodes.len() as u32).find(holds_one).unwrap();
+    let told = node_told(world, None, leaf, names).unwrap();
+    assert!(told.figures.contains(&("holds", "1 object".to_owned())));
     assert_eq!(node_told(world, None, u32::MAX, names), None);
     assert_eq!(node_told(world, Some(u32::MAX), 0, names), None);
 }

@@ -5,7 +5,7 @@ use super::super::says::Says;
 use crate::editor::action::Action;
 use crate::editor::inspection::DebugRay;
 use crate::editor::selection::Selection;
-use crate::editor::texts::grouped;
+use crate::editor::texts::counted;
 use crate::editor::trees::BoxRanges;
 use crate::inspect::{
     BoxChoice, BoxColor, BoxRange, BoxSettings, InspectSettings, Names, TreeForm,
@@ -53,12 +53,7 @@ pub(super) fn boxes_ui(ui: &mut Ui, world: &mut World, settings: &mut InspectSet
     } else {
         wide_color_ui(ui, &mut settings.boxes);
     }
-    let leaves = grouped(range.leaves as u64);
-    let leaves = if range.leaves == 1 {
-        "1 leaf".into()
-    } else {
-        format!("{leaves} leaves")
-    };
+    let leaves = counted(range.leaves as u64, "leaf");
     let text = match form {
         TreeForm::Binary => format!("{leaves}, the deepest level is {}", range.deepest),
         TreeForm::Wide => format!("The deepest level is {}", range.deepest),

@@ -324,7 +324,11 @@ fn histogram_ui(ui: &mut Ui, id: &str, axis: &str, counts: &[u32], is_clipped: b
     let label = move |bar: &Bar, _: &BarChart| {
         let more = is_clipped && bar.argument as usize >= LARGEST_LEAF_BIN;
         let more = if more { " or more" } else { "" };
-        format!("{}{more}: {} leaves", bar.argument, bar.value)
+        format!(
+            "{}{more}: {}",
+            bar.argument,
+            counted(bar.value as u64, "leaf")
+        )
     };
     let shown = still_plot(id, 90.0).include_y(0.0).show(ui, |plot| {
         plot.bar_chart(BarChart::new(axis, bars).element_formatter(Box::new(label)));

@@ -4,7 +4,7 @@ use super::super::says::Says;
 use super::none_chosen_ui;
 use crate::editor::action::Action;
 use crate::editor::inspection::Inspected;
-use crate::inspect::{Names, color_text, metres};
+use crate::inspect::{Names, color_text, cost_text, metres};
 use crate::scene::SceneId;
 use crate::trace::{LightSample, RayHit, RayTree, TracedRay};
 use bevy::ecs::world::World;
@@ -155,10 +155,7 @@ fn figures(ray: &TracedRay, rays: &RayTree, names: &Names) -> Vec<Figure> {
         (
             "cost",
             "Of the walk that traces pictures, through the wide form of the trees",
-            format!(
-                "{} nodes, {} boxes, {} triangles",
-                ray.cost.nodes, ray.cost.boxes, ray.cost.triangles
-            ),
+            cost_text(&ray.cost),
         ),
     ]);
     lines

@@ -5,7 +5,7 @@ use crate::editor::inspection::DebugRay;
 use crate::editor::inspection::debug_ray::Shot;
 use crate::editor::viewport::EditorCamera;
 use crate::film::Sum;
-use crate::inspect::Statement;
+use crate::inspect::{Statement, left_out_text};
 use crate::scene::{Output, RenderSettings};
 use crate::trace::{self, RayTree};
 use crate::view::TracedRender;
@@ -27,10 +27,7 @@ pub(super) fn foot_ui(ui: &mut Ui, world: &mut World, rays: &RayTree) {
         statement_ui(ui, &of_rays, ";", "What each ray adds by itself, summed in the order in which the tracer added it, against the sample's value");
         statement_ui(ui, &of_film, ".", "The samples' values against what the film of this picture added for the pixel, as exact sums");
         if rays.left_out > 0 {
-            let text = format!(
-                "{} samples were left out: there would have been too many rays",
-                rays.left_out
-            );
+            let text = left_out_text(rays.left_out);
             let color = ui.visuals().warn_fg_color;
             ui.label(RichText::new(text).small().color(color));
         }

@@ -5,7 +5,7 @@ use super::super::says::Says;
 use super::none_chosen_ui;
 use crate::editor::command::tooltip;
 use crate::editor::inspection::{DebugRay, Inspected};
-use crate::inspect::{Names, Step, StepKind, tree_name};
+use crate::inspect::{Names, Step, StepKind, counted, tree_name};
 use crate::scene::Quantity;
 use crate::sync::Traced;
 use crate::trace::{RayTree, World};
@@ -53,7 +53,8 @@ pub(super) fn steps_ui(
     }
     let [entered, missed, pruned, triangles] = inspected.stepper.counts();
     ui.weak(format!(
-        "so far: {entered} entered, {missed} missed, {pruned} pruned, {triangles} triangles"
+        "so far: {entered} entered, {missed} missed, {pruned} pruned, {}",
+        counted(triangles as u64, "triangle")
     ))
     .says("Nodes entered, boxes missed, nodes pruned and triangles tested, by the walk that traces pictures, through the wide form of the trees: its boxes have the numbers of the binary nodes that they are made of");
     stack_ui(ui, inspected, &tell);
