@@ -10,6 +10,7 @@ use bevy_egui::egui::{
     self, Button, EventFilter, Id, Key, Modifiers, RichText, ScrollArea, TextEdit, Ui,
 };
 use std::fs;
+use std::ops::Range;
 use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -186,7 +187,11 @@ pub(super) fn path_ui(
     });
     if std::mem::take(&mut form.is_new) {
         response.request_focus();
-        end_caret(ui, id, &form.text);
+        // A name that is only suggested is typed over; what was refused is mended at its end.
+        match purpose == Purpose::SaveAs && refused.is_none() {
+            true => select(ui, id, stem(&form.text)),
+            false => end_caret(ui, id, &form.text),
+        }
     }
     let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     let path = path_of(&form.text);
@@ -254,11 +259,27 @@ fn buttons_ui(ui: &mut Ui, path: PathBuf, entered: bool) -> Option<Answer> {
 }
 
 fn end_caret(ui: &Ui, id: Id, text: &str) {
+    let end = text.chars().count();
+    select(ui, id, end..end);
+}
+
+/// Chooses these letters of the field.
+fn select(ui: &Ui, id: Id, letters: Range<usize>) {
     use egui::text::{CCursor, CCursorRange};
     let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
-    let end = CCursorRange::one(CCursor::new(text.chars().count()));
-    state.cursor.set_char_range(Some(end));
+    let [start, end] = [letters.start, letters.end].map(CCursor::new);
+    state
+        .cursor
+        .set_char_range(Some(CCursorRange::two(start, end)));
     state.store(ui.ctx(), id);
+}
+
+/// Which letters of a path are the file's name without its extensions.
+fn stem(text: &str) -> Range<usize> {
+    let (folder, name) = split(text);
+    let stem = name.split('.').next().unwrap_or(name);
+    let start = folder.chars().count();
+    start..start + stem.chars().count()
 }
 
 #[cfg(test)]
@@ -292,6 +313,19 @@ mod tests {
         assert!(form.text.ends_with("/Scenes/"), "{}", form.text);
         form.text = "/no/such/folder/x".into();
         assert!(form.fitting(Purpose::Open).is_empty());
+    }
+
+    #[test]
+    fn the_stem_of_a_path_is_its_name_without_folders_and_extensions() {
+        for (text, letters) in [
+            ("room.scn.ron", 0..4),
+            ("/tmp/übung/ö.obj", 11..12),
+            ("room", 0..4),
+            ("/tmp/", 5..5),
+            ("", 0..0),
+        ] {
+            assert_eq!(stem(text), letters, "{text}");
+        }
     }
 
     #[test]
