@@ -265,13 +265,14 @@ pub(super) fn error_text(error: &ErrorEstimate) -> String {
     }
 }
 
-/// `12 %`, `0.34 %`.
+/// `12 %`, `0.34 %`, `< 0.01 %`.
 pub(super) fn percent(part: f64) -> String {
     let percent = part * 100.0;
     match percent {
         p if !p.is_finite() => "–".into(),
         p if p >= 10.0 => format!("{p:.0} %"),
         p if p >= 1.0 => format!("{p:.1} %"),
+        p if p > 0.0 && p < 0.005 => "< 0.01 %".into(),
         p => format!("{p:.2} %"),
     }
 }
@@ -295,8 +296,8 @@ mod tests {
     fn figures_are_written_with_as_many_digits_as_mean_something() {
         assert_eq!([1.0, 3.25, 250.4].map(count), ["1", "3.2", "250"]);
         assert_eq!(
-            [0.25, 0.034, 0.0012, f64::NAN].map(percent),
-            ["25 %", "3.4 %", "0.12 %", "–"]
+            [0.25, 0.034, 0.0012, 0.000_02, 0.0, f64::NAN].map(percent),
+            ["25 %", "3.4 %", "0.12 %", "< 0.01 %", "0.00 %", "–"]
         );
         assert_eq!(
             [900, 4_560_000, 2_340_000_000].map(memory_text),
