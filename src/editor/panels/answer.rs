@@ -1,6 +1,7 @@
 //! Why a pixel is as it is, in one sentence beside it; and what the pointer is waited for with.
 
 use super::context_menu::ContextMenu;
+use super::line_legend;
 use super::mirror_picture::MirrorPicture;
 use super::says::Says;
 use crate::editor::action::Action;
@@ -25,6 +26,8 @@ use bevy_egui::egui::{
 
 /// Points.
 const WIDTH: f32 = 300.0;
+/// Points between the answer and the legend of the lines.
+const GAP: f32 = 6.0;
 /// How far away it is where a ray met nothing.
 const FAR: f32 = 1e5;
 
@@ -168,11 +171,21 @@ pub(super) fn answer_ui(
         _ => InspectPreset::WhyBlack,
     };
     let mut wish = None;
-    let area = Area::new(Id::new("why a pixel is as it is"))
+    let id = Id::new("why a pixel is as it is");
+    let corner = at + vec2(away(right), away(below));
+    let legend = line_legend::layer();
+    let (known, taken) = context.memory(|memory| {
+        let taken = memory.areas().is_visible(&legend);
+        let taken = taken.then(|| memory.area_rect(legend.id)).flatten();
+        (memory.area_rect(id), taken)
+    });
+    let size = known.map_or(vec2(WIDTH, 60.0), |known| known.size());
+    let room = room_beside(free, pivot.anchor_size(corner, size), taken);
+    let area = Area::new(id)
         .order(Order::Middle)
         .pivot(pivot)
-        .fixed_pos(at + vec2(away(right), away(below)))
-        .constrain_to(free)
+        .fixed_pos(corner)
+        .constrain_to(room)
         .show(context, |ui| {
             egui::Frame::popup(ui.style()).show(ui, |ui| {
                 ui.set_max_width(WIDTH.min(free.width() - 20.0));
@@ -239,10 +252,59 @@ pub(super) fn answer_ui(
     pointer.is_some_and(|at| area.response.rect.contains(at))
 }
 
+/// The part of the free rectangle in which a card that wants to stand there hides nothing of what is taken already: right of
+/// that, else below it.
+fn room_beside(free: Rect, wanted: Rect, taken: Option<Rect>) -> Rect {
+    let size = wanted.size();
+    let last = (free.max - size).max(free.min);
+    let stands = Rect::from_min_size(wanted.min.clamp(free.min, last), size);
+    let Some(taken) = taken.filter(|taken| taken.intersects(stands)) else {
+        return free;
+    };
+    let right = free.with_min_x(taken.max.x + GAP);
+    let below = free.with_min_y(taken.max.y + GAP);
+    if right.width() >= size.x {
+        right
+    } else if below.height() >= size.y {
+        below
+    } else {
+        free
+    }
+}
+
 /// What a person wants next.
 enum Wish {
     Rays,
     Tree,
     Go(SceneId),
     Close,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy_egui::egui::pos2;
+
+    #[test]
+    fn an_answer_hides_nothing_of_the_legend_where_there_is_room_beside_it() {
+        let at = |x, y, width, height| Rect::from_min_size(pos2(x, y), vec2(width, height));
+        let legend = at(230.0, 60.0, 240.0, 80.0);
+        let card = vec2(300.0, 200.0);
+        for (free, place) in [
+            // Beside it in a wide view, below it in a narrow one.
+            (at(220.0, 50.0, 1000.0, 700.0), pos2(476.0, 50.0)),
+            (at(220.0, 50.0, 500.0, 500.0), pos2(220.0, 146.0)),
+            // Nothing is to be had in one that is too small.
+            (at(220.0, 50.0, 350.0, 220.0), pos2(220.0, 50.0)),
+        ] {
+            let wanted = Rect::from_min_size(pos2(300.0, 100.0), card);
+            let room = room_beside(free, wanted, Some(legend));
+            assert_eq!(room.min, place, "{free}");
+            assert_eq!(room_beside(free, wanted, None), free);
+        }
+        // What stands elsewhere has all of it.
+        let free = at(220.0, 50.0, 1000.0, 700.0);
+        let far = Rect::from_min_size(pos2(800.0, 400.0), card);
+        assert_eq!(room_beside(free, far, Some(legend)), free);
+    }
 }

@@ -40,10 +40,11 @@ pub(super) fn first_steps_ui(
     if world.resource::<Preferences>().hint_seen {
         return false;
     }
-    let right = context.viewport_rect().max.x - free.max.x;
+    // Below, where it hides neither the lamp nor what is said of lines.
+    let beside = context.viewport_rect().max - free.max + vec2(12.0, 12.0);
     let mut seen = false;
     let area = egui::Area::new(Id::new("first steps"))
-        .anchor(Align2::RIGHT_TOP, vec2(-right - 12.0, free.min.y + 12.0))
+        .anchor(Align2::RIGHT_BOTTOM, -beside)
         .order(egui::Order::Middle)
         .show(context, |ui| {
             egui::Frame::popup(ui.style())

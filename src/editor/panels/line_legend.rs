@@ -19,6 +19,8 @@ use bevy_egui::egui::{
 const SWATCH: egui::Vec2 = vec2(26.0, 3.0);
 /// Notes are broken at this width, in points.
 const WIDTH: f32 = 230.0;
+/// Points before each note.
+const NOTE_GAP: f32 = 4.0;
 
 /// What the legend remembers between two frames.
 #[derive(Resource, Default)]
@@ -130,6 +132,8 @@ fn body(ui: &mut Ui, texts: &LineTexts, lacks_rays: bool) {
     ui.set_max_width(WIDTH);
     let lack = lacks_rays.then_some("no pixel is picked: point at the picture and press R");
     for note in texts.notes.iter().map(String::as_str).chain(lack) {
+        // Each is a sentence of its own.
+        ui.add_space(NOTE_GAP);
         ui.label(RichText::new(note).small().weak());
     }
 }

@@ -82,9 +82,7 @@ pub(super) fn overlays_ui(
     with(world, |world, under| {
         legend_ui(ui, picture, below, world, under)
     });
-    let inset = with(world, |world, shown| pattern_ui(ui, picture, world, shown));
-    // Of two views it is in the left one.
-    let inset = if views.is_some() { 0.0 } else { inset };
+    with(world, |world, shown| pattern_ui(ui, picture, world, shown));
     over |= with(world, |world, legend| {
         line_legend_ui(ui, picture, above, world, legend)
     });
@@ -95,7 +93,7 @@ pub(super) fn overlays_ui(
     armed_ui(ui.ctx(), world);
     if !only_picture {
         over |= with(world, |world, tried| {
-            let room = Rect::from_min_max(free.min + vec2(0.0, inset), free.max);
+            let room = Rect::from_min_max(free.min, free.max - vec2(0.0, below));
             first_steps_ui(ui.ctx(), room, world, tried)
         });
     }

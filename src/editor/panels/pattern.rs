@@ -43,18 +43,18 @@ fn heading(points: usize, [drawn, all]: [u64; 2], pixel: UVec2) -> String {
     }
 }
 
-/// Draws it, where it is switched on and a pixel is picked; how much of the picture's right edge it takes from the top.
-pub(super) fn pattern_ui(ui: &Ui, free: Rect, scene: &Scene, shown: &mut ShownPattern) -> f32 {
+/// Draws it, where it is switched on and a pixel is picked.
+pub(super) fn pattern_ui(ui: &Ui, free: Rect, scene: &Scene, shown: &mut ShownPattern) {
     let inspect = scene.get_resource::<InspectSettings>();
     let Some(choice) = inspect.filter(|i| i.on && i.pattern.on).map(|i| &i.pattern) else {
         shown.0 = None;
-        return 0.0;
+        return;
     };
     let ray = scene.get_resource::<DebugRay>();
     let picked = ray.and_then(|ray| Some((ray.shot()?, ray.traced_with()?)));
     let Some((shot, (world, settings))) = picked else {
         shown.0 = None;
-        return 0.0;
+        return;
     };
     let pixel = shot.pixel;
     let selected = scene.get_resource::<Selection>();
@@ -76,10 +76,10 @@ pub(super) fn pattern_ui(ui: &Ui, free: Rect, scene: &Scene, shown: &mut ShownPa
         shown.0 = Some(PatternOf { of, pattern });
     }
     let Some(PatternOf { pattern, .. }) = &shown.0 else {
-        return 0.0;
+        return;
     };
     let heading = heading(pattern.points.len(), [count, all], pixel);
-    inset_ui(ui, free, pattern, heading)
+    inset_ui(ui, free, pattern, heading);
 }
 
 /// The light that is asked for; else a selected one, else the first one that has an extent, else the dome.
@@ -98,10 +98,10 @@ fn side(free: Rect) -> f32 {
     (PART * free.size().min_elem()).min(LARGEST).floor()
 }
 
-fn inset_ui(ui: &Ui, free: Rect, pattern: &Pattern, heading: String) -> f32 {
+fn inset_ui(ui: &Ui, free: Rect, pattern: &Pattern, heading: String) {
     let side = side(free);
     if side < 40.0 {
-        return 0.0;
+        return;
     }
     let corner = free.right_top() + vec2(-side - 12.0, 12.0 + TEXT);
     let square = Rect::from_min_size(corner, vec2(side, side));
@@ -131,7 +131,6 @@ fn inset_ui(ui: &Ui, free: Rect, pattern: &Pattern, heading: String) -> f32 {
         let at = pos2(corner.x, around.min.y + 3.0 + 14.0 * row as f32);
         painter.text(at, Align2::LEFT_TOP, text, FontId::proportional(11.0), INK);
     }
-    around.max.y - free.min.y
 }
 
 /// Along each side, where the samples have a whole root and the cells can be told apart.

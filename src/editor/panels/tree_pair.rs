@@ -17,7 +17,7 @@ const MARGIN: f32 = 8.0;
 /// Where there is less room for it, nothing is written.
 const LEAST_WIDTH: f32 = 80.0;
 /// Lines are no longer: they would cover the picture.
-const MOST_WIDTH: f32 = 300.0;
+const MOST_WIDTH: f32 = 360.0;
 /// Points between the views.
 const GAP: f32 = 2.0;
 
