@@ -10,6 +10,8 @@ use bevy::input::keyboard::{Key, KeyCode, KeyboardInput};
 use bevy::math::{Quat, Vec3};
 use bevy::transform::components::Transform;
 
+/// Said of a number that is typed where there is no one way to go.
+const NO_WAY: &str = "Only an arrow's drag takes a number";
 /// Letters of a number at most: nobody types more.
 const MOST: usize = 24;
 
@@ -38,6 +40,15 @@ impl TypedDrag {
         if self.text.len() + letters.len() <= MOST {
             self.text.push_str(letters);
         }
+    }
+
+    /// The same in a drag of a handle.
+    fn push_along(&mut self, letters: &str, tool: Tool, axis: Option<Axis>) {
+        self.push(letters);
+        self.label = match has_one_way(tool, axis) {
+            true => label(tool, axis),
+            false => NO_WAY.into(),
+        };
     }
 
     pub fn pop(&mut self) {
@@ -75,6 +86,11 @@ pub(super) fn label(tool: Tool, axis: Option<Axis>) -> String {
     }
 }
 
+/// Moved in the plane of the view there is no one way that a number could be the length of.
+fn has_one_way(tool: Tool, axis: Option<Axis>) -> bool {
+    tool != Tool::Move || axis.is_some_and(|axis| axis != Axis::View)
+}
+
 /// What a number means to a tool: its unit, and how many of the kept unit a plain one is.
 fn unit_of(tool: Tool) -> Unit {
     match tool {
@@ -102,8 +118,7 @@ pub(in super::super) fn type_into_drag(world: &mut World, input: &KeyboardInput)
             }
         }
         (Key::Character(letters), _) => {
-            typed.push(letters);
-            typed.label = label(tool, axis);
+            typed.push_along(letters, tool, axis);
         }
         _ => return false,
     }
@@ -119,8 +134,7 @@ pub(super) fn typed_place(
     start: &Transform,
     direction: Vec3,
 ) -> Option<Transform> {
-    // Moved in the plane of the view there is no one way that a number could be the length of.
-    if typed.text.is_empty() || tool == Tool::Move && axis == Axis::View {
+    if typed.text.is_empty() || !has_one_way(tool, Some(axis)) {
         return None;
     }
     let unit = unit_of(tool);
@@ -173,6 +187,23 @@ mod tests {
         assert!((angle - 90.0).abs() < 1e-3, "{angle}°");
         let scaled = place(Tool::Scale, Axis::Y, "1/2").unwrap();
         assert_eq!(scaled.scale, Vec3::new(1.0, 0.5, 1.0));
+    }
+
+    #[test]
+    fn where_a_number_has_no_way_to_go_it_says_so() {
+        for (tool, axis, shown) in [
+            (Tool::Move, Axis::X, "Move along x: 2"),
+            (
+                Tool::Move,
+                Axis::View,
+                "Only an arrow's drag takes a number: 2",
+            ),
+            (Tool::Scale, Axis::View, "Scale: 2"),
+        ] {
+            let mut typed = TypedDrag::default();
+            typed.push_along("2", tool, Some(axis));
+            assert_eq!(typed.shown().as_deref(), Some(shown));
+        }
     }
 
     #[test]
