@@ -13,7 +13,7 @@ mod second_window;
 mod side_by_side;
 mod switched_off;
 
-use bevy::app::{PluginGroup, PluginsState};
+use bevy::app::{PluginGroup, PluginGroupBuilder, PluginsState};
 use bevy::camera::{RenderTarget, Viewport};
 use bevy::mesh::PlaneMeshBuilder;
 use bevy::prelude::*;
@@ -68,6 +68,28 @@ const GREEN: Dir3 = Dir3::Z;
 /// What the red wall looks like on the screen: its radiance, encoded.
 const SHOWN_RED: u8 = 188;
 
+/// Bevy's plugins for an app with this window: the test's thread runs it, and pipelines are there when they are first drawn
+/// with, so that no frame lacks anything.
+fn plugins_for(window: Window) -> PluginGroupBuilder {
+    DefaultPlugins
+        .set(WinitPlugin {
+            run_on_any_thread: true,
+        })
+        .set(at_once())
+        .set(WindowPlugin {
+            primary_window: Some(window),
+            ..default()
+        })
+}
+
+/// A renderer that waits for its pipelines.
+fn at_once() -> RenderPlugin {
+    RenderPlugin {
+        synchronous_pipeline_compilation: true,
+        ..default()
+    }
+}
+
 impl Game {
     /// `None`, said loudly, where nothing can be drawn with.
     fn open() -> Option<Self> {
@@ -89,10 +111,7 @@ impl Game {
                 exit_condition: ExitCondition::DontExit,
                 ..default()
             })
-            .set(RenderPlugin {
-                synchronous_pipeline_compilation: true,
-                ..default()
-            })
+            .set(at_once())
             .disable::<WinitPlugin>()
             .disable::<PipelinedRenderingPlugin>()
             .disable::<bevy::log::LogPlugin>()

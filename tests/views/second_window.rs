@@ -4,10 +4,9 @@ use crate::window::{Display, finish};
 use bevy::camera::RenderTarget;
 use bevy::mesh::PlaneMeshBuilder;
 use bevy::prelude::*;
-use bevy::render::RenderPlugin;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
 use bevy::window::{PrimaryWindow, WindowRef};
-use bevy::winit::{WinitPlugin, WinitSettings};
+use bevy::winit::WinitSettings;
 use glassbox::film::State;
 use glassbox::prelude::*;
 use std::process::Command;
@@ -37,19 +36,7 @@ struct Shots {
 #[ignore = "begun by a_second_window_shows_its_own_picture, on a display of its own"]
 fn in_two_windows() {
     let mut app = App::new();
-    let plugins = DefaultPlugins
-        .set(WinitPlugin {
-            run_on_any_thread: true,
-        })
-        .set(RenderPlugin {
-            synchronous_pipeline_compilation: true,
-            ..default()
-        })
-        .set(WindowPlugin {
-            primary_window: Some(small("first")),
-            ..default()
-        });
-    app.add_plugins((plugins, GlassboxPlugins))
+    app.add_plugins((super::plugins_for(small("first")), GlassboxPlugins))
         .insert_resource(WinitSettings::continuous())
         .insert_resource(ClearColor(Color::BLACK))
         .insert_resource(RenderSettings {

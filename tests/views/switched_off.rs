@@ -2,9 +2,8 @@
 
 use crate::window::{Display, finish};
 use bevy::prelude::*;
-use bevy::render::RenderPlugin;
 use bevy::render::view::screenshot::{Screenshot, ScreenshotCaptured};
-use bevy::winit::{WinitPlugin, WinitSettings};
+use bevy::winit::WinitSettings;
 use glassbox::prelude::*;
 use std::path::Path;
 use std::process::Command;
@@ -64,23 +63,10 @@ fn an_editor_that_is_switched_off_draws_nothing_over_the_app() {
 fn app_with_or_without_the_editor() {
     let which = std::env::var(WHICH).unwrap();
     let mut app = App::new();
-    app.add_plugins(
-        DefaultPlugins
-            .set(WinitPlugin {
-                run_on_any_thread: true,
-            })
-            .set(RenderPlugin {
-                synchronous_pipeline_compilation: true,
-                ..default()
-            })
-            .set(WindowPlugin {
-                primary_window: Some(Window {
-                    resolution: (320, 200).into(),
-                    ..default()
-                }),
-                ..default()
-            }),
-    );
+    app.add_plugins(super::plugins_for(Window {
+        resolution: (320, 200).into(),
+        ..default()
+    }));
     if which != "plain" {
         let on = which != "off";
         app.add_plugins(EditorPlugins).insert_resource(Editing(on));
