@@ -1,7 +1,8 @@
 //! Moving, turning and scaling by keys alone: the tool's key, an axis, a number, Enter. W X 10cm Enter moves by ten
 //! centimetres along x.
 
-use super::gizmo::{apply, begin, wanted_place};
+use super::drag::{apply, begin};
+use super::gizmo::wanted_place;
 use super::typed::{TypedDrag, label, typed_place};
 use super::{Tool, Tools};
 use crate::editor::history::Gesture;
@@ -128,7 +129,7 @@ fn enter(world: &mut World, tool: Tool, axis: Axis) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{ActiveGrip, gizmo::GizmoDrag};
+    use super::super::{ActiveGrip, drag::GizmoDrag};
     use super::*;
     use crate::editor::headless_editor;
     use crate::editor::history::{History, undo};

@@ -7,6 +7,7 @@
 mod aim;
 mod arrange;
 mod bodies;
+mod drag;
 mod focus;
 mod gizmo;
 mod grips;
@@ -17,8 +18,8 @@ mod surface;
 mod typed;
 
 pub(super) use aim::aim;
+pub(super) use drag::cancel;
 pub(super) use focus::{focus, new_lens};
-pub(super) use gizmo::cancel;
 pub(super) use grips::{Grip, GripDrag, grip_at, grips_of_selection};
 pub(super) use hold::take_hold;
 pub(super) use keyed::{KeyedDrag, forget_keyed, note_command, type_axis_and_number};
@@ -103,7 +104,7 @@ impl Plugin for HandlesPlugin {
             .add_commands(commands())
             .add_commands(arrange::commands())
             .init_resource::<ActiveGrip>()
-            .init_resource::<gizmo::GizmoDrag>()
+            .init_resource::<drag::GizmoDrag>()
             .init_resource::<TypedDrag>()
             .init_resource::<KeyedDrag>()
             .add_systems(Startup, gizmo::spawn_stand_in)
@@ -111,7 +112,7 @@ impl Plugin for HandlesPlugin {
                 EditorUpdate,
                 (
                     grips::forget_grips,
-                    gizmo::carry,
+                    drag::carry,
                     gizmo::place_stand_in,
                     gizmo::set_up,
                 )
@@ -130,7 +131,7 @@ impl Plugin for HandlesPlugin {
                         .run_if(gizmo::has_the_pointer)
                         .after(TransformGizmoSystems)
                         .before(TransformGizmoRenderStep),
-                    gizmo::show_carried
+                    drag::show_carried
                         .after(TransformSystems::Propagate)
                         .before(TransformGizmoRenderStep),
                 ),

@@ -1,7 +1,7 @@
 //! Numbers that are typed while a handle is dragged: how far it goes, to the digit.
 
 use super::Tool;
-use super::gizmo::GizmoDrag;
+use super::drag::GizmoDrag;
 use crate::scene::schema::{FARTHEST, Unit, typed_number};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
