@@ -4,6 +4,7 @@ pub mod app;
 mod exports;
 mod framing;
 pub mod gltf;
+mod gltf_materials;
 mod gltf_pictures;
 mod gltf_rest;
 mod gltf_tangents;

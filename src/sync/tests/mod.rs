@@ -5,6 +5,7 @@ mod conversions;
 mod cut_outs;
 mod dice;
 mod domes;
+mod edited;
 mod edits;
 mod kept;
 mod lights;

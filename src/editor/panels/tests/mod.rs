@@ -8,6 +8,8 @@ mod foreign;
 mod kept;
 mod named;
 mod operated;
+mod questions;
+mod rows;
 mod trees;
 mod typed;
 

@@ -1,50 +1,25 @@
-//! What pointer and keys do.
+//! What pointer and keys do in fields, menus and dialogs, and over the picture.
 
 use super::super::dialogs::{Dialog, Dialogs};
 use super::super::hierarchy::Hierarchy;
 use super::super::inspector::{Inspector, Tab};
-use super::super::outline::Outline;
-use super::super::state::Renaming;
 use super::desk::{Desk, USUAL};
 use crate::editor::action::Action;
 use crate::editor::document::{Document, Purpose, Question, adopt};
-use crate::editor::edits::name_of;
 use crate::editor::inspection::DebugRay;
 use crate::editor::inspection::debug_ray::Shot;
 use crate::editor::render_job::{RenderFrom, RenderJob, RenderRequest, start_render};
-use crate::editor::selection::Selection;
 use crate::editor::viewport::{Show, Viewport};
 use crate::inspect::InspectSettings;
 use crate::scene::{PointLamp, RenderSettings, SceneId};
 use crate::sync::TracedCameras;
 use crate::view::TracedView;
 use bevy::ecs::entity::Entity;
-use bevy::ecs::name::Name;
 use bevy::ecs::query::With;
 use bevy::math::{Rect, UVec2, Vec2};
 use bevy::transform::components::Transform;
 use bevy_egui::egui::{Event, Id, Key, Modifiers, Pos2, vec2};
 use std::time::Instant;
-
-#[test]
-fn a_click_on_a_row_selects_ctrl_adds_and_shift_takes_what_lies_between() {
-    let mut desk = Desk::open("cornell-box");
-    let names: Vec<String> = {
-        let outline = desk.world().resource::<Outline>();
-        let items = outline.items.iter();
-        items.take(5).map(|item| item.name.clone()).collect()
-    };
-    let ids: Vec<SceneId> = names.iter().map(|name| desk.named(name).1).collect();
-    desk.click_on(&names[1]);
-    assert_eq!(desk.world().resource::<Selection>().ids(), [ids[1]]);
-    let at = desk.place_of(&names[3]);
-    desk.click_with(at, Modifiers::COMMAND | Modifiers::CTRL);
-    assert_eq!(desk.world().resource::<Selection>().ids(), [ids[1], ids[3]]);
-    desk.click_on(&names[0]);
-    let at = desk.place_of(&names[2]);
-    desk.click_with(at, Modifiers::SHIFT);
-    assert_eq!(desk.world().resource::<Selection>().ids(), &ids[..3]);
-}
 
 #[test]
 fn a_number_that_is_dragged_changes_its_component_and_no_other_as_one_step() {
@@ -135,6 +110,25 @@ fn menus_do_what_they_say() {
         matches!(&question, Some(Question::Path { purpose: asked, .. } | Question::Waiting { purpose: asked }) if *asked == purpose),
         "{question:?}"
     );
+}
+
+#[test]
+fn a_name_that_is_suggested_is_typed_over_and_one_that_was_refused_is_mended() {
+    for (refused, typed) in [
+        (None, "room.scn.ron"),
+        (Some("no room".to_owned()), "triangle.scn.ronroom"),
+    ] {
+        let mut desk = Desk::open("triangle");
+        desk.world().resource_mut::<Document>().question = Some(Question::Path {
+            purpose: Purpose::SaveAs,
+            suggestion: "triangle.scn.ron".into(),
+            refused,
+        });
+        desk.settle();
+        desk.frame(vec![Event::Text("room".into())]);
+        desk.settle();
+        desk.place_of(typed);
+    }
 }
 
 #[test]
@@ -274,55 +268,6 @@ fn the_picture_alone_fills_the_window_until_escape() {
     assert!(desk.find("Object").is_some());
 }
 
-/// The first entities of the list.
-fn first_names(desk: &mut Desk) -> Vec<String> {
-    let outline = desk.world().resource::<Outline>();
-    let items = outline.items.iter();
-    items.take(5).map(|item| item.name.clone()).collect()
-}
-
-#[test]
-fn a_name_typed_in_the_inspector_stays_when_another_row_is_clicked_and_goes_with_escape() {
-    let mut desk = Desk::open("cornell-box");
-    let names = first_names(&mut desk);
-    let (entity, id) = desk.named(&names[0]);
-    let name = |desk: &mut Desk| desk.world().get::<Name>(entity).unwrap().to_string();
-    desk.select([id]);
-    let field = desk.place_of("Name") + vec2(150.0, 0.0);
-    desk.click(field);
-    desk.frame(vec![Event::Text("qqq".into())]);
-    desk.key(Key::Escape);
-    desk.settle();
-    assert_eq!(name(&mut desk), names[0]);
-    desk.click(field);
-    desk.frame(vec![Event::Text("zzz".into())]);
-    desk.click_on(&names[1]);
-    desk.settle();
-    let now = name(&mut desk);
-    assert!(now.contains("zzz") && !now.contains("qqq"), "{now}");
-    let (_, other) = desk.named(&names[1]);
-    assert_eq!(desk.world().resource::<Selection>().ids(), [other]);
-}
-
-#[test]
-fn a_click_on_a_row_below_the_one_that_is_renamed_keeps_the_name_and_selects() {
-    let mut desk = Desk::open("cornell-box");
-    let names = first_names(&mut desk);
-    let (entity, id) = desk.named(&names[1]);
-    let (_, below) = desk.named(&names[3]);
-    desk.world().resource_mut::<Hierarchy>().renaming = Some(Renaming {
-        id,
-        text: "Renamed".into(),
-        focused: false,
-    });
-    desk.settle();
-    desk.click_on(&names[3]);
-    desk.settle();
-    let name = desk.world().get::<Name>(entity).unwrap();
-    assert_eq!(name.as_str(), "Renamed");
-    assert_eq!(desk.world().resource::<Selection>().ids(), [below]);
-}
-
 #[test]
 fn what_was_picked_and_folded_in_a_scene_is_forgotten_with_it() {
     let mut desk = Desk::open("cornell-box");
@@ -351,111 +296,4 @@ fn what_was_picked_and_folded_in_a_scene_is_forgotten_with_it() {
     assert_eq!((view.region, view.range), (None, None));
     let panels = desk.world().resource::<Hierarchy>();
     assert!(panels.folded.is_empty() && panels.anchor.is_none());
-}
-
-#[test]
-fn arrows_go_through_the_rows_and_fold_them_and_letters_find_names() {
-    let mut desk = Desk::open("cornell-box");
-    let names = first_names(&mut desk);
-    let selected = |desk: &mut Desk| {
-        let id = desk.world().resource::<Selection>().active().unwrap();
-        name_of(desk.world(), id)
-    };
-    desk.click_on(&names[0]);
-    assert!(desk.world().resource::<Viewport>().takes_letters);
-    desk.key(Key::ArrowDown);
-    assert_eq!(selected(&mut desk), names[1]);
-    desk.key(Key::ArrowUp);
-    assert_eq!(selected(&mut desk), names[0]);
-    desk.settle();
-    let viewport = desk.world().resource::<Viewport>().clone();
-    assert!(viewport.takes_keys && !viewport.takes_letters);
-    desk.frame(vec![Event::Text("l".into())]);
-    desk.frame(vec![Event::Text("a".into())]);
-    assert_eq!(selected(&mut desk), "Lamp");
-    desk.key(Key::Escape);
-    desk.settle();
-    assert!(desk.world().resource::<Viewport>().takes_letters);
-
-    let (_, lamp) = desk.named("Lamp");
-    let (_, first) = desk.named(&names[0]);
-    let parent = Some(first);
-    desk.world()
-        .write_message(Action::Reparent(vec![lamp], parent));
-    desk.select([first]);
-    let at = desk.place_of(&names[0]);
-    desk.click(at);
-    desk.key(Key::ArrowLeft);
-    desk.settle();
-    assert_eq!(desk.find("Lamp"), None, "it is folded away");
-    desk.key(Key::ArrowRight);
-    desk.key(Key::ArrowRight);
-    assert_eq!(selected(&mut desk), "Lamp");
-    desk.key(Key::ArrowLeft);
-    assert_eq!(selected(&mut desk), names[0]);
-}
-
-#[test]
-fn of_ten_thousand_rows_only_those_that_are_seen_are_laid_out_and_the_last_is_reached_by_name() {
-    let mut desk = Desk::open("triangle");
-    for i in 0..10_000 {
-        let id = SceneId(1000 + i);
-        let name = Name::new(format!("Thing {i}"));
-        desk.world().spawn((id, name));
-    }
-    desk.settle();
-    let drawn = desk.world().resource::<Hierarchy>().rows_drawn;
-    assert!((10..60).contains(&drawn), "{drawn} rows");
-    let top = desk.world().resource::<Outline>().items[0].name.clone();
-    desk.click_on(&top);
-    desk.key(Key::ArrowDown);
-    for letter in "thing 9999".chars() {
-        desk.frame(vec![Event::Text(letter.to_string())]);
-    }
-    desk.settle();
-    desk.place_of("Thing 9999");
-    let drawn = desk.world().resource::<Hierarchy>().rows_drawn;
-    assert!((10..60).contains(&drawn), "{drawn} rows");
-}
-
-/// Prints how long a frame of the panels takes with ten thousand entities, beside ten.
-#[test]
-#[ignore = "a measurement: run it by itself, with --nocapture"]
-fn how_long_a_frame_takes_with_ten_thousand_entities() {
-    for count in [10, 10_000] {
-        let mut desk = Desk::open("triangle");
-        for i in 0..count {
-            let (id, name) = (SceneId(1000 + i), Name::new(format!("Thing {i}")));
-            desk.world().spawn((id, name, PointLamp::default()));
-        }
-        desk.settle();
-        let time = |desk: &mut Desk, what: &str, before: fn(&mut Desk, u32)| {
-            let mut all: Vec<f64> = (0..20)
-                .map(|i| {
-                    before(desk, i);
-                    desk.app.update();
-                    let start = Instant::now();
-                    desk.draw(Vec::new());
-                    start.elapsed().as_secs_f64() * 1e3
-                })
-                .collect();
-            all.sort_by(f64::total_cmp);
-            println!(
-                "{count} entities, {what}: {:.2} ms, at most {:.2}",
-                all[10], all[19]
-            );
-        };
-        time(&mut desk, "at rest", |_, _| {});
-        let rename = |desk: &mut Desk, i: u32| {
-            let entity = desk.named("Thing 5").0;
-            let name = format!("Thing 5{}", " ".repeat(i as usize % 2));
-            desk.world()
-                .entity_mut(entity)
-                .insert(Name::new(name.trim().to_owned()));
-        };
-        time(&mut desk, "after one was named", rename);
-        let all = desk.ids();
-        desk.select(all);
-        time(&mut desk, "all selected", |_, _| {});
-    }
 }
