@@ -6,9 +6,8 @@ use crate::app::headless_app;
 use crate::inspect::{counted, plural};
 use crate::io::builtin::SCENES;
 use crate::io::{OpenOptions, SceneSource, open};
-use crate::scene::{DirectionalLamp, ParallelogramLamp, PointLamp, SegmentLamp};
+use crate::scene::AnyLamp;
 use bevy::asset::Assets;
-use bevy::ecs::query::{Or, With};
 use bevy::ecs::world::World;
 use bevy::mesh::{Mesh, Mesh3d};
 use clap::Args;
@@ -84,13 +83,6 @@ fn triangles(world: &mut World) -> usize {
         .sum()
 }
 
-type Lamp = Or<(
-    With<PointLamp>,
-    With<DirectionalLamp>,
-    With<SegmentLamp>,
-    With<ParallelogramLamp>,
-)>;
-
 fn lights(world: &mut World) -> usize {
-    world.query_filtered::<(), Lamp>().iter(world).count()
+    world.query_filtered::<(), AnyLamp>().iter(world).count()
 }

@@ -5,9 +5,7 @@ use super::edits::scene_entity;
 use super::extent::own_extent;
 use super::viewport::{EditorCamera, Viewport};
 use crate::bvh::Ray;
-use crate::scene::{
-    DirectionalLamp, ParallelogramLamp, PointLamp, SceneCamera, SceneId, SegmentLamp,
-};
+use crate::scene::{AnyLamp, ParallelogramLamp, SceneCamera, SceneId};
 use crate::sync::Traced;
 use crate::view::{self, DrawnLines, Picked, SymbolOf, nearest_symbol};
 use bevy::camera::Camera;
@@ -34,13 +32,7 @@ pub(super) struct Found {
 }
 
 /// The lights and cameras: what a scene's entity is that has no mesh and stands somewhere.
-pub(super) type Symbol = Or<(
-    With<PointLamp>,
-    With<DirectionalLamp>,
-    With<SegmentLamp>,
-    With<ParallelogramLamp>,
-    With<SceneCamera>,
-)>;
+pub(super) type Symbol = Or<(AnyLamp, With<SceneCamera>)>;
 
 /// The camera of the window and its place: as they were drawn last, and in the panels' pass as they are drawn next.
 pub(super) fn camera(world: &mut World) -> Option<(Camera, GlobalTransform)> {

@@ -4,10 +4,19 @@ use super::SceneId;
 use super::schema::{Label, NotAbove, Quantity, documented};
 use bevy::camera::visibility::Visibility;
 use bevy::color::LinearRgba;
+use bevy::ecs::query::{Or, With};
 use bevy::ecs::{component::Component, reflect::ReflectComponent};
 use bevy::math::Vec3;
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 use bevy::transform::components::Transform;
+
+/// What any light has, as a query's filter.
+pub type AnyLamp = Or<(
+    With<PointLamp>,
+    With<DirectionalLamp>,
+    With<SegmentLamp>,
+    With<ParallelogramLamp>,
+)>;
 
 documented! {
     /// A light at the entity's position. Strength: radiant intensity, W/sr.

@@ -29,7 +29,7 @@ mod tree_settings;
 
 pub use camera::{Lens, Motion, Projection, SceneCamera};
 pub use identity::{NotTraced, SceneId};
-pub use lamps::{Cone, DirectionalLamp, ParallelogramLamp, PointLamp, SegmentLamp};
+pub use lamps::{AnyLamp, Cone, DirectionalLamp, ParallelogramLamp, PointLamp, SegmentLamp};
 pub use material::{
     Alpha, MapFilter, Phong, PhongMap, PhongMaps, SRGB_16_BITS, TextureSource, UsesMaterial, Wrap,
 };

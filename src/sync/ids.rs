@@ -1,8 +1,5 @@
 use super::reading::Switched;
-use crate::scene::{
-    DirectionalLamp, NotTraced, ParallelogramLamp, Phong, PointLamp, SceneCamera, SceneId,
-    SegmentLamp,
-};
+use crate::scene::{AnyLamp, NotTraced, Phong, SceneCamera, SceneId};
 use bevy::ecs::entity::{Entity, EntityHashMap};
 use bevy::ecs::hierarchy::{ChildOf, Children};
 use bevy::ecs::lifecycle::RemovedComponents;
@@ -47,15 +44,7 @@ impl IdOwners {
     }
 }
 
-type OfScene = Or<(
-    With<Mesh3d>,
-    With<Phong>,
-    With<PointLamp>,
-    With<DirectionalLamp>,
-    With<SegmentLamp>,
-    With<ParallelogramLamp>,
-    With<SceneCamera>,
-)>;
+type OfScene = Or<(With<Mesh3d>, With<Phong>, AnyLamp, With<SceneCamera>)>;
 
 /// What has a place and no number.
 type Place = (With<Transform>, Without<SceneId>, Without<NotTraced>);

@@ -6,7 +6,7 @@
 use super::lines::{DrawnLines, OVERLAY_LAYER};
 use super::sketch::{Sketch, colors};
 use crate::scene::{
-    DirectionalLamp, ParallelogramLamp, PointLamp, SceneCamera, SceneId, SegmentLamp,
+    AnyLamp, DirectionalLamp, ParallelogramLamp, PointLamp, SceneCamera, SceneId, SegmentLamp,
 };
 use crate::sync::Traced;
 use crate::trace;
@@ -174,13 +174,7 @@ type Anything<'w, 's> = Query<
     ),
 >;
 
-type HasSymbol = Or<(
-    With<PointLamp>,
-    With<DirectionalLamp>,
-    With<SegmentLamp>,
-    With<ParallelogramLamp>,
-    With<SceneCamera>,
-)>;
+type HasSymbol = Or<(AnyLamp, With<SceneCamera>)>;
 
 type Edited = Or<(
     Changed<GlobalTransform>,

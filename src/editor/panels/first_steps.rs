@@ -6,8 +6,7 @@ use crate::editor::action::Action;
 use crate::editor::command::{State, find, shortcut};
 use crate::editor::notice::Notices;
 use crate::editor::preferences::Preferences;
-use crate::scene::{DirectionalLamp, ParallelogramLamp, PointLamp, SceneId, SegmentLamp};
-use bevy::ecs::query::{Or, With};
+use crate::scene::{AnyLamp, SceneId};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{self, Align2, Button, Id, Rect, RichText, Ui, vec2};
@@ -112,13 +111,6 @@ fn card_ui(ui: &mut Ui, world: &mut World, tried: &mut FirstSteps) -> bool {
 
 /// Its name, what it does, and doing it.
 type Step = (&'static str, &'static str, fn(&mut World));
-
-type AnyLamp = Or<(
-    With<PointLamp>,
-    With<DirectionalLamp>,
-    With<SegmentLamp>,
-    With<ParallelogramLamp>,
-)>;
 
 fn take_the_lamp(world: &mut World) {
     let mut lamps = world.query_filtered::<&SceneId, AnyLamp>();

@@ -17,30 +17,20 @@ use super::error::Place;
 use super::ids::assign_ids;
 use super::notes::Notes;
 use super::place::world_from;
-use crate::scene::{
-    DirectionalLamp, Environment, ParallelogramLamp, PointLamp, Projection, RenderSettings,
-    SceneCamera, SegmentLamp,
-};
+use crate::scene::{AnyLamp, Environment, Projection, RenderSettings, SceneCamera};
 use bevy::ecs::name::Name;
 use bevy::ecs::query::QueryFilter;
 use bevy::math::Vec3;
-use bevy::prelude::{Bundle, Entity, Or, With, World};
+use bevy::prelude::{Bundle, Entity, World};
 use bevy::transform::components::Transform;
 use std::path::Path;
 use surface::Surface;
 use viewpoint::framing;
 
-type Lamp = Or<(
-    With<PointLamp>,
-    With<DirectionalLamp>,
-    With<SegmentLamp>,
-    With<ParallelogramLamp>,
-)>;
-
 /// Gives a scene what it lacks to be seen. Notes say what; `file` is where it came from.
 pub(crate) fn frame(world: &mut World, file: &Path, notes: &mut Notes) {
     let mut note = |what: &str, instead| notes.add(file, Place::Whole, what, instead);
-    let has_lamps = count::<Lamp>(world) > 0;
+    let has_lamps = count::<AnyLamp>(world) > 0;
     let has_dome = (world.get_resource::<Environment>()).is_some_and(|around| around.lights);
     let surface = Surface::of(world);
     if surface.is_without_area() {

@@ -22,10 +22,7 @@ pub(crate) use read::{SceneFile, read_scene};
 pub(crate) use write::SceneContent;
 pub(crate) use write::{Rebase, write_scene};
 
-use crate::scene::{
-    DirectionalLamp, MeshSource, ParallelogramLamp, Phong, PointLamp, SceneCamera, SceneId,
-    SegmentLamp,
-};
+use crate::scene::{AnyLamp, MeshSource, Phong, SceneCamera, SceneId};
 use bevy::ecs::{hierarchy::ChildOf, reflect::ReflectResource, resource::Resource, world::World};
 use bevy::prelude::{Entity, With};
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
@@ -49,10 +46,7 @@ pub(crate) fn scene_entities(world: &mut World) -> Vec<Entity> {
         With<SceneId>,
         With<MeshSource>,
         With<Phong>,
-        With<PointLamp>,
-        With<DirectionalLamp>,
-        With<SegmentLamp>,
-        With<ParallelogramLamp>,
+        AnyLamp,
         With<SceneCamera>,
     )>;
     let mut query = world.query_filtered::<Entity, Any>();

@@ -1,7 +1,7 @@
 //! Lights of ours as Bevy's: twins that stand where theirs stand.
 
 use super::{RASTER_LAYER, exposure};
-use crate::scene::{DirectionalLamp, ParallelogramLamp, PointLamp, SegmentLamp};
+use crate::scene::{AnyLamp, DirectionalLamp, ParallelogramLamp, PointLamp, SegmentLamp};
 use bevy::camera::visibility::{InheritedVisibility, RenderLayers, Visibility};
 use bevy::color::{Color, ColorToComponents, LinearRgba};
 use bevy::ecs::entity_disabling::Disabled;
@@ -41,12 +41,6 @@ type WithoutOwnLight = (
     Without<DirectionalLight>,
     Without<RectLight>,
 );
-type AnyLamp = Or<(
-    With<PointLamp>,
-    With<DirectionalLamp>,
-    With<SegmentLamp>,
-    With<ParallelogramLamp>,
-)>;
 type EditedLamp = Or<(
     Changed<PointLamp>,
     Changed<DirectionalLamp>,

@@ -8,14 +8,14 @@ use crate::editor::notice::Notices;
 use crate::editor::preferences::Preferences;
 use crate::editor::viewport::EditorCamera;
 use crate::film::LightMix;
-use crate::scene::{DirectionalLamp, ParallelogramLamp, PointLamp, SceneId, SegmentLamp};
+use crate::scene::{AnyLamp, DirectionalLamp, ParallelogramLamp, PointLamp, SceneId, SegmentLamp};
 use crate::trace::Gains;
 use crate::view::ViewSettings;
 use bevy::camera::visibility::InheritedVisibility;
 use bevy::color::LinearRgba;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::name::Name;
-use bevy::ecs::query::{Or, With};
+use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy::math::Vec3;
@@ -136,17 +136,10 @@ pub(super) struct LightRow {
     pub is_shown: bool,
 }
 
-type IsLamp = Or<(
-    With<PointLamp>,
-    With<DirectionalLamp>,
-    With<SegmentLamp>,
-    With<ParallelogramLamp>,
-)>;
-
 /// All lights of the scene, by their names and numbers.
 pub(super) fn lights(world: &mut World) -> Vec<LightRow> {
     let mut query =
-        world.query_filtered::<(&SceneId, Option<&Name>, Option<&InheritedVisibility>), IsLamp>();
+        world.query_filtered::<(&SceneId, Option<&Name>, Option<&InheritedVisibility>), AnyLamp>();
     let rows = query.iter(world).map(|(&id, name, visibility)| LightRow {
         id,
         name: name.map_or_else(|| format!("light {}", id.0), ToString::to_string),
