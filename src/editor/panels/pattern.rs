@@ -2,7 +2,7 @@
 
 use crate::editor::inspection::DebugRay;
 use crate::editor::selection::Selection;
-use crate::inspect::{Dimension, InspectSettings, Pattern, PatternSettings, pattern};
+use crate::inspect::{Dimension, InspectSettings, Pattern, PatternSettings, counted, pattern};
 use crate::scene::RenderSettings;
 use crate::trace::{DOME, Lights, World, samples_per_pixel};
 use bevy::ecs::resource::Resource;
@@ -39,7 +39,7 @@ fn heading(points: usize, [drawn, all]: [u64; 2], pixel: UVec2) -> String {
     let UVec2 { x, y } = pixel;
     match drawn < all {
         true => format!("the first {drawn} of {all} samples of pixel {x}, {y}"),
-        false => format!("{points} samples of pixel {x}, {y}"),
+        false => format!("{} of pixel {x}, {y}", counted(points as u64, "sample")),
     }
 }
 
@@ -175,6 +175,7 @@ mod tests {
         let pixel = UVec2::new(3, 7);
         // Of a light's points each sample may have several.
         assert_eq!(heading(64, [16, 16], pixel), "64 samples of pixel 3, 7");
+        assert_eq!(heading(1, [1, 1], pixel), "1 sample of pixel 3, 7");
         assert_eq!(
             heading(4096, [4096, 9000], pixel),
             "the first 4096 of 9000 samples of pixel 3, 7"

@@ -1,5 +1,6 @@
 //! What this is, and what it is made with.
 
+use crate::inspect::counted;
 use bevy_egui::egui::Ui;
 
 pub(super) fn about_ui(ui: &mut Ui) {
@@ -11,7 +12,8 @@ pub(super) fn about_ui(ui: &mut Ui) {
     ui.add_space(6.0);
     let threads = rayon::current_num_threads();
     ui.weak(format!(
-        "Tracing on {threads} threads; this machine is {} {}.",
+        "Tracing on {}; this machine is {} {}.",
+        counted(threads as u64, "thread"),
         std::env::consts::OS,
         std::env::consts::ARCH
     ));
