@@ -23,6 +23,7 @@
 //! | [`typed_drag`] | the number that is typed while a handle is dragged |
 //! | [`told`], [`readout`] | what is under the pointer: a line of the gizmos, a pixel |
 //! | [`context_menu`], [`palette`] | the table of commands: what fits a right click, and all of it |
+//! | [`keyboard`] | nothing: tells egui of keys, each with its modifiers |
 //! | [`screen_reader`] | nothing: tells the platform's screen readers what the others draw |
 //! | [`mixer`] | what each light adds, and a mix of them, in a window over the picture |
 //! | [`dialogs`] | what is in front of everything |
@@ -39,6 +40,7 @@ mod first_steps;
 mod gesture;
 mod hierarchy;
 mod inspector;
+mod keyboard;
 mod kind_icons;
 mod line_legend;
 mod menu_bar;
@@ -105,8 +107,12 @@ impl Plugin for PanelsPlugin {
         if !app.is_plugin_added::<EguiPlugin>() {
             app.add_plugins(EguiPlugin::default());
         }
-        app.add_plugins((PreferencesPlugin, screen_reader::ScreenReaderPlugin))
-            .init_resource::<Outline>();
+        app.add_plugins((
+            PreferencesPlugin,
+            keyboard::KeyboardPlugin,
+            screen_reader::ScreenReaderPlugin,
+        ))
+        .init_resource::<Outline>();
         add_panels(app);
         order_pass(app);
         app.add_systems(EguiPrimaryContextPass, (outline_scene, draw).chain());
