@@ -25,9 +25,16 @@ const AGAIN: Duration = Duration::from_secs(1);
 pub(in super::super) struct PathForm {
     text: String,
     is_new: bool,
+    given: Option<Given>,
     /// Folders that were used before and are there.
     recent: Vec<PathBuf>,
     listing: Option<Listing>,
+}
+
+/// A path that was given. What is being done with it is shown in a frame of its own, since all others wait for it.
+struct Given {
+    path: PathBuf,
+    is_shown: bool,
 }
 
 struct Listing {
@@ -47,6 +54,7 @@ impl PathForm {
         Self {
             text,
             is_new: true,
+            given: None,
             recent: there.take(OFFERED).cloned().collect(),
             listing: None,
         }
@@ -196,7 +204,13 @@ pub(super) fn path_ui(
     let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     let path = path_of(&form.text);
     whole_path_ui(ui, &path);
-    if let Some(why) = refused {
+    if let Some(given) = &form.given {
+        let verb = match purpose {
+            Purpose::Open | Purpose::Import => "Reading",
+            Purpose::SaveAs => "Writing",
+        };
+        ui.label(format!("{verb} {}…", path_text(&given.path)));
+    } else if let Some(why) = refused {
         let ink = ui.visuals().error_fg_color;
         ui.label(RichText::new(why).color(ink));
     }
@@ -239,7 +253,23 @@ pub(super) fn path_ui(
         end_caret(ui, id, &form.text);
     }
     ui.add_space(8.0);
-    buttons_ui(ui, path, entered)
+    let answered = buttons_ui(ui, path, entered);
+    match (form.given.take(), answered) {
+        (Some(given), _) if given.is_shown => return Some(Answer::Path(given.path)),
+        (Some(given), _) => {
+            form.given = Some(Given {
+                is_shown: true,
+                ..given
+            });
+        }
+        (None, Some(Answer::Path(path))) => {
+            let is_shown = false;
+            form.given = Some(Given { path, is_shown });
+        }
+        (None, answered) => return answered,
+    }
+    ui.ctx().request_repaint();
+    None
 }
 
 fn buttons_ui(ui: &mut Ui, path: PathBuf, entered: bool) -> Option<Answer> {

@@ -132,6 +132,27 @@ fn a_name_that_is_suggested_is_typed_over_and_one_that_was_refused_is_mended() {
 }
 
 #[test]
+fn what_is_done_with_a_path_is_shown_in_a_frame_before_the_others_wait_for_it() {
+    let mut desk = Desk::open("triangle");
+    desk.world().resource_mut::<Document>().question = Some(Question::Path {
+        purpose: Purpose::Open,
+        suggestion: "/no/such.obj".into(),
+        refused: Some("an older reason".into()),
+    });
+    desk.settle();
+    desk.place_of("an older reason");
+    desk.key(Key::Enter);
+    desk.frame(Vec::new());
+    desk.place_of("Reading /no/such.obj…");
+    assert_eq!(desk.find("an older reason"), None);
+    desk.settle();
+    assert_eq!(desk.find("Reading /no/such.obj…"), None);
+    let question = &desk.world().resource::<Document>().question;
+    let stands = matches!(question, Some(Question::Path { refused: Some(why), .. }) if why == "an older reason");
+    assert!(!stands, "{question:?}");
+}
+
+#[test]
 fn the_pointer_and_the_keys_are_the_scene_s_only_where_no_panel_wants_them() {
     let mut desk = Desk::open("triangle");
     let hovered = |desk: &mut Desk, at: Pos2| {
