@@ -59,6 +59,12 @@ fn without_steps_back(path: &Path) -> PathBuf {
     found
 }
 
+/// A file's name without its folder.
+pub(super) fn file_name(file: &Path) -> String {
+    let name = file.file_name().unwrap_or(file.as_os_str());
+    name.to_string_lossy().into_owned()
+}
+
 /// A file that the scene names: as it does, where that lies below the scene's folder, else where it lies. A recovered
 /// scene's folder is one that nobody knows.
 pub(super) fn scene_path_text(world: &World, path: &str) -> String {

@@ -3,7 +3,7 @@
 use super::color::{AXES, GREY, WHITE, faint, of_scale};
 use super::line_set::{Label, LineSet, Panel, Stands, Thinned};
 use super::settings::{BoxChoice, BoxColor, BoxSettings, TreeChoice, TreeForm};
-use super::trees::{TreeView, trees};
+use super::trees::{TreeView, trees, triangle_in_world};
 use super::visits::Visits;
 use super::wide_boxes::wide_boxes;
 use super::{Subject, System};
@@ -280,16 +280,9 @@ pub(super) fn outline(
     triangle: u32,
     color: LinearRgba,
 ) {
-    // The rays may be older than the world: what they hit may be gone.
-    let instances = subject.world.aggregate.instances();
-    let Some(of) = instances.get(instance as usize) else {
+    let Some(corners) = triangle_in_world(subject.world, instance, triangle) else {
         return;
     };
-    if triangle as usize >= of.mesh.triangles().len() {
-        return;
-    }
-    let corners = of.mesh.triangles().corners(triangle);
-    let corners = corners.map(|corner| of.to_world_point(corner));
     set.closed(&corners, color, Stands::Triangle { instance, triangle });
 }
 

@@ -90,5 +90,5 @@ pub use table::aligned;
 pub use told::{Told, node_told, tell, tree_name};
 pub use traversal::{StackEntry, Step, StepKind, Traversal};
 pub use tree_counts::TreeCounts;
-pub use trees::{NodeFacts, TreeView, trees};
+pub use trees::{NodeFacts, TreeView, trees, triangle_in_world};
 pub use visits::Visits;

@@ -2,7 +2,9 @@
 
 use super::column::{color_text, meets, metres, vector_text};
 use super::count::{cost_text, counted};
-use super::{InspectSettings, Names, NodeFacts, Stands, System, TreeForm, TreeView};
+use super::{
+    InspectSettings, Names, NodeFacts, Stands, System, TreeForm, TreeView, triangle_in_world,
+};
 use crate::bvh::Levels;
 use crate::trace::{RayTree, World};
 use glam::Vec3;
@@ -57,12 +59,7 @@ pub fn tell(
         Stands::Ray(ray) => ray_told(rays?, ray, names),
         Stands::Triangle { instance, triangle } => {
             let object = world.objects.get(instance as usize)?;
-            let of = world.aggregate.instances().get(instance as usize)?;
-            let known = (triangle as usize) < of.mesh.triangles().len();
-            let [a, b, c] = known.then(|| {
-                let corners = of.mesh.triangles().corners(triangle);
-                corners.map(|corner| of.to_world_point(corner))
-            })?;
+            let [a, b, c] = triangle_in_world(world, instance, triangle)?;
             let area = 0.5 * (b - a).cross(c - a).length();
             Some(
                 Told::new(format!("Triangle {triangle}"))

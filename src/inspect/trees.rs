@@ -219,3 +219,12 @@ impl SplitPlanes<'_> {
         split_plane(tree, node as usize, box_at)
     }
 }
+/// Where a triangle of an instance lies at time 0; `None` where there is none: rays may be older than the world, and what
+/// they hit be gone.
+pub fn triangle_in_world(world: &World, instance: u32, triangle: u32) -> Option<[Vec3; 3]> {
+    let of = world.aggregate.instances().get(instance as usize)?;
+    let triangles = of.mesh.triangles();
+    let is_there = (triangle as usize) < triangles.len();
+    let corners = is_there.then(|| triangles.corners(triangle))?;
+    Some(corners.map(|corner| of.to_world_point(corner)))
+}

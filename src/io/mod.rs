@@ -57,7 +57,7 @@ mod sources;
 mod spawn;
 mod stl;
 mod text;
-mod vertex_colors;
+mod vertex_values;
 
 #[cfg(feature = "editor")]
 pub(crate) use budget::beside;

@@ -1,4 +1,5 @@
-//! Colours of vertices: numbers up to 1, or up to 255, which files do not say.
+//! Numbers of vertices as files have them, brought to what can be used: what is not finite, and colours up to 1, or up to
+//! 255, which files do not say.
 
 /// Light that is brighter than white reaches so far in files; numbers beyond are counted to 255.
 const BRIGHTEST: f32 = 16.0;
@@ -32,6 +33,18 @@ pub(super) fn to_unit<const N: usize>(
         true => ("vertex colours above 1", "read as numbers up to 255"),
         false => ("vertex colours outside 0 to 1", "clamped"),
     })
+}
+
+/// Puts 0 in the place of what is not finite; true where there was any.
+pub(super) fn clear<const N: usize>(values: &mut [[f32; N]]) -> bool {
+    let mut any = false;
+    for value in values {
+        if !value.iter().all(|value| value.is_finite()) {
+            *value = [0.0; N];
+            any = true;
+        }
+    }
+    any
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@
 
 use crate::editor::notice::Notices;
 use crate::editor::schedule::EditorUpdate;
+use crate::editor::texts::file_name;
 use crate::io::{Folder, Limits, Reloaded, SceneFiles, SourceFile, beside, source_files};
 use crate::scene::{Environment, MeshSource, Phong};
 use bevy::app::App;
@@ -109,11 +110,7 @@ fn watch(world: &mut World, mut told: Local<HashMap<PathBuf, String>>) {
         if open.is_none_or(|open| open.folder.path != folder.path) {
             continue;
         }
-        let name = file
-            .file_name()
-            .unwrap_or(file.as_os_str())
-            .to_string_lossy()
-            .into_owned();
+        let name = file_name(&file);
         match result {
             Ok(reloaded) => {
                 told.remove(&file);

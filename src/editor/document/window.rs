@@ -8,6 +8,7 @@ use crate::editor::notice::Notices;
 use crate::editor::pick;
 use crate::editor::schedule::EditorUpdate;
 use crate::editor::selection::Selection;
+use crate::editor::texts::file_name;
 use crate::io::{MODEL_EXTENSIONS, PICTURE_EXTENSIONS, SceneFiles};
 use crate::scene::{Environment, Phong, TextureSource, UsesMaterial};
 use bevy::app::{App, PreUpdate};
@@ -113,11 +114,7 @@ fn drop_picture(world: &mut World, file: &Path, on_objects: bool) {
     let Some(source) = picture_at(world, file) else {
         return;
     };
-    let name = file
-        .file_name()
-        .unwrap_or(file.as_os_str())
-        .to_string_lossy()
-        .into_owned();
+    let name = file_name(file);
     let selected = world.resource::<Selection>().ids().to_vec();
     let mut materials: Vec<_> = selected
         .into_iter()

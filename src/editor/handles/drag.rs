@@ -134,11 +134,7 @@ pub(super) fn begin(
 ) -> Drag {
     world.resource_mut::<TypedDrag>().clear();
     let tools = world.resource::<Tools>().clone();
-    let verb = match tools.tool {
-        Tool::Move => "Move",
-        Tool::Turn => "Turn",
-        Tool::Scale => "Scale",
-    };
+    let verb = tools.tool.verb();
     let grip = active_grip(world, &tools);
     let (moved, mover, name) = match grip.and_then(|grip| Some((grip, grips::place(world, grip)?)))
     {

@@ -51,6 +51,17 @@ pub enum Tool {
     Scale,
 }
 
+impl Tool {
+    /// What is done with it.
+    fn verb(self) -> &'static str {
+        match self {
+            Self::Move => "Move",
+            Self::Turn => "Turn",
+            Self::Scale => "Scale",
+        }
+    }
+}
+
 /// How handles behave.
 #[derive(Resource, Clone, Debug, PartialEq)]
 pub struct Tools {

@@ -73,10 +73,10 @@ impl TypedDrag {
 
 /// What is done along or about which axis.
 pub(super) fn label(tool: Tool, axis: Option<Axis>) -> String {
-    let (verb, along) = match tool {
-        Tool::Move => ("Move", "along"),
-        Tool::Turn => ("Turn", "about"),
-        Tool::Scale => ("Scale", "along"),
+    let verb = tool.verb();
+    let along = match tool {
+        Tool::Move | Tool::Scale => "along",
+        Tool::Turn => "about",
     };
     match axis {
         Some(Axis::X) => format!("{verb} {along} x"),

@@ -7,7 +7,7 @@ use super::{Seen, seen_from};
 use crate::bvh::primitives_below;
 use crate::editor::preferences::Preferences;
 use crate::editor::viewport::EditorCamera;
-use crate::inspect::{InspectSettings, StepKind, Stepper, TreeView};
+use crate::inspect::{InspectSettings, StepKind, Stepper, TreeView, triangle_in_world};
 use crate::trace::{RayEnd, TracedRay, World};
 use crate::view::{DrawnLines, Line, OVERLAY_LAYER};
 use bevy::camera::visibility::RenderLayers;
@@ -247,14 +247,9 @@ fn triangles_below(view: &TreeView, node: u32, most: usize) -> Vec<(u32, u32)> {
 }
 
 fn outline(lines: &mut Vec<Line>, world: &World, instance: u32, triangle: u32, color: LinearRgba) {
-    let Some(of) = world.aggregate.instances().get(instance as usize) else {
+    let Some(corners) = triangle_in_world(world, instance, triangle) else {
         return;
     };
-    if triangle as usize >= of.mesh.triangles().len() {
-        return;
-    }
-    let corners = of.mesh.triangles().corners(triangle);
-    let corners = corners.map(|corner| of.to_world_point(corner));
     for i in 0..3 {
         lines.push(Line::new(corners[i], corners[(i + 1) % 3], color));
     }

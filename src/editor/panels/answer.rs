@@ -21,7 +21,7 @@ use bevy::ecs::system::{Res, ResMut};
 use bevy::ecs::world::World;
 use bevy::math::{Ray3d, Vec2};
 use bevy_egui::egui::{
-    self, Align2, Area, CursorIcon, Id, Label, Order, Rect, RichText, Stroke, vec2,
+    self, Align2, Area, CursorIcon, Id, Label, Order, Pos2, Rect, RichText, Stroke, vec2,
 };
 
 /// Points.
@@ -157,22 +157,13 @@ pub(super) fn answer_ui(
     let seen = seen.and_then(|seen| pick::to_window(world, seen));
     let at = seen.map_or(asked.at, |seen| seen + offset);
     let at = to_points(context, at);
-    let below = at.y < free.center().y;
-    let right = at.x < free.center().x;
-    let pivot = match (right, below) {
-        (true, true) => Align2::LEFT_TOP,
-        (true, false) => Align2::LEFT_BOTTOM,
-        (false, true) => Align2::RIGHT_TOP,
-        (false, false) => Align2::RIGHT_BOTTOM,
-    };
-    let away = |far: bool| if far { 14.0 } else { -14.0 };
+    let (pivot, corner) = corner_beside(free, at, [14.0; 2]);
     let preset = match asked.question {
         Question::Noisy => InspectPreset::WhereIsTheNoiseFrom,
         _ => InspectPreset::WhyBlack,
     };
     let mut wish = None;
     let id = Id::new("why a pixel is as it is");
-    let corner = at + vec2(away(right), away(below));
     let legend = line_legend::layer();
     let (known, taken) = context.memory(|memory| {
         let taken = memory.areas().is_visible(&legend);
@@ -250,6 +241,20 @@ pub(super) fn answer_ui(
     }
     let pointer = context.pointer_latest_pos();
     pointer.is_some_and(|at| area.response.rect.contains(at))
+}
+
+/// Where a card beside a place has its corner, and which of its corners that is: away from the nearer sides of the free
+/// rectangle, so that it lies over that; so many points right of and below the place, and left of and above it.
+pub(super) fn corner_beside(free: Rect, at: Pos2, [after, before]: [f32; 2]) -> (Align2, Pos2) {
+    let [right, below] = [at.x < free.center().x, at.y < free.center().y];
+    let pivot = match (right, below) {
+        (true, true) => Align2::LEFT_TOP,
+        (true, false) => Align2::LEFT_BOTTOM,
+        (false, true) => Align2::RIGHT_TOP,
+        (false, false) => Align2::RIGHT_BOTTOM,
+    };
+    let away = |is_after: bool| if is_after { after } else { -before };
+    (pivot, at + vec2(away(right), away(below)))
 }
 
 /// The part of the free rectangle in which a card that wants to stand there hides nothing of what is taken already: right of

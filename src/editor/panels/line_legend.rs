@@ -3,6 +3,7 @@
 
 use super::notices::is_over;
 use super::says::Says;
+use super::theme::gradient;
 use crate::editor::inspection::{DebugRay, Drawings};
 use crate::editor::pick::to_window;
 use crate::inspect::{InspectSettings, Label, LineSet, Meaning, legend};
@@ -11,8 +12,8 @@ use bevy::color::{ColorToPacked, LinearRgba, Srgba};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{
-    self, Align2, Color32, FontId, Id, LayerId, Mesh, Order, Rect, RichText, Sense, Stroke,
-    StrokeKind, Ui, pos2, vec2,
+    self, Align2, Color32, FontId, Id, LayerId, Order, Rect, RichText, Sense, Stroke, StrokeKind,
+    Ui, pos2, vec2,
 };
 
 /// Extent of a line in the legend, in points.
@@ -125,7 +126,8 @@ fn body(ui: &mut Ui, texts: &LineTexts, lacks_rays: bool) {
             let edge = Stroke::new(1.0, ui.visuals().weak_text_color());
             ui.painter()
                 .rect_stroke(line, 1.0, edge, StrokeKind::Outside);
-            ui.painter().add(swatch(line, colors));
+            let colors: Vec<Color32> = colors.iter().copied().map(color32).collect();
+            ui.painter().add(gradient(line, &colors));
             ui.label(RichText::new(*says).small());
         });
     }
@@ -136,28 +138,6 @@ fn body(ui: &mut Ui, texts: &LineTexts, lacks_rays: bool) {
         ui.add_space(NOTE_GAP);
         ui.label(RichText::new(note).small().weak());
     }
-}
-
-/// A line that goes from colour to colour.
-fn swatch(place: Rect, colors: &[LinearRgba]) -> Mesh {
-    let mut mesh = Mesh::default();
-    // A single colour is the same from end to end.
-    let last = colors.len().saturating_sub(1).max(1);
-    for i in 0..=last {
-        let Some(color) = colors.get(i).or_else(|| colors.last()) else {
-            return mesh;
-        };
-        let x = place.min.x + place.width() * i as f32 / last as f32;
-        let color = color32(*color);
-        mesh.colored_vertex(pos2(x, place.min.y), color);
-        mesh.colored_vertex(pos2(x, place.max.y), color);
-        if i > 0 {
-            let at = 2 * i as u32;
-            mesh.add_triangle(at - 2, at - 1, at);
-            mesh.add_triangle(at - 1, at, at + 1);
-        }
-    }
-    mesh
 }
 
 fn color32(color: LinearRgba) -> Color32 {
@@ -180,24 +160,5 @@ fn labels_ui(ui: &Ui, free: Rect, world: &mut World, labels: &[Label]) {
         let dark = Color32::from_black_alpha(140);
         painter.rect_filled(rect.expand2(vec2(2.0, 0.0)), 2.0, dark);
         painter.galley(rect.min, galley, Color32::WHITE);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_swatch_has_each_colour_at_its_place() {
-        let place = Rect::from_min_max(pos2(0.0, 0.0), pos2(20.0, 3.0));
-        let (red, blue) = (LinearRgba::RED, LinearRgba::BLUE);
-        let two = swatch(place, &[red, blue]);
-        assert_eq!(two.vertices.len(), 4);
-        assert_eq!(two.vertices[0].color, Color32::from_rgb(255, 0, 0));
-        assert_eq!(two.vertices[2].color, Color32::from_rgb(0, 0, 255));
-        assert_eq!(two.vertices[3].pos, pos2(20.0, 3.0));
-        let one = swatch(place, &[red]);
-        assert_eq!(one.vertices[2].color, Color32::from_rgb(255, 0, 0));
-        assert!(swatch(place, &[]).is_empty());
     }
 }

@@ -10,7 +10,7 @@ use super::pattern::pattern_ui;
 use super::readout::PixelValue;
 use super::says::Says;
 use super::state::with;
-use super::theme::accent;
+use super::theme::{accent, gradient};
 use super::tree_pair;
 use crate::editor::document::SceneOpened;
 use crate::editor::viewport::{EditorCamera, Show, Viewport};
@@ -32,6 +32,9 @@ use bevy_egui::egui::{
 const GRAB: f32 = 5.0;
 /// Parts of a region that are too small to be meant.
 const LEAST_REGION: f32 = 0.01;
+
+/// Parts of a palette's bar, each of which goes from colour to colour.
+const STEPS: u32 = 64;
 
 /// An end of a palette; between any two of them the distance is a number.
 const END: Quantity = Quantity::within(-1e30, 1e30, "");
@@ -258,24 +261,15 @@ fn legend_body(
 ) -> Option<[f32; 2]> {
     let width = 200.0;
     let (bar, _) = ui.allocate_exact_size(vec2(width, 12.0), Sense::hover());
-    let steps = 64;
-    let mut mesh = egui::Mesh::default();
-    for i in 0..=steps {
-        let part = i as f32 / steps as f32;
-        let [r, g, b] = scale
-            .color(scale.low + part * (scale.high - scale.low))
-            .map(|channel| (channel * 255.0 + 0.5) as u8);
-        let x = bar.min.x + part * width;
-        let color = Color32::from_rgb(r, g, b);
-        mesh.colored_vertex(pos2(x, bar.min.y), color);
-        mesh.colored_vertex(pos2(x, bar.max.y), color);
-        if i > 0 {
-            let at = 2 * i as u32;
-            mesh.add_triangle(at - 2, at - 1, at);
-            mesh.add_triangle(at - 1, at, at + 1);
-        }
-    }
-    ui.painter().add(mesh);
+    let colors: Vec<Color32> = (0..=STEPS)
+        .map(|i| {
+            let part = i as f32 / STEPS as f32;
+            let color = scale.color(scale.low + part * (scale.high - scale.low));
+            let [r, g, b] = color.map(|channel| (channel * 255.0 + 0.5) as u8);
+            Color32::from_rgb(r, g, b)
+        })
+        .collect();
+    ui.painter().add(gradient(bar, &colors));
     if let Some(value) = under.map(|under| under.value).filter(|v| v.is_finite()) {
         let part = ((value - scale.low) / (scale.high - scale.low)).clamp(0.0, 1.0);
         let x = bar.min.x + part * width;

@@ -3,8 +3,8 @@
 use super::super::preferences::{Preferences, ThemeChoice};
 use bevy_egui::egui::epaint::AlphaFromCoverage;
 use bevy_egui::egui::{
-    self, Color32, CornerRadius, FontFamily, FontId, Shadow, Stroke, StrokeKind, Style, TextStyle,
-    Theme, ThemePreference, Visuals, vec2,
+    self, Color32, CornerRadius, FontFamily, FontId, Mesh, Rect, Shadow, Stroke, StrokeKind, Style,
+    TextStyle, Theme, ThemePreference, Visuals, pos2, vec2,
 };
 
 /// Seconds from press to release that are still a click: where frames take long a press is seen late.
@@ -95,6 +95,26 @@ const LIGHT: Palette = Palette {
 /// The colour of what is chosen, dragged or drawn by the editor over the picture.
 pub(super) fn accent(ui: &egui::Ui) -> Color32 {
     ACCENT[usize::from(!ui.visuals().dark_mode)]
+}
+
+/// A bar that goes from colour to colour; one that has a single one is the same from end to end.
+pub(super) fn gradient(place: Rect, colors: &[Color32]) -> Mesh {
+    let mut mesh = Mesh::default();
+    let last = colors.len().saturating_sub(1).max(1);
+    for i in 0..=last {
+        let Some(color) = colors.get(i).or_else(|| colors.last()) else {
+            return mesh;
+        };
+        let x = place.min.x + place.width() * i as f32 / last as f32;
+        mesh.colored_vertex(pos2(x, place.min.y), *color);
+        mesh.colored_vertex(pos2(x, place.max.y), *color);
+        if i > 0 {
+            let at = 2 * i as u32;
+            mesh.add_triangle(at - 2, at - 1, at);
+            mesh.add_triangle(at - 1, at, at + 1);
+        }
+    }
+    mesh
 }
 
 /// A ring around the control that Tab went to: rows and icons that are drawn by hand show it in no other way. What is typed
@@ -278,6 +298,19 @@ pub(super) fn assert_readable(theme: Theme, ink: Color32, what: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_bar_has_each_colour_at_its_place() {
+        let place = Rect::from_min_max(pos2(0.0, 0.0), pos2(20.0, 3.0));
+        let (red, blue) = (Color32::RED, Color32::BLUE);
+        let two = gradient(place, &[red, blue]);
+        assert_eq!(two.vertices.len(), 4);
+        assert_eq!(two.vertices[0].color, red);
+        assert_eq!(two.vertices[2].color, blue);
+        assert_eq!(two.vertices[3].pos, pos2(20.0, 3.0));
+        assert_eq!(gradient(place, &[red]).vertices[2].color, red);
+        assert!(gradient(place, &[]).is_empty());
+    }
 
     #[test]
     fn an_empty_box_stands_out_from_a_light_panel() {

@@ -1,6 +1,6 @@
 //! What the lines over the picture stand for: beside the pointer, and of the chosen node in a corner.
 
-use super::answer::Answer;
+use super::answer::{Answer, corner_beside};
 use super::line_legend;
 use super::says::Says;
 use crate::bvh::primitives_below;
@@ -13,7 +13,7 @@ use crate::inspect::{InspectSettings, Names, Stands, System, Told, TreeView, nod
 use crate::sync::Traced;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
-use bevy_egui::egui::{self, Align2, Grid, Id, Order, Rect, RichText, Ui, pos2, vec2};
+use bevy_egui::egui::{self, Grid, Id, Order, Rect, RichText, Ui, pos2};
 use std::sync::Arc;
 
 /// What was told last, of what.
@@ -80,21 +80,12 @@ fn hovered_ui(context: &egui::Context, free: Rect, world: &World, tales: &mut Ta
         return;
     };
     let at = to_points(context, hovered.at);
-    // Away from the nearer sides of the picture, so that it lies over it.
-    let right = at.x < free.center().x;
-    let below = at.y < free.center().y;
-    let pivot = match (right, below) {
-        (true, true) => Align2::LEFT_TOP,
-        (true, false) => Align2::LEFT_BOTTOM,
-        (false, true) => Align2::RIGHT_TOP,
-        (false, false) => Align2::RIGHT_BOTTOM,
-    };
-    let side = |away: bool| if away { 18.0 } else { -14.0 };
+    let (pivot, corner) = corner_beside(free, at, [18.0, 14.0]);
     egui::Area::new(Id::new("what is under the pointer"))
         .order(Order::Tooltip)
         .interactable(false)
         .pivot(pivot)
-        .fixed_pos(at + vec2(side(right), side(below)))
+        .fixed_pos(corner)
         .constrain_to(free)
         .show(context, |ui| {
             egui::Frame::popup(ui.style())

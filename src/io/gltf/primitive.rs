@@ -3,7 +3,7 @@
 use super::super::budget::mesh_bytes;
 use super::super::error::Problem;
 use super::super::model::triangle_mesh;
-use super::super::vertex_colors::to_unit;
+use super::super::vertex_values::{clear, to_unit};
 use super::accessors::{colors, floats, fractions, indices};
 use super::document::Document;
 use super::json::Json;
@@ -174,18 +174,6 @@ fn attribute<T>(
         Err(problem) => document.note(name, format!("{key}: {problem}"), "left out"),
     }
     Vec::new()
-}
-
-/// Puts 0 in the place of what is not finite; true where there was any.
-fn clear<const N: usize>(values: &mut [[f32; N]]) -> bool {
-    let mut any = false;
-    for value in values {
-        if !value.iter().all(|value| value.is_finite()) {
-            *value = [0.0; N];
-            any = true;
-        }
-    }
-    any
 }
 
 /// Takes out the triangles that have no place; why the first has none.

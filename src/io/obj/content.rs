@@ -2,7 +2,7 @@
 
 use super::super::error::{FileError, Place, Problem};
 use super::super::notes::Notes;
-use super::super::vertex_colors::to_unit;
+use super::super::vertex_values::to_unit;
 use bevy::color::Srgba;
 use std::path::Path;
 

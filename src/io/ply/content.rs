@@ -6,7 +6,7 @@ use super::super::error::{FileError, Place, Problem};
 use super::super::far_off::FarOff;
 use super::super::model::triangle_mesh;
 use super::super::notes::Notes;
-use super::super::vertex_colors::to_unit;
+use super::super::vertex_values::{clear, to_unit};
 use super::body::Fault;
 use bevy::color::Srgba;
 use bevy::mesh::Mesh;
@@ -146,16 +146,4 @@ impl Content {
             work.notes.add(work.file, Place::Whole, what, instead);
         }
     }
-}
-
-/// Puts 0 in the place of what is not finite; true where there was any.
-fn clear<const N: usize>(values: &mut [[f32; N]]) -> bool {
-    let mut any = false;
-    for value in values {
-        if !value.iter().all(|value| value.is_finite()) {
-            *value = [0.0; N];
-            any = true;
-        }
-    }
-    any
 }
