@@ -1,14 +1,23 @@
+use super::output::tell;
 use crate::film::{Status, duration_text};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
+use std::sync::{Mutex, PoisonError};
 
-/// A bar on a terminal; nothing in a pipe, or where quiet was asked for.
-pub(super) struct Progress(Option<ProgressBar>);
+/// A bar on a terminal; nothing in a pipe, but for steps that are told there; nothing where quiet was asked for.
+pub(super) struct Progress {
+    bar: Option<ProgressBar>,
+    /// What is done, and the step that was told last, where steps are told.
+    told: Option<(String, Mutex<String>)>,
+}
 
 impl Progress {
     pub fn new(quiet: bool, what: &str) -> Self {
         if quiet || !std::io::stderr().is_terminal() {
-            return Self(None);
+            return Self {
+                bar: None,
+                told: None,
+            };
         }
         let bar = ProgressBar::new(1);
         if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} % {prefix}")
@@ -16,12 +25,23 @@ impl Progress {
             bar.set_style(style);
         }
         bar.set_message(what.to_owned());
-        Self(Some(bar))
+        Self {
+            bar: Some(bar),
+            told: None,
+        }
+    }
+
+    /// The same of what takes minutes: where there is no bar it tells each step, a line each.
+    pub fn of_steps(quiet: bool, what: &str) -> Self {
+        let mut progress = Self::new(quiet, what);
+        let tells = progress.bar.is_none() && !quiet;
+        progress.told = tells.then(|| (what.to_owned(), Mutex::default()));
+        progress
     }
 
     /// Shows how much of how much is done.
     pub fn show(&self, done: u64, all: u64) {
-        if let Some(bar) = &self.0 {
+        if let Some(bar) = &self.bar {
             bar.set_length(all);
             bar.set_position(done);
         }
@@ -29,15 +49,22 @@ impl Progress {
 
     /// Shows how much of how much is done of something else than before.
     pub fn show_step(&self, what: &str, done: u64, all: u64) {
-        if let Some(bar) = &self.0 {
+        if let Some(bar) = &self.bar {
             bar.set_message(what.to_owned());
+        }
+        if let Some((of, last)) = &self.told {
+            let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
+            if *last != what {
+                tell(of, what);
+                *last = what.to_owned();
+            }
         }
         self.show(done, all);
     }
 
     /// Shows samples, rays a second, error and time left of a rendering.
     pub fn show_status(&self, status: &Status) {
-        if let Some(bar) = &self.0 {
+        if let Some(bar) = &self.bar {
             let left = status.seconds_left.unwrap_or(f64::INFINITY);
             let part = status.seconds / (status.seconds + left);
             bar.set_length(PARTS);
@@ -67,7 +94,7 @@ fn status_text(status: &Status) -> String {
 
 impl Drop for Progress {
     fn drop(&mut self) {
-        if let Some(bar) = &self.0 {
+        if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
     }

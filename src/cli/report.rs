@@ -107,7 +107,7 @@ fn measure(args: &Report, parts: Vec<Part>, scenes: &[PathBuf]) -> Result<(), Fa
         seed: args.seed,
         command: command(),
     };
-    let progress = Progress::new(args.quiet, "report");
+    let progress = Progress::of_steps(args.quiet, "report");
     let report = report::run(&subjects, &options, &|what, done, all| {
         progress.show_step(what, done, all);
     });

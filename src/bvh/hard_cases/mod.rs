@@ -8,6 +8,7 @@ pub(crate) mod meshes;
 pub(crate) mod oracle;
 pub(crate) mod random;
 pub(crate) mod rays;
+pub(crate) mod sieve;
 pub(crate) mod single;
 pub(crate) mod spawned;
 pub(crate) mod transforms;

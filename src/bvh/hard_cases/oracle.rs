@@ -16,7 +16,10 @@ use glam::{DMat3, DVec3, Vec3};
 
 use crate::bvh::{
     Aggregate, Hit, Ray,
-    hard_cases::single::{ReadyRay, SingleTriangle},
+    hard_cases::{
+        sieve::{Sheared, Sieve},
+        single::{ReadyRay, SingleTriangle},
+    },
     instance::Instance,
     safe_ray::SafeRay,
 };
@@ -25,15 +28,30 @@ const U: f64 = f32::EPSILON as f64 / 2.0;
 
 /// The nearest hit, by our triangle test, over every triangle of every instance in turn.
 pub(crate) fn brute(aggregate: &Aggregate, ray: &Ray) -> Option<Hit> {
+    brute_among(aggregate, ray, |instance, _, all| {
+        let triangles = aggregate.instances()[instance].mesh.triangles();
+        all.extend((0..triangles.len() as u32).filter(|&t| triangles.is_traced(t)));
+    })
+}
+
+/// The same, where only these triangles of each instance can be hit, which are added to a list.
+fn brute_among(
+    aggregate: &Aggregate,
+    ray: &Ray,
+    mut candidates: impl FnMut(usize, &ReadyRay, &mut Vec<u32>),
+) -> Option<Hit> {
     let safe = SafeRay::new(ray)?;
     let mut best: Option<Hit> = None;
+    let mut some = Vec::new();
     for (number, instance) in aggregate.instances().iter().enumerate() {
         let Some(object) = instance.to_object_ray(&safe.world, ray.time) else {
             continue;
         };
         let ready = ReadyRay::of(object);
         let triangles = instance.mesh.triangles();
-        for triangle in (0..triangles.len() as u32).filter(|&t| triangles.is_traced(t)) {
+        some.clear();
+        candidates(number, &ready, &mut some);
+        for &triangle in &some {
             let single = SingleTriangle::new(triangles.corners(triangle));
             let Some((t, u, v)) = single.cross(&ready, f32::INFINITY) else {
                 continue;
@@ -107,16 +125,35 @@ impl ExactRay {
         }
     }
 
-    pub(crate) fn cross(&self, corners: [Vec3; 3]) -> Exact {
+    /// Which axes are x, y and z where it looks along z.
+    fn axes(&self) -> [usize; 3] {
         let size = self.direction.abs();
-        let z = if size.x == size.max_element() {
-            0
+        if size.x == size.max_element() {
+            [1, 2, 0]
         } else if size.y == size.max_element() {
-            1
+            [2, 0, 1]
         } else {
-            2
-        };
-        let (x, y) = ((z + 1) % 3, (z + 2) % 3);
+            [0, 1, 2]
+        }
+    }
+
+    /// The same ray for many triangles at once.
+    pub(crate) fn sheared(&self) -> Sheared {
+        let axes = self.axes();
+        let [x, y, z] = axes;
+        let along = self.direction;
+        Sheared {
+            axes,
+            from: axes.map(|axis| self.origin[axis]),
+            slope: [along[x] / along[z], along[y] / along[z]],
+            along: along[z].abs(),
+            origin_error: self.origin_error,
+            direction_error: self.direction_error,
+        }
+    }
+
+    pub(crate) fn cross(&self, corners: [Vec3; 3]) -> Exact {
+        let [x, y, z] = self.axes();
         let along = self.direction;
         let relative = corners.map(|corner| corner.as_dvec3() - self.origin);
         let largest = relative
@@ -191,19 +228,25 @@ pub(crate) struct Tally {
 
 impl Tally {
     /// Compares what was found with the truth in f64.
-    pub(crate) fn judge(&mut self, aggregate: &Aggregate, ray: &Ray, found: Option<Hit>) {
-        let all =
-            |instance: usize| 0..aggregate.instances()[instance].mesh.triangles().len() as u32;
-        self.judge_among(aggregate, ray, found, all);
+    pub(crate) fn judge(
+        &mut self,
+        aggregate: &Aggregate,
+        sieve: &Sieve,
+        ray: &Ray,
+        found: Option<Hit>,
+    ) {
+        self.judge_among(aggregate, ray, found, |instance, ray, some| {
+            sieve.exact(instance, ray, some);
+        });
     }
 
-    /// The same, where only these triangles of each instance can be hit.
-    pub(crate) fn judge_among<I: Iterator<Item = u32>>(
+    /// The same, where only these triangles of each instance can be hit, which are added to a list.
+    pub(crate) fn judge_among(
         &mut self,
         aggregate: &Aggregate,
         ray: &Ray,
         found: Option<Hit>,
-        candidates: impl Fn(usize) -> I,
+        mut candidates: impl FnMut(usize, &Sheared, &mut Vec<u32>),
     ) {
         self.rays += 1;
         self.hits += usize::from(found.is_some());
@@ -213,6 +256,7 @@ impl Tally {
                 .get_or_insert(format!("{why}: {ray:?} {found:?}"));
         };
         let mut of_found = None;
+        let mut some = Vec::new();
         // A `t` that f32 cannot hold is beyond every ray's end.
         let end = f64::from(ray.t_max.min(f32::MAX));
         // The nearest end of what surely is hit, at its latest.
@@ -221,11 +265,13 @@ impl Tally {
         for (number, instance) in aggregate.instances().iter().enumerate() {
             let exact_ray = ExactRay::new(instance, ray);
             let triangles = instance.mesh.triangles();
-            for triangle in candidates(number).filter(|&t| triangles.is_traced(t)) {
+            if let Some(hit) = found.filter(|hit| hit.instance == number as u32) {
+                of_found = Some(exact_ray.cross(triangles.corners(hit.triangle)));
+            }
+            some.clear();
+            candidates(number, &exact_ray.sheared(), &mut some);
+            for &triangle in &some {
                 let exact = exact_ray.cross(triangles.corners(triangle));
-                if found.is_some_and(|h| (h.instance, h.triangle) == (number as u32, triangle)) {
-                    of_found = Some(exact);
-                }
                 let (early, late) = (exact.t - exact.t_bound, exact.t + exact.t_bound);
                 match exact.verdict {
                     Verdict::Hit if early > 0.0 && late < end => {
@@ -267,16 +313,19 @@ impl Tally {
     /// Both oracles at once: the tree's answer against brute force's, bit for bit, and against f64's outside the band.
     pub(crate) fn of(aggregate: &Aggregate, rays: impl IntoIterator<Item = Ray>) -> Self {
         let mut tally = Self::default();
+        let sieve = Sieve::of(aggregate);
         for ray in rays {
             let found = aggregate.closest_hit(&ray);
-            let truth = brute(aggregate, &ray);
+            let truth = brute_among(aggregate, &ray, |instance, ray, some| {
+                sieve.rounded(instance, ray.shear(), some);
+            });
             if !same(found, truth) || aggregate.occluded(&ray) != truth.is_some() {
                 tally.unlike_brute_force += 1;
                 tally.first_wrong.get_or_insert(format!(
                     "the tree found {found:?}, brute force {truth:?}, {ray:?}"
                 ));
             }
-            tally.judge(aggregate, &ray, found);
+            tally.judge(aggregate, &sieve, &ray, found);
         }
         tally
     }

@@ -27,6 +27,11 @@ impl ReadyRay {
         let shear = Shear::new(ray.origin, ray.direction);
         Self { ray, shear }
     }
+
+    /// Its frame.
+    pub(crate) fn shear(&self) -> &Shear {
+        &self.shear
+    }
 }
 
 /// A triangle, its coordinates axis by axis.

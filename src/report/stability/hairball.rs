@@ -6,7 +6,8 @@ use super::{Effort, Outcome};
 use crate::bvh::hard_cases::meshes::{alone, soup};
 use crate::bvh::hard_cases::oracle::Tally;
 use crate::bvh::hard_cases::random::Random;
-use crate::bvh::{Aggregate, BuildOptions, Ray};
+use crate::bvh::hard_cases::sieve::{Columns, Sieve};
+use crate::bvh::{Aggregate, BuildOptions, Hit, Ray};
 use crate::report::table::digits;
 use crate::report::timing::{median, seconds};
 use glam::{DVec3, Vec3};
@@ -82,20 +83,24 @@ impl Plain {
         self.split(2 * node + 1, right, triangles);
     }
 
-    /// Every triangle in a leaf whose box the line of the ray meets.
-    fn near(&self, ray: &Ray, found: &mut Vec<u32>) {
-        found.clear();
+    /// Every triangle in a leaf whose box the line of the ray meets, before what was found or where it lies: what begins
+    /// behind that cannot be nearer, nor be missed in its place.
+    fn near(&self, triangles: &[[Vec3; 3]], ray: &Ray, found: Option<Hit>, near: &mut Columns) {
+        near.clear();
         let (origin, inverse) = (ray.origin.as_dvec3(), 1.0 / ray.direction.as_dvec3());
+        let end = found.map_or(f64::INFINITY, |hit| f64::from(hit.t));
         let mut stack = vec![(1, 0, self.order.len())];
         while let Some((node, first, count)) = stack.pop() {
             let [min, max] = self.boxes[node];
             let (a, b) = ((min - origin) * inverse, (max - origin) * inverse);
             let (entry, exit) = (a.min(b).max_element(), a.max(b).min_element());
-            if entry > exit {
+            if entry > exit || entry > end {
                 continue;
             }
             if count <= LEAF {
-                found.extend(&self.order[first..first + count]);
+                for &triangle in &self.order[first..first + count] {
+                    near.push(triangle, triangles[triangle as usize]);
+                }
                 continue;
             }
             let half = count / 2;
@@ -132,13 +137,12 @@ pub(super) fn hairball(effort: &Effort) -> Outcome {
     // Every candidate costs as much as a ray elsewhere does in all.
     let rays = (effort.rays / 10).min(1_000_000);
     let tallies = pieces(rays, effort.seed, |random, count| {
-        let (mut tally, mut near) = (Tally::default(), Vec::new());
+        let (mut tally, mut near) = (Tally::default(), Columns::default());
         for _ in 0..count {
             let ray = at_hair(&triangles, random);
-            plain.near(&ray, &mut near);
-            tally.judge_among(&scene, &ray, scene.closest_hit(&ray), |_| {
-                near.iter().copied()
-            });
+            let found = scene.closest_hit(&ray);
+            plain.near(&triangles, &ray, found, &mut near);
+            tally.judge_among(&scene, &ray, found, |_, ray, some| near.exact(ray, some));
         }
         tally
     });
@@ -146,17 +150,18 @@ pub(super) fn hairball(effort: &Effort) -> Outcome {
     tallies.into_iter().for_each(|tally| sum.add(tally));
     // The plain tree itself: it keeps what brute force finds, so that both judge alike the answer that was found, and the
     // answer that there is nothing. (The band may differ: a triangle seen along its length is in it from afar.)
+    let sieve = Sieve::of(&scene);
     let checked = (effort.rays / 10_000).clamp(10, 1_000);
     let differ: usize = pieces(checked, effort.seed + 1, |random, count| {
-        let mut near = Vec::new();
+        let mut near = Columns::default();
         (0..count)
             .filter(|_| {
                 let ray = at_hair(&triangles, random);
-                plain.near(&ray, &mut near);
                 [scene.closest_hit(&ray), None].into_iter().any(|found| {
                     let (mut all, mut some) = (Tally::default(), Tally::default());
-                    all.judge(&scene, &ray, found);
-                    some.judge_among(&scene, &ray, found, |_| near.iter().copied());
+                    plain.near(&triangles, &ray, found, &mut near);
+                    all.judge(&scene, &sieve, &ray, found);
+                    some.judge_among(&scene, &ray, found, |_, ray, some| near.exact(ray, some));
                     all.wrong != some.wrong
                 })
             })

@@ -25,9 +25,8 @@ struct Room {
     towards: Vec3,
     /// How far apart its walls are around the eye.
     height: f32,
-    /// Whether its pictures are the large ones, where they are by its mesh; those of a quarter of the pixels show the
-    /// variants of these.
-    is_fine: bool,
+    /// Pixels along each side of its pictures, where it is by its mesh; those of its variants are of the smallest.
+    side: u32,
 }
 
 impl Room {
@@ -38,7 +37,7 @@ impl Room {
 }
 
 /// A prism 2 m wide and 2 m deep: its floor and its ceiling meet at this angle.
-fn wedge(name: &'static str, degrees: f32, is_fine: bool) -> Room {
+fn wedge(name: &'static str, degrees: f32, side: u32) -> Room {
     let height = 2.0 * degrees.to_radians().tan();
     let profile = [[0.0, 0.0], [2.0, 0.0], [2.0, height]];
     let positions = (0..6).map(|i| {
@@ -61,7 +60,7 @@ fn wedge(name: &'static str, degrees: f32, is_fine: bool) -> Room {
         eye: Vec3::new(0.95, 0.4 * height, 0.1),
         towards: Vec3::new(-1.0, 0.0, -0.3),
         height,
-        is_fine,
+        side,
     }
 }
 
@@ -76,7 +75,7 @@ fn spike() -> Room {
         eye: Vec3::new(0.0, 0.1, 0.0),
         towards: Vec3::new(0.02, 2.0, 0.01),
         height: 0.04,
-        is_fine: false,
+        side: VARIANT,
     }
 }
 
@@ -88,11 +87,11 @@ fn rooms() -> [Room; 5] {
             eye: Vec3::new(0.3, 0.2, 0.6),
             towards: Vec3::new(-0.5, -0.4, -1.0),
             height: 2.0,
-            is_fine: true,
+            side: 200,
         },
-        wedge("wedge of 10°", 10.0, false),
-        wedge("wedge of 1°", 1.0, true),
-        wedge("wedge of 0.1°", 0.1, false),
+        wedge("wedge of 10°", 10.0, VARIANT),
+        wedge("wedge of 1°", 1.0, 100),
+        wedge("wedge of 0.1°", 0.1, VARIANT),
         spike(),
     ]
 }
@@ -187,14 +186,16 @@ fn kinds() -> [Kind; 2] {
     ]
 }
 
-fn settings(effort: &Effort, is_fine: bool) -> RenderSettings {
-    let edge = match effort.rays > 1_000_000 {
-        true if is_fine => 200,
-        true => 100,
+/// Pixels along each side of the pictures of a room's variants.
+const VARIANT: u32 = 50;
+
+fn settings(effort: &Effort, side: u32) -> RenderSettings {
+    let side = match effort.rays > 1_000_000 {
+        true => side,
         false => 24,
     };
     RenderSettings {
-        size: UVec2::splat(edge),
+        size: UVec2::splat(side),
         spp: 16,
         max_depth: 50,
         ..RenderSettings::default()
@@ -235,7 +236,8 @@ pub(super) fn closed(effort: &Effort) -> Outcome {
                         levels: [Levels::Two, Levels::One][index % 2],
                     };
                     let (world, camera) = room.placed(standing, &material);
-                    let settings = settings(effort, room.is_fine && in_the_mesh);
+                    let side = if in_the_mesh { room.side } else { VARIANT };
+                    let settings = settings(effort, side);
                     let (leaks, pixels) = seen(&outside(world), &camera, &settings);
                     counted += pixels;
                     rooms_seen += 1;
@@ -321,7 +323,7 @@ fn six_walls(turn: Quat, at: Vec3, walls: Walls) -> Vec<(Instance, Object)> {
 /// its own transform, so there are cracks, and a start beside the edge of one knows nothing of the other. Walls that are
 /// thick and fill the corners hold: a start in another wall is still before its outer side.
 pub(super) fn of_objects(effort: &Effort) -> Outcome {
-    let settings = settings(effort, true);
+    let settings = settings(effort, 100);
     let (mut counted, mut figures, mut through_thick) = (0, Vec::new(), 0);
     for (name, walls) in [
         ("edge to edge", Walls::Thin(0.0)),
