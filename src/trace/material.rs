@@ -61,7 +61,12 @@ impl Material {
     /// Whether it may let light through; a mesh's own alphas apart.
     pub fn is_transparent(&self) -> bool {
         let fades = self.opacity < 1.0 || self.map(PhongMap::Opacity).is_some();
-        fades && self.alpha != Alpha::Opaque
+        match self.alpha {
+            Alpha::Blend => fades,
+            // Above 1 no opacity reaches it.
+            Alpha::Mask { cutoff } => fades || cutoff > 1.0,
+            Alpha::Opaque => false,
+        }
     }
 }
 
