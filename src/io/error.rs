@@ -131,6 +131,8 @@ pub enum Problem {
     LittleSpace { most: Size, free: Size },
     #[error("the folder does not exist; create it first")]
     NoFolder,
+    #[error("`{0}` is a file and no folder; choose another place")]
+    FileAsFolder(String),
     #[error("is the same file as `{input}`, which is read here; write under another name")]
     IsRead { input: String },
     #[error("is the same file as `{other}`, which is written too; give one of them another name")]

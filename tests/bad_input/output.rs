@@ -33,6 +33,34 @@ fn an_output_in_a_folder_that_does_not_exist() {
 }
 
 #[test]
+fn an_output_in_a_file_as_if_that_were_a_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("file"), "x").unwrap();
+    for place in ["file", "file/deeper/still"] {
+        for name in ["a.scn.ron", "a.obj", "a.glb"] {
+            let error = saved(&folder.path().join(place).join(name)).unwrap_err();
+            says(&error, &[name, "file` is a file and no folder"]);
+        }
+        let error = check_writable(&folder.path().join(place).join("a.png")).unwrap_err();
+        says(&error, &["a.png", "file` is a file and no folder"]);
+    }
+}
+
+#[test]
+fn an_output_that_is_written_as_a_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.png/");
+    says(
+        &check_writable(&file).unwrap_err(),
+        &["a.png/", "is a folder; name a file in it"],
+    );
+    let error = write_picture(&file, 1, 1, &[[0.0; 3]]).unwrap_err();
+    says(&error, &["a.png/", "is a folder"]);
+    let nothing = fs::read_dir(folder.path()).unwrap().next();
+    assert!(nothing.is_none(), "{nothing:?}");
+}
+
+#[test]
 fn an_output_that_is_a_folder() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("a.scn.ron");

@@ -24,7 +24,7 @@ impl Target {
     /// written.
     pub fn at(path: &Path) -> Result<Self, FileError> {
         let writing = |error: io::Error| FileError::writing(path, &error);
-        if path.file_name().is_none() {
+        if path.file_name().is_none() || ends_as_folder(path) {
             return Err(FileError::new(path, Problem::IsAFolder));
         }
         let old = match fs::metadata(path) {
@@ -49,10 +49,26 @@ impl Target {
         }
         let place = behind_links(path).map_err(writing)?;
         if !folder_of(&place).is_dir() {
-            return Err(FileError::new(path, Problem::NoFolder));
+            let problem = match file_on_the_way(&place) {
+                Some(file) => Problem::FileAsFolder(file.display().to_string()),
+                None => Problem::NoFolder,
+            };
+            return Err(FileError::new(path, problem));
         }
         Ok(Self::File { place, old })
     }
+}
+
+/// Whether a path is written as that of a folder. `file_name` does not see it.
+fn ends_as_folder(path: &Path) -> bool {
+    let last = path.as_os_str().as_encoded_bytes().last();
+    last.is_some_and(|last| std::path::is_separator(char::from(*last)))
+}
+
+/// What would have to be a folder for something to lie at this path, and is none.
+fn file_on_the_way(path: &Path) -> Option<&Path> {
+    let there = path.ancestors().skip(1).find(|part| part.exists())?;
+    (!there.is_dir()).then_some(there)
 }
 
 /// The stream of this process that is this file. A terminal or `/dev/null` may be opened by its name as well.
