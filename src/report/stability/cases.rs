@@ -104,7 +104,7 @@ pub(super) static CASES: &[Case] = &[
     case(
         16,
         "1e5 identical, 1e5 collinear triangles",
-        "bounded depth and work, the right hits",
+        "bounded depth and work, the right hits; four times as many are less than 9 times the work",
         trees::heaps,
     ),
     case(
@@ -277,8 +277,8 @@ pub(super) static CASES: &[Case] = &[
     ),
     case(
         45,
-        "a sheet of opacity 0 before a soft shadow",
-        "the picture without it, bit for bit",
+        "sheets of opacity 0, or cut out whole, before a soft shadow and its light",
+        "the picture without them, bit for bit",
         transparency::invisible,
     ),
     case(
@@ -289,7 +289,7 @@ pub(super) static CASES: &[Case] = &[
     ),
     case(
         47,
-        "pictures that cannot be written",
+        "pictures that cannot be written: size, format, folder, space",
         "refused before a ray is traced",
         maps::unwritable,
     ),

@@ -4,7 +4,7 @@ use super::scenes::{object, once, quad, world};
 use super::{Effort, Outcome};
 use crate::app::headless_app;
 use crate::film::render;
-use crate::io::check_picture;
+use crate::io::{check_picture, check_room};
 use crate::report::table::digits;
 use crate::scene::{
     EnvironmentMap, Features, Phong, PhongMap, PhongMaps, RenderSettings, SceneId, TextureFilter,
@@ -190,6 +190,7 @@ pub(super) fn not_light(_: &Effort) -> Outcome {
 
 pub(super) fn unwritable(_: &Effort) -> Outcome {
     let folder = std::env::temp_dir();
+    let a_file = std::env::current_exe().unwrap_or_default();
     let beyond = [
         (folder.join("glassbox.jpg"), 65_536, 1),
         (folder.join("glassbox.jpeg"), 1, 65_536),
@@ -199,6 +200,9 @@ pub(super) fn unwritable(_: &Effort) -> Outcome {
         (folder.join("glassbox"), 1, 1),
         (folder.join("glassbox-no-such-folder").join("a.png"), 1, 1),
         (folder.clone(), 1, 1),
+        (folder.join("glassbox.png/"), 1, 1),
+        // A file as if it were a folder.
+        (a_file.join("a.png"), 1, 1),
     ];
     let passed: Vec<String> = beyond
         .iter()
@@ -218,14 +222,26 @@ pub(super) fn unwritable(_: &Effort) -> Outcome {
             Some(check_picture(&file, *width, 1).err()?.to_string())
         })
         .collect();
+    // More than any disk has, and next to nothing.
+    let [vast, small] = [u64::MAX, 1].map(|bytes| check_room(&folder.join("glassbox.png"), bytes));
+    let (space, is_told) = match &vast {
+        Ok(_) => ("its disk does not tell its space".to_owned(), true),
+        Err(error) => {
+            let text = error.to_string();
+            let is_told = text.contains("are free on its disk");
+            (format!("no space for 16 EB: “{text}”"), is_told)
+        }
+    };
     let figures = format!(
-        "{} of {} refused, {} of {} allowed, without a ray",
+        "{} of {} refused, {} of {} allowed, without a ray; {space}",
         beyond.len() - passed.len(),
         beyond.len(),
         fits.len() - refused.len(),
         fits.len()
     );
-    Outcome::new(beyond.len() + fits.len(), figures)
+    Outcome::new(beyond.len() + fits.len() + 2, figures)
         .require(passed.is_empty(), passed.join(", "))
         .require(refused.is_empty(), refused.join("; "))
+        .require(is_told, space)
+        .require(small.is_ok(), "a byte is refused")
 }
