@@ -4,6 +4,9 @@
 /// Light that is brighter than white reaches so far in files; numbers beyond are counted to 255.
 const BRIGHTEST: f32 = 16.0;
 
+/// The most that is counted to. One number beyond, or an infinite one, says nothing of how the others are meant.
+const MOST: f32 = 255.0;
+
 /// Brings colours, with alpha where they have a fourth number, into [0, 1]. What was the matter and what was done
 /// instead, where not all of them were there.
 pub(super) fn to_unit<const N: usize>(
@@ -16,12 +19,13 @@ pub(super) fn to_unit<const N: usize>(
     // What is not a number is smaller than any.
     let largest = |from: usize, to: usize| {
         let channels = colors.iter().flat_map(|color| color[from..to].iter());
-        channels.fold(0.0, |most: f32, &number| most.max(number))
+        let meant = channels.filter(|number| **number <= MOST);
+        meant.fold(0.0, |most: f32, &number| most.max(number))
     };
     let (of_color, of_alpha) = (largest(0, N.min(3)), largest(N.min(3), N));
     let is_whole = |number: &f32| number.fract() == 0.0;
     let is_counted = of_color > BRIGHTEST || (of_color > 1.0 && numbers().all(is_whole));
-    let of_255 = |is_so: bool| if is_so { 255.0 } else { 1.0 };
+    let of_255 = |is_so: bool| if is_so { MOST } else { 1.0 };
     let (whole, whole_alpha) = (of_255(is_counted), of_255(is_counted && of_alpha > 1.0));
     for color in colors {
         for (channel, number) in color.iter_mut().enumerate() {
@@ -75,6 +79,28 @@ mod tests {
                 Some(instead)
             );
             assert_eq!(colors, [brought]);
+        }
+    }
+
+    #[test]
+    fn a_number_that_no_colour_has_does_not_make_the_others_dark() {
+        for wrong in [f32::INFINITY, 3e38, 256.0] {
+            let mut colors = [[wrong, 1.0, 0.5], [1.0, 0.5, 0.0]];
+            assert_eq!(
+                to_unit(&mut colors).map(|(_, instead)| instead),
+                Some("clamped")
+            );
+            assert_eq!(colors, [[1.0, 1.0, 0.5], [1.0, 0.5, 0.0]], "{wrong}");
+            let mut colors = [[wrong, 255.0, 51.0], [255.0, 0.0, 0.0]];
+            to_unit(&mut colors);
+            assert_eq!(colors, [[1.0, 1.0, 0.2], [1.0, 0.0, 0.0]], "{wrong}");
+            let mut colors = [[255.0, 0.0, 51.0, wrong], [0.0, 0.0, 0.0, 1.0]];
+            to_unit(&mut colors);
+            assert_eq!(
+                colors,
+                [[1.0, 0.0, 0.2, 1.0], [0.0, 0.0, 0.0, 1.0]],
+                "{wrong}"
+            );
         }
     }
 
