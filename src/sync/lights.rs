@@ -185,6 +185,12 @@ fn point(lamp: &PointLamp, transform: &GlobalTransform, reader: &mut Reader) -> 
                 });
                 return None;
             }
+            if outer < NARROWEST {
+                reader.note(Fault::Narrow {
+                    field: "cone's outer angle",
+                    angle: outer,
+                });
+            }
             Some(SpotCone::new(-backward(transform, reader)?, inner, outer))
         }
     };
@@ -222,10 +228,7 @@ fn segment(
         reader.note(Fault::NotFinite { field: "ends" });
         return None;
     }
-    if ends[0] == ends[1] {
-        reader.note(Fault::Degenerate { field: "length" });
-        return None;
-    }
+    extent("length", (ends[1] - ends[0]).length(), reader)?;
     Some(SegmentLight {
         id: reader.id.0,
         ends,
@@ -246,11 +249,7 @@ fn parallelogram(
         reader.note(Fault::NotFinite { field: "corners" });
         return None;
     }
-    let area = edges[0].cross(edges[1]).length();
-    if !(area > 0.0 && area.is_finite()) {
-        reader.note(Fault::Degenerate { field: "area" });
-        return None;
-    }
+    extent("area", edges[0].cross(edges[1]).length(), reader)?;
     let mut colors = strengths(lamp.colors, lamp.intensity, reader)?;
     // A mirroring transform turns the cross product of the edges around, but not the light's front.
     if linear.determinant() < 0.0 {
@@ -266,6 +265,22 @@ fn parallelogram(
         visible: lamp.visible,
         samples: reader.samples(lamp.samples),
     })
+}
+
+/// Directions, unit vectors of f32, are told apart by about this, in radians.
+const NARROWEST: f32 = f32::EPSILON;
+
+/// The length or area of a light, as it is reckoned with: what is so small that squares of it are nothing would light nothing.
+fn extent(field: &'static str, extent: f32, reader: &mut Reader) -> Option<f32> {
+    if !extent.is_finite() {
+        reader.note(Fault::NotFinite { field });
+        return None;
+    }
+    if extent == 0.0 {
+        reader.note(Fault::Degenerate { field });
+        return None;
+    }
+    Some(extent)
 }
 
 /// Unit vector along the entity's local +Z, in the world.

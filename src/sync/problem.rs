@@ -87,6 +87,16 @@ pub enum Fault {
         /// Which.
         field: &'static str,
     },
+    /// A cone is so narrow that it lights single points, or nothing. It is traced as it is.
+    #[error(
+        "its {field} is {angle:e} rad, less than what directions are told apart by (1e-7 rad): it lights single points or nothing"
+    )]
+    Narrow {
+        /// Which.
+        field: &'static str,
+        /// In radians.
+        angle: f32,
+    },
     /// Something of another program's component has nothing here that it could become.
     #[error("{0}")]
     LeftOut(Arc<str>),

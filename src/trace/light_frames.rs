@@ -15,7 +15,7 @@ pub(super) enum Frame {
 }
 
 impl SegmentLight {
-    /// What choosing its points for a surface needs to know of it; `None` where it has no length.
+    /// What choosing its points for a surface needs to know of it; `None` where it is so short that its points are chosen evenly.
     pub fn frame(&self) -> Option<SegmentFrame> {
         SegmentFrame::new(self.ends, &self.colors)
     }

@@ -14,6 +14,10 @@ use super::polynomials::{exp2, log2};
 use super::receiver::Receivers;
 use glam::Vec3;
 
+/// In metres. Distances are multiples of the length, and their squares leave f32's range where they are more than 1e19 of it:
+/// from so short a segment points are chosen evenly. Nobody sees its ends apart.
+const LEAST_LENGTH: f32 = 1e-12;
+
 /// Seen under a smaller angle, in radians, digits of w get scarce.
 const LEAST_ANGLE: f32 = 1e-3;
 
@@ -67,12 +71,12 @@ struct Planes<const N: usize> {
 }
 
 impl SegmentFrame {
-    /// Of a light with those ends and linear RGB there; `None` where rounding leaves no length.
+    /// Of a light with those ends and linear RGB there; `None` where it is too short.
     pub fn new(ends: [Vec3; 2], colors: &[Vec3; 2]) -> Option<Self> {
         let along = ends[1] - ends[0];
         let length = along.length();
         let luminances = relative_luminances(colors);
-        (length > 0.0 && (1.0 / length).is_finite()).then(|| Self {
+        (length >= LEAST_LENGTH).then(|| Self {
             start: ends[0],
             along: along / length,
             per_metre: 1.0 / length,

@@ -90,6 +90,89 @@ fn a_sun_may_fill_any_angle_up_to_half_the_sky_and_what_is_beyond_is_told() {
 }
 
 #[test]
+fn a_light_whose_extent_is_nothing_to_f32_is_left_out_with_a_word_and_one_of_more_is_traced() {
+    let segment = |length: f32| SegmentLamp {
+        ends: [Vec3::ZERO, Vec3::X * length],
+        intensity: 1.0 / length.max(1e-20),
+        ..SegmentLamp::default()
+    };
+    let panel = |edge: f32| ParallelogramLamp {
+        corner: Vec3::ZERO,
+        edges: [Vec3::X * edge, Vec3::Z * edge],
+        intensity: 1.0 / (edge * edge).max(1e-24),
+        ..ParallelogramLamp::default()
+    };
+    let mut app = app();
+    for length in [0.0, 1e-37, 1e-30, 1e-24] {
+        app.world_mut().spawn(segment(length));
+    }
+    for edge in [0.0, 1e-30, 1e-20, 1e-13] {
+        app.world_mut().spawn(panel(edge));
+    }
+    app.update();
+    let told = problems(&app);
+    assert_eq!(told.len(), 8, "{told:#?}");
+    let says = |text: &str| told.iter().filter(|told| told.contains(text)).count();
+    assert_eq!(says("its length is nothing; left out"), 4, "{told:#?}");
+    assert_eq!(says("its area is nothing; left out"), 4, "{told:#?}");
+    // The least that is lit with (`report/stability/light.rs` has what arrives from it).
+    let mut app = self::app();
+    for length in [1e-22, 1e-18, 1e-12] {
+        app.world_mut().spawn(segment(length));
+    }
+    for edge in [8e-12, 1e-8] {
+        app.world_mut().spawn(panel(edge));
+    }
+    app.update();
+    assert!(problems(&app).is_empty(), "{:#?}", problems(&app));
+    let lights = world(&app).lights.clone();
+    assert_eq!((lights.segments.len(), lights.parallelograms.len()), (3, 2));
+}
+
+#[test]
+fn a_light_whose_extent_is_more_than_a_number_is_not_said_to_be_nothing() {
+    let mut app = app();
+    app.world_mut().spawn(SegmentLamp {
+        ends: [Vec3::X * -2e38, Vec3::X * 2e38],
+        ..SegmentLamp::default()
+    });
+    app.world_mut().spawn(ParallelogramLamp {
+        edges: [Vec3::X * 1e20, Vec3::Z * 1e20],
+        ..ParallelogramLamp::default()
+    });
+    app.update();
+    let told = problems(&app);
+    assert_eq!(told.len(), 2, "{told:#?}");
+    assert!(
+        told[0].contains("its length is not a finite number"),
+        "{told:#?}"
+    );
+    assert!(
+        told[1].contains("its area is not a finite number"),
+        "{told:#?}"
+    );
+}
+
+#[test]
+fn a_spot_too_narrow_for_directions_is_traced_and_told() {
+    let mut app = app();
+    for outer in [1e-30, 1e-20, 1e-10, 1e-8, 1e-6, 1e-4] {
+        app.world_mut().spawn(PointLamp {
+            cone: Some(Cone { inner: 0.0, outer }),
+            ..PointLamp::default()
+        });
+    }
+    app.update();
+    assert_eq!(world(&app).lights.points.len(), 6);
+    let told = problems(&app);
+    assert_eq!(told.len(), 4, "{told:#?}");
+    for (told, angle) in told.iter().zip(["1e-30", "1e-20", "1e-10", "1e-8"]) {
+        let expected = format!("cone's outer angle is {angle} rad, less than what directions");
+        assert!(told.contains(&expected), "{told}");
+    }
+}
+
+#[test]
 fn a_spot_of_no_angle_is_left_out_and_one_of_too_much_is_a_half_space() {
     let mut app = app();
     let outers = [0.0, 1e-4, FRAC_PI_2, 2.0, f32::NAN];
