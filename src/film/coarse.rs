@@ -19,7 +19,8 @@ impl Engine {
         let focus = lock(&self.queue).focus();
         let preview = Arc::new(Preview::new(area));
         let (seconds, threads) = self.on_threads(|_| {
-            let timed = time_samples(&subject, &preview, focus, &self.batch);
+            let stopped = || self.must_stop();
+            let timed = time_samples(&subject, &preview, focus, &self.batch, &stopped);
             (timed, rayon::current_num_threads())
         });
         let coarsest = first_divider(area.extent, seconds / threads as f64);
@@ -66,11 +67,18 @@ impl Engine {
             }
             let (some, others) = rest.split_at(self.batch.get().min(rest.len()));
             rest = others;
-            with_scratch(|scratch| {
+            let is_done = with_scratch(|scratch| {
                 let ids = some.iter().map(|&pixel| SampleId { pixel, index: 0 });
-                scratch.evaluate(&subject, PlaneSet::ALL, ids, &self.batch);
-                preview.take(some, scratch.folded());
+                let stopped = || self.must_stop();
+                let taken = scratch.evaluate(&subject, PlaneSet::ALL, ids, &self.batch, &stopped);
+                if taken.is_some() {
+                    preview.take(some, scratch.folded());
+                }
+                taken.is_some()
             });
+            if !is_done {
+                return false;
+            }
         }
         true
     }

@@ -188,12 +188,14 @@ pub(super) fn lattice_squares(size: UVec2, divider: u32) -> Vec<UVec2> {
         .collect()
 }
 
-/// Seconds that a sample takes on one thread, from some of the coarsest lattice's near `focus`, which are kept.
+/// Seconds that a sample takes on one thread, from some of the coarsest lattice's near `focus`, which are kept; fewer of them
+/// where it is stopped.
 pub(super) fn time_samples(
     subject: &Subject,
     preview: &Preview,
     focus: Vec2,
     batch: &BatchSize,
+    stopped: &dyn Fn() -> bool,
 ) -> f64 {
     let area = preview.area;
     let divider = coarsest_divider(area.extent);
@@ -208,7 +210,10 @@ pub(super) fn time_samples(
     with_scratch(|scratch| {
         for some in pixels.chunks(BATCH) {
             let ids = some.iter().map(|&pixel| SampleId { pixel, index: 0 });
-            scratch.evaluate(subject, PlaneSet::ALL, ids, batch);
+            let taken = scratch.evaluate(subject, PlaneSet::ALL, ids, batch, stopped);
+            if taken.is_none() {
+                break;
+            }
             preview.take(some, scratch.folded());
             timed += some.len();
             if start.elapsed() > LONG_ENOUGH {

@@ -1,4 +1,4 @@
-//! The samples of a chunk: batch by batch, so that a render can stop between two of them.
+//! The samples of a chunk: batch by batch, so that a render can stop between two of them, and within one that takes long.
 
 use super::kept::Kept;
 use super::per_sample::{BatchPlaces, Run};
@@ -248,7 +248,7 @@ impl Scratch {
                     &mut self.workspace.known,
                 );
             }
-            let taken = self.evaluate_samples(subject, wanted, batch);
+            let taken = self.evaluate_samples(subject, wanted, batch, stopped)?;
             if let Some(kept) = kept {
                 let of = BatchPlaces {
                     tile,
@@ -305,17 +305,18 @@ impl Scratch {
         count_octaves(values, &mut self.octaves);
     }
 
-    /// The radiance of samples, which stays in `self.values` until the next call.
+    /// The radiance of samples, which stays in `self.values` until the next call; `None` where it was stopped.
     pub fn evaluate(
         &mut self,
         subject: &Subject,
         wanted: PlaneSet,
         ids: impl Iterator<Item = SampleId>,
         batch: &BatchSize,
-    ) -> RayCounts {
+        stopped: &dyn Fn() -> bool,
+    ) -> Option<RayCounts> {
         self.samples.clear();
         self.samples.extend(ids);
-        self.evaluate_samples(subject, wanted, batch)
+        self.evaluate_samples(subject, wanted, batch, stopped)
     }
 
     /// The radiance of `self.samples`.
@@ -324,7 +325,8 @@ impl Scratch {
         subject: &Subject,
         wanted: PlaneSet,
         batch: &BatchSize,
-    ) -> RayCounts {
+        stopped: &dyn Fn() -> bool,
+    ) -> Option<RayCounts> {
         let start = Instant::now();
         let Untinted {
             world,
@@ -344,6 +346,7 @@ impl Scratch {
             wanted,
             &mut self.values,
             &mut self.workspace,
+            stopped,
         );
         self.folded.clear();
         let asked = wanted.of(planes.count());
@@ -389,6 +392,48 @@ mod tests {
     use super::super::tiles::TileGrid;
     use super::*;
     use glam::UVec2;
+
+    #[test]
+    fn a_chunk_stops_between_the_surfaces_that_one_sample_goes_through_and_forgets_it() {
+        let (world, camera) = test_scene::sheets(40);
+        let settings = test_scene::settings(UVec2::new(16, 16), 1);
+        let subject = Subject::new(world, camera, settings, false);
+        let tile = TileGrid::new(subject.settings.size).tile(0);
+        let chunk = Chunk {
+            tile: 0,
+            pixels: Pixels::All,
+            planes: PlaneSet::ALL,
+            range: 0..1,
+            of: 1,
+        };
+        let batch = BatchSize::new(&subject);
+        let sum = |scratch: &mut Scratch, most: u32| {
+            let asked = Cell::new(0);
+            let work = Work {
+                subject: &subject,
+                batch: &batch,
+                kept: None,
+                stopped: &|| {
+                    asked.set(asked.get() + 1);
+                    asked.get() > most
+                },
+            };
+            let rays = scratch.sum_chunk(&work, tile, &chunk);
+            (rays, asked.get(), scratch.sums.clone())
+        };
+        let mut scratch = Scratch::default();
+        let (rays, asked, whole) = sum(&mut scratch, u32::MAX);
+        // Every sample goes through them all; some go on by chance where little is left.
+        let rays = rays.unwrap();
+        assert!(rays.transmission >= 36 * rays.camera, "{rays:?}");
+        assert!(asked >= 36, "asked {asked} times");
+        for most in [0, 1, 30] {
+            let (rays, asked, _) = sum(&mut scratch, most);
+            assert_eq!((rays, asked), (None, most + 1));
+            let (again, _, sums) = sum(&mut scratch, u32::MAX);
+            assert!(again.is_some() && sums == whole, "after {most}");
+        }
+    }
 
     #[test]
     fn a_chunk_that_stops_is_not_said_to_have_met_anything() {

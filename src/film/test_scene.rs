@@ -72,6 +72,37 @@ pub(super) fn world() -> World {
     .with_needs()
 }
 
+/// So many faint sheets, one behind the other across the z axis, which all rays of a camera go through, and a light.
+pub(super) fn sheets(count: u32) -> (World, Camera) {
+    let sheet = |i: u32| {
+        let corner = Vec3::new(-9.0, -9.0, -0.01 * i as f32);
+        quad(corner, Vec3::X * 18.0, Vec3::Y * 18.0)
+    };
+    let corners: Vec<Vec3> = (0..count).flat_map(sheet).collect();
+    let indices = (0..2 * count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]);
+    let triangles = Triangles::new(corners, indices.collect()).unwrap();
+    let tree = Arc::new(MeshTree::build(triangles, &BuildOptions::default()));
+    let instance = Instance::new(tree.clone(), &Affine3A::IDENTITY).unwrap();
+    let object = Object {
+        id: 1,
+        material: 0,
+        motion_samples: 0,
+        mesh: Arc::new(Mesh::of(tree)),
+    };
+    let faint = Material {
+        opacity: 1e-3,
+        ..Material::default()
+    };
+    let world = World {
+        aggregate: Arc::new(Aggregate::build(vec![instance], &BuildOptions::default())),
+        objects: Arc::new(vec![object]),
+        materials: Arc::new(vec![faint]),
+        ..world()
+    };
+    let camera = Camera::looking_at(Vec3::Z * 2.0, Vec3::ZERO, Vec3::Y, 0.5);
+    (world.with_needs(), camera)
+}
+
 pub(super) fn camera() -> Camera {
     Camera::looking_at(
         Vec3::new(0.4, 1.2, 3.0),

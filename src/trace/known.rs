@@ -59,6 +59,11 @@ impl Known {
         (now, &mut self.camera_hits)
     }
 
+    /// Lets go of everything, after a batch that was not finished.
+    pub(super) fn forget(&mut self) {
+        self.keep(Found::default());
+    }
+
     /// Lets go of what was known before a batch that did not add to it: it need not be kept again.
     pub(super) fn keep(&mut self, found: Found) {
         for (visibilities, is_new) in self.visibilities.iter_mut().zip(found.visibilities) {

@@ -81,7 +81,8 @@ pub fn radiance(
 }
 
 /// The same kept apart: `values` holds the samples' values in the first plane that is `wanted`, then those in the next, and
-/// so on. Lights whose planes are not wanted are not asked.
+/// so on. Lights whose planes are not wanted are not asked. `None` where `stopped` said so, which is asked after every bounce
+/// and every surface that paths go through: the values mean nothing then.
 ///
 /// # Panics
 /// If there is not exactly one value for each sample and wanted plane.
@@ -98,7 +99,8 @@ pub fn radiance_in_planes(
     wanted: PlaneSet,
     values: &mut [Vec3],
     workspace: &mut Workspace,
-) -> RayCounts {
+    stopped: &dyn Fn() -> bool,
+) -> Option<RayCounts> {
     let kept = (planes, wanted);
     evaluate(
         world,
@@ -109,6 +111,7 @@ pub fn radiance_in_planes(
         values,
         workspace,
         &mut (),
+        stopped,
     )
 }
 
@@ -123,9 +126,11 @@ pub(super) fn radiance_with<R: Recorder>(
     recorder: &mut R,
 ) -> RayCounts {
     let kept = (&Planes::together(), PlaneSet::ALL);
-    evaluate(
-        world, camera, settings, samples, kept, values, workspace, recorder,
-    )
+    let never = &|| false;
+    let counts = evaluate(
+        world, camera, settings, samples, kept, values, workspace, recorder, never,
+    );
+    counts.unwrap_or_default()
 }
 
 #[expect(
@@ -141,7 +146,8 @@ fn evaluate<R: Recorder>(
     values: &mut [Vec3],
     workspace: &mut Workspace,
     recorder: &mut R,
-) -> RayCounts {
+    stopped: &dyn Fn() -> bool,
+) -> Option<RayCounts> {
     let expected = wanted.rows(planes.count()) * samples.len();
     assert_eq!(
         expected,
@@ -195,10 +201,14 @@ fn evaluate<R: Recorder>(
         hits_now = &mut *hits;
         batch.known.next_bounce(paths);
         batch.recorder.next_bounce();
+        if !paths.rays.is_empty() && stopped() {
+            known.forget();
+            return None;
+        }
     }
     let (counts, found) = (batch.counts, batch.known.found());
     known.keep(found);
-    counts
+    Some(counts)
 }
 
 /// What the stages of a batch share.
