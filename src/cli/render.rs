@@ -10,14 +10,14 @@ use super::stats::{Stats, mrays_per_second, triangles};
 use super::stop::{SampleRange, StopArgs};
 use super::view::ViewArgs;
 use crate::film::views::View;
-use crate::film::{FirstHits, Status, render_lights, render_samples};
+use crate::film::{Ending, FirstHits, Status, render_lights, render_samples};
 use crate::inspect::build_time;
 use crate::io::{
     FileError, Part, PictureFormat, check_outputs, check_picture, check_room, check_writable,
     part_bytes, picture_notes, replace_file, write_lights, write_part, write_rendered,
 };
 use crate::sync::TracedCamera;
-use crate::trace::{RayCounts, digest, samples_per_pixel};
+use crate::trace::{Crossings, RayCounts, digest, samples_per_pixel};
 use clap::Args;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -57,6 +57,9 @@ pub(super) struct Render {
     #[arg(long)]
     pub quiet: bool,
 }
+
+/// A picture that ends so many seconds after its time says why: what began before is done within some milliseconds.
+const LATE: f64 = 1.0;
 
 pub(super) fn run(args: Render) -> Result<(), Failure> {
     args.settings.check()?;
@@ -156,6 +159,14 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
             args.view.write_first_hits(file, &hits, &settings.output)?;
             continue;
         }
+        if !args.quiet
+            && let Some(crossings) = Crossings::many(&world, &camera.camera, &settings)
+        {
+            let names = stage.names();
+            let name = names.get(&crossings.object.0).map(String::as_str);
+            let text = crossings.text(name);
+            tell("note", format_args!("{}: {text}", stage.name));
+        }
         let progress = Progress::new(args.quiet, &camera.name);
         let samples = match &args.stop.samples {
             Some(SampleRange(samples)) => samples.clone(),
@@ -171,6 +182,19 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
             (rendered, None)
         };
         drop(progress);
+        if rendered.ending == Ending::Time && !args.quiet {
+            let limit = f64::from(settings.sampling.time);
+            if rendered.seconds > limit + LATE {
+                let file = file.display();
+                tell(
+                    "note",
+                    format_args!(
+                        "{file}: the first sample of each pixel took {:.1} s, longer than the {limit} s asked for",
+                        rendered.seconds
+                    ),
+                );
+            }
+        }
         // Fewer than asked for where an error or a time ended it.
         let spp = rendered.status.samples.round() as u32;
         if args.stop.samples.is_some() {

@@ -12,7 +12,7 @@ pub(super) struct StopArgs {
     /// Stop when the estimated relative error of the picture is this small: 0.01 is one percent
     #[arg(long, value_name = "E", allow_negative_numbers = true)]
     pub error: Option<f32>,
-    /// Stop after this many seconds of tracing
+    /// Stop after this many seconds of tracing, but not before each pixel has a sample
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub time: Option<f32>,
     /// With --error or --time: whether samples go where the error is (default: as the scene says; on

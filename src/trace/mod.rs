@@ -25,6 +25,7 @@
 
 pub mod camera;
 mod camera_rays;
+mod crossings;
 mod cut_out;
 mod digest;
 mod direct;
@@ -86,6 +87,7 @@ mod world;
 mod wrap;
 
 pub use camera::{Camera, ImagePlane, Optics};
+pub use crossings::Crossings;
 pub use digest::{Digest, digest};
 pub use dome::{DOME, Dome};
 pub use emitters::emitters;

@@ -17,7 +17,7 @@ const SPLIT_ABOVE: f32 = 0.125;
 /// Of a path that has gone on as one, what carries less than this goes on by chance, and the more weighs what does: behind
 /// ten thousand panes there is nothing to be seen, and finding it out should not take ten thousand rays, each to a light
 /// behind as many.
-const FAINT: f32 = 1.0 / 4096.0;
+pub(super) const FAINT: f32 = 1.0 / 4096.0;
 
 /// After this many scatterings in translucent surfaces a path ends: between fully transparent,
 /// scattering walls it would go on for ever.

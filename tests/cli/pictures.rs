@@ -176,6 +176,51 @@ fn a_converted_scene_gives_the_same_picture() {
     }
 }
 
+/// A model of so many sheets of this opacity, one behind the other.
+fn write_sheets(folder: &Path, count: usize, opacity: f32) {
+    let material = format!("newmtl faint\nKd 1 1 1\nd {opacity}\n");
+    std::fs::write(folder.join("sheets.mtl"), material).unwrap();
+    let mut model = "mtllib sheets.mtl\no pages\nusemtl faint\n".to_owned();
+    for i in 0..count {
+        let z = -0.001 * i as f32;
+        model += &format!("v -1 -1 {z}\nv 1 -1 {z}\nv 1 1 {z}\nv -1 1 {z}\nf -4 -3 -2 -1\n");
+    }
+    std::fs::write(folder.join("sheets.obj"), model).unwrap();
+}
+
+#[test]
+fn a_picture_whose_rays_go_through_hundreds_of_surfaces_says_so_and_of_what_before_it_is_traced() {
+    let folder = tempfile::tempdir().unwrap();
+    let tiny = [
+        "render",
+        "sheets.obj",
+        "-o",
+        "a.png",
+        "--size",
+        "4x4",
+        "--spp",
+        "1",
+    ];
+    for (count, opacity, is_told) in [(400, 0.0005, true), (40, 0.0005, false), (400, 0.9, false)] {
+        write_sheets(folder.path(), count, opacity);
+        let output = glassbox(folder.path(), &tiny);
+        let (_, err) = texts(&output);
+        assert_eq!(output.status.code(), Some(0), "{err}");
+        let told = err
+            .lines()
+            .find(|line| line.contains("surfaces each, most of them of"));
+        assert_eq!(told.is_some(), is_told, "{count} of {opacity}: {err}");
+        let told = told.unwrap_or("note: sheets.obj: \"pages\"");
+        assert!(
+            told.starts_with("note: sheets.obj: ") && told.contains("\"pages\""),
+            "{told}"
+        );
+    }
+    write_sheets(folder.path(), 400, 0.0005);
+    let output = glassbox(folder.path(), &[&tiny[..], &["--quiet"]].concat());
+    assert_eq!(texts(&output).1, "");
+}
+
 #[test]
 fn a_model_without_camera_and_light_is_framed_and_says_so() {
     let folder = tempfile::tempdir().unwrap();

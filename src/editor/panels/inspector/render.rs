@@ -7,9 +7,12 @@ use super::maps::Thumbnails;
 use crate::editor::preferences::Preferences;
 use crate::editor::viewport::EditorCamera;
 use crate::io::Size;
-use crate::scene::{RenderSettings, range_problems};
+use crate::scene::{RenderSettings, SceneId, range_problems};
+use crate::trace::Crossings;
 use crate::view::TracedRender;
+use bevy::ecs::name::Name;
 use bevy::ecs::query::With;
+use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy::math::UVec2;
 use bevy_egui::egui::Ui;
@@ -160,7 +163,40 @@ fn film_ui(ui: &mut Ui, world: &mut World) {
         row(ui, "Whole film", says, |ui| {
             ui.label(Size(film.total).to_string()).says(says)
         });
+        if let Some(text) = crossings_text(world) {
+            ui.colored_label(ui.visuals().warn_fg_color, text);
+        }
     });
+}
+
+/// What the view's rays go through, where that is so much that it takes long: asked once for each render.
+#[derive(Resource, Default)]
+struct ViewCrossings {
+    of: Option<u64>,
+    found: Option<Crossings>,
+}
+
+fn crossings_text(world: &mut World) -> Option<String> {
+    world.init_resource::<ViewCrossings>();
+    let mut renders = world.query_filtered::<&TracedRender, With<EditorCamera>>();
+    let render = renders.single(world).ok()?;
+    let number = render.render()?.number();
+    let (traced, camera, settings) = render.subject()?;
+    let kept = world.resource::<ViewCrossings>();
+    let found = if kept.of == Some(number) {
+        kept.found
+    } else {
+        let found = Crossings::many(traced, camera, settings);
+        *world.resource_mut::<ViewCrossings>() = ViewCrossings {
+            of: Some(number),
+            found,
+        };
+        found
+    }?;
+    let mut named = world.query::<(&SceneId, &Name)>();
+    let mut named = named.iter(world);
+    let name = named.find(|(id, _)| **id == found.object);
+    Some(found.text(name.map(|(_, name)| name.as_str())))
 }
 
 /// Sizes that are often wanted, beside the field for the size.
