@@ -92,7 +92,7 @@ impl<E: Eight> WideRay<E> {
     /// Where the ray meets three faces of each child.
     #[inline(always)]
     fn meet(&self, faces: [&[f32; 8]; 3], origin: &[E; 3]) -> [E; 3] {
-        by_axis!(|axis| { (E::load(faces[axis]).sub(origin[axis])).mul(self.inverse[axis]) })
+        by_axis!(|axis| (E::load(faces[axis]).sub(origin[axis])).mul(self.inverse[axis]))
     }
 }
 

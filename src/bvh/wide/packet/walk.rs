@@ -4,7 +4,7 @@ use super::{FEW_RAYS, Found, View};
 use crate::bvh::{
     goal::Goal,
     wide::{
-        InstructionSet, Lanes, WideTree,
+        InstructionSet, WideTree,
         node::{LEAF, WIDTH},
         walk::entries_of,
     },
