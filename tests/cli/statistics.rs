@@ -185,7 +185,7 @@ fn scenes_are_listed_one_a_line() {
     for (line, scene) in text.lines().zip(scenes) {
         assert!(line.starts_with(scene.name), "{line}");
         assert!(
-            line.contains(" triangles ") && line.contains(" light"),
+            line.contains(" triangle") && line.contains(" light"),
             "{line}"
         );
         assert!(line.ends_with(scene.sentence), "{line}");
