@@ -5,6 +5,7 @@ use super::super::says::Says;
 use super::environment::environment_ui;
 use super::maps::Thumbnails;
 use crate::editor::preferences::Preferences;
+use crate::editor::trees::background::{Background, Outcome, Watch};
 use crate::editor::viewport::EditorCamera;
 use crate::io::Size;
 use crate::scene::{RenderSettings, SceneId, range_problems};
@@ -16,6 +17,7 @@ use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy::math::UVec2;
 use bevy_egui::egui::Ui;
+use std::time::Duration;
 
 /// A group of settings: its title, whether it is open at first, and the paths in it.
 type Group = (&'static str, bool, &'static [&'static str]);
@@ -163,36 +165,68 @@ fn film_ui(ui: &mut Ui, world: &mut World) {
         row(ui, "Whole film", says, |ui| {
             ui.label(Size(film.total).to_string()).says(says)
         });
-        if let Some(text) = crossings_text(world) {
+        if let Some(text) = crossings_text(ui, world) {
             ui.colored_label(ui.visuals().warn_fg_color, text);
         }
     });
 }
 
-/// What the view's rays go through, where that is so much that it takes long: asked once for each render.
+/// How often what is being counted is looked for.
+const TICK: Duration = Duration::from_millis(50);
+
+/// What the view's rays go through, where that is so much that it takes long: asked once for each render, on a thread of
+/// its own, since it takes longer than a frame just where there is something to say.
 #[derive(Resource, Default)]
 struct ViewCrossings {
+    /// Of which render it is.
     of: Option<u64>,
     found: Option<Crossings>,
+    under_way: Option<(u64, Background<Option<Crossings>>)>,
 }
 
-fn crossings_text(world: &mut World) -> Option<String> {
+impl ViewCrossings {
+    fn take(&mut self) {
+        let Some((of, work)) = &self.under_way else {
+            return;
+        };
+        self.found = match work.take() {
+            Outcome::Pending => return,
+            Outcome::Done(found) => found,
+            Outcome::Lost => None,
+        };
+        self.of = Some(*of);
+        self.under_way = None;
+    }
+}
+
+fn crossings_text(ui: &Ui, world: &mut World) -> Option<String> {
     world.init_resource::<ViewCrossings>();
     let mut renders = world.query_filtered::<&TracedRender, With<EditorCamera>>();
     let render = renders.single(world).ok()?;
     let number = render.render()?.number();
     let (traced, camera, settings) = render.subject()?;
-    let kept = world.resource::<ViewCrossings>();
-    let found = if kept.of == Some(number) {
-        kept.found
-    } else {
-        let found = Crossings::many(traced, camera, settings);
-        *world.resource_mut::<ViewCrossings>() = ViewCrossings {
-            of: Some(number),
-            found,
+    if !traced.needs.transparency {
+        return None;
+    }
+    let subject = (traced.clone(), camera.clone(), settings.clone());
+    let mut kept = world.resource_mut::<ViewCrossings>();
+    kept.take();
+    // One at a time: in a drag every frame asks for another.
+    if kept.under_way.is_none() && kept.of != Some(number) {
+        let work = move |_: &Watch| {
+            let (world, camera, settings) = subject;
+            Crossings::many(&world, &camera, &settings)
         };
-        found
-    }?;
+        match Background::start("crossings", work) {
+            Ok(work) => kept.under_way = Some((number, work)),
+            // Without a thread nothing is said.
+            Err(_) => kept.of = Some(number),
+        }
+    }
+    if kept.under_way.is_some() {
+        ui.ctx().request_repaint_after(TICK);
+    }
+    let found = kept.found?;
     let mut named = world.query::<(&SceneId, &Name)>();
     let mut named = named.iter(world);
     let name = named.find(|(id, _)| **id == found.object);

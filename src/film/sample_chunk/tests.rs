@@ -1,0 +1,76 @@
+use super::super::test_scene;
+use super::super::tile_state::Pixels;
+use super::super::tiles::TileGrid;
+use super::*;
+use glam::UVec2;
+
+/// All samples of the first tile.
+fn whole_tile(subject: &Subject, samples: u64) -> (Tile, Chunk) {
+    let tile = TileGrid::new(subject.settings.size).tile(0);
+    let chunk = Chunk {
+        tile: 0,
+        pixels: Pixels::All,
+        planes: PlaneSet::ALL,
+        range: 0..samples,
+        of: samples,
+    };
+    (tile, chunk)
+}
+
+#[test]
+fn a_chunk_stops_between_the_surfaces_that_one_sample_goes_through_and_forgets_it() {
+    let (world, camera) = test_scene::sheets(40);
+    let settings = test_scene::settings(UVec2::new(16, 16), 1);
+    let subject = Subject::new(world, camera, settings, false);
+    let (tile, chunk) = whole_tile(&subject, 1);
+    let batch = BatchSize::new(&subject);
+    let sum = |scratch: &mut Scratch, most: u32| {
+        let asked = Cell::new(0);
+        let work = Work {
+            subject: &subject,
+            batch: &batch,
+            kept: None,
+            stopped: &|| {
+                asked.set(asked.get() + 1);
+                asked.get() > most
+            },
+        };
+        let rays = scratch.sum_chunk(&work, tile, &chunk);
+        (rays, asked.get(), scratch.sums.clone())
+    };
+    let mut scratch = Scratch::default();
+    let (rays, asked, whole) = sum(&mut scratch, u32::MAX);
+    // Every sample goes through them all; some go on by chance where little is left.
+    let rays = rays.unwrap();
+    assert!(rays.transmission >= 36 * rays.camera, "{rays:?}");
+    assert!(asked >= 36, "asked {asked} times");
+    for most in [0, 1, 30] {
+        let (rays, asked, _) = sum(&mut scratch, most);
+        assert_eq!((rays, asked), (None, most + 1));
+        let (again, _, sums) = sum(&mut scratch, u32::MAX);
+        assert!(again.is_some() && sums == whole, "after {most}");
+    }
+}
+
+#[test]
+fn a_chunk_that_stops_is_not_said_to_have_met_anything() {
+    let settings = test_scene::settings(UVec2::new(16, 16), 4);
+    let subject = Subject::new(test_scene::world(), test_scene::camera(), settings, false);
+    let (tile, chunk) = whole_tile(&subject, 4);
+    let batch = BatchSize::new(&subject);
+    let mut scratch = Scratch::default();
+    let mut sum = |stops: bool| {
+        let work = Work {
+            subject: &subject,
+            batch: &batch,
+            kept: None,
+            stopped: &|| stops,
+        };
+        let done = scratch.sum_chunk(&work, tile, &chunk);
+        (done.is_some(), scratch.octaves.iter().sum::<u32>())
+    };
+    assert_eq!(sum(true), (false, 0));
+    assert_eq!(sum(false), (true, 4 * TILE_PIXELS as u32));
+    assert_eq!(sum(true), (false, 4 * TILE_PIXELS as u32));
+    assert_eq!(sum(false), (true, 8 * TILE_PIXELS as u32));
+}
