@@ -68,7 +68,7 @@ impl Kept {
     }
 
     /// Tells what is known of samples that are evaluated next.
-    pub fn tell(&self, of: BatchPlaces, samples: &mut Known) {
+    pub fn tell(&self, of: &BatchPlaces, samples: &mut Known) {
         let is_edited = self.is_edited.load(Ordering::Relaxed);
         samples.know_camera_hits(|hits| {
             let mut all = is_edited;
@@ -89,7 +89,7 @@ impl Kept {
     }
 
     /// Keeps what was found out about them.
-    pub fn learn(&self, of: BatchPlaces, rays: RayCounts, samples: &mut Known) {
+    pub fn learn(&self, of: &BatchPlaces, rays: RayCounts, samples: &mut Known) {
         if rays.camera > 0 {
             let hits = samples.camera_hits().iter();
             self.hits.write(of, hits.map(|hit| Some(*hit)));
@@ -109,7 +109,7 @@ impl Kept {
 /// What is known of each sample of a batch: nothing where nothing may be told.
 fn tell<T: Copy + Default>(
     all: &PerSample<T>,
-    of: BatchPlaces,
+    of: &BatchPlaces,
     may_tell: bool,
     batch: &mut Vec<T>,
 ) {

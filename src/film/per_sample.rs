@@ -21,21 +21,26 @@ pub(super) struct PerSample<T> {
     bytes: AtomicU64,
 }
 
-/// Places of a chunk, by their numbers in its list, of one sample: a piece of a batch.
-pub(super) type Run = (u64, Range<usize>);
-
-/// Where the samples of a batch belong: a tile, places in it, and the runs through those.
-#[derive(Clone, Copy)]
+/// Where the samples of a batch belong: to places of a tile, and to each of those the same ones of its samples, which follow
+/// one another.
 pub(super) struct BatchPlaces<'a> {
     pub tile: u32,
     pub places: &'a [usize],
-    pub runs: &'a [Run],
+    pub indices: Range<u64>,
 }
 
 impl BatchPlaces<'_> {
     /// How many samples they are.
     pub fn count(&self) -> usize {
-        self.runs.iter().map(|(_, run)| run.len()).sum()
+        self.places.len() * (self.indices.end - self.indices.start) as usize
+    }
+
+    /// Where each is kept.
+    fn each(&self) -> impl Iterator<Item = usize> {
+        self.places.iter().flat_map(|place| {
+            let indices = self.indices.clone();
+            indices.map(move |index| index as usize * TILE_PIXELS + place)
+        })
     }
 }
 
@@ -58,35 +63,28 @@ impl<T: Copy + Default> PerSample<T> {
     }
 
     /// Tells what is known of each sample of a batch, in order.
-    pub fn read(&self, of: BatchPlaces, mut tell: impl FnMut(T)) {
+    pub fn read(&self, of: &BatchPlaces, mut tell: impl FnMut(T)) {
         let tile = lock(&self.tiles[of.tile as usize]);
-        for (index, run) in of.runs {
-            let first = *index as usize * TILE_PIXELS;
-            let all = tile.get(first..first + TILE_PIXELS);
-            for place in &of.places[run.clone()] {
-                tell(all.map_or_else(T::default, |all| all[*place]));
-            }
+        for at in of.each() {
+            tell(tile.get(at).copied().unwrap_or_default());
         }
     }
 
     /// Keeps what is known now of each sample of a batch, as far as there is room.
-    pub fn write(&self, of: BatchPlaces, mut values: impl Iterator<Item = T>) {
+    pub fn write(&self, of: &BatchPlaces, values: impl Iterator<Item = T>) {
+        if of.indices.start >= self.samples {
+            return;
+        }
         let mut tile = lock(&self.tiles[of.tile as usize]);
-        for (index, run) in of.runs {
-            let own = values.by_ref().take(run.len());
-            if *index >= self.samples {
-                own.for_each(drop);
-                continue;
-            }
-            let first = *index as usize * TILE_PIXELS;
-            let end = first + TILE_PIXELS;
-            if tile.len() < end {
-                let more = ((end - tile.len()) / TILE_PIXELS) as u64 * Self::TILE_BYTES;
-                self.bytes.fetch_add(more, Ordering::Relaxed);
-                tile.resize(end, T::default());
-            }
-            for (place, value) in of.places[run.clone()].iter().zip(own) {
-                tile[first + *place] = value;
+        let end = of.indices.end.min(self.samples) as usize * TILE_PIXELS;
+        if tile.len() < end {
+            let more = ((end - tile.len()) / TILE_PIXELS) as u64 * Self::TILE_BYTES;
+            self.bytes.fetch_add(more, Ordering::Relaxed);
+            tile.resize(end, T::default());
+        }
+        for (at, value) in of.each().zip(values) {
+            if let Some(kept) = tile.get_mut(at) {
+                *kept = value;
             }
         }
     }
@@ -120,11 +118,11 @@ mod tests {
     use super::*;
     use glam::UVec2;
 
-    fn in_first_tile<'a>(places: &'a [usize], runs: &'a [Run]) -> BatchPlaces<'a> {
+    fn in_first_tile(places: &[usize], indices: Range<u64>) -> BatchPlaces<'_> {
         BatchPlaces {
             tile: 0,
             places,
-            runs,
+            indices,
         }
     }
 
@@ -133,39 +131,36 @@ mod tests {
         let kept = PerSample::<Option<u32>>::new(&TileGrid::new(UVec2::new(20, 16)));
         let all: Vec<usize> = (0..TILE_PIXELS).collect();
         let half: Vec<usize> = Pixels::Half(1).runs().flatten().collect();
-        let values: Vec<_> = (0..TILE_PIXELS as u32).map(Some).collect();
-        let read = |places: &[usize], run: Run| {
+        let values: Vec<_> = (0..2 * TILE_PIXELS as u32).map(Some).collect();
+        let read = |places: &[usize], indices: Range<u64>| {
             let mut found = Vec::new();
-            kept.read(in_first_tile(places, &[run]), |value| found.push(value));
+            kept.read(&in_first_tile(places, indices), |value| found.push(value));
             found
         };
-        assert_eq!(read(&all, (0, 0..4)), [None; 4]);
-        let of_half: Vec<_> = half.iter().map(|place| values[*place]).collect();
-        let runs = [(2, 0..half.len()), (3, 0..9)];
-        let values_of_runs = of_half.iter().chain(&of_half[..9]);
-        kept.write(in_first_tile(&half, &runs), values_of_runs.copied());
+        assert_eq!(read(&all[..4], 0..1), [None; 4]);
+        // Two of each pixel, which follow one another.
+        let of_half = |place: &usize| [values[*place], values[place + TILE_PIXELS / 2]];
+        let two_each: Vec<_> = half[..9].iter().flat_map(of_half).collect();
+        kept.write(&in_first_tile(&half[..9], 2..4), two_each.iter().copied());
         assert_eq!(kept.bytes(), 4 * PerSample::<Option<u32>>::TILE_BYTES);
-        assert_eq!(read(&half, (2, 3..11)), of_half[3..11]);
-        assert_eq!(
-            read(&half, (3, 7..11)),
-            [of_half[7], of_half[8], None, None]
-        );
-        let known = read(&all, (2, 0..TILE_PIXELS));
-        assert_eq!(known.iter().flatten().count(), half.len());
-        let whole = [(2, 0..TILE_PIXELS)];
-        kept.write(in_first_tile(&all, &whole), values.iter().copied());
-        assert_eq!(read(&all, (2, 17..200)), values[17..200]);
+        assert_eq!(read(&half[3..9], 2..4), two_each[6..]);
+        let second = half[7..11].iter().take(2).map(|place| of_half(place)[1]);
+        let second: Vec<_> = second.chain([None, None]).collect();
+        assert_eq!(read(&half[7..11], 3..4), second);
+        let known = read(&all, 2..3);
+        assert_eq!(known.iter().flatten().count(), 9);
+        kept.write(&in_first_tile(&all, 2..3), values.iter().copied());
+        assert_eq!(read(&all[17..200], 2..3), values[17..200]);
         kept.clear();
-        assert_eq!((read(&all, (2, 0..3)), kept.bytes()), (vec![None; 3], 0));
+        assert_eq!((read(&all[..3], 2..3), kept.bytes()), (vec![None; 3], 0));
     }
 
     #[test]
     fn of_a_picture_too_large_for_it_nothing_is_kept() {
         let kept = PerSample::<Option<[u64; 3]>>::new(&TileGrid::new(UVec2::new(4096, 4096)));
-        let runs = [(0, 0..1), (1, 0..1)];
-        kept.write(in_first_tile(&[0], &runs), [Some([5; 3]); 2].into_iter());
+        kept.write(&in_first_tile(&[0], 0..2), [Some([5; 3]); 2].into_iter());
         let mut found = Vec::new();
-        kept.read(in_first_tile(&[0], &runs[..1]), |value| found.push(value));
+        kept.read(&in_first_tile(&[0], 0..1), |value| found.push(value));
         assert_eq!((kept.bytes(), found), (0, vec![None]));
     }
 }

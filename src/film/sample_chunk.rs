@@ -1,7 +1,7 @@
 //! The samples of a chunk: batch by batch, so that a render can stop between two of them, and within one that takes long.
 
 use super::kept::Kept;
-use super::per_sample::{BatchPlaces, Run};
+use super::per_sample::BatchPlaces;
 use super::subject::Subject;
 use super::sum_columns::SumColumns;
 use super::tile_state::Chunk;
@@ -11,7 +11,7 @@ use crate::trace::planes::OWN;
 use crate::trace::{
     FEW_LIGHTS, MaterialSet, PlaneSet, RayCounts, SampleId, Untinted, Workspace, radiance_in_planes,
 };
-use glam::Vec3;
+use glam::{UVec2, Vec3};
 use std::cell::Cell;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -28,6 +28,10 @@ pub(super) struct BatchSize {
 }
 
 const LARGEST_BATCH: usize = 512;
+/// Samples of a pixel that stand side by side in a batch, at most: their rays go nearly the same way from nearly the same
+/// place, and meet the same triangles. Of fewer than the least each pixel has one in turn.
+const DEEPEST: u64 = 64;
+const LEAST_DEEP: u64 = 8;
 /// Some milliseconds of rays through a large scene.
 const RAYS: u64 = 8192;
 const SHORT: Duration = Duration::from_micros(400);
@@ -47,15 +51,17 @@ impl BatchSize {
     }
 
     fn learn(&self, samples: usize, took: Duration) {
-        if samples != self.get() {
+        let now = self.get();
+        if 2 * samples <= now || samples > now {
+            // It was fewer that were there, or another thread has learnt from as many.
             return;
         }
         let next = if took < SHORT {
-            2 * samples
+            2 * now
         } else if took > LONG {
-            samples / 2
+            now / 2
         } else {
-            samples
+            now
         };
         self.now.store(next.clamp(1, self.most), Ordering::Relaxed);
     }
@@ -97,8 +103,6 @@ pub(super) struct Scratch {
     places: Vec<usize>,
     columns: SumColumns,
     samples: Vec<SampleId>,
-    /// The pieces of which a batch of a chunk is made.
-    runs: Vec<Run>,
     /// Plane by plane of those that were asked for.
     values: Vec<Vec3>,
     /// The values of the samples, all those planes together, where they are more than what shines by itself.
@@ -121,7 +125,6 @@ impl Default for Scratch {
             places: Vec::new(),
             columns: SumColumns::default(),
             samples: Vec::new(),
-            runs: Vec::new(),
             values: Vec::new(),
             folded: Vec::new(),
             workspace: Workspace::default(),
@@ -207,7 +210,6 @@ impl Scratch {
         let Work {
             subject,
             batch,
-            kept,
             stopped,
             ..
         } = *work;
@@ -220,49 +222,35 @@ impl Scratch {
         if !is_whole {
             self.columns.reset(rows * places.len());
         }
-        // The next sample: of the pixel at that place, with that index.
-        let (mut place, mut index) = (0, segment.start);
-        let mut left = (segment.end - segment.start) * places.len() as u64;
-        while left > 0 {
-            let count = (batch.get() as u64).min(left);
-            let first_place = place;
-            self.samples.clear();
-            self.runs.clear();
-            while self.samples.len() < count as usize {
-                let more = places.len() - place;
-                let more = more.min(count as usize - self.samples.len());
-                let pixels = (places[place..place + more].iter())
-                    .map(|place| tile.origin + pixel_in_tile(*place));
-                (self.samples).extend(pixels.map(|pixel| SampleId { pixel, index }));
-                self.runs.push((index, place..place + more));
-                place += more;
-                if place == places.len() {
-                    (place, index) = (0, index + 1);
+        let mut indices = segment.start..segment.start;
+        while indices.end < segment.end {
+            let left = segment.end - indices.end;
+            let deep = if left < LEAST_DEEP {
+                1
+            } else {
+                left.min(DEEPEST)
+            };
+            indices = indices.end..indices.end + deep;
+            let mut at = 0;
+            while at < places.len() {
+                let size = batch.get();
+                let wide = (size / deep as usize).clamp(1, places.len() - at);
+                // Where a sample takes long, those of one pixel are several batches.
+                let most = (size / wide).max(1);
+                for from in indices.clone().step_by(most) {
+                    let of = BatchPlaces {
+                        tile: chunk.tile,
+                        places: &places[at..at + wide],
+                        indices: from..indices.end.min(from + most as u64),
+                    };
+                    rays += self.take_samples(work, tile.origin, &of, wanted)?;
+                    let whole = is_whole.then_some(first);
+                    self.sum_batch(planes.clone(), places.len(), (at, wide), whole);
+                    if stopped() {
+                        return None;
+                    }
                 }
-            }
-            let tile = chunk.tile;
-            if let Some(kept) = kept {
-                let runs = &self.runs;
-                kept.tell(
-                    BatchPlaces { tile, places, runs },
-                    &mut self.workspace.known,
-                );
-            }
-            let taken = self.evaluate_samples(subject, wanted, batch, stopped)?;
-            if let Some(kept) = kept {
-                let of = BatchPlaces {
-                    tile,
-                    places,
-                    runs: &self.runs,
-                };
-                kept.learn(of, taken, &mut self.workspace.known);
-            }
-            rays += taken;
-            let whole = is_whole.then_some(first);
-            self.sum_batch(planes.clone(), places.len(), first_place, whole);
-            left -= count;
-            if stopped() {
-                return None;
+                at += wide;
             }
         }
         for row in (0..rows).filter(|_| !is_whole) {
@@ -274,34 +262,59 @@ impl Scratch {
         Some(rays)
     }
 
-    /// Adds the batch's values to the pixels in turn, the first of them to that at `first_place`; where they are all of a
-    /// tile's to those of the chunk's sums from the `whole` on.
+    /// The radiance of a batch's samples, which stays in `self.values`; `None` where it was stopped.
+    fn take_samples(
+        &mut self,
+        work: &Work,
+        origin: UVec2,
+        of: &BatchPlaces,
+        wanted: PlaneSet,
+    ) -> Option<RayCounts> {
+        self.samples.clear();
+        for place in of.places {
+            let pixel = origin + pixel_in_tile(*place);
+            let indices = of.indices.clone();
+            (self.samples).extend(indices.map(|index| SampleId { pixel, index }));
+        }
+        if let Some(kept) = work.kept {
+            kept.tell(of, &mut self.workspace.known);
+        }
+        let taken = self.evaluate_samples(work.subject, wanted, work.batch, work.stopped)?;
+        if let Some(kept) = work.kept {
+            kept.learn(of, taken, &mut self.workspace.known);
+        }
+        Some(taken)
+    }
+
+    /// Adds the batch's values, as many of each, to those of a chunk's pixels that begin at the one and are so many; where
+    /// those are all of a tile's to the chunk's sums from the `whole` on.
     fn sum_batch(
         &mut self,
         planes: impl Iterator<Item = usize>,
         pixels: usize,
-        first_place: usize,
+        (at, wide): (usize, usize),
         whole: Option<usize>,
     ) {
         let (sums, first) = match whole {
             Some(first) => (&mut self.sums, first),
             None => (&mut self.columns, 0),
         };
+        let count = self.samples.len();
+        let deep = count / wide;
         for (row, plane) in planes.enumerate() {
-            let count = self.samples.len();
             let values = &self.values[row * count..][..count];
             if plane != OWN && values.iter().all(|value| *value == Vec3::ZERO) {
                 // Most batches of many pictures see no light.
                 continue;
             }
-            let (mut at, mut rest) = (first_place, values);
-            while !rest.is_empty() {
-                let (run, others) = rest.split_at(rest.len().min(pixels - at));
-                sums.add(first + row * pixels + at, run);
-                (at, rest) = (0, others);
+            let first = first + row * pixels + at;
+            if deep == 1 {
+                sums.add(first, values);
+            } else {
+                sums.add_series(first, deep, values);
             }
         }
-        let values = folded(&self.folded, &self.values, self.samples.len());
+        let values = folded(&self.folded, &self.values, count);
         count_octaves(values, &mut self.octaves);
     }
 

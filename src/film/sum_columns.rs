@@ -82,6 +82,13 @@ impl SumColumns {
         add_columns(bytemuck::cast_slice(values), low, high);
     }
 
+    /// Adds so many colours to each pixel from the `first` on: those of a pixel follow one another.
+    pub fn add_series(&mut self, first: usize, length: usize, values: &[Vec3]) {
+        let lanes = CHANNELS * first..CHANNELS * (first + values.len() / length);
+        let (low, high) = (&mut self.low[lanes.clone()], &mut self.high[lanes]);
+        add_all(bytemuck::cast_slice(values), CHANNELS * length, low, high);
+    }
+
     /// Adds to the pixels from the `first` on what others hold.
     pub fn merge(&mut self, first: usize, others: Sums) {
         let lanes = CHANNELS * first..CHANNELS * first + others.low.len();
@@ -265,6 +272,15 @@ fn scaled(low: u64, high: u64, factor: f64) -> (u64, u64) {
     )
 }
 
+/// Adds a value to each of some sums.
+#[inline(always)]
+fn add_lanes((low, high): &mut ([u64; HALF_LANES], [u64; HALF_LANES]), values: &[f32; HALF_LANES]) {
+    for i in 0..HALF_LANES {
+        let (value_low, value_high) = to_fixed(values[i]);
+        (low[i], high[i]) = sum(low[i], high[i], value_low, value_high);
+    }
+}
+
 vectorized! {
     fn add_columns(values: &[f32], low: &mut [u64], high: &mut [u64]) {
         let count = values.len();
@@ -272,6 +288,26 @@ vectorized! {
         for i in 0..count {
             let (value_low, value_high) = to_fixed(values[i]);
             (low[i], high[i]) = sum(low[i], high[i], value_low, value_high);
+        }
+    }
+
+    fn add_all(values: &[f32], of_pixel: usize, low: &mut [u64], high: &mut [u64]) {
+        let pixels = low.chunks_exact_mut(CHANNELS).zip(high.chunks_exact_mut(CHANNELS));
+        for ((low, high), values) in pixels.zip(values.chunks_exact(of_pixel)) {
+            let mut sums = ([0; HALF_LANES], [0; HALF_LANES]);
+            let (whole, rest) = values.as_chunks::<HALF_LANES>();
+            for values in whole {
+                add_lanes(&mut sums, values);
+            }
+            if !rest.is_empty() {
+                let mut values = [0.0; HALF_LANES];
+                values[..rest.len()].copy_from_slice(rest);
+                add_lanes(&mut sums, &values);
+            }
+            for i in 0..HALF_LANES {
+                let channel = i % CHANNELS;
+                (low[channel], high[channel]) = sum(low[channel], high[channel], sums.0[i], sums.1[i]);
+            }
         }
     }
 

@@ -74,3 +74,56 @@ fn a_chunk_that_stops_is_not_said_to_have_met_anything() {
     assert_eq!(sum(true), (false, 4 * TILE_PIXELS as u32));
     assert_eq!(sum(false), (true, 8 * TILE_PIXELS as u32));
 }
+
+#[test]
+fn the_sums_of_a_chunk_are_those_of_its_samples_one_by_one_whatever_a_batch_holds() {
+    let settings = test_scene::settings(UVec2::new(16, 16), 64);
+    let (world, camera) = (test_scene::world(), test_scene::camera());
+    let subject = Subject::new(world.clone(), camera.clone(), settings.clone(), false);
+    let (tile, _) = whole_tile(&subject, 1);
+    let mut scratch = Scratch::default();
+    for (pixels, range) in [
+        (Pixels::All, 0..1),
+        (Pixels::All, 3..24),
+        (Pixels::Half(1), 8..45),
+    ] {
+        let chunk = Chunk {
+            tile: 0,
+            pixels,
+            planes: PlaneSet::ALL,
+            range: range.clone(),
+            of: range.end - range.start,
+        };
+        let places: Vec<_> = tile.places(pixels).collect();
+        let ids: Vec<_> = (places.iter())
+            .flat_map(|place| {
+                let pixel = pixel_in_tile(*place);
+                range.clone().map(move |index| SampleId { pixel, index })
+            })
+            .collect();
+        let batch = BatchSize::new(&subject);
+        let planes = subject.planes();
+        let mut one_by_one = SumColumns::default();
+        one_by_one.reset(planes * TILE_PIXELS);
+        for (i, id) in ids.iter().enumerate() {
+            let one = std::iter::once(*id);
+            let taken = scratch.evaluate(&subject, PlaneSet::ALL, one, &batch, &|| false);
+            assert!(taken.is_some());
+            let place = places[i / (range.end - range.start) as usize];
+            for plane in 0..planes {
+                one_by_one.add(plane * TILE_PIXELS + place, &scratch.values[plane..=plane]);
+            }
+        }
+        for size in [1, 3, 16, 100, 512] {
+            batch.now.store(size, Ordering::Relaxed);
+            let work = Work {
+                subject: &subject,
+                batch: &batch,
+                kept: None,
+                stopped: &|| false,
+            };
+            assert!(scratch.sum_chunk(&work, tile, &chunk).is_some());
+            assert!(scratch.sums == one_by_one, "{range:?}, {size} at once");
+        }
+    }
+}
