@@ -124,6 +124,7 @@ impl<R: Recorder> Batch<'_, R> {
             } = &mut *shadow_rays;
             numbers.draw(asking, Purpose::Light(lamp.id()), self.settings);
         }
+        shadow_rays.find_parts(asked.has_extent);
         if asked.faint > 0.0 {
             let ShadowRays {
                 asking, chances, ..
@@ -340,13 +341,12 @@ impl<R: Recorder> Batch<'_, R> {
                 }
                 continue;
             }
-            let ray = rays[question];
-            self.recorder.shadow_ray(number, &ray);
-            rays[shadows.len()] = ray;
+            self.recorder.shadow_ray(number, &rays[question]);
             shadows.push(Shadow {
                 sample,
                 value,
                 point: number,
+                question: question as u32,
                 place,
             });
         }
@@ -354,20 +354,24 @@ impl<R: Recorder> Batch<'_, R> {
 
     /// Traces the shadow rays and adds what arrives.
     fn add_arriving_light(&mut self, row: usize, shadow_rays: &mut ShadowRays) {
+        shadow_rays.sort_rays();
         let ShadowRays {
-            rays,
             shadows,
+            sorted,
+            ranks,
             occluded,
             passing,
             ..
         } = shadow_rays;
-        let rays = &rays[..shadows.len()];
+        let rays = &sorted[..shadows.len()];
         self.counts.shadow += rays.len() as u64;
         if self.settings.features.transparency && self.world.needs.transparency {
             let (world, settings) = (self.world, self.settings);
             let through = |ray: usize, hit: &Hit| through(world, settings, &rays[ray], hit);
             (world.aggregate).transmittances_in(Order::Light, rays, through, passing);
-            for (shadow, &transmittance) in shadows.iter().zip(passing.get()) {
+            let passing = passing.get();
+            for (shadow, &rank) in shadows.iter().zip(&*ranks) {
+                let transmittance = passing[rank as usize];
                 self.recorder.arrived(shadow.point, transmittance);
                 let value = shadow.value * transmittance;
                 self.add_to(row, shadow.sample, Adding::Light(shadow.point), value);
@@ -379,12 +383,13 @@ impl<R: Recorder> Batch<'_, R> {
             .occlusions_in(Order::Light, rays, occluded);
         if let Some(visibilities) = &mut self.known.visibilities {
             self.known.has_learnt |= !shadows.is_empty();
-            for (shadow, occluded) in shadows.iter().zip(&*occluded) {
-                visibilities[shadow.sample as usize].remember(shadow.place, *occluded);
+            for (shadow, &rank) in shadows.iter().zip(&*ranks) {
+                let occluded = occluded[rank as usize];
+                visibilities[shadow.sample as usize].remember(shadow.place, occluded);
             }
         }
-        for (shadow, occluded) in shadows.iter().zip(occluded) {
-            if !*occluded {
+        for (shadow, &rank) in shadows.iter().zip(&*ranks) {
+            if !occluded[rank as usize] {
                 self.recorder.arrived(shadow.point, Vec3::ONE);
                 self.add_to(
                     row,

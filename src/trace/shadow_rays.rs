@@ -7,6 +7,7 @@ use super::vectors::Vectors;
 use super::vertices::Vertices;
 use super::{SampleId, Surface};
 use crate::bvh::{Aggregate, Ray, Transmittances};
+use crate::instruction_sets::vectorized;
 use glam::Vec3;
 
 /// A shadow ray ends this much before its light, as a fraction of the distance: a light that lies
@@ -28,6 +29,8 @@ pub(super) struct ShadowRays {
     pub askers: Vec<u32>,
     pub asking: Asking,
     pub numbers: Pairs,
+    /// The part of the light that the point of each question lies in.
+    pub parts: Vec<u32>,
     /// Where there are many lights, the number of each question that decides whether it is asked if it is faint.
     pub chances: Vec<f32>,
     /// What is asked in columns, the same of every light; and whether it is there, and has the counts.
@@ -39,17 +42,24 @@ pub(super) struct ShadowRays {
     /// The questions that are answered one by one.
     pub others: Vec<u32>,
     /// The answers to all: what each point adds if nothing is in the way, zero where nothing comes from there, and else the ray
-    /// that finds out. Later the rays in front are those that are traced.
+    /// that finds out.
     pub values: Vec<Vec3>,
     pub rays: Vec<Ray>,
     /// Points of lights so far at this bounce, those that nothing comes from included: what tells them apart.
     pub points: u32,
     /// What each of the rays that are traced adds to which sample, if the light arrives, and the number of its point.
     pub shadows: Vec<Shadow>,
+    /// Those rays, by the parts of the light that they go to, and where that of each shadow stands.
+    pub sorted: Vec<Ray>,
+    pub ranks: Vec<u32>,
     pub occluded: Vec<bool>,
     /// How much of the light passes what lies on each ray, where anything lets light through.
     pub passing: Transmittances,
 }
+
+/// Parts along an edge of a light.
+const PARTS: u32 = 4;
+const ALL_PARTS: usize = (PARTS * PARTS) as usize;
 
 /// What a shadow ray adds to which sample, if the light arrives.
 #[derive(Clone, Copy)]
@@ -58,7 +68,9 @@ pub(super) struct Shadow {
     pub value: Vec3,
     /// The number of the light's point.
     pub point: u32,
-    /// The same among those of all lights for which the vertex may ask.
+    /// The question that it answers.
+    pub question: u32,
+    /// The number of the point among those of all lights for which the vertex may ask.
     pub place: u32,
 }
 
@@ -79,6 +91,42 @@ impl ShadowRays {
         self.points = 0;
         self.asked = None;
         self.are_gathered = false;
+    }
+
+    /// Finds the part of a light that each question's point lies in: one part where the numbers choose none.
+    pub fn find_parts(&mut self, has_extent: bool) {
+        let count = self.askers.len();
+        self.parts.resize(count, 0);
+        if has_extent {
+            parts_of(&self.numbers.u, &self.numbers.v, &mut self.parts);
+        } else {
+            self.parts.fill(0);
+        }
+    }
+
+    /// Takes the rays of all shadows, those to each part of the light together: as packets they stay close to one another.
+    pub fn sort_rays(&mut self) {
+        let mut counts = [0; ALL_PARTS];
+        let part_of = |shadow: &Shadow| self.parts[shadow.question as usize] as usize % ALL_PARTS;
+        for shadow in &self.shadows {
+            counts[part_of(shadow)] += 1;
+        }
+        let mut all = 0;
+        let mut next = counts.map(|count| {
+            let first = all;
+            all += count;
+            first
+        });
+        if self.sorted.len() < all {
+            self.sorted.resize(all, Ray::new(Vec3::ZERO, Vec3::ZERO));
+        }
+        self.ranks.clear();
+        for shadow in &self.shadows {
+            let rank = &mut next[part_of(shadow)];
+            self.sorted[*rank] = self.rays[shadow.question as usize];
+            self.ranks.push(*rank as u32);
+            *rank += 1;
+        }
     }
 
     /// The questions of a light that gives them answers in columns; those of vertices beside edges are answered one by one.
@@ -139,6 +187,24 @@ impl ShadowRays {
     }
 }
 
+/// The part of an edge of a light that a number in [0, 1) chooses a place on.
+#[inline(always)]
+fn part_along(x: f32) -> u32 {
+    ((PARTS as f32 * x) as u32).min(PARTS - 1)
+}
+
+vectorized! {
+    /// The parts of a light that numbers in [0, 1) choose points of. Those that follow each other lie beside each other.
+    fn parts_of(u: &[f32], v: &[f32], parts: &mut [u32]) {
+        let (u, v) = (&u[..parts.len()], &v[..parts.len()]);
+        for i in 0..parts.len() {
+            let (u, v) = (part_along(u[i]), part_along(v[i]));
+            let u = if v % 2 == 0 { u } else { PARTS - 1 - u };
+            parts[i] = PARTS * v + u;
+        }
+    }
+}
+
 /// From a surface to a light point, ending just before it.
 pub(super) fn shadow_ray(
     aggregate: &Aggregate,
@@ -160,5 +226,73 @@ pub(super) fn shadow_ray(
         t_max,
         time,
         starts_on: surface.point.triangle,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_scene::Numbers;
+    use super::*;
+
+    #[test]
+    fn rays_to_a_part_of_a_light_stand_together_and_each_shadow_finds_its_own() {
+        let mut numbers = Numbers(3);
+        for (count, has_extent) in [(0, true), (1, true), (7, true), (300, true), (300, false)] {
+            let mut shadow_rays = ShadowRays::default();
+            shadow_rays.numbers.fill(2 * count, [0.0; 2]);
+            for question in 0..2 * count {
+                let ray = Ray::new(numbers.in_cube(), Vec3::Y);
+                shadow_rays.rays.push(ray);
+                shadow_rays.askers.push(0);
+                let [u, v] = [numbers.next(), numbers.next()];
+                (
+                    shadow_rays.numbers.u[question],
+                    shadow_rays.numbers.v[question],
+                ) = (u, v);
+                if question % 2 == 1 {
+                    shadow_rays.shadows.push(Shadow {
+                        sample: 0,
+                        value: Vec3::ONE,
+                        point: 0,
+                        question: question as u32,
+                        place: 0,
+                    });
+                }
+            }
+            shadow_rays.find_parts(has_extent);
+            shadow_rays.sort_rays();
+            let mut parts = vec![None; count];
+            for (shadow, &rank) in shadow_rays.shadows.iter().zip(&shadow_rays.ranks) {
+                let question = shadow.question as usize;
+                let own = shadow_rays.rays[question];
+                assert_eq!(shadow_rays.sorted[rank as usize], own);
+                let part = parts[rank as usize].replace(shadow_rays.parts[question]);
+                assert_eq!(part, None);
+            }
+            assert!(parts.is_sorted() && parts.iter().all(Option::is_some));
+            parts.dedup();
+            let expected = if has_extent { count.min(ALL_PARTS) } else { 1 };
+            assert!(count < ALL_PARTS || parts.len() == expected, "{parts:?}");
+        }
+    }
+
+    #[test]
+    fn parts_of_a_light_that_follow_each_other_lie_beside_each_other() {
+        let mut middles = [Vec3::ZERO; ALL_PARTS];
+        for v in 0..PARTS {
+            for u in 0..PARTS {
+                let middle = [u, v].map(|part| (part as f32 + 0.5) / PARTS as f32);
+                let mut part = [0];
+                parts_of(&middle[..1], &middle[1..], &mut part);
+                let of_part = &mut middles[part[0] as usize];
+                assert_eq!(*of_part, Vec3::ZERO);
+                *of_part = Vec3::new(u as f32, v as f32, 1.0);
+            }
+        }
+        let beside = |pair: &[Vec3]| pair[0].distance(pair[1]) == 1.0;
+        assert!(middles.windows(2).all(beside), "{middles:?}");
+        let mut last = [0, 0];
+        parts_of(&[1.0, 0.99], &[1.0, 0.99], &mut last);
+        assert_eq!(last[0], last[1]);
     }
 }
