@@ -81,10 +81,13 @@ pub(super) fn choose(cells: &[Cell], most: u64, goal: f64, hidden: f64) -> Vec<T
     let mut rays = 0.0;
     let mut chosen = Vec::new();
     let small = goal > 0.0 && error <= goal;
+    let something_moves = steps.iter().any(|step| step.gain > 0.0);
     for step in steps {
         let blind = small && hidden * unseen(&cells[step.cell]) > goal;
         let enough = rays >= LEAST_SHARE * spent && error <= AIM * goal;
-        if !blind && (enough || rays >= LARGEST_SHARE * spent) {
+        // Where all samples of a half are alike, most often of nothing, more of them would only fill up a round.
+        let idle = something_moves && step.gain == 0.0;
+        if !blind && (enough || idle || rays >= LARGEST_SHARE * spent) {
             continue;
         }
         rays += step.rays;
@@ -175,6 +178,24 @@ mod tests {
                 range: 16..32
             }]
         );
+    }
+
+    #[test]
+    fn halves_in_which_nothing_moves_get_samples_only_where_nothing_moves_anywhere() {
+        let mut cells: Vec<_> = (0..50)
+            .flat_map(|tile| [0, 1].map(|half| cell(tile, half, (0.0, 16), (0.0, 16))))
+            .collect();
+        let task = |tile, pixels| Task {
+            tile,
+            pixels,
+            range: 16..32,
+        };
+        assert_eq!(choose(&cells, 1 << 20, 0.0, 0.0), [task(0, Pixels::All)]);
+        // One moves: less than the least share of the rays, and no reason to take more.
+        let moved = (1.0, 16);
+        cells[20] = cell(10, 0, moved, moved);
+        let one = task(10, Pixels::Half(0));
+        assert_eq!(choose(&cells, 1 << 20, 0.6 / AIM, 0.0), [one]);
     }
 
     #[test]
