@@ -5,8 +5,9 @@ use super::super::extent::{extent_of, world_from_parent};
 use super::super::history::Gesture;
 use super::super::pick;
 use super::bodies::{Body, Change};
-use super::gizmo::{StandIn, active_grip, movable};
+use super::gizmo::{StandIn, active_grip, movable, wanted_place};
 use super::grips::{self, Grip};
+use super::keyed;
 use super::snap::{Mover, landing_at};
 use super::typed::{TypedDrag, typed_place};
 use super::{Tool, Tools};
@@ -38,7 +39,7 @@ impl GizmoDrag {
 }
 
 #[derive(Clone)]
-pub(super) struct Drag {
+struct Drag {
     start: Transform,
     /// The handle, and where it points to in the world.
     handle: Option<(TransformGizmoAxis, Vec3)>,
@@ -59,6 +60,9 @@ enum Moved {
 
 /// What was done to the stand-in is done to the selection: all of a drag is one gesture.
 pub(super) fn carry(world: &mut World) {
+    if keyed::holds(world) {
+        return;
+    }
     let active = world.resource::<TransformGizmoState>().active;
     let drag = world.resource::<GizmoDrag>().0.clone();
     let drag = match (active, drag) {
@@ -79,30 +83,92 @@ pub(super) fn carry(world: &mut World) {
         typed_place(typed, drag.tool, axis, &drag.start, direction)
     });
     let now = typed.or_else(|| snapped(world, &drag)).unwrap_or(pointed);
-    if now != drag.carried {
-        apply(world, &drag, &now);
+    carry_to(world, &drag, &now);
+    if !active {
+        finish(world);
+    }
+}
+
+fn carry_to(world: &mut World, drag: &Drag, now: &Transform) {
+    if *now != drag.carried {
+        apply(world, drag, now);
         if let Some(drag) = &mut world.resource_mut::<GizmoDrag>().0 {
-            drag.carried = now;
+            drag.carried = *now;
         }
     }
-    if !active {
-        world.resource_mut::<GizmoDrag>().0 = None;
-        world.resource_mut::<TypedDrag>().clear();
-        world.resource_mut::<Gesture>().end();
+}
+
+/// What was done stays, as one step.
+pub(super) fn finish(world: &mut World) {
+    world.resource_mut::<GizmoDrag>().0 = None;
+    world.resource_mut::<TypedDrag>().clear();
+    world.resource_mut::<Gesture>().end();
+}
+
+/// Takes hold of the selection by keys alone, or, where they hold it already, along another axis and from where it was.
+/// `false` where nothing is selected that can be moved.
+pub(super) fn hold_by_keys(world: &mut World, axis: TransformGizmoAxis) -> bool {
+    let mut drag = match world.resource_mut::<GizmoDrag>().0.take() {
+        Some(drag) => {
+            put_back(world, &drag);
+            drag
+        }
+        None => match wanted_place(world) {
+            Some(start) => begin(world, start, None),
+            None => return false,
+        },
+    };
+    let own = match axis {
+        TransformGizmoAxis::X => Vec3::X,
+        TransformGizmoAxis::Y => Vec3::Y,
+        TransformGizmoAxis::Z | TransformGizmoAxis::View => Vec3::Z,
+    };
+    drag.handle = Some((axis, drag.start.rotation * own));
+    drag.carried = drag.start;
+    world.resource_mut::<GizmoDrag>().0 = Some(drag);
+    true
+}
+
+/// What keys hold goes where the number says that is typed. Without one it is as it was; one that cannot be read, as in
+/// the middle of its unit, moves nothing. Returns whether it can be read.
+pub(super) fn follow_number(world: &mut World) -> bool {
+    let Some(drag) = world.resource::<GizmoDrag>().0.clone() else {
+        return false;
+    };
+    let typed = world.resource::<TypedDrag>();
+    let place = drag
+        .handle
+        .and_then(|(axis, direction)| typed_place(typed, drag.tool, axis, &drag.start, direction));
+    match place {
+        Some(place) => carry_to(world, &drag, &place),
+        None if typed.is_empty() => {
+            put_back(world, &drag);
+            if let Some(drag) = &mut world.resource_mut::<GizmoDrag>().0 {
+                drag.carried = drag.start;
+            }
+        }
+        None => {}
+    }
+    place.is_some()
+}
+
+/// The drag is of a scene that is not open any more: what it holds is not put back.
+pub(super) fn forget_drag(world: &mut World) {
+    if world.resource_mut::<GizmoDrag>().0.take().is_some() {
+        finish(world);
     }
 }
 
 /// Arrows stand where the selection is, not where the pointer is already: Bevy moves the stand-in after the selection was
-/// moved, and without a look at what was typed or snapped to.
+/// moved, and without a look at what was typed or snapped to. After the drag they stand where the stand-in does, which keys
+/// alone do not move.
 pub(super) fn show_carried(
     drag: Res<GizmoDrag>,
-    mut stand_ins: Query<&mut GlobalTransform, With<StandIn>>,
+    mut stand_ins: Query<(&Transform, &mut GlobalTransform), With<StandIn>>,
 ) {
-    let Some(drag) = &drag.0 else {
-        return;
-    };
-    for mut place in &mut stand_ins {
-        place.set_if_neq(drag.carried.into());
+    for (own, mut place) in &mut stand_ins {
+        let shown = drag.0.as_ref().map_or(*own, |drag| drag.carried);
+        place.set_if_neq(shown.into());
     }
 }
 
@@ -127,11 +193,7 @@ fn handle(world: &mut World, start: &Transform) -> Option<(TransformGizmoAxis, V
 }
 
 /// Takes hold of the selection by a handle: the axis, and where it points to in the world.
-pub(super) fn begin(
-    world: &mut World,
-    start: Transform,
-    handle: Option<(TransformGizmoAxis, Vec3)>,
-) -> Drag {
+fn begin(world: &mut World, start: Transform, handle: Option<(TransformGizmoAxis, Vec3)>) -> Drag {
     world.resource_mut::<TypedDrag>().clear();
     let tools = world.resource::<Tools>().clone();
     let verb = tools.tool.verb();
@@ -180,11 +242,12 @@ pub(super) fn begin(
 }
 
 /// Does to what is dragged what is done to the stand-in that comes to be there.
-pub(super) fn apply(world: &mut World, drag: &Drag, now: &Transform) {
+fn apply(world: &mut World, drag: &Drag, now: &Transform) {
     let start = &drag.start;
     let keys = world.resource::<ButtonInput<KeyCode>>();
-    let evenly = keys.any_pressed([KeyCode::ShiftLeft, KeyCode::ShiftRight])
-        || world.resource::<Tools>().scale_linked;
+    // Some keyboards have their digits with Shift.
+    let asks = !keyed::holds(world) && keys.any_pressed([KeyCode::ShiftLeft, KeyCode::ShiftRight]);
+    let evenly = asks || world.resource::<Tools>().scale_linked;
     let change = match drag.tool {
         Tool::Move => Change::Move(now.translation - start.translation),
         Tool::Turn => Change::Turn((now.rotation * start.rotation.inverse()).normalize()),
@@ -237,22 +300,25 @@ pub(in super::super) fn cancel(world: &mut World) -> bool {
     let Some(drag) = world.resource_mut::<GizmoDrag>().0.take() else {
         return false;
     };
-    match drag.moved {
-        Moved::Grip(grip, place, None) => grips::put(world, grip, place),
-        Moved::Grip(grip, _, Some(velocity)) => grips::set_velocity(world, grip, velocity),
-        Moved::Bodies(bodies) => {
-            for (id, body) in bodies {
-                set_transform(world, id, body.own);
-            }
-        }
-    }
+    put_back(world, &drag);
     let mut state = world.resource_mut::<TransformGizmoState>();
     state.active = false;
     state.axis = None;
     state.entity = None;
-    world.resource_mut::<TypedDrag>().clear();
-    world.resource_mut::<Gesture>().end();
+    finish(world);
     true
+}
+
+fn put_back(world: &mut World, drag: &Drag) {
+    match &drag.moved {
+        Moved::Grip(grip, place, None) => grips::put(world, *grip, *place),
+        Moved::Grip(grip, _, Some(velocity)) => grips::set_velocity(world, *grip, *velocity),
+        Moved::Bodies(bodies) => {
+            for (id, body) in bodies {
+                set_transform(world, *id, body.own);
+            }
+        }
+    }
 }
 
 #[cfg(test)]

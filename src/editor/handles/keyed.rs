@@ -1,20 +1,20 @@
 //! Moving, turning and scaling by keys alone: the tool's key, an axis, a number, Enter. W X 10cm Enter moves by ten
-//! centimetres along x.
+//! centimetres along x. It is a drag that the number leads: what is typed shows at once, and Escape puts everything back.
 
-use super::drag::{apply, begin};
-use super::gizmo::wanted_place;
-use super::typed::{TypedDrag, label, typed_place};
+use super::drag::{cancel, finish, follow_number, forget_drag, hold_by_keys};
+use super::typed::{TypedDrag, label};
 use super::{Tool, Tools};
-use crate::editor::history::Gesture;
+use crate::editor::document::SceneOpened;
 use crate::editor::notice::Notices;
 use crate::editor::pointer::PointerUse;
 use crate::editor::viewport::Viewport;
 use bevy::ecs::change_detection::DetectChangesMut;
+use bevy::ecs::observer::On;
 use bevy::ecs::resource::Resource;
+use bevy::ecs::system::Commands;
 use bevy::ecs::world::World;
 use bevy::gizmos::transform_gizmo::TransformGizmoAxis as Axis;
 use bevy::input::keyboard::{Key, KeyCode, KeyboardInput};
-use bevy::math::Vec3;
 
 /// What a key has begun.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq)]
@@ -27,33 +27,58 @@ pub(in super::super) enum KeyedDrag {
     Number(Tool, Axis),
 }
 
+/// Whether keys hold the selection: the pointer moves nothing then.
+pub(super) fn holds(world: &World) -> bool {
+    matches!(
+        world.get_resource::<KeyedDrag>(),
+        Some(KeyedDrag::Number(..))
+    )
+}
+
 /// A command was sent by its key.
 pub(in super::super) fn note_command(world: &mut World, id: &str) {
+    forget_keyed(world);
     let tool = match id {
-        "tool.move" => Some(Tool::Move),
-        "tool.turn" => Some(Tool::Turn),
-        "tool.scale" => Some(Tool::Scale),
-        _ => None,
+        "tool.move" => Tool::Move,
+        "tool.turn" => Tool::Turn,
+        "tool.scale" => Tool::Scale,
+        _ => return,
     };
-    let next = tool.map_or(KeyedDrag::No, KeyedDrag::Axis);
     if let Some(mut keyed) = world.get_resource_mut::<KeyedDrag>() {
-        keyed.set_if_neq(next);
+        keyed.set_if_neq(KeyedDrag::Axis(tool));
     }
 }
 
-/// A button was pressed: what was begun by keys is not meant any more.
+/// A button was pressed, or another command given: what was begun by keys is not meant any more.
 pub(in super::super) fn forget_keyed(world: &mut World) {
-    if world
-        .get_resource::<KeyedDrag>()
-        .is_some_and(|keyed| *keyed != KeyedDrag::No)
-    {
-        end(world);
+    if holds(world) {
+        cancel(world);
+    }
+    if let Some(mut keyed) = world.get_resource_mut::<KeyedDrag>() {
+        keyed.set_if_neq(KeyedDrag::No);
     }
 }
 
-fn end(world: &mut World) {
-    world.insert_resource(KeyedDrag::No);
-    world.resource_mut::<TypedDrag>().clear();
+/// Nothing of another scene is held.
+pub(super) fn forget_scene(_: On<SceneOpened>, mut commands: Commands) {
+    commands.queue(|world: &mut World| {
+        if holds(world) {
+            world.insert_resource(KeyedDrag::No);
+            forget_drag(world);
+        }
+    });
+}
+
+/// Where a dialog or a field has taken the keys, no Enter would come.
+pub(super) fn forget_unheard(world: &mut World) {
+    if holds(world) && !is_heard(world) {
+        forget_keyed(world);
+    }
+}
+
+fn is_heard(world: &World) -> bool {
+    let viewport = world.resource::<Viewport>();
+    viewport.takes_keys && viewport.takes_letters
 }
 
 /// Takes a key that is pressed after a tool's; `false` where it is not for it.
@@ -63,8 +88,6 @@ pub(in super::super) fn type_axis_and_number(
     input: &KeyboardInput,
 ) -> bool {
     let keyed = world.get_resource::<KeyedDrag>().copied();
-    let viewport = world.resource::<Viewport>();
-    let is_heard = viewport.takes_keys && viewport.takes_letters;
     let is_free = matches!(world.resource::<PointerUse>(), PointerUse::Free);
     let axis = match key {
         KeyCode::KeyX => Some(Axis::X),
@@ -74,57 +97,55 @@ pub(in super::super) fn type_axis_and_number(
     };
     match keyed {
         None | Some(KeyedDrag::No) => return false,
-        Some(_) if !is_heard || !is_free => {
-            end(world);
+        Some(_) if !is_heard(world) || !is_free => {
+            forget_keyed(world);
             return false;
         }
         Some(KeyedDrag::Axis(tool)) => {
-            let Some(axis) = axis.filter(|_| wanted_place(world).is_some()) else {
-                return false;
-            };
-            begin_number(world, tool, axis);
+            return axis.is_some_and(|axis| begin_number(world, tool, axis));
         }
-        Some(KeyedDrag::Number(tool, along)) => match (key, axis, &input.logical_key) {
-            (KeyCode::Enter | KeyCode::NumpadEnter, ..) => enter(world, tool, along),
-            (KeyCode::Escape, ..) => end(world),
-            (KeyCode::Backspace, ..) => world.resource_mut::<TypedDrag>().pop(),
-            (_, Some(axis), _) => begin_number(world, tool, axis),
-            (_, _, Key::Character(letters)) => world.resource_mut::<TypedDrag>().push(letters),
+        Some(KeyedDrag::Number(tool, _)) => match (key, axis, &input.logical_key) {
+            (KeyCode::Enter | KeyCode::NumpadEnter, ..) => enter(world, tool),
+            (KeyCode::Escape, ..) => forget_keyed(world),
+            (KeyCode::Backspace, ..) => {
+                world.resource_mut::<TypedDrag>().pop();
+                follow_number(world);
+            }
+            (_, Some(axis), _) => {
+                begin_number(world, tool, axis);
+            }
+            (_, _, Key::Character(letters)) => {
+                world.resource_mut::<TypedDrag>().push(letters);
+                follow_number(world);
+            }
             _ => {}
         },
     }
     true
 }
 
-fn begin_number(world: &mut World, tool: Tool, axis: Axis) {
+/// `false` where there is nothing to move.
+fn begin_number(world: &mut World, tool: Tool, axis: Axis) -> bool {
+    // Of the tool whose key was pressed: its command may be still to come.
+    world.resource_mut::<Tools>().tool = tool;
+    if !hold_by_keys(world, axis) {
+        return false;
+    }
     world.insert_resource(KeyedDrag::Number(tool, axis));
     let asks = format!("{} (Enter; Esc: not)", label(tool, Some(axis)));
     world.resource_mut::<TypedDrag>().ask(asks);
+    true
 }
 
-/// What was typed is done, in one step; what cannot be read stays, to be mended.
-fn enter(world: &mut World, tool: Tool, axis: Axis) {
-    let Some(start) = wanted_place(world) else {
-        return end(world);
-    };
-    let direction = start.rotation
-        * match axis {
-            Axis::X => Vec3::X,
-            Axis::Y => Vec3::Y,
-            Axis::Z | Axis::View => Vec3::Z,
-        };
-    let typed = world.resource::<TypedDrag>();
-    let Some(place) = typed_place(typed, tool, axis, &start, direction) else {
-        let text = typed.not_read(tool);
+/// What was typed stays, in one step; what cannot be read waits, to be mended.
+fn enter(world: &mut World, tool: Tool) {
+    if !follow_number(world) {
+        let text = world.resource::<TypedDrag>().not_read(tool);
         world.resource_mut::<Notices>().tell(text);
         return;
-    };
-    // Of the tool whose key was pressed, whatever was chosen since.
-    world.resource_mut::<Tools>().tool = tool;
-    let drag = begin(world, start, Some((axis, direction)));
-    apply(world, &drag, &place);
-    world.resource_mut::<Gesture>().end();
-    end(world);
+    }
+    world.insert_resource(KeyedDrag::No);
+    finish(world);
 }
 
 #[cfg(test)]
@@ -138,8 +159,10 @@ mod tests {
     use crate::scene::{PointLamp, SceneId};
     use bevy::app::App;
     use bevy::ecs::entity::Entity;
+    use bevy::gizmos::transform_gizmo::TransformGizmoState;
     use bevy::input::ButtonInput;
     use bevy::input::ButtonState;
+    use bevy::math::Vec3;
     use bevy::transform::components::Transform;
 
     fn key(world: &mut World, key_code: KeyCode, text: &str) -> bool {
@@ -168,6 +191,7 @@ mod tests {
             .init_resource::<PointerUse>()
             .init_resource::<Viewport>()
             .init_resource::<LookThrough>()
+            .init_resource::<TransformGizmoState>()
             .init_resource::<ButtonInput<KeyCode>>();
         let lamp = (SceneId(1), PointLamp::default(), Transform::default());
         let lamp = app.world_mut().spawn(lamp).id();
@@ -177,6 +201,101 @@ mod tests {
             .resource_mut::<Selection>()
             .set([SceneId(1)]);
         (app, lamp)
+    }
+
+    fn place(world: &World, lamp: Entity) -> Vec3 {
+        world.get::<Transform>(lamp).unwrap().translation
+    }
+
+    fn type_text(world: &mut World, text: &str) {
+        for letter in text.chars() {
+            assert!(
+                key(world, KeyCode::Digit1, &letter.to_string()),
+                "no shortcut hears {letter}"
+            );
+        }
+    }
+
+    #[test]
+    fn what_is_typed_shows_at_once_and_what_cannot_be_read_leaves_it_where_it_is() {
+        let (mut app, lamp) = app_with_lamp();
+        let mut shown = Vec::new();
+        note_command(app.world_mut(), "tool.move");
+        key(app.world_mut(), KeyCode::KeyX, "x");
+        for letter in ["-", "2", "0", "c", "m"] {
+            type_text(app.world_mut(), letter);
+            app.update();
+            shown.push(place(app.world(), lamp).x);
+        }
+        assert_eq!(shown, [0.0, -2.0, -20.0, -20.0, -0.2]);
+        assert_eq!(app.world().resource::<History>().position(), 0);
+        let world = app.world_mut();
+        key(world, KeyCode::KeyY, "y");
+        assert_eq!(place(world, lamp), Vec3::ZERO, "another axis begins anew");
+        type_text(world, "3");
+        assert_eq!(place(world, lamp), 3.0 * Vec3::Y);
+        key(world, KeyCode::Backspace, "");
+        assert_eq!(place(world, lamp), Vec3::ZERO, "no number, no way");
+        type_text(world, "1/2");
+        key(world, KeyCode::Enter, "");
+        app.update();
+        assert_eq!(place(app.world(), lamp), 0.5 * Vec3::Y);
+        assert_eq!(app.world().resource::<History>().position(), 1);
+    }
+
+    #[test]
+    fn escape_a_click_another_command_and_a_dialog_put_everything_back_without_a_step() {
+        type Way = fn(&mut World);
+        let ways: [(&str, Way); 4] = [
+            ("escape", |world| {
+                key(world, KeyCode::Escape, "");
+            }),
+            ("a click", forget_keyed),
+            ("a command", |world| note_command(world, "edit.undo")),
+            ("a dialog", |world| {
+                world.resource_mut::<Viewport>().takes_keys = false;
+                forget_unheard(world);
+            }),
+        ];
+        for tool in ["tool.move", "tool.turn", "tool.scale"] {
+            for (what, end) in ways {
+                let (mut app, lamp) = app_with_lamp();
+                let start = Transform::from_xyz(0.1, 0.7, 0.3)
+                    .with_rotation(bevy::math::Quat::from_rotation_x(0.3));
+                app.world_mut().entity_mut(lamp).insert(start);
+                app.update();
+                crate::editor::history::reset(app.world_mut());
+                let world = app.world_mut();
+                note_command(world, tool);
+                key(world, KeyCode::KeyZ, "z");
+                type_text(world, "7");
+                let now = *world.get::<Transform>(lamp).unwrap();
+                assert_ne!(now, start, "{tool} shows");
+                app.update();
+                end(app.world_mut());
+                app.update();
+                let world = app.world();
+                assert_eq!(world.get::<Transform>(lamp), Some(&start), "{tool}, {what}");
+                assert_eq!(world.resource::<History>().steps().count(), 0, "{what}");
+                assert_eq!(*world.resource::<KeyedDrag>(), KeyedDrag::No);
+                assert_eq!(world.resource::<TypedDrag>().shown(), None);
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_of_a_scene_that_is_closed_is_put_into_the_next() {
+        let (mut app, lamp) = app_with_lamp();
+        app.add_observer(forget_scene);
+        let world = app.world_mut();
+        note_command(world, "tool.move");
+        key(world, KeyCode::KeyX, "x");
+        type_text(world, "7");
+        crate::editor::document::adopt(world, "next", None);
+        world.flush();
+        assert_eq!(place(world, lamp).x, 7.0, "as the next scene has it");
+        assert_eq!(*world.resource::<KeyedDrag>(), KeyedDrag::No);
+        assert!(!world.resource::<crate::editor::history::Gesture>().active());
     }
 
     #[test]
@@ -190,22 +309,15 @@ mod tests {
         note_command(world, "tool.move");
         assert!(key(world, KeyCode::KeyY, "y"));
         assert!(key(world, KeyCode::KeyX, "x"), "another axis");
-        for letter in ["1", "0", "c", "m"] {
-            assert!(
-                key(world, KeyCode::Digit1, letter),
-                "no shortcut hears {letter}"
-            );
-        }
-        let place = |world: &World| world.get::<Transform>(lamp).unwrap().translation;
-        assert_eq!(place(world), Vec3::ZERO, "nothing is done before Enter");
+        type_text(world, "10cm");
         assert!(key(world, KeyCode::Enter, ""));
-        assert!((place(world) - Vec3::new(0.1, 0.0, 0.0)).length() < 1e-6);
+        assert!((place(world, lamp) - Vec3::new(0.1, 0.0, 0.0)).length() < 1e-6);
         assert_eq!(*world.resource::<KeyedDrag>(), KeyedDrag::No);
         app.update();
         let world = app.world_mut();
         assert_eq!(world.resource::<History>().position(), 1);
         undo(world);
-        assert_eq!(place(world), Vec3::ZERO);
+        assert_eq!(place(world, lamp), Vec3::ZERO);
     }
 
     #[test]

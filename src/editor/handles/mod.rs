@@ -118,10 +118,12 @@ impl Plugin for HandlesPlugin {
             .init_resource::<drag::GizmoDrag>()
             .init_resource::<TypedDrag>()
             .init_resource::<KeyedDrag>()
+            .add_observer(keyed::forget_scene)
             .add_systems(Startup, gizmo::spawn_stand_in)
             .add_systems(
                 EditorUpdate,
                 (
+                    keyed::forget_unheard,
                     grips::forget_grips,
                     drag::carry,
                     gizmo::place_stand_in,

@@ -2,6 +2,7 @@
 
 use super::Tool;
 use super::drag::GizmoDrag;
+use super::keyed;
 use crate::scene::schema::{FARTHEST, Unit, typed_number};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
@@ -55,6 +56,11 @@ impl TypedDrag {
         self.text.pop();
     }
 
+    /// Whether no letter of a number is there.
+    pub fn is_empty(&self) -> bool {
+        self.text.is_empty()
+    }
+
     /// What to show of it; nothing where nothing was typed nor asked for.
     pub fn shown(&self) -> Option<String> {
         (!self.label.is_empty()).then(|| format!("{}: {}", self.label, self.text))
@@ -105,6 +111,9 @@ pub(in super::super) fn type_into_drag(world: &mut World, input: &KeyboardInput)
     let Some(tool) = world.resource::<GizmoDrag>().tool() else {
         return false;
     };
+    if keyed::holds(world) {
+        return false;
+    }
     let axis = world.resource::<TransformGizmoState>().axis;
     let mut typed = world.resource_mut::<TypedDrag>();
     match (&input.logical_key, input.key_code) {
