@@ -83,7 +83,7 @@ pub use picture::{
 };
 pub use problems::{LoadProblem, LoadProblems};
 pub(crate) use regular::{TEXT_BYTES, open_regular, read_text};
-use regular::{open_to_read, read_bytes};
+use regular::{open_to_read, read_bytes, read_bytes_unless};
 #[cfg(feature = "editor")]
 pub(crate) use reload::{Reloaded, SourceFile, source_files};
 pub use replace::check_writable;

@@ -79,8 +79,21 @@ fn packed(start: &[u8]) -> Option<&'static str> {
 
 /// The content of a file, no larger than the limit, and claimed before it is read.
 pub(super) fn read_bytes(path: &Path, limit: u64, memory: &Budget) -> Result<Vec<u8>, FileError> {
+    read_bytes_unless(path, limit, memory, |_| None)
+}
+
+/// The same, unless how the file begins says already that it is of no use.
+pub(super) fn read_bytes_unless(
+    path: &Path,
+    limit: u64,
+    memory: &Budget,
+    is_no: impl FnOnce(&[u8]) -> Option<Problem>,
+) -> Result<Vec<u8>, FileError> {
     let reading = |error: std::io::Error| FileError::reading(path, &error);
-    let reader = open_to_read(path, limit)?;
+    let mut reader = open_to_read(path, limit)?;
+    if let Some(problem) = is_no(reader.fill_buf().map_err(reading)?) {
+        return Err(FileError::new(path, problem));
+    }
     let size = reader.get_ref().metadata().map_err(reading)?.len();
     memory
         .claim(size)

@@ -18,12 +18,15 @@ pub(crate) struct Lines {
 }
 
 impl Lines {
-    /// Opens a file of at most `file_bytes`.
+    /// Opens a file of at most `file_bytes`, unless it begins as no text does.
     pub fn open(file: &Path, file_bytes: u64, limit: usize) -> Result<Self, FileError> {
         let reading = |error: std::io::Error| FileError::reading(file, &error);
         let mut reader = super::open_to_read(file, file_bytes)?;
         let start = reader.fill_buf().map_err(reading)?;
         let (mark, wide) = encoding(start);
+        if let Some(problem) = no_text(start).filter(|_| wide.is_none()) {
+            return Err(FileError::new(file, problem));
+        }
         reader.consume(mark);
         let reader: Box<dyn BufRead> = match wide {
             None => Box::new(reader),
@@ -129,6 +132,46 @@ fn encoding(start: &[u8]) -> (usize, Option<Unit>) {
         &[0, a, 0, b, ..] if a != 0 && b != 0 => (0, Some(u16::from_be_bytes)),
         _ => (0, None),
     }
+}
+
+/// Why a file can be no text, by how it begins. Zeros say nothing where others stand between or behind them: a file that
+/// has text too can be shown in part.
+pub(crate) fn no_text(start: &[u8]) -> Option<Problem> {
+    /// Bytes that are looked at.
+    const SEEN: usize = 1024;
+    /// Fewer say too little.
+    const LEAST: usize = 64;
+    /// Of noise one byte in ten is a control character; of text that an old program wrote one or two may be.
+    const ONE_IN: usize = 20;
+    let seen = start.iter().filter(|&&byte| byte != 0).take(SEEN);
+    let count = seen.clone().count();
+    let controls = seen.filter(|&&byte| is_control(byte)).count();
+    if count == 0 && !start.is_empty() {
+        let text = "holds zeros and no text; get a complete copy";
+        return Some(Problem::Malformed(text.into()));
+    }
+    let is_noise = count >= LEAST && controls * ONE_IN > count;
+    is_noise.then(|| {
+        let text = "is no text, as such a file is; it holds something else, or is damaged";
+        Problem::Malformed(text.into())
+    })
+}
+
+/// Whether a byte is one that text does not have, but for zeros: no space, end of a line, page or file, and no escape.
+fn is_control(byte: u8) -> bool {
+    byte.is_ascii_control() && !matches!(byte, b'\t'..=b'\r' | 0x1a | 0x1b)
+}
+
+/// Text in UTF-16 where its format is UTF-8 alone.
+pub(crate) fn utf_16(format: &str) -> Problem {
+    Problem::Malformed(format!(
+        "is text in UTF-16, and {format} is UTF-8; save it as that"
+    ))
+}
+
+/// Whether text begins as UTF-16 does.
+pub(crate) fn is_utf_16(start: &[u8]) -> bool {
+    encoding(start).1.is_some()
 }
 
 /// Whether a line goes on after the `\` behind it: not in a comment, and not where a name ends in it, which may be that
@@ -256,6 +299,30 @@ mod tests {
         assert_eq!(found(b"1 2#three 4"), ["1", "2"]);
         assert_eq!(found(b"1 # 2"), ["1"]);
         assert_eq!(found(b"-1.#IND 1.#QNAN 2"), ["-1.#IND", "1.#QNAN", "2"]);
+    }
+
+    #[test]
+    fn noise_and_zeros_are_no_text_and_text_with_zeros_or_a_control_character_is() {
+        let mut state = 1_u32;
+        let noise: Vec<u8> = std::iter::repeat_with(|| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 24) as u8
+        })
+        .take(1 << 14)
+        .collect();
+        let told = |bytes: &[u8]| no_text(bytes).map(|problem| problem.to_string());
+        assert!(told(&noise).unwrap().contains("is no text"));
+        assert!(told(&[0; 100]).unwrap().contains("zeros"));
+        let latin = b"# Stra\xdfe, \xc4pfel \x1b[1m\x1a\x0c \x01\n".repeat(9);
+        for text in [
+            &b"v 1"[..],
+            b"",
+            b"v 0 0 0\n\0\0\0\0\0\0\0\0\0\0",
+            b"\0\0\0\0\0\0\0\0\0\0\nv 0 0 0\n",
+            &latin,
+        ] {
+            assert_eq!(told(text), None, "{text:?}");
+        }
     }
 
     #[test]

@@ -94,6 +94,72 @@ fn a_web_page_or_a_pointer_in_place_of_a_file_is_called_so() {
     }
 }
 
+/// Bytes without an order, always the same.
+fn noise(count: usize) -> Vec<u8> {
+    let mut state = 1_u32;
+    let next = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 24) as u8
+    };
+    std::iter::repeat_with(next).take(count).collect()
+}
+
+#[test]
+fn noise_zeros_and_utf_16_are_refused_as_what_they_are_by_their_first_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let noise = noise(1 << 20);
+    let zeros = vec![0; 1 << 20];
+    let wide: Vec<u8> = "{(ply\n"
+        .repeat(99)
+        .encode_utf16()
+        .flat_map(u16::to_le_bytes)
+        .collect();
+    let marked = [&[0xff, 0xfe][..], &wide].concat();
+    for (bytes, name, told) in [
+        (&noise, "a.glb", "begins neither with `glTF`"),
+        (&noise, "a.gltf", "begins neither with `glTF`"),
+        (&noise, "a.obj", "is no text"),
+        (&noise, "a.ply", "is no text"),
+        (&noise, "a.scn.ron", "is no text"),
+        (&zeros, "a.glb", "zeros"),
+        (&zeros, "a.gltf", "zeros"),
+        (&zeros, "a.obj", "zeros"),
+        (&zeros, "a.ply", "zeros"),
+        (&zeros, "a.stl", "zeros"),
+        (&zeros, "a.scn.ron", "zeros"),
+        (&wide, "a.glb", "UTF-16"),
+        (&wide, "a.gltf", "UTF-16"),
+        (&wide, "a.ply", "UTF-16"),
+        (&wide, "a.scn.ron", "UTF-16"),
+        (&marked, "a.gltf", "UTF-16"),
+        (&marked, "a.scn.ron", "UTF-16"),
+    ] {
+        let file = write(folder.path(), name, bytes);
+        says(&refused(&file), &[name, told]);
+    }
+    for (bytes, told) in [(&noise, "is no text"), (&zeros, "zeros")] {
+        let (folder, file) = mtl("");
+        write(folder.path(), "model.mtl", bytes);
+        assert_eq!(opens_and_says(&file, &["model.mtl", told]), 1);
+    }
+}
+
+#[test]
+fn a_glb_that_holds_json_is_read_whatever_stands_before_it_as_before_other_text() {
+    let json = r#"{"asset":{"version":"2.0"},"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+        "nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"buffers":[{"byteLength":36,"uri":"DATA"}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}]}"#;
+    let data = "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
+    let json = json.replace("DATA", &format!("data:;base64,{data}"));
+    let folder = tempfile::tempdir().unwrap();
+    for before in ["", "\u{feff}", "\r\n\t ", &" ".repeat(1 << 17)] {
+        let file = write(folder.path(), "a.glb", format!("{before}{json}"));
+        let (mut app, _) = opened(&file);
+        assert_eq!(crate::files::models::objects(app.world_mut()).len(), 1);
+    }
+}
+
 #[test]
 fn an_obj_without_triangles() {
     let (_folder, file) = obj("# nothing else\n");

@@ -2,6 +2,7 @@ use super::super::error::{FileError, Place, Problem};
 use super::super::folder::Folder;
 use super::super::names::{Missing, Names};
 use super::super::notes::Notes;
+use super::super::text::{is_utf_16, no_text, utf_16};
 use super::glb;
 use super::json::{Json, Marks};
 use super::not_finite;
@@ -60,7 +61,10 @@ pub(crate) struct Document {
 impl Document {
     /// Reads a `.gltf` or `.glb` file.
     pub fn read(file: &Path, folder: &Folder, limits: &Limits) -> Result<Self, FileError> {
-        let bytes = super::super::read_bytes(file, limits.file_bytes, &limits.memory)?;
+        let Limits {
+            file_bytes, memory, ..
+        } = limits;
+        let bytes = super::super::read_bytes_unless(file, *file_bytes, memory, neither)?;
         let parts = glb::parts(&bytes).map_err(|problem| FileError::new(file, problem))?;
         let mut notes = Notes::default();
         if !parts.fits {
@@ -77,7 +81,13 @@ impl Document {
             .map_err(|problem| FileError::new(file, problem))?;
         let root = serde_json::from_slice(text).or_else(|error| {
             let note = |what: &str, instead| notes.add(file, Place::Whole, what, instead);
-            mended(text, note).ok_or_else(|| parse_error(file, text, &error))
+            // Nothing is mended that no JSON has in it, not even in its texts, and large files of it are soon refused.
+            let is_other = |&byte: &u8| byte < b' ' && !byte.is_ascii_whitespace();
+            let mended = match text.iter().any(is_other) {
+                true => None,
+                false => mended(text, note),
+            };
+            mended.ok_or_else(|| parse_error(file, text, &error))
         })?;
         let mut document = Self {
             file: file.to_path_buf(),
@@ -378,6 +388,21 @@ pub(super) enum Picture<'a> {
     Inside(Cow<'a, [u8]>),
 }
 
+/// Why a file is neither a container nor JSON, by how it begins.
+fn neither(start: &[u8]) -> Option<Problem> {
+    let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start);
+    match text.trim_ascii_start() {
+        [] | [b'{', ..] => None,
+        _ if start.starts_with(b"glTF") => None,
+        _ if is_utf_16(start) => Some(utf_16("glTF")),
+        _ if start.iter().all(|&byte| byte == 0) => no_text(start),
+        _ => {
+            let text = "is no glTF: it begins neither with `glTF`, as binary files do, nor with `{`, as text does";
+            Some(Problem::Malformed(text.into()))
+        }
+    }
+}
+
 /// A document that is no JSON but for what can be told: letters of an old encoding, numbers that are none.
 fn mended(text: &[u8], mut note: impl FnMut(&str, &'static str)) -> Option<Value> {
     let decoded = super::super::text::text(text);
@@ -399,9 +424,8 @@ fn mended(text: &[u8], mut note: impl FnMut(&str, &'static str)) -> Option<Value
 }
 
 fn parse_error(file: &Path, text: &[u8], error: &serde_json::Error) -> FileError {
-    if let [0xff, 0xfe, ..] | [0xfe, 0xff, ..] | [b'{', 0, ..] | [0, b'{', ..] = text {
-        let text = "is text in UTF-16, and glTF is UTF-8; save it as that";
-        return FileError::new(file, Problem::Malformed(text.to_owned()));
+    if is_utf_16(text) {
+        return FileError::new(file, utf_16("glTF"));
     }
     if error.is_eof() {
         let problem = Problem::Truncated("the JSON is incomplete".into());

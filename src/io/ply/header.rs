@@ -4,7 +4,7 @@ use super::super::error::{FileError, Place, Problem};
 use super::super::file_name::of_file;
 use super::super::folder::Folder;
 use super::super::names::Names;
-use super::super::text::{keyword, shown, text};
+use super::super::text::{is_utf_16, keyword, no_text, shown, text, utf_16};
 use super::content::Work;
 use crate::scene::{Phong, TextureSource};
 use bevy::color::LinearRgba;
@@ -117,6 +117,16 @@ pub(super) fn read_header(reader: &mut impl BufRead, work: &mut Work) -> Result<
         number: 0,
         end: None,
     };
+    let reading = |error: std::io::Error| FileError::reading(file, &error);
+    let start = lines.reader.fill_buf().map_err(reading)?;
+    let problem = match is_utf_16(start) {
+        true => Some(utf_16("PLY")),
+        // A header of text stands in front of whatever there is.
+        false => no_text(start).filter(|_| !start.starts_with(b"ply")),
+    };
+    if let Some(problem) = problem {
+        return Err(FileError::new(file, problem));
+    }
     let mut line = Vec::new();
     let mut next = |line: &mut Vec<u8>| {
         let more = lines.next(line);

@@ -2,6 +2,7 @@ use super::super::error::{FileError, Place, Problem};
 #[cfg(feature = "editor")]
 use super::super::notes::Notes;
 use super::super::on_disk::OnDisk;
+use super::super::text::{is_utf_16, no_text, utf_16};
 use super::check::check_value;
 use super::migrate::migrate;
 use super::{FileVersion, KeptTypes};
@@ -36,7 +37,10 @@ pub(crate) fn read_scene(
     file: &Path,
     limits: &Limits,
 ) -> Result<SceneFile, FileError> {
-    let bytes = super::super::read_bytes(file, limits.file_bytes, &limits.memory)?;
+    let Limits {
+        file_bytes, memory, ..
+    } = limits;
+    let bytes = super::super::read_bytes_unless(file, *file_bytes, memory, no_scene)?;
     read_scene_text(world, file, &bytes, limits)
 }
 
@@ -49,6 +53,9 @@ pub(crate) fn read_scene_text(
 ) -> Result<SceneFile, FileError> {
     if bytes.trim_ascii().is_empty() {
         return Err(FileError::new(file, Problem::Empty));
+    }
+    if let Some(problem) = no_scene(bytes) {
+        return Err(FileError::new(file, problem));
     }
     let text = std::str::from_utf8(bytes).map_err(|error| {
         let line = bytes[..error.valid_up_to()].split(|&b| b == b'\n').count();
@@ -82,6 +89,14 @@ pub(crate) fn read_scene_text(
     migrate(&mut scene.content, version);
     scene.check(file, limits)?;
     Ok(scene)
+}
+
+/// Why a file can be no scene, by how it begins.
+fn no_scene(start: &[u8]) -> Option<Problem> {
+    match is_utf_16(start) {
+        true => Some(utf_16("a scene")),
+        false => no_text(start),
+    }
 }
 
 impl SceneFile {

@@ -26,6 +26,11 @@ pub(crate) fn read_stl(file: &Path, limits: &Limits) -> Result<Model, FileError>
     let reading = |error: std::io::Error| FileError::reading(file, &error);
     let mut reader = super::open_to_read(file, limits.file_bytes)?;
     let size = reader.get_ref().metadata().map_err(reading)?.len();
+    let start = reader.fill_buf().map_err(reading)?;
+    if size > HEAD && start.iter().all(|&byte| byte == 0) {
+        let text = "holds zeros and no facets; get a complete copy";
+        return Err(FileError::new(file, Problem::Malformed(text.into())));
+    }
     let mut facets = Facets::of(file, limits);
     if is_text(&mut reader, size).map_err(reading)? {
         ascii::read_ascii(&mut facets, limits)?;
