@@ -167,26 +167,29 @@ pub(super) fn extent_of(world: &mut World, ids: &[SceneId]) -> Option<Extent> {
 /// The room that the scene's objects and area lights take; where there are none, that of the other
 /// lights and the cameras.
 pub(super) fn scene_extent(world: &mut World) -> Option<Extent> {
-    let mut all = world.query_filtered::<Entity, bevy::prelude::With<SceneId>>();
-    let entities: Vec<Entity> = all.iter(world).collect();
-    let refs = || entities.iter().filter_map(|&e| world.get_entity(e).ok());
-    let solid = |entity: &EntityRef| {
+    solid_extent(world).or_else(|| {
+        extent_of_all(world, |entity| {
+            entity.contains::<PointLamp>()
+                || entity.contains::<DirectionalLamp>()
+                || entity.contains::<SceneCamera>()
+        })
+    })
+}
+
+/// The room that the scene's objects and area lights take.
+pub(super) fn solid_extent(world: &mut World) -> Option<Extent> {
+    extent_of_all(world, |entity| {
         entity.contains::<Mesh3d>()
             || entity.contains::<SegmentLamp>()
             || entity.contains::<ParallelogramLamp>()
-    };
-    let other = |entity: &EntityRef| {
-        entity.contains::<PointLamp>()
-            || entity.contains::<DirectionalLamp>()
-            || entity.contains::<SceneCamera>()
-    };
-    let solids = refs().filter(solid).filter_map(own_extent);
-    solids.reduce(Extent::and).or_else(|| {
-        refs()
-            .filter(other)
-            .filter_map(own_extent)
-            .reduce(Extent::and)
     })
+}
+
+/// The room that all entities of a kind take.
+fn extent_of_all(world: &mut World, is_meant: impl Fn(&EntityRef) -> bool) -> Option<Extent> {
+    let mut all = world.query_filtered::<EntityRef, bevy::prelude::With<SceneId>>();
+    let meant = all.iter(world).filter(is_meant);
+    meant.filter_map(own_extent).reduce(Extent::and)
 }
 
 /// From the space of an entity's parent to the world's, as the transforms are now.

@@ -22,7 +22,7 @@ pub(super) use lens::{field_of_view, set_field_of_view, widen};
 use super::command::AddCommands;
 use super::document::SceneOpened;
 use super::edits::{AddAt, ModelAdded};
-use super::extent::scene_extent;
+use super::extent::{scene_extent, solid_extent};
 use super::schedule::{Dispatch, EditorUpdate};
 use super::viewport::Viewport;
 use crate::scene::{Projection as SceneProjection, SceneCamera, SceneId};
@@ -32,6 +32,7 @@ use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Query, Res, ResMut};
 use bevy::ecs::world::World;
+use bevy::math::Vec3;
 use bevy::prelude::IntoScheduleConfigs;
 use bevy::transform::TransformSystems;
 use bevy::transform::components::Transform;
@@ -114,7 +115,8 @@ fn start(
     *eye = Eye::default();
 }
 
-/// Once the scene that was opened has its places and sizes, the pivot goes into its middle.
+/// Once the scene that was opened has its places and sizes, the pivot goes into its middle. That of a scene with nothing
+/// in it is the origin, where people begin: what is added goes there.
 fn settle(world: &mut World) {
     let settles = world.resource::<LookThrough>().settles;
     if settles == 0 {
@@ -124,17 +126,21 @@ fn settle(world: &mut World) {
     if settles > 1 {
         return;
     }
-    let Some(extent) = scene_extent(world) else {
+    if scene_extent(world).is_none() {
         return;
-    };
+    }
     if world.resource::<LookThrough>().camera.is_none() {
         framing::frame(world, true);
         return;
     }
+    let (middle, radius) = match solid_extent(world) {
+        Some(extent) => (extent.centre(), extent.radius()),
+        None => (Vec3::ZERO, 0.0),
+    };
     let mut eye = world.resource_mut::<Eye>();
     let forward = eye.forward();
-    let ahead = (extent.centre() - eye.position()).dot(forward);
-    if ahead > 1e-3 * extent.radius() && !eye.orthographic {
+    let ahead = (middle - eye.position()).dot(forward);
+    if ahead > 1e-3 * radius && !eye.orthographic {
         let ahead = ahead.min(eye::DISTANCE[1]);
         eye.pivot = eye.position() + forward * ahead;
         eye.distance = ahead;
@@ -185,11 +191,12 @@ pub(super) fn move_view(world: &mut World, change: impl FnOnce(&mut Eye)) {
     }
 }
 
-/// What is added appears where the view looks, about a quarter as high as the view.
+/// What is added appears where the view looks, about a quarter as high as the view, at a place of few digits.
 fn aim_additions(eye: Res<Eye>, mut at: ResMut<AddAt>) {
+    let size = round_size(0.25 * eye.height());
     let wanted = AddAt {
-        place: eye.pivot,
-        size: round_size(0.25 * eye.height()),
+        place: round_place(eye.pivot, size),
+        size,
     };
     if *at != wanted {
         *at = wanted;
@@ -206,9 +213,47 @@ fn round_size(size: f32) -> f32 {
         .unwrap_or(decade)
 }
 
+/// The nearest place in steps of a hundredth of a size. Far away floats are farther apart than those.
+fn round_place(place: Vec3, size: f32) -> Vec3 {
+    let per_step = f64::from(100.0 / size);
+    let round = |x: f32| ((f64::from(x) * per_step).round() / per_step) as f32;
+    Vec3::from_array(place.to_array().map(round))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_added_has_a_place_of_few_digits() {
+        let near = round_place(Vec3::new(1.040_17, 0.752_7, -1.8e-8), 0.2);
+        assert_eq!(near.abs(), Vec3::new(1.04, 0.752, 0.0));
+        let far = Vec3::new(1.3e9, -7.7e11, 0.0);
+        assert_eq!(round_place(far, 0.5), far);
+    }
+
+    #[test]
+    fn in_a_scene_with_nothing_in_it_things_are_added_at_the_origin_at_their_own_size() {
+        let mut app = crate::editor::headless_editor();
+        app.init_resource::<Eye>()
+            .init_resource::<LookThrough>()
+            .init_resource::<framing::Framings>()
+            .init_resource::<Viewport>()
+            .add_observer(start)
+            .add_systems(
+                EditorUpdate,
+                (through::see_through, settle, aim_additions)
+                    .chain()
+                    .after(Dispatch),
+            );
+        crate::io::open_empty(app.world_mut());
+        crate::editor::document::adopt(app.world_mut(), "empty", None);
+        for _ in 0..=SETTLE {
+            app.update();
+        }
+        let at = *app.world().resource::<AddAt>();
+        assert_eq!(at, AddAt::default());
+    }
 
     #[test]
     fn what_is_added_has_a_round_size() {

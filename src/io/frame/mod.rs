@@ -80,9 +80,11 @@ pub(crate) fn frame(world: &mut World, file: &Path, notes: &mut Notes) {
     assign_ids(world, &added);
 }
 
-/// Gives a scene with nothing in it a camera and a light.
+/// Gives a scene with nothing in it a camera and a light. A room of some metres fits into the camera's picture.
 pub(super) fn frame_nothing(world: &mut World) {
-    let eye = framing(&Surface::default());
+    const FARTHER: f32 = 1.5;
+    let mut eye = framing(&Surface::default());
+    eye.translation *= FARTHER;
     let camera = spawn(world, "Camera", eye, SceneCamera::default());
     let (transform, lamp) = lights::sole(eye);
     let light = spawn(world, "Light", transform, lamp);
