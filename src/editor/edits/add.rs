@@ -37,13 +37,18 @@ impl Default for AddAt {
     }
 }
 
-/// Adds a thing at a place. `None` where no shape is called so.
+/// How high above its place a lamp of a size of 1 is added: in the floor, where others stand, it would light nothing of it.
+const LAMP_HEIGHT: f32 = 1.5;
+
+/// Adds a thing at a place, a lamp above it. `None` where no shape is called so.
 pub fn add(world: &mut World, what: &Addition, at: AddAt) -> Option<SceneId> {
     let id = FreeIds::new(world).next();
     let place = Transform::from_translation(at.place);
     let scaled = place.with_scale(Vec3::splat(at.size));
     // Lamps shine along their local -Z.
     let downwards = place.with_rotation(Quat::from_rotation_x(-FRAC_PI_2));
+    let above = place.with_translation(at.place + LAMP_HEIGHT * at.size * Vec3::Y);
+    let scaled_above = above.with_scale(scaled.scale);
     // As bright on a surface `size` away as one W/sr is at a metre.
     let intensity = at.size * at.size;
     let mut spawn = |name: &str, bundle: EntityBundle| {
@@ -52,10 +57,10 @@ pub fn add(world: &mut World, what: &Addition, at: AddAt) -> Option<SceneId> {
         match bundle {
             EntityBundle::Shape(source) => entity.insert((source, scaled)),
             EntityBundle::Group => entity.insert((place, Visibility::default())),
-            EntityBundle::Point(lamp) => entity.insert((lamp, place)),
+            EntityBundle::Point(lamp) => entity.insert((lamp, above)),
             EntityBundle::Directional(lamp) => entity.insert((lamp, downwards)),
-            EntityBundle::Segment(lamp) => entity.insert((lamp, scaled)),
-            EntityBundle::Parallelogram(lamp) => entity.insert((lamp, scaled)),
+            EntityBundle::Segment(lamp) => entity.insert((lamp, scaled_above)),
+            EntityBundle::Parallelogram(lamp) => entity.insert((lamp, scaled_above)),
             EntityBundle::Camera => entity.insert((SceneCamera::default(), place)),
             EntityBundle::Material => entity.insert(Phong::default()),
         };
@@ -70,7 +75,7 @@ pub fn add(world: &mut World, what: &Addition, at: AddAt) -> Option<SceneId> {
         Addition::PointLamp => spawn(
             "Point light",
             EntityBundle::Point(PointLamp {
-                intensity: 10.0 * intensity,
+                intensity: 5.0 * intensity,
                 ..PointLamp::default()
             }),
         ),
@@ -93,7 +98,7 @@ pub fn add(world: &mut World, what: &Addition, at: AddAt) -> Option<SceneId> {
             "Parallelogram light",
             EntityBundle::Parallelogram(ParallelogramLamp {
                 // Its front, where x × z points, looks down.
-                intensity: 10.0,
+                intensity: 5.0,
                 ..ParallelogramLamp::default()
             }),
         ),
@@ -138,4 +143,44 @@ pub fn add_model(world: &mut World, file: &Path) -> Result<(Option<SceneId>, Imp
         .root
         .and_then(|root| world.get::<SceneId>(root).copied());
     Ok((id, imported))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::headless_editor;
+    use bevy::math::Vec3Swizzles;
+
+    #[test]
+    fn a_lamp_hangs_above_where_it_is_added_and_does_not_wash_out_what_is_white_there() {
+        for size in [0.2, 1.0, 50.0] {
+            let place = Vec3::new(3.0, 0.7, -2.0);
+            let mut app = headless_editor();
+            let world = app.world_mut();
+            let mut added = |what: Addition| {
+                let id = add(world, &what, AddAt { place, size }).unwrap();
+                let entity = crate::editor::edits::scene_entity(world, id).unwrap();
+                let own = *world.get::<Transform>(entity).unwrap();
+                assert!(own.translation.y > place.y, "{what:?}");
+                assert_eq!(own.translation.xz(), place.xz());
+                let height = own.translation.y - place.y;
+                // As if all of it came from the lamp's middle.
+                let lamp = world.entity(entity);
+                let intensity = lamp.get::<PointLamp>().map(|lamp| lamp.intensity);
+                let line = lamp.get::<SegmentLamp>().map(|lamp| lamp.intensity * size);
+                let area = lamp.get::<ParallelogramLamp>();
+                let area = area.map(|lamp| lamp.intensity * size * size);
+                let intensity = intensity.or(line).or(area).unwrap();
+                intensity / (height * height) / PI
+            };
+            for what in [
+                Addition::PointLamp,
+                Addition::SegmentLamp,
+                Addition::ParallelogramLamp,
+            ] {
+                let radiance = added(what.clone());
+                assert!((0.3..1.0).contains(&radiance), "{what:?}: {radiance}");
+            }
+        }
+    }
 }
