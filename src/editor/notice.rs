@@ -42,6 +42,16 @@ impl Notices {
         self.push(text.into(), false, Vec::new());
     }
 
+    /// Says that something was done, in place of what was said when the same was done before: `verb` or `verb: …`.
+    pub fn tell_in_place(&mut self, verb: &str, text: impl Into<String>) {
+        let is_same = |said: &str| {
+            let rest = said.strip_prefix(verb);
+            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with(':'))
+        };
+        (self.shown).retain(|notice| notice.matters() || !is_same(&notice.text));
+        self.tell(text);
+    }
+
     /// Says what a file held or cannot hold: one message, however many lines. Nothing where there are none.
     pub fn notes(&mut self, file: &str, lines: Vec<String>) {
         let text = match lines.len() {
@@ -125,6 +135,17 @@ impl Notices {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_undone_one_after_the_other_is_said_in_one_place() {
+        let mut notices = Notices::default();
+        notices.tell("Undone for good");
+        for step in ["Undone: Add Ground", "Undone: Add Quad", "Undone"] {
+            notices.tell_in_place("Undone", step);
+            let texts: Vec<_> = notices.shown().iter().map(|one| &*one.text).collect();
+            assert_eq!(texts, ["Undone for good", step]);
+        }
+    }
 
     #[test]
     fn notes_of_a_file_go_when_another_is_opened_and_can_be_read_again() {

@@ -302,7 +302,7 @@ fn call(world: &World, ids: &[SceneId]) -> String {
 
 fn tell(world: &mut World, verb: &str, text: Option<String>) {
     let text = text.map_or_else(|| verb.to_owned(), |text| format!("{verb}: {text}"));
-    world.resource_mut::<Notices>().tell(text);
+    world.resource_mut::<Notices>().tell_in_place(verb, text);
 }
 
 #[cfg(test)]

@@ -155,7 +155,9 @@ fn notes_ui(ui: &mut Ui, world: &World) -> bool {
         true => ui.visuals().warn_fg_color,
         false => ui.visuals().text_color(),
     };
-    let count = (problems.len() + kept.len()) as u64;
+    // As many as the cards say.
+    let said: usize = kept.iter().map(|notice| notice.lines.len().max(1)).sum();
+    let count = (problems.len() + said) as u64;
     let text = format!(
         "{}{}",
         if warns { "⚠ " } else { "" },

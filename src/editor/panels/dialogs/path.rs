@@ -225,9 +225,10 @@ pub(super) fn path_ui(
             }
         }
     });
+    // As high however little is in it: the field stays where it is while a path is typed.
     ScrollArea::vertical()
         .max_height(180.0)
-        .auto_shrink([false, true])
+        .auto_shrink(false)
         .show_rows(
             ui,
             ui.spacing().interact_size.y,

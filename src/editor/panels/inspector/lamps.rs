@@ -63,7 +63,8 @@ fn temperature_ui<L>(
 {
     let linear = |color: &LinearRgba| Vec3::from_array(color.to_f32_array_no_alpha());
     let mut active = several.first().clone();
-    let mut kelvin = temperature::nearest(linear(&colors(&mut active)[0]));
+    // Of most colours it is a guess: more digits would say what nobody knows.
+    let mut kelvin = temperature::nearest(linear(&colors(&mut active)[0])).round();
     let says = "Colours the light as a body of this temperature glows, as bright as it was: a candle has 1900 K, a bulb 2800, noon 5500, a blue sky 12000";
     if number_row(ui, "Temperature", says, &mut kelvin, OF_LIGHTS) {
         let glow = temperature::color(kelvin);

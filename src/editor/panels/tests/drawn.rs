@@ -218,7 +218,7 @@ fn a_message_hides_nothing_of_the_picture_and_is_found_again_once_it_is_closed()
         desk.world().resource_mut::<Notices>().close_all();
         desk.settle();
         assert!(desk.find(&text).is_none());
-        desk.click_on("2 notes");
+        desk.click_on("3 notes");
         desk.settle();
         for said in [text.as_str(), "house.glb: 2 notes", "two lamps are"] {
             desk.place_of(said);
@@ -226,7 +226,7 @@ fn a_message_hides_nothing_of_the_picture_and_is_found_again_once_it_is_closed()
         assert!(desk.find("It was saved.").is_none(), "that does not matter");
         desk.click_on("Forget what was said");
         desk.settle();
-        assert!(desk.find("2 notes").is_none());
+        assert!(desk.find("3 notes").is_none());
     }
 }
 
