@@ -1,12 +1,13 @@
 //! The commands about lines and boxes.
 
+use super::pair::TreePair;
 use crate::editor::command::{Command, Over, State, commands};
 use crate::editor::notice::Notices;
 use crate::inspect::{BoxChoice, BoxRange, BoxSettings, InspectSettings, TreeChoice, TreeForm};
 use crate::sync::Traced;
 use crate::trace;
 use bevy::ecs::resource::Resource;
-use bevy::ecs::world::World;
+use bevy::ecs::world::{Mut, World};
 use std::sync::Arc;
 
 /// What of the trees there is to choose from, looked at once for each world and choice of trees.
@@ -60,12 +61,11 @@ fn toggle_lines(world: &mut World) {
 }
 
 fn toggle_pair(world: &mut World) {
-    let mut inspect = world.resource_mut::<InspectSettings>();
-    inspect.pair.on = !(inspect.pair.on && inspect.on);
-    if inspect.pair.on {
-        // Nothing would be seen else.
-        (inspect.on, inspect.boxes.on) = (true, true);
-    }
+    world.resource_scope(|world, mut pair: Mut<TreePair>| {
+        let mut inspect = world.resource_mut::<InspectSettings>();
+        let on = !(inspect.pair.on && inspect.on);
+        pair.switch(&mut inspect, on);
+    });
 }
 
 fn is_pair_shown(world: &World) -> State {

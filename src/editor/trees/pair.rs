@@ -33,6 +33,21 @@ pub(in crate::editor) struct TreePair {
     pub sides: [Side; 2],
     /// Another number for other lines.
     pub version: u64,
+    /// The boxes were switched on with it, as nothing would be seen else, and go with it.
+    brought_boxes: bool,
+}
+
+impl TreePair {
+    /// Shows two trees side by side, or one view as before.
+    pub fn switch(&mut self, inspect: &mut InspectSettings, on: bool) {
+        inspect.pair.on = on;
+        if on {
+            self.brought_boxes |= !inspect.boxes.on;
+            (inspect.on, inspect.boxes.on) = (true, true);
+        } else if std::mem::take(&mut self.brought_boxes) {
+            inspect.boxes.on = false;
+        }
+    }
 }
 
 /// One side of the view.
@@ -261,7 +276,7 @@ pub(super) fn draw_pair(
 ) {
     let (render, view, camera, place, projection) = *view;
     let seen = seen_from(render, view, camera, place, projection);
-    let TreePair { sides, version } = &mut *pair;
+    let TreePair { sides, version, .. } = &mut *pair;
     for (side, layer) in sides.iter_mut().zip(LAYERS) {
         let Some((world, (camera, size))) = side.world.clone().zip(seen.as_ref()) else {
             for drawn in &mut side.drawn {
@@ -307,6 +322,19 @@ mod tests {
     use crate::io::{OpenOptions, SceneSource, builtin, open};
     use std::thread::sleep;
     use std::time::{Duration, Instant};
+
+    #[test]
+    fn boxes_that_came_with_two_trees_go_with_them_and_others_stay() {
+        for had_boxes in [false, true] {
+            let mut inspect = InspectSettings::default();
+            inspect.boxes.on = had_boxes;
+            let mut pair = TreePair::default();
+            pair.switch(&mut inspect, true);
+            assert!(inspect.on && inspect.pair.on && inspect.boxes.on);
+            pair.switch(&mut inspect, false);
+            assert_eq!((inspect.pair.on, inspect.boxes.on), (false, had_boxes));
+        }
+    }
 
     #[test]
     fn one_build_at_a_time_goes_on_and_the_newest_world_comes_next() {

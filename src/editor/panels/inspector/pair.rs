@@ -48,9 +48,11 @@ pub(super) fn pair_ui(ui: &mut Ui, world: &mut World) {
             });
         });
     }
-    if pair.on && !before.pair.on {
-        // Nothing would be seen else.
-        (settings.on, settings.boxes.on) = (true, true);
+    let on = pair.on;
+    if on != before.pair.on
+        && let Some(mut pair) = world.get_resource_mut::<TreePair>()
+    {
+        pair.switch(&mut settings, on);
     }
     if settings.pair.on {
         let note = "Which boxes, and in which colours: Debug, Trees. Visits are those of the debug ray (R).";
