@@ -4,7 +4,7 @@
 use bevy::asset::{Handle, RenderAssetUsages};
 use bevy::camera::Projection;
 use bevy::image::{Image, ImageSampler, TextureFormatPixelInfo};
-use bevy::math::Vec3;
+use bevy::math::{UVec2, Vec3};
 use bevy::prelude::Component;
 use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat};
 
@@ -20,6 +20,21 @@ pub(super) struct Screen {
     pub divider: f32,
     /// What turns metres into the depth that is written: [`depth_numbers`].
     pub numbers: Vec3,
+    /// The picture has its pixels' shape until one of the view's new size is there; else it fills the view, whatever its size.
+    pub keeps_shape: bool,
+}
+
+/// How many times as wide as a picture a view is that is as high, where the picture was clearly made for another view; 1
+/// where it was made for this one, up to pixels that are rounded.
+pub(super) fn widening(view: UVec2, picture: UVec2) -> f32 {
+    let aspect = view.x as f32 / view.y as f32;
+    let wanted = picture.y as f32 * aspect;
+    let is_other = (wanted - picture.x as f32).abs() > 2.0 + aspect;
+    if is_other {
+        wanted / picture.x as f32
+    } else {
+        1.0
+    }
 }
 
 /// Bytes in RGBA, as they go to the screen.
@@ -71,6 +86,16 @@ pub(super) fn depth_numbers(projection: &Projection) -> Vec3 {
 mod tests {
     use super::*;
     use bevy::camera::{OrthographicProjection, PerspectiveProjection};
+
+    #[test]
+    fn a_picture_of_the_view_before_is_as_high_in_the_new_one_and_not_stretched() {
+        let whole = UVec2::new(1080, 822);
+        assert_eq!(widening(whole, UVec2::new(540, 822)), 2.0);
+        assert_eq!(widening(UVec2::new(540, 822), whole), 0.5);
+        for pixel_size in 1..40 {
+            assert_eq!(widening(whole, whole / pixel_size), 1.0, "{pixel_size}");
+        }
+    }
 
     #[test]
     fn metres_become_the_depth_that_bevys_own_projections_give() {

@@ -10,7 +10,7 @@
 
 @group(0) @binding(0) var picture: texture_2d<f32>;
 @group(0) @binding(1) var depths: texture_2d<f32>;
-// With m metres the depth that is written is x / m + y - z * m.
+// With m metres the depth that is written is x / m + y - z * m; the view is w times as wide as the picture.
 @group(0) @binding(2) var<uniform> numbers: vec4<f32>;
 
 struct Pixel {
@@ -25,14 +25,20 @@ fn texel(place: vec2<f32>, size: vec2<u32>) -> vec2<i32> {
 
 @fragment
 fn fragment(in: FullscreenVertexOutput) -> Pixel {
-    var color = textureLoad(picture, texel(in.uv, textureDimensions(picture)), 0).rgb;
+    let place = vec2((in.uv.x - 0.5) * numbers.w + 0.5, in.uv.y);
+    var color = textureLoad(picture, texel(place, textureDimensions(picture)), 0).rgb;
+    var metres = textureLoad(depths, texel(place, textureDimensions(depths)), 0).x;
+    if place.x < 0.0 || place.x > 1.0 {
+        // Beside a picture of the view before there is nothing yet.
+        color = vec3(0.0);
+        metres = 1e30;
+    }
 #ifdef LINEAR_TO_SRGB
     color = linear_to_srgb(color);
 #endif
 #ifdef LINEAR_TO_OKLAB
     color = linear_rgb_to_oklab(color);
 #endif
-    let metres = textureLoad(depths, texel(in.uv, textureDimensions(depths)), 0).x;
     var pixel: Pixel;
     pixel.color = vec4(color, 1.0);
     // Farther than any number is the far plane, which is 0.

@@ -5,7 +5,7 @@
 //! Gizmos are drawn again over it, against the depth of what was traced. Where the picture covers the
 //! whole viewport nothing of the rasterised scene is drawn below it.
 
-use super::screen::Screen;
+use super::screen::{Screen, widening};
 use bevy::anti_alias::contrast_adaptive_sharpening::cas;
 use bevy::anti_alias::fxaa::fxaa;
 use bevy::anti_alias::smaa::smaa;
@@ -219,12 +219,13 @@ fn prepare_screens(
         Entity,
         &Screen,
         &ViewTarget,
+        &ExtractedCamera,
         &Msaa,
         Option<&mut Prepared>,
         Option<&mut ViewLightEntities>,
     )>,
 ) {
-    for (entity, screen, target, msaa, prepared, shadows) in &mut views {
+    for (entity, screen, target, camera, msaa, prepared, shadows) in &mut views {
         let format = target.main_texture_format();
         let samples = msaa.samples();
         let key = ScreenKey {
@@ -245,9 +246,12 @@ fn prepare_screens(
         let shown = [&screen.picture, &screen.depth].map(|image| images.get(image));
         let bind_group = match (shown, &prepared) {
             ([Some(picture), Some(depth)], _) => {
+                let view = whole_part(camera).map(|whole| whole.size());
+                let view = view.filter(|size| screen.keeps_shape && size.min_element() > 0);
+                let widening = view.map_or(1.0, |view| widening(view, picture.size_2d()));
                 let numbers: Vec<u8> = screen
                     .numbers
-                    .extend(0.0)
+                    .extend(widening)
                     .to_array()
                     .into_iter()
                     .flat_map(f32::to_ne_bytes)
@@ -401,18 +405,21 @@ fn draw_screen(
 
 /// The pixels of the target that show the picture; `None` where there are none.
 fn traced_part(camera: &ExtractedCamera, divider: f32) -> Option<URect> {
-    let target = camera.physical_target_size?;
-    let whole = match &camera.viewport {
+    right_of(whole_part(camera)?, divider, camera.physical_target_size?)
+}
+
+/// The pixels of the target that are a view's.
+fn whole_part(camera: &ExtractedCamera) -> Option<URect> {
+    Some(match &camera.viewport {
         Some(viewport) => URect {
             min: viewport.physical_position,
             max: viewport.physical_position + viewport.physical_size,
         },
         None => URect {
             min: UVec2::ZERO,
-            max: target,
+            max: camera.physical_target_size?,
         },
-    };
-    right_of(whole, divider, target)
+    })
 }
 
 /// What is right of a part of the width, and inside the target.

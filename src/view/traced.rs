@@ -344,17 +344,20 @@ fn show_prints(
     mut views: Query<(
         Entity,
         &TracedView,
+        Option<&ViewSettings>,
         &mut TracedRender,
         &Projection,
         Option<&mut Screen>,
     )>,
     mut images: ResMut<Assets<Image>>,
 ) {
-    for (entity, view, mut render, projection, mut screen) in &mut views {
+    for (entity, view, own, mut render, projection, mut screen) in &mut views {
+        let keeps_shape = own.is_none_or(|own| own.size.is_none());
         if let Some(screen) = &mut screen {
             let wanted = Screen {
                 divider: view.divider,
                 numbers: depth_numbers(projection),
+                keeps_shape,
                 ..(**screen).clone()
             };
             screen.set_if_neq(wanted);
@@ -394,6 +397,7 @@ fn show_prints(
                     depth: depth.unwrap_or_else(|| images.add(no_depth())),
                     divider: view.divider,
                     numbers: depth_numbers(projection),
+                    keeps_shape,
                 });
             }
         }

@@ -15,6 +15,7 @@ fn a_twin_shows_what_its_view_shows_and_nothing_once_that_shows_nothing() {
         depth: images.add(no_depth()),
         divider,
         numbers: Vec3::X,
+        keeps_shape: true,
     };
     let view = world.spawn_empty().id();
     let twin = world.spawn(ShowsPictureOf(view)).id();
