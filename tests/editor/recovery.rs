@@ -135,6 +135,30 @@ fn what_is_saved_leaves_no_copy() {
 }
 
 #[test]
+fn a_copy_of_before_goes_as_soon_as_the_work_is_saved_or_undone_and_not_a_minute_later() {
+    let saved = tempfile::tempdir().unwrap();
+    for way in [
+        Action::SaveAs(saved.path().join("a.scn.ron")),
+        Action::run("edit.undo"),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut app = editor(folder.path());
+        act(&mut app, Action::Add(Addition::Shape("Sphere".into())));
+        app.update();
+        wait_for_copy(&mut app, folder.path());
+        let mut recovery = app.world_mut().resource_mut::<RecoveryFolder>();
+        recovery.copy_every(Duration::from_hours(1));
+        app.update();
+        act(&mut app, way.clone());
+        let start = Instant::now();
+        while app.world().resource::<Document>().unsaved() || copies(folder.path()) > 0 {
+            assert!(start.elapsed().as_secs() < 60, "{way:?} leaves a copy");
+            app.update();
+        }
+    }
+}
+
+#[test]
 fn a_copy_that_cannot_be_written_is_told_each_time_and_tried_until_it_can() {
     let folder = tempfile::tempdir().unwrap();
     let place = folder.path().join("copies");

@@ -262,6 +262,10 @@ fn copy_unsaved(world: &mut World) {
         }
         None => {}
     }
+    // A file holds the work, and a copy of what it was before would be offered as work that none holds.
+    if !world.resource::<Document>().unsaved {
+        world.resource_mut::<RecoveryFolder>().remove();
+    }
     if world.resource::<RecoveryFolder>().next <= Instant::now() {
         copy_now(world);
     }
