@@ -6,12 +6,11 @@ use super::history::Gesture;
 use super::inspection::Inspected;
 use super::pointer::PointerUse;
 use super::script::is_playing;
-use super::viewport::EditorCamera;
+use super::viewport::traced_render;
 use crate::film::State;
 use crate::sync::Traced;
 use crate::view::TracedRender;
 use bevy::app::{App, Last, Plugin};
-use bevy::ecs::query::With;
 use bevy::ecs::world::World;
 use bevy::winit::{UpdateMode, WinitSettings};
 use std::time::{Duration, Instant};
@@ -44,8 +43,7 @@ fn set_pace(world: &mut World, started: Instant) {
         || is_playing(world)
         || world.resource::<Inspected>().stepper.playing
         || started.elapsed() < START;
-    let mut renders = world.query_filtered::<&TracedRender, With<EditorCamera>>();
-    let render = renders.iter(world).find_map(TracedRender::status);
+    let render = traced_render(world).and_then(TracedRender::status);
     let state = render.map(|status| (status.state, status.seconds));
     let building = world.resource::<Traced>().pending > 0;
     let mode = mode(busy, building, state);

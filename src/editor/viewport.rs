@@ -1,18 +1,37 @@
 //! The part of the window that shows the scene, and how it shows it.
 
 use super::document::SceneOpened;
-use crate::view::TracedView;
+use crate::view::{TracedRender, TracedView};
 use bevy::ecs::component::Component;
 use bevy::ecs::observer::On;
 use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::Query;
+use bevy::ecs::world::{Mut, World};
 use bevy::math::{Rect, Vec2};
 use serde::{Deserialize, Serialize};
 
 /// The camera that the editor looks at the scene with. It is no entity of the scene.
 #[derive(Component, Default)]
 pub struct EditorCamera;
+
+/// What is traced of the view; `None` in an editor without one.
+pub(super) fn traced_render(world: &World) -> Option<&TracedRender> {
+    let mut renders = world.try_query_filtered::<&TracedRender, With<EditorCamera>>()?;
+    renders.single(world).ok()
+}
+
+/// How that is shown.
+pub(super) fn traced_view(world: &World) -> Option<&TracedView> {
+    let mut views = world.try_query_filtered::<&TracedView, With<EditorCamera>>()?;
+    views.single(world).ok()
+}
+
+/// The same, to be changed.
+pub(super) fn traced_view_mut(world: &mut World) -> Option<Mut<'_, TracedView>> {
+    let mut views = world.query_filtered::<&mut TracedView, With<EditorCamera>>();
+    views.single_mut(world).ok()
+}
 
 /// The part of the picture, and the numbers, that one scene was looked at for say nothing about another.
 pub(super) fn forget_region(

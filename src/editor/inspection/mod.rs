@@ -36,7 +36,7 @@ pub(super) use questions::{preset_settings, show_preset};
 use super::command::AddCommands;
 use super::document::SceneOpened;
 use super::schedule::EditorUpdate;
-use super::viewport::EditorCamera;
+use super::viewport::traced_render;
 use crate::inspect::{InspectSettings, Names};
 use crate::sync::SyncSystems;
 use crate::trace::Camera;
@@ -44,7 +44,6 @@ use crate::view::{TracedRender, TracedView, traced_camera};
 use bevy::app::{App, Plugin, PostUpdate};
 use bevy::camera::{self, Projection};
 use bevy::ecs::observer::On;
-use bevy::ecs::query::With;
 use bevy::ecs::system::ResMut;
 use bevy::ecs::world::World;
 use bevy::math::UVec2;
@@ -140,9 +139,8 @@ pub(super) fn seen_from(
 }
 
 /// The camera and the size of the picture that the view traces; `None` while it traces none.
-pub(super) fn view_of(world: &mut World) -> Option<(Camera, UVec2)> {
-    let mut renders = world.query_filtered::<&TracedRender, With<EditorCamera>>();
-    let (_, camera, settings) = renders.single(world).ok()?.subject()?;
+pub(super) fn view_of(world: &World) -> Option<(Camera, UVec2)> {
+    let (_, camera, settings) = traced_render(world)?.subject()?;
     Some((camera.clone(), settings.size))
 }
 

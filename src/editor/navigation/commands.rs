@@ -10,9 +10,9 @@ use crate::editor::extent::scene_extent;
 use crate::editor::history::History;
 use crate::editor::notice::Notices;
 use crate::editor::selection::Selection;
-use crate::editor::viewport::{EditorCamera, Show, Viewport};
+use crate::editor::viewport::{EditorCamera, Show, Viewport, traced_view, traced_view_mut};
 use crate::scene::{SceneCamera, SceneId};
-use crate::view::{TracedRender, TracedView};
+use crate::view::TracedRender;
 use bevy::ecs::query::With;
 use bevy::ecs::world::World;
 
@@ -64,16 +64,13 @@ fn shows(world: &World, show: Show) -> State {
 }
 
 fn toggle_pause(world: &mut World) {
-    let mut views = world.query_filtered::<&mut TracedView, With<EditorCamera>>();
-    for mut view in views.iter_mut(world) {
+    if let Some(mut view) = traced_view_mut(world) {
         view.paused = !view.paused;
     }
 }
 
 fn is_paused(world: &World) -> State {
-    let views = world.try_query_filtered::<&TracedView, With<EditorCamera>>();
-    let paused = views.is_some_and(|mut views| views.iter(world).any(|view| view.paused));
-    State::switch(paused)
+    State::switch(traced_view(world).is_some_and(|view| view.paused))
 }
 
 fn restart(world: &mut World) {

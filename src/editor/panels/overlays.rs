@@ -13,13 +13,12 @@ use super::state::with;
 use super::theme::{accent, gradient};
 use super::tree_pair;
 use crate::editor::document::SceneOpened;
-use crate::editor::viewport::{EditorCamera, Show, Viewport};
+use crate::editor::viewport::{Show, Viewport, traced_render, traced_view, traced_view_mut};
 use crate::film::views::{Scale, View};
 use crate::scene::{Quantity, RenderSettings};
 use crate::trace::{Camera, FirstHit, central_hits};
 use crate::view::{TracedRender, TracedView};
 use bevy::ecs::observer::On;
-use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::ResMut;
 use bevy::ecs::world::World;
@@ -161,8 +160,7 @@ pub(super) fn label_within(ui: &Ui, at: egui::Pos2, align: Align2, text: &str, w
 
 /// The frame of the region that is traced, and dragging a new one.
 fn region_ui(ui: &Ui, free: Rect, world: &mut World, drag: &mut RegionDrag) -> bool {
-    let mut query = world.query_filtered::<&TracedView, With<EditorCamera>>();
-    let region = query.single(world).ok().and_then(|view| view.region);
+    let region = traced_view(world).and_then(|view| view.region);
     let place = |at: egui::Pos2| {
         let at = (at - free.min) / free.size();
         Vec2::new(at.x, at.y).clamp(Vec2::ZERO, Vec2::ONE)
@@ -202,11 +200,10 @@ fn region_ui(ui: &Ui, free: Rect, world: &mut World, drag: &mut RegionDrag) -> b
         drag.is_armed = false;
         drag.start = None;
         let region = math::Rect::from_corners(place(start), place(end));
-        if region.size().min_element() > LEAST_REGION {
-            let mut query = world.query_filtered::<&mut TracedView, With<EditorCamera>>();
-            if let Ok(mut view) = query.single_mut(world) {
-                view.region = Some(region);
-            }
+        if region.size().min_element() > LEAST_REGION
+            && let Some(mut view) = traced_view_mut(world)
+        {
+            view.region = Some(region);
         }
     }
     true
@@ -215,8 +212,7 @@ fn region_ui(ui: &Ui, free: Rect, world: &mut World, drag: &mut RegionDrag) -> b
 /// The palette of a heatmap with its ends, which can be dragged, and the value under the pointer; so many points above the
 /// picture's lower side.
 fn legend_ui(ui: &Ui, free: Rect, above: f32, world: &mut World, known: &mut UnderPointer) {
-    let mut query = world.query_filtered::<(&TracedView, &TracedRender), With<EditorCamera>>();
-    let Ok((view, render)) = query.single(world) else {
+    let Some((view, render)) = traced_view(world).zip(traced_render(world)) else {
         return;
     };
     let scale = render.shown().and_then(|shown| shown.scale);
@@ -243,13 +239,10 @@ fn legend_ui(ui: &Ui, free: Rect, above: f32, world: &mut World, known: &mut Und
                     entered = legend_body(ui, (kind, &scale), range, under)
                 });
         });
-    if entered != range {
-        let mut query = world.query_filtered::<&mut TracedView, With<EditorCamera>>();
-        if let Ok(mut view) = query.single_mut(world)
-            && view.view == kind
-        {
-            view.range = entered;
-        }
+    if entered != range
+        && let Some(mut view) = traced_view_mut(world)
+    {
+        view.range = entered;
     }
 }
 

@@ -2,11 +2,9 @@
 
 use super::overlays::{UnderPointer, pixel_at, place_under_pointer, value_under_pointer};
 use super::says::note_hint;
-use crate::editor::viewport::{EditorCamera, Viewport};
+use crate::editor::viewport::{Viewport, traced_render, traced_view};
 use crate::film::views::View;
 use crate::inspect::{Names, color_text, vector_text};
-use crate::view::{TracedRender, TracedView};
-use bevy::ecs::query::With;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{Rect, Ui};
 
@@ -15,8 +13,7 @@ pub(super) fn readout_ui(ui: &Ui, free: Rect, world: &mut World, known: &mut Und
     if !world.resource::<Viewport>().hovered {
         return;
     }
-    let mut query = world.query_filtered::<(&TracedView, &TracedRender), With<EditorCamera>>();
-    let Ok((view, render)) = query.single(world) else {
+    let Some((view, render)) = traced_view(world).zip(traced_render(world)) else {
         return;
     };
     let at = place_under_pointer(ui.ctx(), free, world.resource::<Viewport>());

@@ -5,13 +5,12 @@ use super::says::{Says, take_hint};
 use crate::editor::notice::Notices;
 use crate::editor::render_job::RenderJob;
 use crate::editor::texts::counted;
-use crate::editor::viewport::EditorCamera;
+use crate::editor::viewport::traced_render;
 use crate::film::{Ending, ErrorEstimate, State};
 use crate::io::LoadProblems;
 use crate::sync::Traced;
 use crate::trace;
 use crate::view::TracedRender;
-use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{self, Button, Label, Popup, PopupCloseBehavior, RichText, ScrollArea, Ui};
@@ -35,8 +34,7 @@ pub(super) struct StatusBar {
 
 pub(super) fn status_ui(ui: &mut Ui, world: &mut World, bar: &mut StatusBar) {
     let hint = take_hint(ui.ctx());
-    let mut query = world.query_filtered::<&TracedRender, With<EditorCamera>>();
-    let render = query.single(world).ok();
+    let render = traced_render(world);
     let status = render.and_then(TracedRender::status);
     let shown = render.and_then(TracedRender::shown);
     let (mut opens, mut forgets) = (false, false);

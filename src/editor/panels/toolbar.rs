@@ -9,12 +9,10 @@ use crate::editor::action::Action;
 use crate::editor::command::{CommandTable, tooltip};
 use crate::editor::handles::{SnapTo, Tools};
 use crate::editor::preferences::Preferences;
-use crate::editor::viewport::EditorCamera;
+use crate::editor::viewport::{traced_view, traced_view_mut};
 use crate::film::views::View;
 use crate::scene::schema::quantity_of;
 use crate::scene::{Quantity, RenderSettings};
-use crate::view::TracedView;
-use bevy::ecs::query::With;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{Button, ComboBox, Popup, PopupCloseBehavior, Ui};
 
@@ -98,8 +96,7 @@ fn steps_ui(ui: &mut Ui, world: &mut World) {
 
 /// What of the film is shown, and whether it goes on.
 fn traced_ui(ui: &mut Ui, world: &mut World) {
-    let mut query = world.query_filtered::<&TracedView, With<EditorCamera>>();
-    let Ok(before) = query.single(world).cloned() else {
+    let Some(before) = traced_view(world).cloned() else {
         return;
     };
     let mut view = before.clone();
@@ -132,11 +129,10 @@ fn traced_ui(ui: &mut Ui, world: &mut World) {
         view.region = None;
     }
     group_ui(ui, world, "kept");
-    if view != before {
-        let mut query = world.query_filtered::<&mut TracedView, With<EditorCamera>>();
-        if let Ok(mut traced) = query.single_mut(world) {
-            *traced = view;
-        }
+    if view != before
+        && let Some(mut traced) = traced_view_mut(world)
+    {
+        *traced = view;
     }
 }
 

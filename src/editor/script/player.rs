@@ -4,7 +4,7 @@ use super::super::action::Action;
 use super::super::command;
 use super::super::document::give_up_work;
 use super::super::selection::Selection;
-use super::super::viewport::EditorCamera;
+use super::super::viewport::traced_render;
 use super::claims::check;
 use super::keyboard::{parse, send_key, send_letter};
 use super::mouse::{move_pointer, press, turn_wheel};
@@ -14,7 +14,7 @@ use super::step::{Button, Spot, Step, Until};
 use super::{Script, value};
 use crate::io::check_film;
 use crate::scene::SceneId;
-use crate::view::{TracedRender, largest_side};
+use crate::view::largest_side;
 use bevy::app::{App, AppExit, First, PostUpdate};
 use bevy::ecs::entity::Entity;
 use bevy::ecs::query::With;
@@ -387,9 +387,8 @@ fn make(
 }
 
 /// Of each pixel of the traced view; all that are wanted where it has ended.
-fn samples(world: &mut World) -> Option<f64> {
-    let mut renders = world.query_filtered::<&TracedRender, With<EditorCamera>>();
-    let status = renders.single(world).ok()?.status()?;
+fn samples(world: &World) -> Option<f64> {
+    let status = traced_render(world)?.status()?;
     Some(match status.state {
         crate::film::State::Ended(_) => f64::INFINITY,
         _ => status.samples,

@@ -7,14 +7,13 @@
 use super::background::{Background, Outcome, Watch};
 use crate::bvh::{BuildOptions, Builder, Levels};
 use crate::editor::document::Document;
-use crate::editor::viewport::EditorCamera;
+use crate::editor::viewport::{traced_render, traced_view_mut};
 use crate::inspect::{BuilderFigures, compare_builders_told, same_geometry};
 use crate::report::performance::{Performance, PerformanceError, PerformanceTest, performance};
 use crate::scene::{RenderSettings, Sampling};
 use crate::sync::{Traced, TracedCameras};
 use crate::trace::{self, Camera};
-use crate::view::{TracedRender, TracedView};
-use bevy::ecs::query::With;
+use crate::view::TracedRender;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::{Mut, World};
 use std::ops::ControlFlow;
@@ -105,7 +104,7 @@ impl<T: Send + 'static> Measurement<T> {
     }
 
     /// Why what was measured is not of the scene as it is now.
-    pub fn stale(&self, world: &mut World) -> Option<Stale> {
+    pub fn stale(&self, world: &World) -> Option<Stale> {
         let (_, then) = self.done.as_ref()?;
         let now = subject(world)?;
         let options = |subject: &Subject| BuildOptions {
@@ -154,11 +153,10 @@ impl<T: Send + 'static> Measurement<T> {
 
 /// The scene as it is traced, from where the view stands; from its first camera where the view
 /// traces nothing. `None` where there is neither.
-fn subject(world: &mut World) -> Option<Subject> {
+fn subject(world: &World) -> Option<Subject> {
     let scene = world.resource::<RenderSettings>().clone();
     let traced = world.resource::<Traced>().world.clone();
-    let mut views = world.query_filtered::<&TracedRender, With<EditorCamera>>();
-    let view = views.single(world).ok().and_then(TracedRender::subject);
+    let view = traced_render(world).and_then(TracedRender::subject);
     if let Some((_, camera, settings)) = view {
         return Some(Subject {
             world: traced,
@@ -254,8 +252,7 @@ impl Measurements {
 
     /// The traced view waits from now on.
     fn hold_view(&mut self, world: &mut World) {
-        let mut views = world.query_filtered::<&mut TracedView, With<EditorCamera>>();
-        if let Ok(mut view) = views.single_mut(world)
+        if let Some(mut view) = traced_view_mut(world)
             && self.running()
             && !view.paused
         {
@@ -269,8 +266,7 @@ impl Measurements {
         if self.running() || !std::mem::take(&mut self.holds_view) {
             return;
         }
-        let mut views = world.query_filtered::<&mut TracedView, With<EditorCamera>>();
-        if let Ok(mut view) = views.single_mut(world)
+        if let Some(mut view) = traced_view_mut(world)
             && view.paused
         {
             view.paused = false;

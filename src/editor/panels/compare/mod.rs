@@ -18,10 +18,9 @@ mod zoom;
 use crate::editor::command::{Command, State, commands};
 use crate::editor::document::SceneOpened;
 use crate::editor::notice::Notices;
-use crate::editor::viewport::{EditorCamera, Viewport};
-use crate::view::{TracedPicture, TracedRender, TracedView};
+use crate::editor::viewport::{Viewport, traced_render, traced_view};
+use crate::view::{TracedPicture, TracedRender};
 use bevy::ecs::observer::On;
-use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::ResMut;
 use bevy::ecs::world::World;
@@ -110,9 +109,8 @@ pub(super) fn commands() -> Vec<Command> {
 }
 
 fn has_a_picture(world: &World) -> State {
-    let renders = world.try_query_filtered::<&TracedRender, With<EditorCamera>>();
-    let any = renders.is_some_and(|mut all| all.iter(world).any(|one| one.status().is_some()));
-    State::when(any, "The view shows no traced picture.")
+    let status = traced_render(world).and_then(TracedRender::status);
+    State::when(status.is_some(), "The view shows no traced picture.")
 }
 
 fn has_kept(world: &World) -> State {
@@ -130,8 +128,7 @@ fn is_comparing(world: &World) -> State {
 }
 
 fn keep(world: &mut World) {
-    let mut renders = world.query_filtered::<&TracedRender, With<EditorCamera>>();
-    let Ok(render) = renders.single(world) else {
+    let Some(render) = traced_render(world) else {
         return;
     };
     let (Some(picture), Some(status)) = (render.picture(), render.status()) else {
@@ -168,8 +165,7 @@ pub(super) fn compare_ui(ui: &mut Ui, free: Rect, world: &mut World) {
     if !held || !world.resource::<Viewport>().takes_keys {
         return;
     }
-    let mut query = world.query_filtered::<&TracedView, With<EditorCamera>>();
-    let divider = query.single(world).map_or(0.0, |view| view.divider);
+    let divider = traced_view(world).map_or(0.0, |view| view.divider);
     if divider >= 1.0 {
         return;
     }

@@ -9,12 +9,11 @@ use crate::editor::panels::fields::number;
 use crate::editor::panels::save_form::{SaveForm, save_ui};
 use crate::editor::panels::says::Says;
 use crate::editor::trees::background::{Background, Outcome};
-use crate::editor::viewport::EditorCamera;
+use crate::editor::viewport::traced_render;
 use crate::film::Picture;
 use crate::inspect::color_text;
 use crate::scene::Quantity;
 use crate::view::TracedRender;
-use bevy::ecs::query::With;
 use bevy::ecs::world::{Mut, World};
 use bevy::math::{UVec2, Vec3};
 use bevy_egui::egui::{self, Color32, ColorImage, ComboBox, RichText, TextureHandle, Ui, vec2};
@@ -118,7 +117,7 @@ impl Comparison {
     }
 
     /// Begins to compute what is wanted and not there yet; and again what the view shows, from time to time.
-    fn begin(&mut self, world: &mut World, kept: &KeptPictures) {
+    fn begin(&mut self, world: &World, kept: &KeptPictures) {
         if self.under_way.is_some() {
             return;
         }
@@ -128,8 +127,7 @@ impl Comparison {
         if !looks_again && before.is_some_and(|before| before.look == look) {
             return;
         }
-        let mut renders = world.query_filtered::<&TracedRender, With<EditorCamera>>();
-        let render = renders.single(world).ok();
+        let render = traced_render(world);
         let source = |number: usize| match sides[number] {
             Side::Kept(kept_number) => {
                 let kept = kept.find(kept_number)?;

@@ -10,11 +10,9 @@ use crate::editor::render_job::{
     RenderFrom, RenderJob, RenderProgress, RenderRequest, start_render,
 };
 use crate::editor::texts::path_text;
-use crate::editor::viewport::EditorCamera;
+use crate::editor::viewport::traced_render;
 use crate::film::duration_text;
 use crate::scene::{RenderSettings, SceneId};
-use crate::view::TracedRender;
-use bevy::ecs::query::With;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{self, Color32, ComboBox, ProgressBar, RichText, TextEdit, Ui};
 use std::path::Path;
@@ -136,9 +134,8 @@ fn from_ui(ui: &mut Ui, world: &mut World, form: &mut RenderForm) {
 }
 
 /// The tracer's camera of the view.
-fn view_camera(world: &mut World) -> Option<RenderFrom> {
-    let mut query = world.query_filtered::<&TracedRender, With<EditorCamera>>();
-    let (_, camera, _) = query.single(world).ok()?.subject()?;
+fn view_camera(world: &World) -> Option<RenderFrom> {
+    let (_, camera, _) = traced_render(world)?.subject()?;
     Some(RenderFrom::View(Box::new(camera.clone())))
 }
 

@@ -4,15 +4,13 @@ use super::super::fields::section;
 use super::super::state::with;
 use super::error_plot::error_plot_ui;
 use super::gizmos::gizmos_ui;
-use crate::editor::viewport::EditorCamera;
+use crate::editor::viewport::traced_render;
 use crate::view::TracedRender;
-use bevy::ecs::query::With;
 use bevy::ecs::world::World;
 use bevy_egui::egui::Ui;
 
 pub(super) fn debug_ui(ui: &mut Ui, world: &mut World) {
-    let mut query = world.query_filtered::<&TracedRender, With<EditorCamera>>();
-    let status = query.single(world).ok().and_then(TracedRender::status);
+    let status = traced_render(world).and_then(TracedRender::status);
     section(ui, "Error against time", true, |ui| {
         with(world, |_, curve| error_plot_ui(ui, status.as_ref(), curve));
     });

@@ -6,13 +6,12 @@ use super::environment::environment_ui;
 use super::maps::Thumbnails;
 use crate::editor::preferences::Preferences;
 use crate::editor::trees::background::{Background, Outcome, Watch};
-use crate::editor::viewport::EditorCamera;
+use crate::editor::viewport::traced_render;
 use crate::io::Size;
 use crate::scene::{RenderSettings, SceneId, range_problems};
 use crate::trace::Crossings;
 use crate::view::TracedRender;
 use bevy::ecs::name::Name;
-use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy::math::UVec2;
@@ -140,8 +139,7 @@ pub(super) fn render_ui(ui: &mut Ui, world: &mut World, thumbnails: &mut Thumbna
 
 /// What the view's film takes, and whether it keeps lights apart: of the view, not of the scene.
 fn film_ui(ui: &mut Ui, world: &mut World) {
-    let mut renders = world.query_filtered::<&TracedRender, With<EditorCamera>>();
-    let render = renders.single(world).ok().and_then(TracedRender::render);
+    let render = traced_render(world).and_then(TracedRender::render);
     let film = render.map(|render| render.memory());
     section(ui, "Film", true, |ui| {
         let mut is_apart = world.resource::<Preferences>().lights_apart;
@@ -201,8 +199,7 @@ impl ViewCrossings {
 
 fn crossings_text(ui: &Ui, world: &mut World) -> Option<String> {
     world.init_resource::<ViewCrossings>();
-    let mut renders = world.query_filtered::<&TracedRender, With<EditorCamera>>();
-    let render = renders.single(world).ok()?;
+    let render = traced_render(world)?;
     let number = render.render()?.number();
     let (traced, camera, settings) = render.subject()?;
     if !traced.needs.transparency {

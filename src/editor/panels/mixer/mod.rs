@@ -24,12 +24,10 @@ use super::temperature::luminance;
 use crate::editor::action::Action;
 use crate::editor::document::SceneOpened;
 use crate::editor::preferences::Preferences;
-use crate::editor::viewport::EditorCamera;
-use crate::film::FilmMemory;
+use crate::editor::viewport::traced_render;
 use crate::scene::{RenderSettings, SceneId};
 use crate::view::TracedRender;
 use bevy::ecs::observer::On;
-use bevy::ecs::query::With;
 use bevy::ecs::system::ResMut;
 use bevy::ecs::world::{Mut, World};
 use bevy_egui::egui::{self, Button, RichText, ScrollArea, Ui, UiBuilder, vec2};
@@ -76,17 +74,12 @@ pub(super) fn mixer_ui(context: &egui::Context, free: egui::Rect, world: &mut Wo
     });
 }
 
-/// What is known of the view's film.
-fn film_of(world: &mut World) -> Option<FilmMemory> {
-    let mut renders = world.query_filtered::<&TracedRender, With<EditorCamera>>();
-    Some(renders.single(world).ok()?.render()?.memory())
-}
-
 /// `most` is the height that the rows take at most: the others are scrolled to.
 fn inner_ui(ui: &mut Ui, most: f32, world: &mut World, mixer: &mut Mixer) {
     let lights = lights(world);
     update_sketches(ui.ctx(), world, mixer, &lights);
-    let film = film_of(world);
+    let render = traced_render(world).and_then(TracedRender::render);
+    let film = render.map(|render| render.memory());
     let is_apart = film.is_some_and(|film| film.planes > 0);
     if !is_apart {
         let why = match (film, world.resource::<Preferences>().lights_apart) {
@@ -149,8 +142,7 @@ fn update_sketches(
     mixer: &mut Mixer,
     lights: &[LightRow],
 ) {
-    let mut renders = world.query_filtered::<&TracedRender, With<EditorCamera>>();
-    let Some(render) = renders.single(world).ok().and_then(TracedRender::render) else {
+    let Some(render) = traced_render(world).and_then(TracedRender::render) else {
         return;
     };
     let output = world.resource::<RenderSettings>().output;

@@ -3,13 +3,11 @@
 use super::super::says::Says;
 use crate::editor::inspection::DebugRay;
 use crate::editor::inspection::debug_ray::Shot;
-use crate::editor::viewport::EditorCamera;
+use crate::editor::viewport::traced_render;
 use crate::film::Sum;
 use crate::inspect::{Statement, left_out_text};
 use crate::scene::{Output, RenderSettings};
 use crate::trace::{self, RayTree};
-use crate::view::TracedRender;
-use bevy::ecs::query::With;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{RichText, Ui};
 use std::sync::Arc;
@@ -52,8 +50,7 @@ fn film_of(world: &mut World) -> Option<(Sum, u32)> {
     let shot = ray.shot()?.clone();
     let (of, settings) = ray.traced_with()?;
     let (of, settings) = (of.clone(), settings.clone());
-    let mut renders = world.query_filtered::<&TracedRender, With<EditorCamera>>();
-    let render = renders.single(world).ok()?;
+    let render = traced_render(world)?;
     let (own, camera, rendered) = render.subject()?;
     if !is_same_picture((own, camera, rendered), (&of, &shot, &settings)) {
         return None;
