@@ -45,15 +45,16 @@ impl AnyNumber {
     }
 
     /// The field for it: as the schema says, or what its type can hold.
-    pub fn field(self, field: NumberField<'_>, says: Option<Quantity>) -> NumberField<'_> {
+    pub fn field(self, says: &str, quantity: Option<Quantity>) -> NumberField<'_> {
         let [least, most] = match self.is_whole {
             true => self.ends.map(|end| end.clamp(-EXACT, EXACT)),
             false => self.ends,
         };
         NumberField {
-            quantity: says.unwrap_or(Quantity::within(least, most, "")),
+            quantity: quantity.unwrap_or(Quantity::within(least, most, "")),
             is_whole: self.is_whole,
-            ..field
+            is_mixed: false,
+            says,
         }
     }
 

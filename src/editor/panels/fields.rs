@@ -56,17 +56,14 @@ pub(super) fn property_ui(
     let path = property.path.as_str();
     let mixed = is_mixed(path);
     let value = path.reflect_element_mut(root).ok()?;
-    let field = NumberField {
-        quantity: property.quantity.unwrap_or(Quantity::ANY),
-        is_whole: false,
-        is_mixed: mixed,
-        says,
-    };
     if let Some(value) = value.try_downcast_mut::<bool>() {
         return switch(ui, label, says, value, mixed).then(|| path.to_owned());
     }
     if let Some(number) = AnyNumber::of(value) {
-        let field = number.field(field, property.quantity);
+        let field = NumberField {
+            is_mixed: mixed,
+            ..number.field(says, property.quantity)
+        };
         let changed = row(ui, label, says, |ui| number.ui(ui, field, value));
         return changed.then(|| path.to_owned());
     }
@@ -94,7 +91,7 @@ pub(super) fn property_ui(
         let number = AnyNumber::of(part)?;
         let mut field = NumberField {
             is_mixed: is_mixed(&format!("{path}.{axis}")),
-            ..number.field(field, property.quantity)
+            ..number.field(says, property.quantity)
         };
         field.quantity.slider = None;
         // What is left of the pixels that both sides may have together.
@@ -156,24 +153,21 @@ fn one_ui<T: Reflect + Typed>(ui: &mut Ui, root: &mut T, property: &mut Property
     });
 }
 
-fn float_ui(ui: &mut Ui, field: NumberField, value: &mut f32) -> bool {
-    let mut number = f64::from(*value);
-    let changed = field.ui(ui, &mut number);
-    if changed {
-        *value = number as f32;
-    }
-    changed
-}
-
-/// A whole number, the field alone.
-pub(super) fn whole_ui(ui: &mut Ui, field: NumberField, value: &mut u32) -> bool {
-    let mut number = f64::from(*value);
-    let changed = field.ui(ui, &mut number);
-    if changed {
-        // What a field of u32 accepts is one.
-        *value = number as u32;
-    }
-    changed
+/// A number of whatever type, the field alone.
+fn number_ui(
+    ui: &mut Ui,
+    says: &str,
+    value: &mut dyn PartialReflect,
+    quantity: Quantity,
+    mixed: bool,
+) -> bool {
+    AnyNumber::of(value).is_some_and(|number| {
+        let field = NumberField {
+            is_mixed: mixed,
+            ..number.field(says, Some(quantity))
+        };
+        number.ui(ui, field, value)
+    })
 }
 
 /// Numbers in a line, each drawn by `one`; returns which was changed.
@@ -206,16 +200,12 @@ pub(super) fn number_row(
     ui: &mut Ui,
     label: &str,
     says: &str,
-    value: &mut f32,
+    value: &mut dyn PartialReflect,
     quantity: Quantity,
 ) -> bool {
-    let field = NumberField {
-        quantity,
-        is_whole: false,
-        is_mixed: false,
-        says,
-    };
-    row(ui, label, says, |ui| float_ui(ui, field, value))
+    row(ui, label, says, |ui| {
+        number_ui(ui, says, value, quantity, false)
+    })
 }
 
 /// The same without a label, as wide as its digits.
@@ -227,57 +217,15 @@ pub(super) fn number(ui: &mut Ui, says: &str, value: &mut f32, quantity: Quantit
 pub(super) fn number_within(
     ui: &mut Ui,
     says: &str,
-    value: &mut f32,
+    value: &mut dyn PartialReflect,
     quantity: Quantity,
     width: f32,
 ) -> bool {
-    let field = NumberField {
-        quantity,
-        is_whole: false,
-        is_mixed: false,
-        says,
-    };
     let layout = Layout::left_to_right(Align::Center);
-    ui.allocate_ui_with_layout(vec2(width, 20.0), layout, |ui| float_ui(ui, field, value))
-        .inner
-}
-
-/// A whole number with its label that is no property of the scene.
-pub(super) fn whole_row(
-    ui: &mut Ui,
-    label: &str,
-    says: &str,
-    value: &mut u32,
-    quantity: Quantity,
-) -> bool {
-    let field = NumberField {
-        quantity,
-        is_whole: true,
-        is_mixed: false,
-        says,
-    };
-    row(ui, label, says, |ui| whole_ui(ui, field, value))
-}
-
-/// The same without a label, as wide as its digits and a short slider.
-pub(super) fn whole(ui: &mut Ui, says: &str, value: &mut u32, quantity: Quantity) -> bool {
-    let field = NumberField {
-        quantity,
-        is_whole: true,
-        is_mixed: false,
-        says,
-    };
-    let room = vec2(
-        if quantity.slider.is_some() {
-            130.0
-        } else {
-            44.0
-        },
-        20.0,
-    );
-    let layout = Layout::left_to_right(Align::Center);
-    ui.allocate_ui_with_layout(room, layout, |ui| whole_ui(ui, field, value))
-        .inner
+    ui.allocate_ui_with_layout(vec2(width, 20.0), layout, |ui| {
+        number_ui(ui, says, value, quantity, false)
+    })
+    .inner
 }
 
 /// A switch with its label.
@@ -308,13 +256,7 @@ fn radiant_ui(ui: &mut Ui, says: &str, value: &mut LinearRgba, mixed: bool) -> b
     let mut entered = hue;
     let mut changed = color_ui(ui, says, &mut entered, mixed);
     let mut level = strength.red;
-    let field = NumberField {
-        quantity: Quantity::FACTOR,
-        is_whole: false,
-        is_mixed: mixed,
-        says,
-    };
-    changed |= float_ui(ui, field, &mut level);
+    changed |= number_ui(ui, says, &mut level, Quantity::FACTOR, mixed);
     if changed {
         let part = |channel: f32| (channel * level).min(f32::MAX);
         *value = LinearRgba::rgb(part(entered.red), part(entered.green), part(entered.blue));

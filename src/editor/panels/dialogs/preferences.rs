@@ -1,6 +1,6 @@
 //! What a person chooses about the editor itself.
 
-use super::super::fields::{number_row, row, whole_row};
+use super::super::fields::{number_row, row};
 use super::super::says::Says;
 use crate::editor::preferences::{Preferences, ThemeChoice, config_folder};
 use crate::editor::texts::path_text;
@@ -31,7 +31,7 @@ pub(super) fn preferences_ui(ui: &mut Ui, world: &mut World) {
     number_row(ui, "Size", says, &mut preferences.zoom, sizes);
     let says = "Screen pixels along each side of a traced one: 2 is four times as fast";
     let sizes = Quantity::slider(1.0, 8.0, "");
-    whole_row(ui, "Traced pixel", says, &mut preferences.pixel_size, sizes);
+    number_row(ui, "Traced pixel", says, &mut preferences.pixel_size, sizes);
     ui.checkbox(&mut preferences.show_hierarchy, "Show the hierarchy");
     ui.checkbox(&mut preferences.show_inspector, "Show the inspector");
     let mut hint = !preferences.hint_seen;

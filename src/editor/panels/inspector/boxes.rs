@@ -1,6 +1,6 @@
 //! Which boxes of the trees are drawn, and how.
 
-use super::super::fields::{chosen_ui, properties_ui, row, whole_row};
+use super::super::fields::{chosen_ui, number_row, properties_ui, row};
 use super::super::says::Says;
 use crate::editor::action::Action;
 use crate::editor::inspection::DebugRay;
@@ -86,7 +86,7 @@ fn number_ui(ui: &mut Ui, path: &str, value: &mut u32, last: u32) -> bool {
         return false;
     };
     let numbers = Quantity::slider(0.0, f64::from(last), "");
-    whole_row(ui, &property.label, &property.says, value, numbers)
+    number_row(ui, &property.label, &property.says, value, numbers)
 }
 
 fn levels_ui(ui: &mut Ui, boxes: &mut BoxSettings, range: BoxRange) {

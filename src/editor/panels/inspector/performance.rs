@@ -1,6 +1,6 @@
 //! The performance test: the view rendered several times with each builder's trees.
 
-use super::super::fields::whole_row;
+use super::super::fields::number_row;
 use super::super::save_form::{SaveForm, TABLES, is_csv, save_ui};
 use super::super::says::Says;
 use super::figure_table::{Cell, Row, figure_table_ui, short};
@@ -37,10 +37,10 @@ pub(super) fn performance_ui(ui: &mut Ui, world: &mut World, form: &mut Performa
     ui.add(Label::new(RichText::new(about).weak()).wrap());
     let says = "Renderings with each builder";
     let many = Quantity::SAMPLES;
-    whole_row(ui, "Renderings", says, &mut form.runs, many);
+    number_row(ui, "Renderings", says, &mut form.runs, many);
     let says = "Of each pixel in a rendering, at least: what the scene's effects need counts too";
     let samples = Quantity::slider(1.0, 4096.0, "").logarithmic();
-    whole_row(ui, "Samples", says, &mut form.spp, samples);
+    number_row(ui, "Samples", says, &mut form.spp, samples);
     let (runs, spp) = (form.runs, form.spp);
     let start = measure_ui(
         ui,

@@ -1,6 +1,6 @@
 //! Above the list: which pixel, which of its samples, which kinds of rays, and the search.
 
-use super::super::fields::whole;
+use super::super::fields::number_within;
 use super::super::says::Says;
 use crate::editor::command::{find, shortcut};
 use crate::editor::inspection::choice::shoot_pixel;
@@ -25,6 +25,9 @@ pub(super) struct Head {
     samples: Option<u64>,
 }
 
+/// Points of a number, and of one with a short slider.
+const NUMBER: f32 = 44.0;
+const SLIDER: f32 = 130.0;
 /// More columns or rows than any picture has.
 const MOST: u32 = 99_999;
 
@@ -80,7 +83,7 @@ fn pixel_ui(ui: &mut Ui, world: &mut World, head: &mut Head) {
             Some(size) => format!("{says}; the picture has {}", size.to_array()[i]),
             None => says.to_owned(),
         };
-        entered |= whole(ui, &says, &mut head.pixel[i], pixels);
+        entered |= number_within(ui, &says, &mut head.pixel[i], pixels, NUMBER);
     }
     if entered {
         shoot_pixel(world, UVec2::from_array(head.pixel));
@@ -117,7 +120,7 @@ fn samples_ui(ui: &mut Ui, world: &mut World, head: &mut Head) {
         };
         // No pixel has more samples than that.
         let mut entered = u32::try_from(*number).unwrap_or(u32::MAX);
-        if whole(ui, &says, &mut entered, samples) {
+        if number_within(ui, &says, &mut entered, samples, SLIDER) {
             *number = entered.into();
         }
         if known.is_some() {
@@ -186,7 +189,7 @@ fn kinds_ui(ui: &mut Ui, world: &mut World) {
         .says("No ray behind more surfaces than this is listed or drawn");
     let says = "No ray behind more surfaces than this is listed or drawn";
     let bounces = quantity_of::<InspectSettings>("rays.max_depth");
-    whole(ui, says, &mut rays.max_depth, bounces);
+    number_within(ui, says, &mut rays.max_depth, bounces, SLIDER);
     if rays != before.rays || draw != is_drawn {
         let mut settings = world.resource_mut::<InspectSettings>();
         settings.rays = rays;
