@@ -26,11 +26,13 @@
 //! | [`navigation`] | moving the view |
 //! | [`handles`] | arrows, rings and points that are dragged |
 //! | `pointer`, [`keys`], `pick` | what a press means, what a key means, what is under the pointer |
+//! | `background` | work on a thread of its own, with progress and an end |
 //! | `pace` | how often the window is drawn |
 //! | `script` | clicks and keys from a file |
 //! | `startup`, `signals` | whether there can be a window at all; being asked to end from outside |
 
 pub mod action;
+mod background;
 mod cameras;
 pub mod command;
 mod dispatch;

@@ -2,13 +2,11 @@
 
 use super::question::{Purpose, Question, take};
 use super::{Document, dialog_native};
+use crate::editor::background::{Background, Outcome};
 use crate::editor::notice::Notices;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use std::path::PathBuf;
-use std::sync::Mutex;
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use std::thread;
 use std::time::{Duration, Instant};
 
 /// Nobody reads a dialog and closes it within this time: where one is gone so soon, there was none.
@@ -25,7 +23,7 @@ pub(super) struct Dialogs {
 struct OpenDialog {
     purpose: Purpose,
     since: Instant,
-    choice: Mutex<Receiver<Option<PathBuf>>>,
+    choice: Background<Option<PathBuf>>,
 }
 
 /// Asks for a file: with the desktop's own dialog where there is one, else by a typed path.
@@ -36,19 +34,13 @@ pub(super) fn ask(world: &mut World, purpose: Purpose) {
         return;
     }
     if !dialogs.broken && dialog_native::is_available() {
-        let (sender, receiver) = channel();
         let start = suggestion.clone();
-        let thread = thread::Builder::new()
-            .name("file dialog".into())
-            .spawn(move || {
-                // It fails only where the editor has gone meanwhile.
-                let _ = sender.send(dialog_native::choose(purpose, &start));
-            });
-        if thread.is_ok() {
+        let choose = move |_: &_| dialog_native::choose(purpose, &start);
+        if let Ok(choice) = Background::start("file dialog", choose) {
             dialogs.open = Some(OpenDialog {
                 purpose,
                 since: Instant::now(),
-                choice: Mutex::new(receiver),
+                choice,
             });
             world.resource_mut::<Document>().question = Some(Question::Waiting { purpose });
             return;
@@ -116,16 +108,14 @@ fn suggestion(world: &World, purpose: Purpose) -> PathBuf {
 /// Goes on when a choice was made.
 pub(super) fn take_choices(world: &mut World) {
     let mut dialogs = world.resource_mut::<Dialogs>();
-    let Some(open) = &mut dialogs.open else {
+    let Some(open) = &dialogs.open else {
         return;
     };
-    let choice = match open.choice.get_mut() {
-        Ok(receiver) => receiver.try_recv(),
-        Err(_) => Err(TryRecvError::Disconnected),
+    let choice = match open.choice.take() {
+        Outcome::Pending => return,
+        Outcome::Done(choice) => choice,
+        Outcome::Lost => None,
     };
-    if choice == Err(TryRecvError::Empty) {
-        return;
-    }
     let (purpose, was_short) = (open.purpose, open.since.elapsed() < NO_DIALOG);
     dialogs.open = None;
     let mut document = world.resource_mut::<Document>();
@@ -133,7 +123,7 @@ pub(super) fn take_choices(world: &mut World) {
         document.question = None;
     }
     match choice {
-        Ok(Some(path)) => take(world, purpose, &path, Some(&path)),
+        Some(path) => take(world, purpose, &path, Some(&path)),
         _ if was_short => type_instead(world, purpose),
         _ => world.resource_mut::<Document>().give_up(),
     }

@@ -2,6 +2,7 @@
 //! written down. It stays where it is when the view moves, and is shot again when the scene changes.
 
 use super::view_of;
+use crate::editor::background::{Background, Outcome};
 use crate::editor::command::{Command, Over, State, commands};
 use crate::editor::notice::Notices;
 use crate::editor::pick;
@@ -14,9 +15,7 @@ use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Res, ResMut};
 use bevy::ecs::world;
 use bevy::math::{UVec2, Vec2};
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use std::sync::{Arc, Mutex};
-use std::thread;
+use std::sync::Arc;
 
 /// Why nothing is shot where nothing is traced.
 pub(super) const NO_VIEW: &str =
@@ -75,13 +74,8 @@ pub(in crate::editor) struct DebugRay {
     /// What the first camera ray met, by number and name, when the pixel was picked.
     met: Option<(u64, String)>,
     lost: Option<String>,
-    under_way: Option<UnderWay>,
-}
-
-/// What is being traced on a thread of its own.
-struct UnderWay {
-    of: Of,
-    found: Mutex<Receiver<Found>>,
+    /// What is being traced on a thread of its own.
+    under_way: Option<(Of, Background<Found>)>,
 }
 
 /// The rays, or why there are none.
@@ -203,19 +197,15 @@ impl DebugRay {
         settings: &RenderSettings,
         names: &Names,
     ) {
-        if let Some(UnderWay { of, found }) = self.under_way.take() {
-            let received = match found.lock() {
-                Ok(found) => found.try_recv(),
-                Err(_) => Err(TryRecvError::Disconnected),
-            };
-            let found = match received {
-                Ok(found) => found,
-                Err(TryRecvError::Empty) => {
-                    self.under_way = Some(UnderWay { of, found });
+        if let Some((of, work)) = self.under_way.take() {
+            let found = match work.take() {
+                Outcome::Pending => {
+                    self.under_way = Some((of, work));
                     return;
                 }
+                Outcome::Done(found) => found,
                 // Not tried again until something else is asked for: it would end so in every frame.
-                Err(TryRecvError::Disconnected) => Err(LOST.into()),
+                Outcome::Lost => Err(LOST.into()),
             };
             if self.asks_for(&of) {
                 // Shown even where the scene has moved on: the next ones follow.
@@ -245,20 +235,11 @@ impl DebugRay {
             self.take(of, found, names);
             return;
         }
-        // Thousands of samples may take seconds, and no frame waits for them.
-        let (send, found) = channel();
+        // Thousands of samples may take seconds, and no frame waits for them; the pool's threads belong to the picture,
+        // which may keep them for long.
         let traces = of.clone();
-        // The pool's threads belong to the picture, which may keep them for long.
-        let thread = thread::Builder::new().name("debug ray".into());
-        let started = thread.spawn(move || {
-            // Nobody may be waiting any more.
-            let _ = send.send(traces.trace());
-        });
-        match started {
-            Ok(_) => {
-                let found = Mutex::new(found);
-                self.under_way = Some(UnderWay { of, found });
-            }
+        match Background::start("debug ray", move |_| traces.trace()) {
+            Ok(work) => self.under_way = Some((of, work)),
             // A system without another thread: then a frame has to wait.
             Err(_) => {
                 let found = of.trace();
@@ -368,6 +349,7 @@ mod tests {
     use super::super::tests::{Bench, SIZE};
     use super::*;
     use crate::sync::TracedCameras;
+    use std::thread;
     use std::time::{Duration, Instant};
 
     #[test]
@@ -405,8 +387,7 @@ mod tests {
         bench.wait();
         let mut ray = bench.ray();
         let of = ray.of.take().unwrap();
-        let found = Mutex::new(channel().1);
-        ray.under_way = Some(UnderWay { of, found });
+        ray.under_way = Some((of, Background::sent().1));
         for _ in 0..3 {
             bench.app.update();
             let ray = bench.ray();

@@ -1,8 +1,8 @@
 //! What a mirror sees, for the answer about one of its pixels: the scene from the point where the view's ray meets the
 //! mirror, rendered small on a thread of its own.
 
+use crate::editor::background::{Background, Outcome, Watch};
 use crate::editor::inspection::DebugRay;
-use crate::editor::trees::background::{Background, Outcome, Watch};
 use crate::film::{Ending, develop_rgba8, render_while};
 use crate::inspect::mirror_ray;
 use crate::scene::{Bloom, Output, RenderSettings, Sampling};

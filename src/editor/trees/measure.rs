@@ -4,8 +4,8 @@
 //!
 //! The figures are those of `glassbox bvh` and `glassbox bench`: the same code makes them.
 
-use super::background::{Background, Outcome, Watch};
 use crate::bvh::{BuildOptions, Builder, Levels};
+use crate::editor::background::{Background, Outcome, Watch};
 use crate::editor::document::Document;
 use crate::editor::viewport::{traced_render, traced_view_mut};
 use crate::inspect::{BuilderFigures, compare_builders_told, same_geometry};

@@ -3,12 +3,10 @@
 //!
 //! | module | does |
 //! |---|---|
-//! | [`background`] | work on a thread of its own, with progress and an end |
 //! | [`measure`] | compares the builders and times pictures |
 //! | [`pair`], [`cameras`] | two builders' trees in two views of the scene |
 //! | [`commands`] | the commands about lines and boxes |
 
-pub(super) mod background;
 mod cameras;
 mod commands;
 pub(super) mod measure;

@@ -4,9 +4,9 @@
 //! The trees are built in the background from the meshes that are traced; where one of the two is
 //! what is traced, it is that very tree. Both views look from one place, so that moving it makes no line again.
 
-use super::background::{Background, Outcome};
 use super::of_setting;
 use crate::bvh::BuildOptions;
+use crate::editor::background::{Background, Outcome};
 use crate::editor::inspection::{DebugRay, DrawnSet, Seen, Source, seen_from};
 use crate::editor::viewport::EditorCamera;
 use crate::inspect::{InspectSettings, LineSet, Subject, System, TreeCounts, rebuilt};

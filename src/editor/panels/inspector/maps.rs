@@ -2,6 +2,7 @@
 
 use super::super::fields::row;
 use super::super::says::Says;
+use crate::editor::background::{Background, Outcome};
 use crate::editor::document::{picture_at, typed_picture};
 use crate::editor::edits::scene_entity;
 use crate::io::PICTURE_EXTENSIONS;
@@ -11,15 +12,12 @@ use bevy::asset::{AssetId, Assets, Handle};
 use bevy::color::ColorToPacked;
 use bevy::ecs::world::World;
 use bevy::image::Image;
-use bevy::platform::cell::SyncCell;
 use bevy::platform::collections::HashMap;
 use bevy_egui::egui::{
     self, Color32, ColorImage, Key, Sense, TextEdit, TextureHandle, TextureOptions, Ui, vec2,
 };
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use std::thread;
 
 /// Pixels along a thumbnail's longer side.
 const SIDE: u32 = 96;
@@ -89,14 +87,9 @@ impl Owner {
 #[derive(Default)]
 pub(in super::super) struct Thumbnails {
     made: HashMap<AssetId<Image>, TextureHandle>,
-    asking: Option<Asking>,
+    /// A file dialog that is open, and for whom.
+    asking: Option<(Owner, Background<Option<PathBuf>>)>,
     typed: Option<Typed>,
-}
-
-/// A file dialog that is open.
-struct Asking {
-    owner: Owner,
-    answer: SyncCell<Receiver<Option<PathBuf>>>,
 }
 
 /// A path that is being typed.
@@ -250,31 +243,27 @@ impl Thumbnails {
 
     /// Opens the system's file dialog beside the editor, which goes on.
     fn ask(&mut self, owner: Owner) {
-        let (sender, answer) = channel();
-        let dialog = thread::Builder::new().name("file dialog".into());
-        let spawned = dialog.spawn(move || {
-            let file = rfd::FileDialog::new()
+        let dialog = Background::start("file dialog", |_| {
+            rfd::FileDialog::new()
                 .add_filter("Pictures", &PICTURE_EXTENSIONS)
                 .add_filter("All files", &["*"])
-                .pick_file();
-            // The editor may have been closed meanwhile.
-            let _ = sender.send(file);
+                .pick_file()
         });
-        if spawned.is_ok() {
-            let answer = SyncCell::new(answer);
-            self.asking = Some(Asking { owner, answer });
+        if let Ok(dialog) = dialog {
+            self.asking = Some((owner, dialog));
         }
     }
 
     /// The file that was chosen, and for whom.
     fn answer(&mut self) -> Option<(Owner, PathBuf)> {
-        let file = match self.asking.as_mut()?.answer.get().try_recv() {
-            Ok(file) => file,
-            Err(TryRecvError::Disconnected) => None,
-            Err(TryRecvError::Empty) => return None,
+        let (_, dialog) = self.asking.as_ref()?;
+        let file = match dialog.take() {
+            Outcome::Pending => return None,
+            Outcome::Done(file) => file,
+            Outcome::Lost => None,
         };
-        let asked = self.asking.take()?;
-        Some((asked.owner, file?))
+        let (owner, _) = self.asking.take()?;
+        Some((owner, file?))
     }
 
     /// Another scene is open: what is still typed or chosen belongs to nobody.
@@ -349,11 +338,8 @@ mod tests {
         let mut thumbnails = Thumbnails::default();
         let context = egui::Context::default();
         for is_forgotten in [true, false] {
-            let (sender, answer) = channel();
-            thumbnails.asking = Some(Asking {
-                owner: Owner::Environment,
-                answer: SyncCell::new(answer),
-            });
+            let (sender, dialog) = Background::sent();
+            thumbnails.asking = Some((Owner::Environment, dialog));
             settle_pictures(&context, world, &mut thumbnails);
             assert!(thumbnails.asking.is_some(), "it waits");
             if is_forgotten {

@@ -1,6 +1,6 @@
 //! The lights' own pictures, small: made of the view's planes on a thread of their own, and only while they are looked at.
 
-use crate::editor::trees::background::{Background, Outcome};
+use crate::editor::background::{Background, Outcome};
 use crate::film::{Picture, Progressive, develop_rgba8};
 use crate::scene::{Bloom, Output, SceneId};
 use bevy::math::{UVec2, Vec3};

@@ -3,7 +3,7 @@
 use std::io;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
@@ -38,17 +38,21 @@ struct Shared {
 impl<T: Send + 'static> Background<T> {
     /// Begins it. The error is that of a system which has no more threads.
     pub fn start(name: &str, work: impl FnOnce(&Watch) -> T + Send + 'static) -> io::Result<Self> {
-        let watch = Watch::default();
-        let own = watch.clone();
-        let (sender, receiver) = channel();
+        let (sender, begun) = Self::sent();
+        let watch = begun.watch.clone();
         thread::Builder::new().name(name.into()).spawn(move || {
             // Nobody receives it where it was dropped meanwhile.
-            let _ = sender.send(work(&own));
+            let _ = sender.send(work(&watch));
         })?;
-        Ok(Self {
-            watch,
-            result: Mutex::new(receiver),
-        })
+        Ok(begun)
+    }
+
+    /// Work whose result somebody sends.
+    pub fn sent() -> (Sender<T>, Self) {
+        let (sender, receiver) = channel();
+        let result = Mutex::new(receiver);
+        let watch = Watch::default();
+        (sender, Self { watch, result })
     }
 
     /// What it does now, and which part is done, 0 to 1.
