@@ -1,19 +1,21 @@
 //! How much room things take: for framing them, for pivots and for box selection.
 
 use crate::bvh::REACH;
-use crate::editor::history::LaidAside;
+use crate::editor::edits::{all_below, roots_of, scene_entity};
+use crate::io::place::world_from;
 use crate::scene::{
     DirectionalLamp, ParallelogramLamp, PointLamp, SceneCamera, SceneId, SegmentLamp,
 };
 use bevy::asset::Assets;
 use bevy::camera::primitives::{Aabb, MeshAabb};
 use bevy::ecs::entity::Entity;
-use bevy::ecs::hierarchy::{ChildOf, Children};
+use bevy::ecs::entity_disabling::Disabled;
+use bevy::ecs::hierarchy::ChildOf;
+use bevy::ecs::query::With;
 use bevy::ecs::world::{EntityRef, World};
 use bevy::math::Vec3;
 use bevy::mesh::{Mesh, Mesh3d};
 use bevy::transform::components::{GlobalTransform, Transform};
-use std::collections::HashSet;
 
 /// An axis-parallel box in the world's space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,19 +106,8 @@ pub(super) fn extent_now(world: &World, root: Entity) -> Option<Extent> {
         let corners = corners(&mesh.compute_aabb()?);
         Extent::of_points(corners.map(|corner| world_from_own.transform_point3(corner)))
     };
-    let mut extent = None;
-    let mut all = vec![root];
-    while let Some(entity) = all.pop() {
-        if let Some(children) = world.get::<Children>(entity) {
-            let there = |child: &Entity| world.get::<LaidAside>(*child).is_none();
-            all.extend(children.iter().copied().filter(there));
-        }
-        extent = extent
-            .into_iter()
-            .chain(extent_of_one(entity))
-            .reduce(Extent::and);
-    }
-    extent
+    let all = all_below(world, root).into_iter();
+    all.filter_map(extent_of_one).reduce(Extent::and)
 }
 
 /// The room that an entity itself takes, without its children. `None` for what stands nowhere, and
@@ -136,32 +127,20 @@ pub(super) fn own_extent(entity: EntityRef) -> Option<Extent> {
 }
 
 /// The room that these entities take with all that hangs on them. `None` where that is nothing.
-pub(super) fn extent_of(world: &mut World, ids: &[SceneId]) -> Option<Extent> {
-    let ids: HashSet<SceneId> = ids.iter().copied().collect();
-    let mut query = world.query::<(Entity, &SceneId)>();
-    let named: HashSet<Entity> = query
-        .iter(world)
-        .filter(|(_, id)| ids.contains(id))
-        .map(|(entity, _)| entity)
-        .collect();
-    let mut all = world.query_filtered::<Entity, bevy::prelude::With<SceneId>>();
-    let entities: Vec<Entity> = all.iter(world).collect();
-    let hangs_on = |mut entity: Entity| {
-        loop {
-            if named.contains(&entity) {
-                return true;
-            }
-            match world.get::<ChildOf>(entity) {
-                Some(parent) => entity = parent.parent(),
-                None => return false,
-            }
-        }
-    };
-    let extents = entities
-        .iter()
-        .filter(|&&entity| hangs_on(entity))
-        .filter_map(|&entity| own_extent(world.get_entity(entity).ok()?));
+pub(super) fn extent_of(world: &World, ids: &[SceneId]) -> Option<Extent> {
+    let roots = roots_of(world, ids).into_iter();
+    let roots = roots.filter_map(|id| scene_entity(world, id));
+    let extents = roots.filter_map(|root| extent_below(world, root));
     extents.reduce(Extent::and)
+}
+
+/// The room that an entity takes with all that hangs on it.
+pub(super) fn extent_below(world: &World, root: Entity) -> Option<Extent> {
+    let all = all_below(world, root).into_iter();
+    let all = all.filter_map(|entity| world.get_entity(entity).ok());
+    // What the app has disabled is not seen.
+    let there = all.filter(|entity| entity.contains::<SceneId>() && !entity.contains::<Disabled>());
+    there.filter_map(own_extent).reduce(Extent::and)
 }
 
 /// The room that the scene's objects and area lights take; where there are none, that of the other
@@ -187,22 +166,17 @@ pub(super) fn solid_extent(world: &mut World) -> Option<Extent> {
 
 /// The room that all entities of a kind take.
 fn extent_of_all(world: &mut World, is_meant: impl Fn(&EntityRef) -> bool) -> Option<Extent> {
-    let mut all = world.query_filtered::<EntityRef, bevy::prelude::With<SceneId>>();
+    let mut all = world.query_filtered::<EntityRef, With<SceneId>>();
     let meant = all.iter(world).filter(is_meant);
     meant.filter_map(own_extent).reduce(Extent::and)
 }
 
 /// From the space of an entity's parent to the world's, as the transforms are now.
 pub(super) fn world_from_parent(world: &World, entity: Entity) -> GlobalTransform {
-    let mut all = GlobalTransform::IDENTITY;
-    let mut next = world.get::<ChildOf>(entity).map(ChildOf::parent);
-    while let Some(parent) = next {
-        if let Some(transform) = world.get::<Transform>(parent) {
-            all = *transform * all;
-        }
-        next = world.get::<ChildOf>(parent).map(ChildOf::parent);
-    }
-    all
+    let parent = world.get::<ChildOf>(entity).map(ChildOf::parent);
+    parent.map_or(GlobalTransform::IDENTITY, |parent| {
+        world_from(world, parent).into()
+    })
 }
 
 /// From an entity's space to the world's, as the transforms are now, not as they were when they
@@ -215,10 +189,12 @@ pub(super) fn world_from_entity(world: &World, entity: Entity) -> Option<GlobalT
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::editor::headless_editor;
 
     #[test]
     fn what_hangs_on_an_entity_counts_as_it() {
-        let mut world = World::new();
+        let mut app = headless_editor();
+        let world = app.world_mut();
         let at = |x: f32| {
             let transform = Transform::from_xyz(x, 0.0, 0.0);
             (transform, GlobalTransform::from(transform))
@@ -228,10 +204,10 @@ mod tests {
             .id();
         world.spawn((SceneId(2), PointLamp::default(), at(5.0), ChildOf(parent)));
         world.spawn((SceneId(3), PointLamp::default(), at(-9.0)));
-        let extent = extent_of(&mut world, &[SceneId(1)]).unwrap();
+        let extent = extent_of(world, &[SceneId(1)]).unwrap();
         assert_eq!((extent.least.x, extent.most.x), (1.0, 5.0));
-        assert_eq!(extent_of(&mut world, &[SceneId(7)]), None);
-        let all = scene_extent(&mut world).unwrap();
+        assert_eq!(extent_of(world, &[SceneId(7)]), None);
+        let all = scene_extent(world).unwrap();
         assert_eq!((all.least.x, all.most.x), (-9.0, 5.0));
     }
 

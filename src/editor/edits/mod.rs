@@ -15,6 +15,7 @@ pub use copy::{Clipboard, copy, duplicate, paste};
 pub(in crate::editor) use import::{DroppedAt, ModelAdded, import};
 pub use index::{SceneIndex, scene_entity};
 pub use names::{name_of, rename, unique_name};
+pub(in crate::editor) use parents::{all_below, ancestors};
 pub use parents::{reparent, roots_of};
 pub use plugin::EditsPlugin;
 pub(in crate::editor) use plugin::{select, step, step_add, step_rename, step_reparent};

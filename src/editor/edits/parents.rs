@@ -29,7 +29,7 @@ pub fn roots_of(world: &World, ids: &[SceneId]) -> Vec<SceneId> {
 }
 
 /// From an entity's parent upwards.
-fn ancestors(world: &World, entity: Entity) -> impl Iterator<Item = Entity> {
+pub(in crate::editor) fn ancestors(world: &World, entity: Entity) -> impl Iterator<Item = Entity> {
     let parent = |entity: &Entity| world.get::<ChildOf>(*entity).map(|child_of| child_of.0);
     std::iter::successors(parent(&entity), parent)
 }
@@ -40,7 +40,7 @@ pub(super) fn with_descendants(world: &World, root: Entity) -> Vec<Entity> {
 }
 
 /// The same, of the scene or not.
-pub(super) fn all_below(world: &World, root: Entity) -> Vec<Entity> {
+pub(in crate::editor) fn all_below(world: &World, root: Entity) -> Vec<Entity> {
     below(world, root, |_| true)
 }
 

@@ -61,15 +61,13 @@ fn ready(world: &World, least: usize) -> State {
 }
 
 /// The selected objects that do not hang on others of them, and the room that each takes; the active one is the last.
-fn selected(world: &mut World) -> Vec<(SceneId, Extent)> {
+fn selected(world: &World) -> Vec<(SceneId, Extent)> {
     let roots = roots_of(world, world.resource::<Selection>().ids());
-    let places = roots.into_iter().filter(|id| {
-        let entity = scene_entity(world, *id);
-        entity.is_some_and(|entity| world.get::<Transform>(entity).is_some())
-    });
-    let places: Vec<SceneId> = places.collect();
-    let with_extent = |id| Some((id, extent_of(world, &[id])?));
-    places.into_iter().filter_map(with_extent).collect()
+    let with_extent = |id| {
+        world.get::<Transform>(scene_entity(world, id)?)?;
+        Some((id, extent_of(world, &[id])?))
+    };
+    roots.into_iter().filter_map(with_extent).collect()
 }
 
 /// Moves it in the world; `false` where it stays.

@@ -1,6 +1,6 @@
 //! Snapping to other objects: what is moved lands on what is under the pointer.
 
-use super::super::edits::scene_entity;
+use super::super::edits::{ancestors, scene_entity};
 use super::super::extent::Extent;
 use super::super::pick;
 use super::Tools;
@@ -8,7 +8,6 @@ use crate::scene::SceneId;
 use crate::sync::Traced;
 use crate::view::Picked;
 use bevy::ecs::entity::Entity;
-use bevy::ecs::hierarchy::ChildOf;
 use bevy::ecs::world::World;
 use bevy::math::{Ray3d, Vec3};
 
@@ -83,14 +82,9 @@ fn corners(world: &World, met: &Picked) -> Option<[Vec3; 3]> {
 
 /// Whether it is one of these, or hangs on one.
 pub(super) fn hangs_on(world: &World, id: SceneId, roots: &[Entity]) -> bool {
-    let mut at = scene_entity(world, id);
-    while let Some(entity) = at {
-        if roots.contains(&entity) {
-            return true;
-        }
-        at = world.get::<ChildOf>(entity).map(ChildOf::parent);
-    }
-    false
+    scene_entity(world, id).is_some_and(|entity| {
+        roots.contains(&entity) || ancestors(world, entity).any(|above| roots.contains(&above))
+    })
 }
 
 #[cfg(test)]
@@ -121,8 +115,8 @@ mod tests {
         app.update();
         let (block, id) = named(&mut app, "Short block");
         let (_, tall) = named(&mut app, "Mirror block");
-        let tall = extent_of(app.world_mut(), &[tall]).unwrap();
-        let room = extent_of(app.world_mut(), &[id]).unwrap();
+        let tall = extent_of(app.world(), &[tall]).unwrap();
+        let room = extent_of(app.world(), &[id]).unwrap();
         let pivot = app.world().get::<Transform>(block).unwrap().translation;
         let mover = Mover {
             entities: vec![block],
@@ -137,7 +131,7 @@ mod tests {
             .translation = place;
         app.update();
         app.update();
-        let now = extent_of(app.world_mut(), &[id]).unwrap();
+        let now = extent_of(app.world(), &[id]).unwrap();
         let gap = now.least.y - tall.most.y;
         assert!(gap.abs() < 1e-4, "{gap} m above the tall block");
         // It stands there now, and is passed over.

@@ -4,10 +4,10 @@ use super::super::fields::row;
 use super::super::says::Says;
 use super::camera::optional_ui;
 use super::switches::switches_ui;
-use crate::editor::extent::{extent_of, scene_extent, world_from_parent};
+use crate::editor::extent::{extent_below, scene_extent, world_from_parent};
 use crate::inspect::vector_text;
 use crate::scene::{
-    DirectionalLamp, MeshSource, Motion, ParallelogramLamp, Phong, PointLamp, SceneCamera, SceneId,
+    DirectionalLamp, MeshSource, Motion, ParallelogramLamp, Phong, PointLamp, SceneCamera,
     SegmentLamp,
 };
 use crate::sync::WorldMotions;
@@ -45,8 +45,7 @@ pub(super) fn motion_ui(ui: &mut Ui, world: &mut World, entities: &[Entity]) {
 /// A motion that is seen: along the world's x by half of the room that it takes with what hangs below, or, where that is a
 /// point, by a twentieth of the scene's.
 fn new_motion(world: &mut World, entity: Entity) -> Motion {
-    let id = world.get::<SceneId>(entity).copied();
-    let own = id.and_then(|id| extent_of(world, &[id]));
+    let own = extent_below(world, entity);
     let own = own.map(|own| own.radius()).filter(|radius| *radius > 0.0);
     let way = own.or_else(|| Some(0.1 * scene_extent(world)?.radius()));
     let way = way.filter(|way| *way > 0.0).unwrap_or(0.1);
@@ -90,6 +89,7 @@ fn inherited(world: &World, entity: Entity) -> Option<Vec3> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::SceneId;
 
     #[test]
     fn what_can_be_seen_moving_and_what_carries_others_can_be_given_a_motion() {
