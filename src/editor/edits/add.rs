@@ -9,6 +9,7 @@ use crate::scene::{
     SegmentLamp,
 };
 use bevy::camera::visibility::Visibility;
+use bevy::ecs::bundle::Bundle;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::name::Name;
 use bevy::ecs::resource::Resource;
@@ -51,73 +52,52 @@ pub fn add(world: &mut World, what: &Addition, at: AddAt) -> Option<SceneId> {
     let scaled_above = above.with_scale(scaled.scale);
     // As bright on a surface `size` away as one W/sr is at a metre.
     let intensity = at.size * at.size;
-    let mut spawn = |name: &str, bundle: EntityBundle| {
-        let name = Name::new(unique_name(world, name));
-        let mut entity = world.spawn((id, name));
-        match bundle {
-            EntityBundle::Shape(source) => entity.insert((source, scaled)),
-            EntityBundle::Group => entity.insert((place, Visibility::default())),
-            EntityBundle::Point(lamp) => entity.insert((lamp, above)),
-            EntityBundle::Directional(lamp) => entity.insert((lamp, downwards)),
-            EntityBundle::Segment(lamp) => entity.insert((lamp, scaled_above)),
-            EntityBundle::Parallelogram(lamp) => entity.insert((lamp, scaled_above)),
-            EntityBundle::Camera => entity.insert((SceneCamera::default(), place)),
-            EntityBundle::Material => entity.insert(Phong::default()),
-        };
-    };
     match what {
         Addition::Shape(name) => {
             let shapes = shapes();
             let (name, shape) = shapes.into_iter().find(|(known, _)| known == name)?;
-            spawn(name, EntityBundle::Shape(MeshSource::Shape(shape)));
+            spawn(world, id, name, (MeshSource::Shape(shape), scaled));
         }
-        Addition::Group => spawn("Group", EntityBundle::Group),
-        Addition::PointLamp => spawn(
-            "Point light",
-            EntityBundle::Point(PointLamp {
+        Addition::Group => spawn(world, id, "Group", (place, Visibility::default())),
+        Addition::PointLamp => {
+            let lamp = PointLamp {
                 intensity: 5.0 * intensity,
                 ..PointLamp::default()
-            }),
-        ),
-        Addition::DirectionalLamp => spawn(
-            "Directional light",
-            EntityBundle::Directional(DirectionalLamp {
+            };
+            spawn(world, id, "Point light", (lamp, above));
+        }
+        Addition::DirectionalLamp => {
+            let lamp = DirectionalLamp {
                 // A white surface that faces it then has a radiance of 1.
                 intensity: PI,
                 ..DirectionalLamp::default()
-            }),
-        ),
-        Addition::SegmentLamp => spawn(
-            "Segment light",
-            EntityBundle::Segment(SegmentLamp {
+            };
+            spawn(world, id, "Directional light", (lamp, downwards));
+        }
+        Addition::SegmentLamp => {
+            let lamp = SegmentLamp {
                 intensity: 5.0 * at.size,
                 ..SegmentLamp::default()
-            }),
-        ),
-        Addition::ParallelogramLamp => spawn(
-            "Parallelogram light",
-            EntityBundle::Parallelogram(ParallelogramLamp {
+            };
+            spawn(world, id, "Segment light", (lamp, scaled_above));
+        }
+        Addition::ParallelogramLamp => {
+            let lamp = ParallelogramLamp {
                 // Its front, where x × z points, looks down.
                 intensity: 5.0,
                 ..ParallelogramLamp::default()
-            }),
-        ),
-        Addition::Camera => spawn("Camera", EntityBundle::Camera),
-        Addition::Material => spawn("Material", EntityBundle::Material),
+            };
+            spawn(world, id, "Parallelogram light", (lamp, scaled_above));
+        }
+        Addition::Camera => spawn(world, id, "Camera", (SceneCamera::default(), place)),
+        Addition::Material => spawn(world, id, "Material", Phong::default()),
     }
     Some(id)
 }
 
-/// What makes an entity a thing of its kind.
-enum EntityBundle {
-    Shape(MeshSource),
-    Group,
-    Point(PointLamp),
-    Directional(DirectionalLamp),
-    Segment(SegmentLamp),
-    Parallelogram(ParallelogramLamp),
-    Camera,
-    Material,
+fn spawn(world: &mut World, id: SceneId, name: &str, bundle: impl Bundle) {
+    let name = Name::new(unique_name(world, name));
+    world.spawn((id, name)).insert(bundle);
 }
 
 /// Adds what a model file holds, where it stands in the file. On an error the scene is as it was.
