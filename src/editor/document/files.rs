@@ -8,9 +8,9 @@ use crate::editor::notice::Notices;
 use crate::editor::preferences::Preferences;
 use crate::editor::render_job::RenderJob;
 use crate::editor::selection::Selection;
-use crate::editor::texts::path_text;
+use crate::editor::texts::{file_name, path_text};
 use crate::io::{
-    OpenOptions, Problem, SceneFiles, SceneSource, has_changed, open, open_empty, save,
+    OpenOptions, Problem, SceneFiles, SceneSource, extension, has_changed, open, open_empty, save,
 };
 use bevy::app::AppExit;
 use bevy::ecs::world::World;
@@ -78,10 +78,7 @@ pub(super) fn quit(world: &mut World) {
 
 /// Whether saving writes back to such a file: a model's would lose most of a scene.
 pub(super) fn is_scene(path: &Path) -> bool {
-    let name = path
-        .file_name()
-        .map(|name| name.to_string_lossy().to_lowercase());
-    name.is_some_and(|name| name.ends_with(".scn.ron"))
+    extension(path) == "scn.ron"
 }
 
 /// Opens a file or a built-in scene; what is open stays open where that fails.
@@ -182,9 +179,7 @@ pub(super) fn write_to(world: &mut World, path: &Path) {
     };
     let then = world.resource_mut::<Document>().then.take();
     world.resource_mut::<Document>().given = None;
-    let name = path
-        .file_name()
-        .map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let name = file_name(path);
     let is_scene = is_scene(path);
     let mut notices = world.resource_mut::<Notices>();
     let verb = if is_scene { "Saved" } else { "Exported" };

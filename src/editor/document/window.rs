@@ -9,7 +9,7 @@ use crate::editor::pick;
 use crate::editor::schedule::EditorUpdate;
 use crate::editor::selection::Selection;
 use crate::editor::texts::file_name;
-use crate::io::{MODEL_EXTENSIONS, PICTURE_EXTENSIONS, SceneFiles};
+use crate::io::{MODEL_EXTENSIONS, PICTURE_EXTENSIONS, SceneFiles, extension};
 use crate::scene::{Environment, Phong, TextureSource, UsesMaterial};
 use bevy::app::{App, PreUpdate};
 use bevy::ecs::message::{MessageCursor, Messages};
@@ -63,12 +63,8 @@ fn take_dropped(world: &mut World, mut cursor: Local<MessageCursor<FileDragAndDr
 /// A scene is opened, a model added, a picture put on what is selected; a picture with more than a
 /// screen's range, or with nothing selected, becomes the environment.
 fn drop_file(world: &mut World, file: &Path) {
-    let extension = file
-        .extension()
-        .map(|extension| extension.to_string_lossy().to_lowercase())
-        .unwrap_or_default();
-    match extension.as_str() {
-        "ron" => {
+    match extension(file).as_str() {
+        "ron" | "scn.ron" => {
             world.write_message(Action::Open(file.to_path_buf()));
         }
         model if MODEL_EXTENSIONS.contains(&model) => {

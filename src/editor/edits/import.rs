@@ -9,7 +9,7 @@ use crate::editor::extent::{Extent, extent_now, scene_extent};
 use crate::editor::notice::Notices;
 use crate::editor::pick;
 use crate::editor::preferences::{ImportPlace, Preferences};
-use crate::editor::texts::counted;
+use crate::editor::texts::{counted, file_name};
 use crate::editor::viewport::Viewport;
 use crate::io::FileError;
 use crate::scene::{
@@ -91,10 +91,7 @@ fn add_file(world: &mut World, file: &Path) -> Result<String, FileError> {
     let mut objects = world.query_filtered::<(), With<Mesh3d>>();
     let is_first = objects.iter(world).next().is_none();
     let (root, imported) = add_model(world, file)?;
-    let name = file
-        .file_name()
-        .unwrap_or(file.as_os_str())
-        .to_string_lossy();
+    let name = file_name(file);
     let (place, with_lights) = match world.get_resource::<Preferences>() {
         // What is alone stands where it stands: there is nothing that it could stand on.
         Some(all) if !is_first => (all.import_place, all.import_lights),

@@ -7,7 +7,7 @@ use crate::editor::action::Action;
 use crate::editor::command::{Command, CommandTable, shortcut};
 use crate::editor::navigation::{field_of_view, set_field_of_view};
 use crate::editor::preferences::Preferences;
-use crate::editor::texts::path_text;
+use crate::editor::texts::{file_name, path_text};
 use crate::scene::{Quantity, SceneCamera, SceneId};
 use bevy::ecs::name::Name;
 use bevy::ecs::world::World;
@@ -117,11 +117,7 @@ fn recent_ui(ui: &mut Ui, world: &mut World) {
     ui.add_enabled_ui(!recent.is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| {
             for file in recent {
-                let name = file.file_name().map_or_else(
-                    || file.display().to_string(),
-                    |name| name.to_string_lossy().into_owned(),
-                );
-                let says = path_text(&file);
+                let (name, says) = (file_name(&file), path_text(&file));
                 other_ui(ui, world, &name, &says, Action::Open(file));
             }
         });
