@@ -9,6 +9,7 @@ use bevy_egui::egui::{
     self, Align2, Button, CursorIcon, Id, Key, Modifiers, Order, Response, RichText, Sense, Slider,
     SliderClamping, Stroke, TextEdit, TextWrapMode, Ui, WidgetInfo, accesskit, vec2,
 };
+use std::ops::Range;
 
 /// What is shown in place of a value in which several entities differ.
 pub(super) const MIXED: &str = "mixed";
@@ -170,7 +171,7 @@ impl NumberField<'_> {
         let response = ui.add(field);
         name_control(&response, self.says);
         if is_new {
-            select_all(ui, id, &typing.text);
+            select_letters(ui, id, 0..typing.text.chars().count());
         }
         let text = match read {
             Err(why) => Some(why),
@@ -414,11 +415,13 @@ fn refused(ui: &Ui, id: Id, owner: Id, number: f64) -> Option<Refused> {
     (refused.owner == owner && refused.number == number).then_some(refused)
 }
 
-fn select_all(ui: &Ui, id: Id, text: &str) {
+/// Chooses these letters of a field.
+pub(super) fn select_letters(ui: &Ui, id: Id, letters: Range<usize>) {
     use egui::text::{CCursor, CCursorRange};
     let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
-    let all = CCursorRange::two(CCursor::default(), CCursor::new(text.chars().count()));
-    state.cursor.set_char_range(Some(all));
+    let [start, end] = [letters.start, letters.end].map(CCursor::new);
+    let range = CCursorRange::two(start, end);
+    state.cursor.set_char_range(Some(range));
     state.store(ui.ctx(), id);
 }
 

@@ -1,13 +1,14 @@
 //! A path is typed, where the system has no dialog for it: with what lies in the folder, recent folders, and Tab to
 //! complete.
 
+use super::super::number_field::select_letters;
 use super::super::says::Says;
 use super::question::whole_path_ui;
 use crate::editor::document::{Answer, Purpose};
 use crate::editor::texts::{path_of, path_text};
-use crate::io::MODEL_EXTENSIONS;
+use crate::io::{MODEL_EXTENSIONS, extension};
 use bevy_egui::egui::{
-    self, Button, EventFilter, Id, Key, Modifiers, RichText, ScrollArea, TextEdit, Ui,
+    Button, EventFilter, Id, Key, Modifiers, RichText, ScrollArea, TextEdit, Ui,
 };
 use std::fs;
 use std::ops::Range;
@@ -146,13 +147,9 @@ fn names_in(folder: &Path, purpose: Purpose) -> Vec<String> {
 }
 
 fn is_meant(name: &str, purpose: Purpose) -> bool {
-    let name = name.to_lowercase();
-    let extension = name.rsplit_once('.').map_or("", |(_, extension)| extension);
-    let is_model = MODEL_EXTENSIONS.contains(&extension);
-    match purpose {
-        Purpose::Import => is_model,
-        Purpose::Open | Purpose::SaveAs => is_model || name.ends_with(".scn.ron"),
-    }
+    let extension = extension(Path::new(name));
+    let is_model = MODEL_EXTENSIONS.contains(&extension.as_str());
+    is_model || purpose != Purpose::Import && extension == "scn.ron"
 }
 
 /// The question for a path; `refused` says why the one before did not do.
@@ -197,7 +194,7 @@ pub(super) fn path_ui(
         response.request_focus();
         // A name that is only suggested is typed over; what was refused is mended at its end.
         match purpose == Purpose::SaveAs && refused.is_none() {
-            true => select(ui, id, stem(&form.text)),
+            true => select_letters(ui, id, stem(&form.text)),
             false => end_caret(ui, id, &form.text),
         }
     }
@@ -291,18 +288,7 @@ fn buttons_ui(ui: &mut Ui, path: PathBuf, entered: bool) -> Option<Answer> {
 
 fn end_caret(ui: &Ui, id: Id, text: &str) {
     let end = text.chars().count();
-    select(ui, id, end..end);
-}
-
-/// Chooses these letters of the field.
-fn select(ui: &Ui, id: Id, letters: Range<usize>) {
-    use egui::text::{CCursor, CCursorRange};
-    let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
-    let [start, end] = [letters.start, letters.end].map(CCursor::new);
-    state
-        .cursor
-        .set_char_range(Some(CCursorRange::two(start, end)));
-    state.store(ui.ctx(), id);
+    select_letters(ui, id, end..end);
 }
 
 /// Which letters of a path are the file's name without its extensions.

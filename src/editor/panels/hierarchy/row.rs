@@ -1,6 +1,7 @@
 //! One row: fold, icon, name, eye.
 
 use super::super::kind_icons::{draw_eye, draw_fold, draw_kind};
+use super::super::number_field::select_letters;
 use super::super::outline::{Item, Kind, Outline};
 use super::super::outline_rows::{Row, is_in_folder};
 use super::super::says::Says;
@@ -215,22 +216,17 @@ fn rename_ui(ui: &mut Ui, rect: Rect, renaming: &mut Renaming) -> bool {
     let field = TextEdit::singleline(&mut renaming.text)
         .margin(egui::Margin::symmetric(3, 1))
         .char_limit(200);
-    let output = ui
+    let response = ui
         .scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| {
-            field.desired_width(rect.width() - 8.0).show(ui)
+            ui.add(field.desired_width(rect.width() - 8.0))
         })
         .inner;
     if renaming.focused {
-        return output.response.lost_focus();
+        return response.lost_focus();
     }
-    output.response.request_focus();
+    response.request_focus();
     renaming.focused = true;
     // What is typed replaces the name.
-    let mut state = output.state;
-    let end = renaming.text.chars().count();
-    let all =
-        egui::text::CCursorRange::two(egui::text::CCursor::new(0), egui::text::CCursor::new(end));
-    state.cursor.set_char_range(Some(all));
-    state.store(ui.ctx(), output.response.id);
+    select_letters(ui, response.id, 0..renaming.text.chars().count());
     false
 }
