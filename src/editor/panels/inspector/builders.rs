@@ -2,14 +2,12 @@
 
 use super::super::save_form::{SaveForm, TABLES, is_csv, save_ui};
 use super::super::says::{Says, name_control};
-use super::figure_table::{Cell, Row, color, figure_table_ui, short};
-use super::measuring::{measure_ui, switch_builder};
+use super::figure_table::{Better, Column, Figure, color, figure_table_ui};
+use super::measuring::measure_ui;
 use super::still_plot::still_plot;
 use crate::bvh::{Builder, LARGEST_LEAF_BIN};
 use crate::editor::trees::measure::{BUILDERS, Measurements, compare};
-use crate::editor::trees::of_setting;
 use crate::inspect::{BuilderFigures, builder_name, csv, markdown};
-use crate::scene::RenderSettings;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{Label, RichText, Ui};
@@ -37,12 +35,10 @@ pub(super) fn builders_ui(ui: &mut Ui, world: &mut World, form: &mut Builders) {
     }
     let rows = world.resource::<Measurements>().comparison.done().cloned();
     let Some(rows) = rows else { return };
-    let builders: Vec<Builder> = rows.iter().filter_map(builder_of).collect();
-    let scene = of_setting(world.resource::<RenderSettings>().tree.builder);
-    let clicked = figure_table_ui(ui, "builders", &builders, scene, &table(&rows));
-    if let Some(builder) = clicked {
-        switch_builder(world, builder);
-    }
+    // What a builder that does nothing saves is no merit.
+    let column = |row| Some((builder_of(row)?, row, row.builder != "none"));
+    let columns: Vec<Column<BuilderFigures>> = rows.iter().filter_map(column).collect();
+    figure_table_ui(ui, world, "builders", &columns, FIGURES);
     ui.add_space(4.0);
     histogram_ui(
         ui,
@@ -72,124 +68,94 @@ fn builder_of(row: &BuilderFigures) -> Option<Builder> {
     all.find(|&builder| builder_name(builder) == row.builder)
 }
 
-/// A row for each figure.
-fn table(rows: &[BuilderFigures]) -> Vec<Row> {
-    type Figure = (
-        &'static str,
-        &'static str,
-        fn(&BuilderFigures) -> Option<f64>,
-        Better,
-    );
-    enum Better {
-        Less,
-        More,
-        Neither,
-    }
-    use Better::{Less, More, Neither};
-    let figures: [Figure; 14] = [
-        (
-            "Levels",
-            "The depth of the deepest leaf; the root's is 0",
-            |row| Some(f64::from(row.levels)),
-            Neither,
-        ),
-        (
-            "Nodes",
-            "Leaves included",
-            |row| Some(row.nodes as f64),
-            Neither,
-        ),
-        (
-            "Leaves",
-            "Nodes that hold triangles",
-            |row| Some(row.leaves as f64),
-            Neither,
-        ),
-        (
-            "Largest leaf",
-            "The most triangles that one leaf holds",
-            |row| Some(f64::from(row.largest_leaf)),
-            Neither,
-        ),
-        (
-            "SAH cost",
-            "Expected cost of a random ray that hits the root's box, from surface areas; lower is better",
-            |row| Some(row.sah_cost),
-            Less,
-        ),
-        (
-            "EPO",
-            "Effective parent overlap: how much of the mesh's surface lies inside boxes of nodes that do \
-             not hold it (Aila et al. 2013); lower is better",
-            |row| Some(row.epo),
-            Less,
-        ),
-        (
-            "kB",
-            "Of the tree and of all that tracing keeps of the triangles; 1000 bytes",
-            |row| Some(row.bytes as f64 * 1e-3),
-            Less,
-        ),
-        (
-            "B / triangle",
-            "The same for each triangle, in bytes",
-            |row| Some(row.bytes_per_triangle),
-            Less,
-        ),
-        ("Built in, ms", "Wall clock", |row| Some(row.build_ms), Less),
-        (
-            "Closest, M/s",
-            "Million closest hits a second of this view's rays, one thread, with the scene's own levels of trees",
-            |row| row.rates?.closest_mrays_per_s,
-            More,
-        ),
-        (
-            "Any hit, M/s",
-            "Million occlusion tests a second of this view's shadow rays, one thread",
-            |row| row.rates?.occlusion_mrays_per_s,
-            More,
-        ),
-        (
-            "Wide nodes",
-            "Of the form that pictures are traced through: up to sixteen children each",
-            |row| Some(row.wide_nodes as f64),
-            Neither,
-        ),
-        (
-            "Children, of 8",
-            "Of a wide node on average: how well it is filled",
-            |row| Some(row.children_per_wide_node),
-            More,
-        ),
-        (
-            "Triangles, of 8",
-            "Of a block of triangles that are tested at once, on average: how well it is filled",
-            |row| Some(row.triangles_per_block),
-            More,
-        ),
-    ];
-    let of = |(label, says, figure, better): Figure| Row {
-        label,
-        says,
-        cells: rows
-            .iter()
-            .map(|row| match figure(row) {
-                None => Cell::plain("–".into(), "The view has no such ray".into()),
-                Some(value) => {
-                    let (text, exact) = (short(value), value.to_string());
-                    match better {
-                        // What a builder that does nothing saves is no merit.
-                        _ if row.builder == "none" => Cell::plain(text, exact),
-                        Less => Cell::less(value, text, exact),
-                        More => Cell::more(value, text, exact),
-                        Neither => Cell::plain(text, exact),
-                    }
-                }
-            })
-            .collect(),
-    };
-    figures.into_iter().map(of).collect()
-}
+/// A row for each.
+const FIGURES: &[Figure<BuilderFigures>] = &[
+    (
+        "Levels",
+        "The depth of the deepest leaf; the root's is 0",
+        |row| Some(f64::from(row.levels)),
+        Better::Neither,
+    ),
+    (
+        "Nodes",
+        "Leaves included",
+        |row| Some(row.nodes as f64),
+        Better::Neither,
+    ),
+    (
+        "Leaves",
+        "Nodes that hold triangles",
+        |row| Some(row.leaves as f64),
+        Better::Neither,
+    ),
+    (
+        "Largest leaf",
+        "The most triangles that one leaf holds",
+        |row| Some(f64::from(row.largest_leaf)),
+        Better::Neither,
+    ),
+    (
+        "SAH cost",
+        "Expected cost of a random ray that hits the root's box, from surface areas; lower is better",
+        |row| Some(row.sah_cost),
+        Better::Less,
+    ),
+    (
+        "EPO",
+        "Effective parent overlap: how much of the mesh's surface lies inside boxes of nodes that do \
+         not hold it (Aila et al. 2013); lower is better",
+        |row| Some(row.epo),
+        Better::Less,
+    ),
+    (
+        "kB",
+        "Of the tree and of all that tracing keeps of the triangles; 1000 bytes",
+        |row| Some(row.bytes as f64 * 1e-3),
+        Better::Less,
+    ),
+    (
+        "B / triangle",
+        "The same for each triangle, in bytes",
+        |row| Some(row.bytes_per_triangle),
+        Better::Less,
+    ),
+    (
+        "Built in, ms",
+        "Wall clock",
+        |row| Some(row.build_ms),
+        Better::Less,
+    ),
+    (
+        "Closest, M/s",
+        "Million closest hits a second of this view's rays, one thread, with the scene's own levels of trees",
+        |row| row.rates?.closest_mrays_per_s,
+        Better::More,
+    ),
+    (
+        "Any hit, M/s",
+        "Million occlusion tests a second of this view's shadow rays, one thread",
+        |row| row.rates?.occlusion_mrays_per_s,
+        Better::More,
+    ),
+    (
+        "Wide nodes",
+        "Of the form that pictures are traced through: up to sixteen children each",
+        |row| Some(row.wide_nodes as f64),
+        Better::Neither,
+    ),
+    (
+        "Children, of 8",
+        "Of a wide node on average: how well it is filled",
+        |row| Some(row.children_per_wide_node),
+        Better::More,
+    ),
+    (
+        "Triangles, of 8",
+        "Of a block of triangles that are tested at once, on average: how well it is filled",
+        |row| Some(row.triangles_per_block),
+        Better::More,
+    ),
+];
 
 /// The share of each builder's leaves, a line each. A tree that is one leaf has none to share.
 fn histogram_ui(

@@ -3,7 +3,10 @@
 use super::super::says::Says;
 use super::super::theme::accent;
 use crate::bvh::Builder;
+use crate::editor::trees::{of_setting, setting_of};
 use crate::report::performance::title;
+use crate::scene::RenderSettings;
+use bevy::ecs::world::World;
 use bevy_egui::egui::{Align, Button, Color32, Grid, Label, Layout, RichText, Ui, vec2};
 
 /// The size of figures.
@@ -11,42 +14,43 @@ const FONT: f32 = 11.5;
 /// The part of the width that labels take.
 const LABELS: f32 = 0.28;
 
-/// A row: its label, what it says, and a figure for each column.
-pub(super) struct Row {
-    pub label: &'static str,
-    pub says: &'static str,
-    pub cells: Vec<Cell>,
+/// Of what a table has a row: its label, what it says, how it is found in a column, and which is the best.
+pub(super) type Figure<C> = (&'static str, &'static str, fn(&C) -> Option<f64>, Better);
+
+/// Whose column it is, what it has, and whether its figures can be the best.
+pub(super) type Column<'a, C> = (Builder, &'a C, bool);
+
+/// Which of several figures is the best.
+#[derive(Clone, Copy)]
+pub(super) enum Better {
+    Less,
+    More,
+    Neither,
 }
 
 /// A figure.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Cell {
+struct Cell {
     /// As it is shown, short.
-    pub text: String,
+    text: String,
     /// With all digits, where the pointer is over it.
-    pub exact: String,
+    exact: String,
     /// Lower is better; NaN where that means nothing.
-    pub rank: f64,
+    rank: f64,
 }
 
 impl Cell {
-    /// A figure of which fewer are better.
-    pub fn less(value: f64, text: String, exact: String) -> Self {
+    fn of(figure: Option<f64>, better: Better) -> Self {
+        let value = figure.unwrap_or(f64::NAN);
         Self {
-            text,
-            exact,
-            rank: value,
+            text: figure.map_or_else(|| "–".into(), short),
+            exact: figure.map_or_else(|| "The view has no such ray".into(), |f| f.to_string()),
+            rank: match better {
+                Better::Less => value,
+                Better::More => -value,
+                Better::Neither => f64::NAN,
+            },
         }
-    }
-
-    /// A figure of which more are better.
-    pub fn more(value: f64, text: String, exact: String) -> Self {
-        Self::less(-value, text, exact)
-    }
-
-    /// One that is neither.
-    pub fn plain(text: String, exact: String) -> Self {
-        Self::less(f64::NAN, text, exact)
     }
 }
 
@@ -68,28 +72,29 @@ fn ink_of(builder: Builder, dark: bool) -> Color32 {
     }
 }
 
-/// Draws it. A click on a heading returns its builder; that of the scene is pressed in.
-pub(super) fn figure_table_ui(
+/// Draws it. A click on a heading has the scene's trees built with its builder; that of the scene is pressed in.
+pub(super) fn figure_table_ui<C>(
     ui: &mut Ui,
+    world: &mut World,
     id: &str,
-    builders: &[Builder],
-    scene: Builder,
-    rows: &[Row],
-) -> Option<Builder> {
+    columns: &[Column<C>],
+    figures: &[Figure<C>],
+) {
+    let scene = of_setting(world.resource::<RenderSettings>().tree.builder);
     let mut clicked = None;
     let spacing = 4.0;
     let whole = ui.available_width() - 8.0;
     let labels = (whole * LABELS).clamp(60.0, 120.0);
-    let column = (whole - labels) / builders.len().max(1) as f32 - spacing;
+    let column = (whole - labels) / columns.len().max(1) as f32 - spacing;
     let column = column.clamp(30.0, 110.0);
     let height = 16.0;
     Grid::new(id)
-        .num_columns(builders.len() + 1)
+        .num_columns(columns.len() + 1)
         .spacing([spacing, 1.0])
         .striped(true)
         .show(ui, |ui| {
             ui.allocate_exact_size(vec2(labels, height), bevy_egui::egui::Sense::hover());
-            for &builder in builders {
+            for &(builder, ..) in columns {
                 let text = RichText::new(title(builder))
                     .size(FONT)
                     .color(color(ui, builder));
@@ -107,18 +112,23 @@ pub(super) fn figure_table_ui(
                 }
             }
             ui.end_row();
-            for row in rows {
-                let label = Label::new(RichText::new(row.label).size(FONT)).truncate();
+            for &(label, says, figure, better) in figures {
+                let label = Label::new(RichText::new(label).size(FONT)).truncate();
                 ui.allocate_ui_with_layout(
                     vec2(labels, height),
                     Layout::left_to_right(Align::Center),
                     |ui| {
                         ui.set_min_width(labels);
-                        ui.add(label).says(row.says);
+                        ui.add(label).says(says);
                     },
                 );
-                let best = best(&row.cells);
-                for cell in &row.cells {
+                let cell = |&(_, of, is_judged): &Column<C>| match is_judged {
+                    true => Cell::of(figure(of), better),
+                    false => Cell::of(figure(of), Better::Neither),
+                };
+                let cells: Vec<Cell> = columns.iter().map(cell).collect();
+                let best = best(&cells);
+                for cell in &cells {
                     let mut text = RichText::new(&cell.text).size(FONT);
                     if best == Some(cell.rank) {
                         text = text.strong();
@@ -136,7 +146,9 @@ pub(super) fn figure_table_ui(
                 ui.end_row();
             }
         });
-    clicked
+    if let Some(builder) = clicked {
+        world.resource_mut::<RenderSettings>().tree.builder = setting_of(builder);
+    }
 }
 
 /// The best rank where not all are alike.
@@ -153,7 +165,7 @@ fn best(cells: &[Cell]) -> Option<f64> {
 }
 
 /// `950`, `87.0k`, `1.31M`.
-pub(super) fn short(number: f64) -> String {
+fn short(number: f64) -> String {
     match number.abs() {
         n if n >= 99_950_000.0 => format!("{:.0}M", number * 1e-6),
         n if n >= 999_500.0 => format!("{:.2}M", number * 1e-6),
@@ -212,10 +224,10 @@ mod tests {
 
     #[test]
     fn the_best_is_the_least_of_what_counts_and_none_where_all_are_alike() {
-        let cell = |rank| Cell::less(rank, String::new(), String::new());
+        let cell = |rank| Cell::of(Some(rank), Better::Less);
         assert_eq!(best(&[cell(3.0), cell(f64::NAN), cell(1.0)]), Some(1.0));
         assert_eq!(best(&[cell(2.0), cell(2.0)]), None);
         assert_eq!(best(&[cell(f64::NAN)]), None);
-        assert_eq!(Cell::more(5.0, String::new(), String::new()).rank, -5.0);
+        assert_eq!(Cell::of(Some(5.0), Better::More).rank, -5.0);
     }
 }

@@ -1,10 +1,7 @@
 //! A measurement's button, its progress, and what has to be said of it.
 
 use super::super::says::Says;
-use crate::bvh::Builder;
 use crate::editor::trees::measure::{Measurement, Measurements};
-use crate::editor::trees::setting_of;
-use crate::scene::RenderSettings;
 use bevy::ecs::world::{Mut, World};
 use bevy_egui::egui::{Button, Label, ProgressBar, RichText, Ui};
 use std::time::Duration;
@@ -53,9 +50,4 @@ pub(super) fn measure_ui<T: Send + 'static>(
         }
         begin.clicked()
     })
-}
-
-/// The scene's trees are built with this one from now on.
-pub(super) fn switch_builder(world: &mut World, builder: Builder) {
-    world.resource_mut::<RenderSettings>().tree.builder = setting_of(builder);
 }

@@ -3,13 +3,11 @@
 use super::super::fields::number_row;
 use super::super::save_form::{SaveForm, TABLES, is_csv, save_ui};
 use super::super::says::Says;
-use super::figure_table::{Cell, Row, figure_table_ui, short};
-use super::measuring::{measure_ui, switch_builder};
-use crate::bvh::Builder;
+use super::figure_table::{Better, Figure, figure_table_ui};
+use super::measuring::measure_ui;
 use crate::editor::trees::measure::{Measurements, test_performance};
-use crate::editor::trees::of_setting;
-use crate::report::performance::{Performance, PerformanceColumn};
-use crate::scene::{Quantity, RenderSettings};
+use crate::report::performance::PerformanceColumn;
+use crate::scene::Quantity;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{Label, RichText, Ui};
@@ -55,12 +53,9 @@ pub(super) fn performance_ui(ui: &mut Ui, world: &mut World, form: &mut Performa
     let done = world.resource::<Measurements>().performance.done().cloned();
     let Some(done) = done else { return };
     ui.weak(done.caption());
-    let builders: Vec<Builder> = done.columns.iter().map(|column| column.builder).collect();
-    let scene = of_setting(world.resource::<RenderSettings>().tree.builder);
-    let clicked = figure_table_ui(ui, "performance", &builders, scene, &table(&done));
-    if let Some(builder) = clicked {
-        switch_builder(world, builder);
-    }
+    let columns = done.columns.iter();
+    let columns: Vec<_> = columns.map(|of| (of.builder, of, true)).collect();
+    figure_table_ui(ui, world, "performance", &columns, FIGURES);
     if let Some(why) = done.left_out_text() {
         ui.add(Label::new(RichText::new(format!("{why}.")).weak()).wrap())
             .says("glassbox bench SCENE --with-none measures it all the same");
@@ -80,80 +75,61 @@ pub(super) fn performance_ui(ui: &mut Ui, world: &mut World, form: &mut Performa
     );
 }
 
-fn table(performance: &Performance) -> Vec<Row> {
-    type Figure = (
-        &'static str,
-        &'static str,
-        fn(&PerformanceColumn) -> f64,
-        fn(f64, String, String) -> Cell,
-    );
-    let neither = |_, text, exact| Cell::plain(text, exact);
-    let figures: [Figure; 9] = [
-        (
-            "Create, ms",
-            "All trees of the scene",
-            |column| column.build_ms,
-            Cell::less,
-        ),
-        (
-            "Mean, ms",
-            "Of a rendering",
-            PerformanceColumn::mean,
-            Cell::less,
-        ),
-        (
-            "Min, ms",
-            "The shortest rendering",
-            PerformanceColumn::least,
-            Cell::less,
-        ),
-        (
-            "Max, ms",
-            "The longest rendering",
-            PerformanceColumn::most,
-            Cell::less,
-        ),
-        (
-            "Sigma, ms",
-            "Standard deviation of one rendering; the mean is uncertain by about this over the root of the \
-             number of renderings",
-            PerformanceColumn::sigma,
-            neither,
-        ),
-        (
-            "Mrays / s",
-            "Million rays of every kind a second in the median rendering",
-            PerformanceColumn::mrays_per_s,
-            Cell::more,
-        ),
-        (
-            "Levels",
-            "From the root to the deepest leaf, of the trees that a ray goes through one after the other",
-            |column| f64::from(column.levels),
-            neither,
-        ),
-        (
-            "Largest leaf",
-            "The most triangles that one leaf holds",
-            |column| f64::from(column.largest_leaf),
-            neither,
-        ),
-        (
-            "Triangles",
-            "Of all objects: a mesh that two objects share counts twice",
-            |column| column.triangles as f64,
-            neither,
-        ),
-    ];
-    let of = |(label, says, figure, cell): Figure| Row {
-        label,
-        says,
-        cells: (performance.columns.iter())
-            .map(|column| {
-                let value = figure(column);
-                cell(value, short(value), value.to_string())
-            })
-            .collect(),
-    };
-    figures.into_iter().map(of).collect()
-}
+/// A row for each.
+const FIGURES: &[Figure<PerformanceColumn>] = &[
+    (
+        "Create, ms",
+        "All trees of the scene",
+        |column| Some(column.build_ms),
+        Better::Less,
+    ),
+    (
+        "Mean, ms",
+        "Of a rendering",
+        |column| Some(column.mean()),
+        Better::Less,
+    ),
+    (
+        "Min, ms",
+        "The shortest rendering",
+        |column| Some(column.least()),
+        Better::Less,
+    ),
+    (
+        "Max, ms",
+        "The longest rendering",
+        |column| Some(column.most()),
+        Better::Less,
+    ),
+    (
+        "Sigma, ms",
+        "Standard deviation of one rendering; the mean is uncertain by about this over the root of the \
+         number of renderings",
+        |column| Some(column.sigma()),
+        Better::Neither,
+    ),
+    (
+        "Mrays / s",
+        "Million rays of every kind a second in the median rendering",
+        |column| Some(column.mrays_per_s()),
+        Better::More,
+    ),
+    (
+        "Levels",
+        "From the root to the deepest leaf, of the trees that a ray goes through one after the other",
+        |column| Some(f64::from(column.levels)),
+        Better::Neither,
+    ),
+    (
+        "Largest leaf",
+        "The most triangles that one leaf holds",
+        |column| Some(f64::from(column.largest_leaf)),
+        Better::Neither,
+    ),
+    (
+        "Triangles",
+        "Of all objects: a mesh that two objects share counts twice",
+        |column| Some(column.triangles as f64),
+        Better::Neither,
+    ),
+];
