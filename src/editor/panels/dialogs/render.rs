@@ -20,23 +20,18 @@ use std::path::Path;
 /// What is entered, kept while the dialog is closed.
 pub(in super::super) struct RenderForm {
     file: String,
-    from: From,
+    /// From which camera; `None`: from where the view stands.
+    from: Option<SceneId>,
     /// Size, samples and rules, from the scene's when the dialog is opened.
     settings: Option<RenderSettings>,
     refused: Option<String>,
-}
-
-#[derive(Clone, Copy, PartialEq)]
-enum From {
-    View,
-    Camera(SceneId),
 }
 
 impl Default for RenderForm {
     fn default() -> Self {
         Self {
             file: "picture.png".into(),
-            from: From::View,
+            from: None,
             settings: None,
             refused: None,
         }
@@ -87,8 +82,8 @@ pub(super) fn render_ui(ui: &mut Ui, world: &mut World, dialogs: &mut Dialogs) {
     let says = "Begins; the editing goes on meanwhile";
     if ui.button("Render").says(says).clicked() {
         let camera = match form.from {
-            From::Camera(id) => Some(RenderFrom::Camera(id)),
-            From::View => view_camera(world),
+            Some(id) => Some(RenderFrom::Camera(id)),
+            None => view_camera(world),
         };
         form.refused = match camera {
             None => Some("the view traces nothing; choose a camera, or the traced view".into()),
@@ -109,23 +104,21 @@ pub(super) fn render_ui(ui: &mut Ui, world: &mut World, dialogs: &mut Dialogs) {
 
 fn from_ui(ui: &mut Ui, world: &mut World, form: &mut RenderForm) {
     let cameras = cameras(world);
-    let name_of = |from: From| match from {
-        From::View => "The view".to_owned(),
-        From::Camera(id) => cameras
-            .iter()
-            .find(|camera| camera.0 == id)
-            .map_or_else(|| "a camera that is gone".into(), |camera| camera.1.clone()),
+    let camera = |id: SceneId| cameras.iter().find(|(other, _)| *other == id);
+    let name = match form.from {
+        None => "The view",
+        Some(id) => camera(id).map_or("a camera that is gone", |(_, name)| name),
     };
     let says = "From where: what the view shows, or one of the scene's cameras";
     row(ui, "From", says, |ui| {
         ComboBox::from_id_salt("from")
-            .selected_text(name_of(form.from))
+            .selected_text(name)
             .width(ui.available_width().max(80.0))
             .truncate()
             .show_ui(ui, |ui| {
-                ui.selectable_value(&mut form.from, From::View, "The view");
+                ui.selectable_value(&mut form.from, None, "The view");
                 for (id, name) in &cameras {
-                    ui.selectable_value(&mut form.from, From::Camera(*id), name);
+                    ui.selectable_value(&mut form.from, Some(*id), name);
                 }
             })
             .response

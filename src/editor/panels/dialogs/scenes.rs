@@ -4,7 +4,7 @@ use super::super::says::Says;
 use super::Dialogs;
 use crate::app::headless_app;
 use crate::editor::action::Action;
-use crate::film::{develop, render};
+use crate::film::{develop_rgba8, render};
 use crate::io::builtin::SCENES;
 use crate::io::{OpenOptions, SceneSource, open};
 use crate::scene::{RenderSettings, Sampling};
@@ -13,8 +13,7 @@ use bevy::ecs::world::World;
 use bevy::math::UVec2;
 use bevy::platform::cell::SyncCell;
 use bevy_egui::egui::{
-    self, Color32, ColorImage, Sense, TextureHandle, TextureOptions, Ui, WidgetInfo, WidgetType,
-    vec2,
+    self, ColorImage, Sense, TextureHandle, TextureOptions, Ui, WidgetInfo, WidgetType, vec2,
 };
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
@@ -86,12 +85,9 @@ fn picture_of(i: usize) -> Option<ColorImage> {
     };
     let traced = &world.resource::<Traced>().world;
     let rendered = render(traced, &camera.camera, &settings, &|_, _| {});
-    let byte = |part: f32| (part.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
-    let pixels = develop(&rendered.picture, &settings.output)
-        .into_iter()
-        .map(|[r, g, b]| Color32::from_rgb(byte(r), byte(g), byte(b)))
-        .collect();
-    Some(ColorImage::new([SIZE.x as usize, SIZE.y as usize], pixels))
+    let bytes = develop_rgba8(&rendered.picture, &settings.output);
+    let size = [SIZE.x as usize, SIZE.y as usize];
+    Some(ColorImage::from_rgba_unmultiplied(size, &bytes))
 }
 
 pub(super) fn scenes_ui(ui: &mut Ui, world: &mut World, dialogs: &mut Dialogs) {
