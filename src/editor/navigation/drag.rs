@@ -78,7 +78,8 @@ pub(super) fn begin_gesture(world: &mut World) {
     world.resource_mut::<LookThrough>().drags = true;
 }
 
-pub(super) fn end_gesture(world: &mut World) {
+/// The drag is over.
+pub(in crate::editor) fn end_gesture(world: &mut World) {
     if world.resource::<LookThrough>().drags {
         world.resource_mut::<LookThrough>().drags = false;
         world.resource_mut::<Gesture>().end();
@@ -98,11 +99,6 @@ pub(in crate::editor) fn drag(world: &mut World, kind: ViewDrag, delta: Vec2) {
         }
         ViewDrag::Fly => eye.look(delta),
     });
-}
-
-/// The drag is over.
-pub(in crate::editor) fn end_drag(world: &mut World) {
-    end_gesture(world);
 }
 
 /// The wheel was turned by so many notches over this place of the window.

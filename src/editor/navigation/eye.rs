@@ -112,20 +112,16 @@ impl Eye {
         self.pivot + rotation * Vec3::new(ndc.x * half * aspect, ndc.y * half, 0.0)
     }
 
-    /// Turns around the pivot: `delta` is a drag in heights of the view, y down.
-    pub fn orbit(&mut self, delta: Vec2) {
-        self.turn(delta);
-    }
-
     /// Turns the head: the eye stays where it is.
     pub fn look(&mut self, delta: Vec2) {
         let position = self.position();
-        self.turn(delta);
+        self.orbit(delta);
         let ahead = self.pivot - self.position();
         self.pivot = position + ahead;
     }
 
-    fn turn(&mut self, delta: Vec2) {
+    /// Turns around the pivot: `delta` is a drag in heights of the view, y down.
+    pub fn orbit(&mut self, delta: Vec2) {
         self.yaw = wrapped(self.yaw - delta.x * TURN);
         self.pitch = (self.pitch - delta.y * TURN).clamp(-FRAC_PI_2, FRAC_PI_2);
     }

@@ -14,7 +14,7 @@ mod place;
 mod through;
 
 pub(super) use commands::look_through;
-pub(super) use drag::{ViewDrag, begin_drag, drag, end_drag, wheel};
+pub(super) use drag::{ViewDrag, begin_drag, drag, end_gesture, wheel};
 pub use eye::Eye;
 pub(super) use framing::frame_points;
 pub(super) use lens::{field_of_view, set_field_of_view, widen};

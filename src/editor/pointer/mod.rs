@@ -256,7 +256,7 @@ fn release(world: &mut World, button: MouseButton) {
     match take_use(world) {
         PointerUse::Free | PointerUse::Gizmo => {}
         PointerUse::View(kind) => {
-            navigation::end_drag(world);
+            navigation::end_gesture(world);
             // A short press that moved nothing is a click.
             if let (ViewDrag::Fly, Some((at, when))) = (kind, pressed)
                 && when.elapsed() <= DOUBLE

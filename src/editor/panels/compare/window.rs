@@ -3,7 +3,7 @@
 use super::computed::{Look, Pair, Source};
 use super::difference::{Figures, How, difference};
 use super::histogram::histogram_ui;
-use super::zoom::{Zoom, channels};
+use super::zoom::Zoom;
 use super::{KeptPictures, PIXELS};
 use crate::editor::background::{Background, Outcome};
 use crate::editor::panels::fields::number;
@@ -223,12 +223,13 @@ fn inner_ui(ui: &mut Ui, world: &mut World, kept: &KeptPictures, comparison: &mu
     let zoom = &mut comparison.zoom;
     let pixel = zoom.ui(ui, height, (texture.id(), size), |pixel| {
         let [a, b] = pair.map(|picture| at(picture, pixel));
-        channels(match how {
+        let shown = match how {
             How::First => a,
             How::Second => b,
             How::Signed => b - a,
             How::Relative => Vec3::splat(difference(a, b, true)),
-        })
+        };
+        shown.to_array()
     });
     pixel_ui(ui, pixel, pair);
     let [a, b] = &drawn.pair.histograms;

@@ -1,7 +1,7 @@
 //! A picture to look into: the wheel zooms where the pointer is, a drag moves it, and from near pixels show their numbers.
 
 use crate::editor::panels::says::Says;
-use bevy::math::{UVec2, Vec3};
+use bevy::math::UVec2;
 use bevy_egui::egui::{
     self, Align2, Color32, CornerRadius, FontId, Pos2, Rect, Sense, TextureId, Ui, WidgetInfo,
     WidgetType, pos2, vec2,
@@ -132,11 +132,6 @@ fn short(number: f32) -> String {
         size if size < 100.0 => format!("{number:.2}"),
         _ => format!("{number:.0}"),
     }
-}
-
-/// A colour as numbers.
-pub(super) fn channels(color: Vec3) -> [f32; 3] {
-    color.to_array()
 }
 
 #[cfg(test)]

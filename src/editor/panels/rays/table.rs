@@ -60,13 +60,12 @@ pub(super) fn table_ui(ui: &mut Ui, shown: &Shown, inspected: &mut Inspected) ->
     let width: f32 = COLUMNS.iter().map(|heading| heading.width).sum();
     let chosen = inspected.ray();
     let goal = inspected.scrolls.then(|| {
-        let row = rows_of(inspected)
-            .iter()
-            .position(|row| Some(row.ray) == chosen);
+        let mut rows = inspected.list.known().iter();
+        let row = rows.position(|row| Some(row.ray) == chosen);
         row.unwrap_or(usize::MAX)
     });
     inspected.scrolls = false;
-    let rows = rows_of(inspected);
+    let rows = inspected.list.known();
     let mut drawn = 0;
     let mut deed = None;
     let scroll = ScrollArea::both()
@@ -116,10 +115,6 @@ pub(super) fn table_ui(ui: &mut Ui, shown: &Shown, inspected: &mut Inspected) ->
         None => {}
     }
     drawn
-}
-
-fn rows_of(inspected: &Inspected) -> &[Row] {
-    inspected.list.known()
 }
 
 /// A ray that was chosen elsewhere is not folded away.
