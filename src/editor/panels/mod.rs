@@ -81,7 +81,7 @@ use super::history::within;
 use super::preferences::{Preferences, PreferencesPlugin};
 use super::viewport::Viewport;
 use crate::sync::SyncSystems;
-use bevy::app::{App, Plugin, PostUpdate};
+use bevy::app::{App, Last, Plugin, PostUpdate};
 use bevy::asset::AssetEventSystems;
 use bevy::camera::visibility::VisibilitySystems;
 use bevy::ecs::query::With;
@@ -168,7 +168,8 @@ fn add_panels(app: &mut App) {
         .add_observer(commands::let_go)
         .add_observer(answer::note_question)
         .add_observer(answer::forget_question)
-        .add_observer(context_menu::note_right_click);
+        .add_observer(context_menu::note_right_click)
+        .add_systems(Last, inspector::forget_thumbnails);
 }
 
 fn draw(world: &mut World) {

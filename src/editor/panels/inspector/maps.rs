@@ -2,14 +2,17 @@
 
 use super::super::fields::row;
 use super::super::says::Says;
+use super::Inspector;
 use crate::editor::background::{Background, Outcome};
 use crate::editor::document::{picture_at, typed_picture};
 use crate::editor::edits::scene_entity;
 use crate::io::PICTURE_EXTENSIONS;
 use crate::io::shapes::PICTURES;
 use crate::scene::{Environment, Phong, PhongMap, SceneId, TextureSource};
-use bevy::asset::{AssetId, Assets, Handle};
+use bevy::asset::{AssetEvent, AssetId, Assets, Handle};
 use bevy::color::ColorToPacked;
+use bevy::ecs::message::MessageReader;
+use bevy::ecs::system::ResMut;
 use bevy::ecs::world::World;
 use bevy::image::Image;
 use bevy::platform::collections::HashMap;
@@ -187,6 +190,18 @@ pub(super) fn map_ui(
     changed
 }
 
+/// A picture that was loaded again has another thumbnail, and one that is gone has none.
+pub(in super::super) fn forget_thumbnails(
+    mut changes: MessageReader<AssetEvent<Image>>,
+    mut panel: ResMut<Inspector>,
+) {
+    for change in changes.read() {
+        if let AssetEvent::Modified { id } | AssetEvent::Removed { id } = change {
+            panel.thumbnails.made.remove(id);
+        }
+    }
+}
+
 impl Thumbnails {
     /// The small copy of a picture; `None` while it is not loaded.
     fn of(
@@ -302,7 +317,9 @@ fn smaller(image: &Image) -> Option<ColorImage> {
 mod tests {
     use super::*;
     use crate::editor::headless_editor;
+    use crate::editor::panels::state::with;
     use crate::io::shapes::texture;
+    use bevy::app::{App, Last};
 
     #[test]
     fn a_path_that_was_typed_reaches_those_for_whom_it_was_typed_whatever_is_selected_now() {
@@ -351,6 +368,30 @@ mod tests {
             let map = world.resource::<Environment>().map.clone();
             assert_eq!(map.is_some(), !is_forgotten);
         }
+    }
+
+    #[test]
+    fn a_picture_that_was_loaded_again_has_another_thumbnail() {
+        let mut app = headless_editor();
+        app.init_resource::<Inspector>()
+            .add_systems(Last, forget_thumbnails);
+        let context = egui::Context::default();
+        let mut pictures = app.world_mut().resource_mut::<Assets<Image>>();
+        let handle = pictures.add(texture("builtin:checker").unwrap());
+        let shown = |app: &mut App| {
+            with(app.world_mut(), |world, panel: &mut Inspector| {
+                let thumbnail = panel.thumbnails.of(&context, world, &handle);
+                thumbnail.unwrap().id()
+            })
+        };
+        let first = shown(&mut app);
+        app.update();
+        assert_eq!(shown(&mut app), first);
+        let mut pictures = app.world_mut().resource_mut::<Assets<Image>>();
+        let another = texture("builtin:uv").unwrap();
+        pictures.insert(handle.id(), another).unwrap();
+        app.update();
+        assert_ne!(shown(&mut app), first);
     }
 
     #[test]

@@ -43,6 +43,7 @@ pub(super) use builders::Builders;
 pub(super) use bvh::Trees;
 pub(super) use error_plot::ErrorCurve;
 use maps::Thumbnails;
+pub(super) use maps::forget_thumbnails;
 pub(super) use performance::PerformanceForm;
 
 /// The inspector's tabs.
