@@ -169,6 +169,7 @@ fn add_panels(app: &mut App) {
         .add_observer(answer::note_question)
         .add_observer(answer::forget_question)
         .add_observer(context_menu::note_right_click)
+        .add_observer(outline::note_gone)
         .add_systems(Last, inspector::forget_thumbnails);
 }
 

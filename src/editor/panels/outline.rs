@@ -9,9 +9,10 @@ use bevy::camera::visibility::Visibility;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::ecs::hierarchy::ChildOf;
-use bevy::ecs::lifecycle::RemovedComponents;
+use bevy::ecs::lifecycle::Remove;
 use bevy::ecs::name::Name;
-use bevy::ecs::query::{Added, Changed, Has, Or, With};
+use bevy::ecs::observer::On;
+use bevy::ecs::query::{Added, Allow, Changed, Has, Or, With};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Query, ResMut};
 use bevy::mesh::Mesh3d;
@@ -89,6 +90,8 @@ pub(super) struct Item {
     pub lower_name: String,
     /// 0 at the root.
     pub depth: u32,
+    /// Where in the list its parent is.
+    parent: Option<usize>,
     /// Where in the list its descendants end.
     pub end: usize,
     /// Hidden itself.
@@ -108,6 +111,8 @@ pub(super) struct Outline {
     users: HashMap<Entity, Vec<usize>>,
     /// How often it was made: a test's proof that it is not made in every frame.
     pub versions: u64,
+    /// Something that it shows is gone.
+    is_stale: bool,
 }
 
 impl Outline {
@@ -123,10 +128,7 @@ impl Outline {
 
     /// Where the parent of an item is.
     pub fn parent(&self, at: usize) -> Option<usize> {
-        let depth = self.items[at].depth.checked_sub(1)?;
-        (0..at)
-            .rev()
-            .find(|&before| self.items[before].depth == depth)
+        self.items[at].parent
     }
 
     /// The entity of that number.
@@ -175,38 +177,35 @@ type Parts<'a> = (
 );
 
 /// Components whose absence shows.
-type Gone<'w, 's> = (
-    RemovedComponents<'w, 's, SceneId>,
-    RemovedComponents<'w, 's, Name>,
-    RemovedComponents<'w, 's, ChildOf>,
-    RemovedComponents<'w, 's, MeshSource>,
-    RemovedComponents<'w, 's, Phong>,
-    RemovedComponents<'w, 's, SceneCamera>,
-    RemovedComponents<'w, 's, Disabled>,
-    RemovedComponents<'w, 's, UsesMaterial>,
+type Shows = (
+    (SceneId, Name, ChildOf, UsesMaterial, Disabled),
+    (Mesh3d, MeshSource, Phong, SceneCamera),
+    (PointLamp, DirectionalLamp, SegmentLamp, ParallelogramLamp),
 );
+
+/// Something is gone that the list shows.
+pub(super) fn note_gone(
+    gone: On<Remove, Shows>,
+    scene: Query<(), (With<SceneId>, Allow<Disabled>)>,
+    mut outline: ResMut<Outline>,
+) {
+    if scene.contains(gone.entity) {
+        outline.is_stale = true;
+    }
+}
 
 /// Makes the list again where anything that it shows changed.
 pub(super) fn outline_scene(
     changed: Query<(), (With<SceneId>, ShowsChange)>,
     disabled: Query<(), (With<SceneId>, Added<Disabled>)>,
-    mut gone: Gone,
     all: Query<Parts>,
     mut outline: ResMut<Outline>,
 ) {
-    // All of them are read, so that none is heard of again in the next frame.
-    let removed = gone.0.read().count()
-        + gone.1.read().count()
-        + gone.2.read().count()
-        + gone.3.read().count()
-        + gone.4.read().count()
-        + gone.5.read().count()
-        + gone.6.read().count()
-        + gone.7.read().count();
-    let is_same = changed.is_empty() && disabled.is_empty() && removed == 0;
+    let is_same = changed.is_empty() && disabled.is_empty() && !outline.is_stale;
     if is_same && outline.versions > 0 {
         return;
     }
+    outline.is_stale = false;
     let mut found: Vec<(Item, Option<Entity>)> = all
         .iter()
         .filter(|parts| !parts.1.is_unassigned())
@@ -224,6 +223,7 @@ pub(super) fn outline_scene(
                 lower_name: name.to_lowercase(),
                 name,
                 depth: 0,
+                parent: None,
                 end: 0,
                 hidden,
                 unseen: hidden,
@@ -289,6 +289,7 @@ fn in_tree_order(found: Vec<(Item, Option<Entity>)>) -> Vec<Item> {
             items[closed].end = items.len();
         }
         item.depth = depth;
+        item.parent = open.last().copied();
         item.unseen |= hidden;
         let below = children[at].iter().rev();
         waiting.extend(below.map(|&child| (child, depth + 1, item.unseen)));
@@ -311,6 +312,7 @@ pub(super) mod tests {
     fn app() -> App {
         let mut app = App::new();
         app.init_resource::<Outline>()
+            .add_observer(note_gone)
             .add_systems(Update, outline_scene);
         app
     }
@@ -374,6 +376,26 @@ pub(super) mod tests {
         assert_eq!(versions(&app), 3);
         let outline = app.world().resource::<Outline>();
         assert!(outline.find(SceneId(21)).is_none());
+    }
+
+    #[test]
+    fn what_is_a_light_no_more_is_shown_as_what_it_is_and_others_go_unnoticed() {
+        let mut app = village();
+        let tree = app.world().resource::<Outline>().find(SceneId(21)).unwrap();
+        let tree = tree.entity;
+        let kind = |app: &mut App| {
+            app.update();
+            let outline = app.world().resource::<Outline>();
+            (outline.find(SceneId(21)).unwrap().kind, outline.versions)
+        };
+        let mut world = app.world_mut().entity_mut(tree);
+        world.insert(PointLamp::default());
+        assert_eq!(kind(&mut app), (Kind::PointLamp, 2));
+        app.world_mut().entity_mut(tree).remove::<PointLamp>();
+        assert_eq!(kind(&mut app), (Kind::Group, 3));
+        let other = app.world_mut().spawn(Name::new("of the app alone")).id();
+        app.world_mut().despawn(other);
+        assert_eq!(kind(&mut app), (Kind::Group, 3));
     }
 
     #[test]
