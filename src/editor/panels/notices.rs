@@ -21,7 +21,7 @@ pub(super) fn notices_ui(context: &egui::Context, free: Rect, world: &mut World)
         return false;
     }
     let mut notices = world.resource_mut::<Notices>();
-    let all: Vec<Notice> = notices.shown().to_vec();
+    let all = notices.shown();
     if all.is_empty() {
         return false;
     }

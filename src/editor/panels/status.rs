@@ -137,25 +137,22 @@ fn job_ui(ui: &mut Ui, world: &World) -> bool {
 ///
 /// True where the latter are to be forgotten.
 fn notes_ui(ui: &mut Ui, world: &World) -> bool {
-    let load = world.resource::<LoadProblems>().problems.iter();
-    let sync = world.resource::<Traced>().problems.iter();
-    let problems: Vec<String> = load
-        .map(|problem| format!("{}: {}", problem.what, problem.error))
-        .chain(sync.map(ToString::to_string))
-        .collect();
+    let load = &world.resource::<LoadProblems>().problems;
+    let sync = &world.resource::<Traced>().problems;
+    let problems = load.len() + sync.len();
     let kept = world.resource::<Notices>().kept();
-    if problems.is_empty() && kept.is_empty() {
+    if problems == 0 && kept.is_empty() {
         return false;
     }
     // What was said may be of another scene by now.
-    let warns = !problems.is_empty();
+    let warns = problems > 0;
     let color = match warns {
         true => ui.visuals().warn_fg_color,
         false => ui.visuals().text_color(),
     };
     // As many as the cards say.
     let said: usize = kept.iter().map(|notice| notice.lines.len().max(1)).sum();
-    let count = (problems.len() + said) as u64;
+    let count = (problems + said) as u64;
     let text = format!(
         "{}{}",
         if warns { "⚠ " } else { "" },
@@ -172,11 +169,15 @@ fn notes_ui(ui: &mut Ui, world: &World) -> bool {
             ui.set_width(NOTES_WIDTH.min(ui.ctx().content_rect().width() - 40.0));
             let area = ScrollArea::vertical().max_height(NOTES_HEIGHT);
             area.show(ui, |ui| {
-                lines_ui(ui, &problems);
+                let load = load
+                    .iter()
+                    .map(|one| format!("{}: {}", one.what, one.error));
+                let sync = sync.iter().map(ToString::to_string);
+                lines_ui(ui, problems, load.chain(sync));
                 for notice in kept.iter().rev() {
                     let text = RichText::new(&notice.text).strong();
                     ui.add(Label::new(text).wrap().selectable(true));
-                    lines_ui(ui, &notice.lines);
+                    lines_ui(ui, notice.lines.len(), &notice.lines);
                 }
             });
             if !kept.is_empty() {
@@ -189,11 +190,15 @@ fn notes_ui(ui: &mut Ui, world: &World) -> bool {
 }
 
 /// Lines to be read, as many as somebody reads.
-fn lines_ui(ui: &mut Ui, lines: &[String]) {
-    for line in lines.iter().take(MOST_LINES) {
+fn lines_ui(
+    ui: &mut Ui,
+    count: usize,
+    lines: impl IntoIterator<Item = impl Into<egui::WidgetText>>,
+) {
+    for line in lines.into_iter().take(MOST_LINES) {
         ui.add(Label::new(line).wrap().selectable(true));
     }
-    if let Some(more) = lines.len().checked_sub(MOST_LINES).filter(|more| *more > 0) {
+    if let Some(more) = count.checked_sub(MOST_LINES).filter(|more| *more > 0) {
         ui.weak(format!("and {more} more"));
     }
 }
