@@ -16,7 +16,7 @@ use crate::editor::document::SceneOpened;
 use crate::editor::viewport::{Show, Viewport, traced_render, traced_view, traced_view_mut};
 use crate::film::views::{Scale, View};
 use crate::scene::{Quantity, RenderSettings};
-use crate::trace::{Camera, FirstHit, central_hits};
+use crate::trace::{self, Camera, FirstHit, central_hits};
 use crate::view::{TracedRender, TracedView};
 use bevy::ecs::observer::On;
 use bevy::ecs::resource::Resource;
@@ -26,6 +26,7 @@ use bevy::math::{self, UVec2, Vec2};
 use bevy_egui::egui::{
     self, Align2, Color32, CursorIcon, FontId, Id, Rect, Sense, Stroke, StrokeKind, Ui, pos2, vec2,
 };
+use std::sync::{Arc, Weak};
 
 /// Half the width of what can be grabbed of the divider, in points.
 const GRAB: f32 = 5.0;
@@ -47,9 +48,10 @@ pub(super) struct RegionDrag {
     pub start: Option<egui::Pos2>,
 }
 
-/// What the pixel under the pointer shows, and of which world, by its address, pixel and camera that is.
+/// What the pixel under the pointer shows, and of which world, pixel and camera that is. The world is let go of, but none
+/// takes its place in memory.
 #[derive(Resource, Default)]
-pub(super) struct UnderPointer(pub Option<((usize, UVec2, Camera), FirstHit)>);
+pub(super) struct UnderPointer(pub Option<(Weak<trace::World>, UVec2, Camera, FirstHit)>);
 
 pub(super) fn forget_scene(_: On<SceneOpened>, mut known: ResMut<UnderPointer>) {
     known.0 = None;
@@ -356,13 +358,13 @@ pub(super) fn value_under_pointer(
             is_bound: error.is_bound,
         }),
         kind => {
-            let key = (
-                std::sync::Arc::as_ptr(world) as usize,
-                pixel,
-                camera.clone(),
-            );
-            let hit = match known.0.take() {
-                Some((known, hit)) if known == key => hit,
+            let of = Arc::downgrade(world);
+            let hit = match &known.0 {
+                Some((known, at, from, hit))
+                    if known.ptr_eq(&of) && (*at, from) == (pixel, camera) =>
+                {
+                    *hit
+                }
                 _ => {
                     let mut hits = [FirstHit::MISS];
                     let settings = RenderSettings {
@@ -373,7 +375,7 @@ pub(super) fn value_under_pointer(
                     hits[0]
                 }
             };
-            known.0 = Some((key, hit));
+            known.0 = Some((of, pixel, camera.clone(), hit));
             let value = match kind {
                 View::Nodes => hit.cost.nodes as f32,
                 View::Triangles => hit.cost.triangles as f32,

@@ -23,7 +23,7 @@ pub(super) fn readout_ui(ui: &Ui, free: Rect, world: &mut World, known: &mut Und
     };
     let value = value_under_pointer(at, view, render, known);
     let names = world.get_resource::<Names>();
-    let hit = known.0.as_ref().map(|(_, hit)| hit);
+    let hit = known.0.as_ref().map(|(.., hit)| hit);
     let unit = render.shown().and_then(|shown| shown.scale);
     let text = match view.view {
         View::Shaded | View::BloomThreshold | View::BloomLayer => {
