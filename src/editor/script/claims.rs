@@ -1,12 +1,11 @@
 //! What a script claims of the scene and the panels.
 
-use super::super::edits::scene_entity;
+use super::super::edits::name_of;
 use super::super::history::History;
 use super::super::selection::Selection;
 use super::spot::{Texts, named};
 use super::step::{Step, Value};
 use super::value;
-use crate::scene::SceneId;
 use bevy::ecs::world::World;
 
 /// Checks a claim; otherwise what was found instead.
@@ -87,10 +86,4 @@ fn about(is: &Value, within: f64) -> String {
     } else {
         is.to_string()
     }
-}
-
-fn name_of(world: &mut World, id: SceneId) -> String {
-    let entity = scene_entity(world, id);
-    let name = entity.and_then(|entity| world.get::<bevy::ecs::name::Name>(entity));
-    name.map_or_else(|| format!("{id:?}"), |name| name.to_string())
 }

@@ -5,10 +5,11 @@ use super::super::says::Says;
 use super::environment::environment_ui;
 use super::maps::Thumbnails;
 use crate::editor::background::{Background, Outcome, Watch};
+use crate::editor::edits::scene_entity;
 use crate::editor::preferences::Preferences;
 use crate::editor::viewport::traced_render;
 use crate::io::Size;
-use crate::scene::{RenderSettings, SceneId, range_problems};
+use crate::scene::{RenderSettings, range_problems};
 use crate::trace::Crossings;
 use crate::view::TracedRender;
 use bevy::ecs::name::Name;
@@ -224,10 +225,9 @@ fn crossings_text(ui: &Ui, world: &mut World) -> Option<String> {
         ui.ctx().request_repaint_after(TICK);
     }
     let found = kept.found?;
-    let mut named = world.query::<(&SceneId, &Name)>();
-    let mut named = named.iter(world);
-    let name = named.find(|(id, _)| **id == found.object);
-    Some(found.text(name.map(|(_, name)| name.as_str())))
+    let entity = scene_entity(world, found.object);
+    let name = entity.and_then(|entity| world.get::<Name>(entity));
+    Some(found.text(name.map(Name::as_str)))
 }
 
 /// Sizes that are often wanted, beside the field for the size.
