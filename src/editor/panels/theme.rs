@@ -274,30 +274,28 @@ fn visuals(theme: Theme, palette: &Palette) -> Visuals {
     visuals
 }
 
-/// Contrast of two colours, 1 to 21 (WCAG 2.2, "contrast ratio").
 #[cfg(test)]
-fn contrast(a: Color32, b: Color32) -> f32 {
-    let luminance = |color: Color32| {
-        let [r, g, b, _] = egui::Rgba::from(color).to_array();
-        0.2126 * r + 0.7152 * g + 0.0722 * b + 0.05
-    };
-    let ratio = luminance(a) / luminance(b);
-    ratio.max(ratio.recip())
-}
-
-/// Whether text of this colour can be read on panels and windows of a theme (WCAG 2's AA).
-#[cfg(test)]
-pub(super) fn assert_readable(theme: Theme, ink: Color32, what: &str) {
-    let visuals = style(theme).visuals;
-    for paper in [visuals.panel_fill, visuals.window_fill] {
-        let ratio = contrast(ink, paper);
-        assert!(ratio >= 4.5, "{theme:?}: ink {what} at {ratio:.2} to 1");
-    }
-}
-
-#[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
+
+    /// Contrast of two colours, 1 to 21 (WCAG 2.2, "contrast ratio").
+    fn contrast(a: Color32, b: Color32) -> f32 {
+        let luminance = |color: Color32| {
+            let [r, g, b, _] = egui::Rgba::from(color).to_array();
+            0.2126 * r + 0.7152 * g + 0.0722 * b + 0.05
+        };
+        let ratio = luminance(a) / luminance(b);
+        ratio.max(ratio.recip())
+    }
+
+    /// Whether text of this colour can be read on panels and windows of a theme (WCAG 2's AA).
+    pub fn assert_readable(theme: Theme, ink: Color32, what: &str) {
+        let visuals = style(theme).visuals;
+        for paper in [visuals.panel_fill, visuals.window_fill] {
+            let ratio = contrast(ink, paper);
+            assert!(ratio >= 4.5, "{theme:?}: ink {what} at {ratio:.2} to 1");
+        }
+    }
 
     #[test]
     fn a_bar_has_each_colour_at_its_place() {

@@ -181,7 +181,7 @@ fn short(number: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::theme::assert_readable;
+    use super::super::super::theme::tests::assert_readable;
     use super::*;
     use bevy_egui::egui::Theme;
 

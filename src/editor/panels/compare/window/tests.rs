@@ -3,7 +3,7 @@ use crate::editor::action::Action;
 use crate::editor::document::adopt;
 use crate::editor::panels::compare::even_picture as picture;
 use crate::editor::panels::tests::{Desk, SMALL, USUAL, type_nonsense};
-use crate::editor::panels::theme::assert_readable;
+use crate::editor::panels::theme::tests::assert_readable;
 use crate::editor::viewport::Viewport;
 use bevy_egui::egui::Theme;
 use std::thread::sleep;
