@@ -288,10 +288,8 @@ fn set_transform(world: &mut World, id: SceneId, wanted: Transform) {
     let Some(entity) = scene_entity(world, id) else {
         return;
     };
-    if let Some(mut transform) = world.get_mut::<Transform>(entity)
-        && *transform != wanted
-    {
-        *transform = wanted;
+    if let Some(mut transform) = world.get_mut::<Transform>(entity) {
+        transform.set_if_neq(wanted);
     }
 }
 

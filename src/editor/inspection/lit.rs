@@ -12,6 +12,7 @@ use crate::trace::{RayEnd, TracedRay, World};
 use crate::view::{DrawnLines, Line, OVERLAY_LAYER};
 use bevy::camera::visibility::RenderLayers;
 use bevy::color::LinearRgba;
+use bevy::ecs::change_detection::DetectChangesMut;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::query::With;
 use bevy::ecs::system::{Commands, Local, Query, Res, Single};
@@ -122,10 +123,8 @@ pub(super) fn draw_lit(
         };
         match *entity {
             Some(entity) => {
-                if let Ok(mut set) = sets.get_mut(entity)
-                    && *set != drawn
-                {
-                    *set = drawn;
+                if let Ok(mut set) = sets.get_mut(entity) {
+                    set.set_if_neq(drawn);
                 }
             }
             None if drawn.lines.is_empty() => {}

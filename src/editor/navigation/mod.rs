@@ -27,6 +27,7 @@ use super::schedule::{Dispatch, EditorUpdate};
 use super::viewport::Viewport;
 use crate::scene::{Projection as SceneProjection, SceneCamera, SceneId};
 use bevy::app::{App, Plugin, PostUpdate};
+use bevy::ecs::change_detection::DetectChangesMut;
 use bevy::ecs::observer::On;
 use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
@@ -194,13 +195,10 @@ pub(super) fn move_view(world: &mut World, change: impl FnOnce(&mut Eye)) {
 /// What is added appears where the view looks, about a quarter as high as the view, at a place of few digits.
 fn aim_additions(eye: Res<Eye>, mut at: ResMut<AddAt>) {
     let size = round_size(0.25 * eye.height());
-    let wanted = AddAt {
+    at.set_if_neq(AddAt {
         place: round_place(eye.pivot, size),
         size,
-    };
-    if *at != wanted {
-        *at = wanted;
-    }
+    });
 }
 
 /// The nearest of …, 0.1, 0.2, 0.5, 1, 2, 5, … that is not larger.

@@ -6,6 +6,7 @@ use crate::view::TracedView;
 use bevy::camera::{
     Camera, OrthographicProjection, PerspectiveProjection, Projection, ScalingMode,
 };
+use bevy::ecs::change_detection::DetectChangesMut;
 use bevy::ecs::query::With;
 use bevy::ecs::system::{Res, Single};
 use bevy::math::Vec2;
@@ -27,9 +28,7 @@ pub(super) fn place_view(
     let (mut transform, mut projection, mut view, camera) = camera.into_inner();
     let exact = through.camera.and(through.seen.as_ref());
     let wanted = exact.map_or_else(|| eye.transform(), |(_, place, _)| *place);
-    if *transform != wanted {
-        *transform = wanted;
-    }
+    transform.set_if_neq(wanted);
     set_projection(&mut projection, &eye, camera);
     if view.optics_of != through.camera {
         view.optics_of = through.camera;

@@ -5,6 +5,7 @@ use super::super::extent::{world_from_entity, world_from_parent};
 use super::{Eye, LookThrough};
 use crate::editor::edits;
 use crate::scene::{Projection, SceneCamera, SceneId};
+use bevy::ecs::change_detection::DetectChangesMut;
 use bevy::ecs::world::World;
 use bevy::math::Vec3;
 use bevy::transform::components::Transform;
@@ -68,14 +69,12 @@ pub(super) fn move_camera(world: &mut World, id: SceneId, eye: &Eye) {
         return;
     }
     if let Some(mut transform) = world.get_mut::<Transform>(entity) {
-        let wanted = Transform {
+        let scale = transform.scale;
+        transform.set_if_neq(Transform {
             translation,
             rotation,
-            scale: transform.scale,
-        };
-        if *transform != wanted {
-            *transform = wanted;
-        }
+            scale,
+        });
     }
     let projection = scene_projection(eye);
     if let Some(mut camera) = world.get_mut::<SceneCamera>(entity)

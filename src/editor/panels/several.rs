@@ -3,6 +3,7 @@
 
 use super::fields::{chosen_ui, property_ui};
 use crate::scene::schema::{Property, keep_order};
+use bevy::ecs::change_detection::DetectChangesMut;
 use bevy::ecs::component::{Component, Mutable};
 use bevy::ecs::entity::Entity;
 use bevy::ecs::world::World;
@@ -86,10 +87,8 @@ impl<C: Component<Mutability = Mutable> + Clone + PartialEq> Several<C> {
             return;
         }
         for (entity, value) in self.entities.into_iter().zip(self.values) {
-            if world.get::<C>(entity).is_some_and(|old| *old != value)
-                && let Some(mut component) = world.get_mut::<C>(entity)
-            {
-                *component = value;
+            if let Some(mut component) = world.get_mut::<C>(entity) {
+                component.set_if_neq(value);
             }
         }
     }

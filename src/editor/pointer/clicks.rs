@@ -15,6 +15,7 @@ use crate::inspect::{Question, Stands};
 use crate::scene::SceneId;
 use crate::sync::Traced;
 use crate::trace;
+use bevy::ecs::change_detection::DetectChangesMut;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::query::{Or, With};
 use bevy::ecs::world::World;
@@ -50,7 +51,7 @@ pub(super) fn click(world: &mut World, at: Vec2) {
         (None, true) => {}
         (None, false) => wanted.set([]),
     }
-    select(world, wanted);
+    world.resource_mut::<Selection>().set_if_neq(wanted);
 }
 
 /// The click that a command waited for.
@@ -121,12 +122,6 @@ fn line_under(world: &mut World, at: Vec2) -> Option<(Stands, Arc<trace::World>)
     Some((stands, of.clone()))
 }
 
-fn select(world: &mut World, wanted: Selection) {
-    if *world.resource::<Selection>() != wanted {
-        *world.resource_mut::<Selection>() = wanted;
-    }
-}
-
 /// Selects the objects, lights and cameras whose middle is seen in the box.
 pub(super) fn select_box(world: &mut World, from: Vec2, to: Vec2) {
     let area = Rect::from_corners(from, to);
@@ -154,5 +149,5 @@ pub(super) fn select_box(world: &mut World, from: Vec2, to: Vec2) {
     } else {
         wanted.set(inside);
     }
-    select(world, wanted);
+    world.resource_mut::<Selection>().set_if_neq(wanted);
 }
