@@ -8,7 +8,7 @@ use crate::editor::inspection::json::json;
 use crate::editor::inspection::{DebugRay, Inspected, Which};
 use crate::editor::notice::Notices;
 use crate::editor::preferences::Preferences;
-use crate::inspect::InspectSettings;
+use crate::inspect::{InspectSettings, RaySettings};
 use crate::scene::Quantity;
 use crate::scene::schema::quantity_of;
 use bevy::ecs::world::World;
@@ -148,40 +148,22 @@ fn kinds_ui(ui: &mut Ui, world: &mut World) {
         .says("Draws the rays over the picture");
     let alone = ui.input(|input| input.modifiers.shift);
     let mut only = None;
-    for (i, (name, says, on)) in [
-        ("camera", "Rays from the camera", &mut rays.camera),
-        ("mirror", "Reflections, sharp and blurred", &mut rays.mirror),
-        (
-            "through",
-            "Through transparent and translucent surfaces",
-            &mut rays.transmission,
-        ),
-        ("shadow", "To lights without extent", &mut rays.shadow),
-        (
-            "light",
-            "To points of lights with an extent",
-            &mut rays.light_samples,
-        ),
-    ]
-    .into_iter()
-    .enumerate()
-    {
+    let kinds = [
+        ("camera", "Rays from the camera"),
+        ("mirror", "Reflections, sharp and blurred"),
+        ("through", "Through transparent and translucent surfaces"),
+        ("shadow", "To lights without extent"),
+        ("light", "To points of lights with an extent"),
+    ];
+    let switches = switches_of(&mut rays);
+    for (i, ((name, says), on)) in kinds.into_iter().zip(switches).enumerate() {
         let says = format!("{says}: listed and drawn. With Shift: these alone");
         if ui.toggle_value(on, name).says(&says).clicked() && alone {
             only = Some(i);
         }
     }
     if let Some(only) = only {
-        for (i, on) in [
-            &mut rays.camera,
-            &mut rays.mirror,
-            &mut rays.transmission,
-            &mut rays.shadow,
-            &mut rays.light_samples,
-        ]
-        .into_iter()
-        .enumerate()
-        {
+        for (i, on) in switches_of(&mut rays).into_iter().enumerate() {
             *on = i == only;
         }
     }
@@ -199,6 +181,17 @@ fn kinds_ui(ui: &mut Ui, world: &mut World) {
             settings.on |= draw;
         }
     }
+}
+
+/// Which kinds are listed and drawn.
+fn switches_of(rays: &mut RaySettings) -> [&mut bool; 5] {
+    [
+        &mut rays.camera,
+        &mut rays.mirror,
+        &mut rays.transmission,
+        &mut rays.shadow,
+        &mut rays.light_samples,
+    ]
 }
 
 fn copy_ui(ui: &mut Ui, world: &mut World) {
