@@ -264,6 +264,11 @@ pub(super) fn run(world: &mut World, id: &str) {
     }
 }
 
+/// Off where it is on, and the other way round.
+pub(super) fn flip(switch: &mut bool) {
+    *switch = !*switch;
+}
+
 /// The first keys that send it, as menus show them.
 pub(super) fn shortcut(world: &World, command: &Command) -> Option<String> {
     let keys = match world.get_resource::<Preferences>() {

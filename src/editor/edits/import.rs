@@ -4,7 +4,7 @@ use super::parents::with_descendants;
 use super::plugin::{select, step};
 use super::{AddAt, add_model, name_of, scene_entity};
 use crate::bvh::Ray;
-use crate::editor::command::{Command, State, commands};
+use crate::editor::command::{Command, State, commands, flip};
 use crate::editor::extent::{Extent, extent_now, scene_extent};
 use crate::editor::notice::Notices;
 use crate::editor::pick;
@@ -53,7 +53,7 @@ pub(super) fn commands() -> Vec<Command> {
         "import.file-place" "Where the file has them" [] "Models that are imported keep their size and their place"
             => |world| put(world, ImportPlace::FilePlace); menu("Add/Imported models", 1); state(|world| is(world, ImportPlace::FilePlace)),
         "import.lights" "Lights and cameras come along" [] "What a model file has besides its objects is added too"
-            => flip_lights; menu("Add/Imported models", 2); state(|world| State::switch(world.get_resource::<Preferences>().is_some_and(|all| all.import_lights))),
+            => |world| flip(&mut world.resource_mut::<Preferences>().import_lights); menu("Add/Imported models", 2); state(|world| State::switch(world.get_resource::<Preferences>().is_some_and(|all| all.import_lights))),
     }
 }
 
@@ -64,11 +64,6 @@ fn put(world: &mut World, place: ImportPlace) {
 fn is(world: &World, place: ImportPlace) -> State {
     let now = world.get_resource::<Preferences>();
     State::switch(now.is_some_and(|now| now.import_place == place))
-}
-
-fn flip_lights(world: &mut World) {
-    let mut preferences = world.resource_mut::<Preferences>();
-    preferences.import_lights = !preferences.import_lights;
 }
 
 /// Adds a model's content to the scene, as a step, and selects it.

@@ -26,7 +26,7 @@ pub(super) use keyed::{KeyedDrag, forget_keyed, note_command, type_axis_and_numb
 pub use snap::SnapTo;
 pub(super) use typed::{TypedDrag, type_into_drag};
 
-use super::command::{AddCommands, Command, Over, State, commands};
+use super::command::{AddCommands, Command, Over, State, commands, flip};
 use super::schedule::{Dispatch, EditorUpdate};
 use crate::view::HandleCameraPlugin;
 use bevy::app::{App, Plugin, PostUpdate, Startup, TransformGizmoRenderStep};
@@ -174,8 +174,4 @@ fn commands() -> Vec<Command> {
 
 fn has(world: &World, tool: Tool) -> State {
     State::switch(world.resource::<Tools>().tool == tool)
-}
-
-fn flip(switch: &mut bool) {
-    *switch = !*switch;
 }

@@ -5,7 +5,7 @@ use super::hierarchy::Hierarchy;
 use super::palette::{OpenPalette, Palette};
 use super::state::{OnlyPicture, Renaming};
 use super::{answer, first_steps};
-use crate::editor::command::{Command, Over, State, commands};
+use crate::editor::command::{Command, Over, State, commands, flip};
 use crate::editor::edits::name_of;
 use crate::editor::preferences::Preferences;
 use crate::editor::selection::{Escaped, Selection};
@@ -54,10 +54,6 @@ fn toggle(world: &mut World, dialog: Dialog) {
     let mut dialogs = world.resource_mut::<Dialogs>();
     let again = dialogs.open == Some(dialog);
     dialogs.open = (!again).then_some(dialog);
-}
-
-fn flip(switch: &mut bool) {
-    *switch = !*switch;
 }
 
 fn open_render(world: &mut World) {

@@ -1,7 +1,7 @@
 //! The commands of the light mixer.
 
 use super::mix::{Mixer, Strip, bake, lights};
-use crate::editor::command::{Command, Over, State, commands};
+use crate::editor::command::{Command, Over, State, commands, flip};
 use crate::editor::edits::scene_entity;
 use crate::editor::selection::Selection;
 use crate::scene::{DirectionalLamp, ParallelogramLamp, PointLamp, SceneId, SegmentLamp};
@@ -10,15 +10,15 @@ use bevy::ecs::world::World;
 pub(in crate::editor::panels) fn commands() -> Vec<Command> {
     commands! {
         "lights.mixer" "Light mixer" ["M"] "Shows what each light adds to the picture; solo, mute, gain and colour without a ray traced again"
-            => |world| { let mut mixer = world.resource_mut::<Mixer>(); mixer.is_open = !mixer.is_open; }; menu("View", 5); state(|world| State::switch(world.get_resource::<Mixer>().is_some_and(|mixer| mixer.is_open))),
+            => |world| flip(&mut world.resource_mut::<Mixer>().is_open); menu("View", 5); state(|world| State::switch(world.get_resource::<Mixer>().is_some_and(|mixer| mixer.is_open))),
         "lights.bake" "Bake the mix into the lights" [] "Gives the lights the intensities and colours that the light mixer shows, as one step; the picture stays"
             => bake; menu("Edit", 4); state(is_mixed),
         "lights.reset-mix" "Reset the mix" [] "Shows the lights as the scene has them"
             => |world| world.resource_mut::<Mixer>().reset(); state(is_mixed),
         "lights.solo" "Solo in the mix" [] "Shows the selected lights without the others, or with them again"
-            => |world| flip(world, |strip| &mut strip.is_solo); over(&[Over::Entity]); state(is_light_selected),
+            => |world| flip_selected(world, |strip| &mut strip.is_solo); over(&[Over::Entity]); state(is_light_selected),
         "lights.mute" "Mute in the mix" [] "Shows the picture without the selected lights, or with them again"
-            => |world| flip(world, |strip| &mut strip.is_muted); over(&[Over::Entity]); state(is_light_selected),
+            => |world| flip_selected(world, |strip| &mut strip.is_muted); over(&[Over::Entity]); state(is_light_selected),
     }
 }
 
@@ -45,7 +45,7 @@ fn is_light_selected(world: &World) -> State {
 }
 
 /// On for all selected lights, or off where it is on for all.
-fn flip(world: &mut World, part: fn(&mut Strip) -> &mut bool) {
+fn flip_selected(world: &mut World, part: fn(&mut Strip) -> &mut bool) {
     let selected = world.resource::<Selection>().ids().to_vec();
     let all = lights(world);
     let chosen = all.iter().filter(|light| selected.contains(&light.id));
