@@ -10,7 +10,7 @@ use crate::view::{
 use bevy::app::{App, Plugin, PostUpdate, PreStartup};
 use bevy::camera::Camera;
 use bevy::camera::visibility::RenderLayers;
-use bevy::ecs::change_detection::DetectChangesMut;
+use bevy::ecs::change_detection::{DetectChangesMut, Mut};
 use bevy::ecs::query::{With, Without};
 use bevy::ecs::system::{Commands, Res, Single};
 use bevy::gizmos::transform_gizmo::TransformGizmoCamera;
@@ -52,6 +52,14 @@ fn pixels(place: Vec2, scale: f32) -> UVec2 {
     (place * scale).round().max(Vec2::ZERO).as_uvec2()
 }
 
+/// Has a camera draw into a part of the window, unless it does already.
+pub(super) fn draw_into(camera: &mut Mut<Camera>, part: Option<bevy::camera::Viewport>) {
+    let place = |part: &bevy::camera::Viewport| (part.physical_position, part.physical_size);
+    if camera.viewport.as_ref().map(place) != part.as_ref().map(place) {
+        camera.viewport = part;
+    }
+}
+
 type SceneCamera = (
     &'static mut Camera,
     &'static mut TracedView,
@@ -82,16 +90,7 @@ pub(super) fn fit_viewport(
         physical_size: max - min,
         depth: 0.0..1.0,
     });
-    let same = match (&camera.viewport, &wanted) {
-        (Some(a), Some(b)) => {
-            a.physical_position == b.physical_position && a.physical_size == b.physical_size
-        }
-        (None, None) => true,
-        _ => false,
-    };
-    if !same {
-        camera.viewport = wanted;
-    }
+    draw_into(&mut camera, wanted);
     let is_active = editing && !is_empty;
     if camera.is_active != is_active {
         camera.is_active = is_active;

@@ -6,6 +6,7 @@ use bevy::app::{App, Plugin, PostStartup, PostUpdate};
 use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{Camera, ClearColorConfig, Projection};
 use bevy::core_pipeline::tonemapping::Tonemapping;
+use bevy::ecs::change_detection::Mut;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::query::{With, Without};
 use bevy::ecs::system::{Commands, Query, Single};
@@ -79,17 +80,22 @@ fn fit_camera(
         if camera.is_active != active {
             camera.is_active = active;
         }
-        let same = match (&*projection, seen) {
-            (Projection::Perspective(a), Projection::Perspective(b)) => {
-                a.fov == b.fov && a.near == b.near && a.aspect_ratio == b.aspect_ratio
-            }
-            (Projection::Orthographic(a), Projection::Orthographic(b)) => {
-                a.area == b.area && a.far == b.far
-            }
-            _ => false,
-        };
-        if !same {
-            *projection = seen.clone();
+        see_as(&mut projection, seen);
+    }
+}
+
+/// Has a camera see as another one does, unless it does already.
+pub(crate) fn see_as(projection: &mut Mut<Projection>, seen: &Projection) {
+    let same = match (&**projection, seen) {
+        (Projection::Perspective(a), Projection::Perspective(b)) => {
+            (a.fov, a.near, a.far, a.aspect_ratio) == (b.fov, b.near, b.far, b.aspect_ratio)
         }
+        (Projection::Orthographic(a), Projection::Orthographic(b)) => {
+            (a.scale, a.near, a.far, a.area) == (b.scale, b.near, b.far, b.area)
+        }
+        _ => false,
+    };
+    if !same {
+        **projection = seen.clone();
     }
 }

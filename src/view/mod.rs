@@ -45,6 +45,7 @@ mod traced;
 pub use adapter::Adapter;
 pub(crate) use adapter::largest_side;
 pub use cameras::{interface_camera, picture_camera, twin_camera};
+pub(crate) use handle_camera::see_as;
 pub use handle_camera::{HandleCameraPlugin, draws_handles};
 pub use lines::{DrawnLines, Line, LinesPlugin, OVERLAY_LAYER};
 pub use pick::{Picked, TracedPickingPlugin, pick};

@@ -2,9 +2,10 @@
 //! other trees over it.
 
 use super::pair::LAYERS;
+use crate::editor::cameras::draw_into;
 use crate::editor::viewport::{EditorCamera, Viewport};
 use crate::scene::NotTraced;
-use crate::view::{draws_handles, twin_camera};
+use crate::view::{draws_handles, see_as, twin_camera};
 use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{Camera, Projection, Viewport as Part};
 use bevy::ecs::change_detection::DetectChangesMut;
@@ -107,18 +108,9 @@ pub(super) fn fit_twin(
             camera.is_active = is_active;
         }
         own_layers.set_if_neq(with_right(layers));
-        if !same_projection(&projection, seen) {
-            *projection = seen.clone();
-        }
-        let Some(part) = &part else {
-            continue;
-        };
-        let same = camera.viewport.as_ref().is_some_and(|known| {
-            known.physical_position == part.physical_position
-                && known.physical_size == part.physical_size
-        });
-        if !same {
-            camera.viewport = Some(part.clone());
+        see_as(&mut projection, seen);
+        if part.is_some() {
+            draw_into(&mut camera, part.clone());
         }
     }
 }
@@ -138,19 +130,6 @@ fn part(left: &Part, at: Vec2, (scale, window): (f32, UVec2)) -> Option<Part> {
         physical_size: size,
         depth: 0.0..1.0,
     })
-}
-
-/// Whether both see the same.
-fn same_projection(a: &Projection, b: &Projection) -> bool {
-    match (a, b) {
-        (Projection::Perspective(a), Projection::Perspective(b)) => {
-            (a.fov, a.near, a.far, a.aspect_ratio) == (b.fov, b.near, b.far, b.aspect_ratio)
-        }
-        (Projection::Orthographic(a), Projection::Orthographic(b)) => {
-            (a.scale, a.near, a.far, a.area) == (b.scale, b.near, b.far, b.area)
-        }
-        _ => false,
-    }
 }
 
 #[cfg(test)]
