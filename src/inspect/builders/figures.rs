@@ -31,7 +31,7 @@ pub struct BuilderFigures {
     pub epo: f64,
     /// Nodes of the wide form, which rays walk.
     pub wide_nodes: usize,
-    /// Children of such a node on average, of eight.
+    /// Children of such a node on average, of sixteen.
     pub children_per_wide_node: f64,
     /// Triangles of a block of its leaves on average, of eight.
     pub triangles_per_block: f64,

@@ -144,7 +144,7 @@ const FIGURES: &[Figure<BuilderFigures>] = &[
         Better::Neither,
     ),
     (
-        "Children, of 8",
+        "Children, of 16",
         "Of a wide node on average: how well it is filled",
         |row| Some(row.children_per_wide_node),
         Better::More,
