@@ -59,12 +59,13 @@ fn below(world: &World, root: Entity, wanted: impl Fn(Entity) -> bool) -> Vec<En
 }
 
 /// Makes entities children of another, or of none. They stay where they are in the world, but for
-/// shear, which a `Transform` cannot say. Those that the parent stands below itself stay as they are.
+/// shear, which a `Transform` cannot say. Those that the parent stands below itself stay as they are, and all do where the
+/// parent stands nowhere, as a material: Bevy places nothing below such.
 pub fn reparent(world: &mut World, ids: &[SceneId], parent: Option<SceneId>) {
     let parent = match parent {
         Some(id) => match scene_entity(world, id) {
-            Some(entity) => Some(entity),
-            None => return,
+            Some(entity) if world.get::<Transform>(entity).is_some() => Some(entity),
+            _ => return,
         },
         None => None,
     };
@@ -106,4 +107,29 @@ pub(super) fn place_in(
     let finite =
         place.translation.is_finite() && place.rotation.is_finite() && place.scale.is_finite();
     finite.then_some(place)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::headless_editor;
+    use crate::scene::Phong;
+    use bevy::ecs::name::Name;
+
+    #[test]
+    fn what_stands_somewhere_becomes_no_child_of_what_does_not() {
+        let mut app = headless_editor();
+        let world = app.world_mut();
+        let place = Transform::from_xyz(1.0, 2.0, 3.0);
+        let child = world.spawn((SceneId(1), Name::new("Box"), place)).id();
+        world.spawn((SceneId(2), Name::new("Red"), Phong::default()));
+        world.spawn((SceneId(3), Name::new("Group"), place));
+        app.update();
+        let world = app.world_mut();
+        reparent(world, &[SceneId(1)], Some(SceneId(2)));
+        assert!(world.get::<ChildOf>(child).is_none());
+        reparent(world, &[SceneId(1)], Some(SceneId(3)));
+        assert!(world.get::<ChildOf>(child).is_some());
+        assert_eq!(world.get::<Transform>(child), Some(&Transform::IDENTITY));
+    }
 }

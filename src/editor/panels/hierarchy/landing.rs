@@ -2,7 +2,7 @@
 //! siblings stand by their numbers, so the line is drawn where it will stand and not where it is let
 //! go.
 
-use super::super::outline::Outline;
+use super::super::outline::{Kind, Outline};
 use super::super::outline_rows::Row;
 use super::super::theme::accent;
 use super::row::List;
@@ -68,8 +68,11 @@ fn moved(outline: &Outline, ids: &[SceneId], target: Option<usize>) -> Vec<Scene
     ids.iter().copied().filter(moves).collect()
 }
 
-/// Not below itself, and not where all of it is already.
+/// Not below itself or a material, which stands nowhere, and not where all of it is already.
 fn may_land(outline: &Outline, ids: &[SceneId], target: Option<usize>) -> bool {
+    if target.is_some_and(|at| outline.items[at].kind == Kind::Material) {
+        return false;
+    }
     let mut places = ids.iter().filter_map(|&id| outline.place(id));
     let below = |at: usize| target.is_some_and(|t| (at..outline.items[at].end).contains(&t));
     !places.any(below) && !moved(outline, ids, target).is_empty()
@@ -138,6 +141,7 @@ pub(super) fn scroll_while_dragging(ui: &Ui) {
 mod tests {
     use super::super::super::outline::tests::village;
     use super::*;
+    use crate::scene::Phong;
     use bevy::ecs::hierarchy::ChildOf;
 
     #[test]
@@ -162,6 +166,17 @@ mod tests {
         assert_eq!(landing(outline, &rows, &some, target), 4, "after the door");
         let along = all(&[10, 13]);
         assert!(!may_land(outline, &along, None), "the door comes along");
+    }
+
+    #[test]
+    fn nothing_lands_below_a_material() {
+        let mut app = village();
+        app.world_mut().spawn((SceneId(30), Phong::default()));
+        app.update();
+        let outline = app.world().resource::<Outline>();
+        let place = |id| outline.place(SceneId(id));
+        assert!(place(30).is_some() && may_land(outline, &[SceneId(12)], place(20)));
+        assert!(!may_land(outline, &[SceneId(12)], place(30)));
     }
 
     #[test]
