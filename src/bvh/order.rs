@@ -9,6 +9,6 @@ pub enum Order {
     None,
     /// Rays of neighbouring pixels, tile by tile: sixteen in a row are a tile of 4 x 4, or samples of one pixel.
     Tile,
-    /// Shadow rays from neighbouring points towards one light.
+    /// Shadow rays from neighbouring points towards one light, best to one part of it after another.
     Light,
 }

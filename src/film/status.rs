@@ -114,7 +114,9 @@ pub(super) fn seconds_left(status: &Status, rules: &Sampling) -> Option<f64> {
     if matches!(status.state, State::Ended(_)) {
         return Some(0.0);
     }
-    let by_samples = (status.samples > 0.0)
+    // The first tiles say little: threads begin one after the other, and the sky comes first.
+    let is_begun = status.seconds >= 2.0 || status.samples >= 0.01 * status.samples_wanted;
+    let by_samples = (is_begun && status.samples > 0.0)
         .then(|| status.seconds * (status.samples_wanted / status.samples - 1.0));
     let by_time = (rules.time > 0.0).then(|| f64::from(rules.time) - status.seconds);
     let by_error = status
@@ -215,5 +217,22 @@ mod tests {
             left(0.0125, 20.0)
         );
         assert_eq!(left(0.5, 20.0), 0.0);
+    }
+
+    #[test]
+    fn how_long_it_takes_is_not_guessed_from_the_first_tiles() {
+        let left = |samples, seconds| {
+            let status = Status {
+                samples,
+                seconds,
+                trend: Vec::new(),
+                ..status()
+            };
+            seconds_left(&status, &Sampling::default())
+        };
+        assert_eq!(left(0.1, 0.4), None);
+        assert_eq!(left(10.0, 0.4), Some(0.4 * 99.0));
+        assert_eq!(left(1.0, 2.0), Some(2.0 * 999.0));
+        assert_eq!(left(0.0, 9.0), None);
     }
 }

@@ -167,10 +167,10 @@ documented! {
         /// same.
         pub adaptive: bool,
         /// Relative error of the picture to stop at, as it is estimated: 0.01 is one percent; 0 does not stop.
-        #[reflect(@Quantity::within(0.0, 1000.0, "").step(0.001), @Label("Stop at error"))]
+        #[reflect(@Quantity::within(0.0, 1000.0, "").step(0.001).zero_is("never"), @Label("Stop at error"))]
         pub error: f32,
         /// Seconds of tracing to stop after, but not before each pixel has a sample; 0 does not stop.
-        #[reflect(@Quantity::within(0.0, 1e7, "s").step(0.1), @Label("Stop after"))]
+        #[reflect(@Quantity::within(0.0, 1e7, "s").step(0.1).zero_is("never"), @Label("Stop after"))]
         pub time: f32,
     }
 }

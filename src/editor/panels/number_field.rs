@@ -325,7 +325,10 @@ impl NumberField<'_> {
     /// The number that a text means here.
     fn read(self, text: &str, before: f64) -> Result<Entered, String> {
         let unit = self.quantity.unit;
-        let number = typed_number(text, unit, unit.kept_per_shown(), before)?;
+        let number = match self.quantity.zero {
+            Some(word) if text.trim().eq_ignore_ascii_case(word) => 0.0,
+            _ => typed_number(text, unit, unit.kept_per_shown(), before)?,
+        };
         if self.is_whole && number.fract() != 0.0 {
             return Err("a whole number is wanted".into());
         }
@@ -353,6 +356,9 @@ impl NumberField<'_> {
         if self.is_mixed {
             return MIXED.into();
         }
+        if let Some(word) = self.word(number) {
+            return word.into();
+        }
         let room = ui.spacing().interact_size.x - 2.0 * ui.spacing().button_padding.x;
         let font = ui.style().drag_value_text_style.resolve(ui.style());
         let with_unit = |digits| self.text(number, digits) + &self.quantity.unit.suffix();
@@ -374,7 +380,15 @@ impl NumberField<'_> {
     }
 
     fn text_with_unit(self, number: f64) -> String {
-        self.text(number, 6) + &self.quantity.unit.suffix()
+        match self.word(number) {
+            Some(word) => word.into(),
+            None => self.text(number, 6) + &self.quantity.unit.suffix(),
+        }
+    }
+
+    /// What a number is called that is no amount.
+    fn word(self, number: f64) -> Option<&'static str> {
+        self.quantity.zero.filter(|_| number == 0.0)
     }
 
     fn text(self, number: f64, digits: usize) -> String {
@@ -439,4 +453,32 @@ fn note_beside(ui: &Ui, id: Id, response: &Response, text: &str) {
                 ui.label(text);
             });
         });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_zero_that_is_no_amount_is_called_so_and_may_be_typed_as_a_word() {
+        let field = NumberField {
+            quantity: Quantity::within(0.0, 10.0, "s").zero_is("never"),
+            is_whole: false,
+            is_mixed: false,
+            says: "",
+        };
+        assert_eq!(
+            [0.0, 1.5].map(|x| field.text_with_unit(x)),
+            ["never", "1.5 s"]
+        );
+        let read = |text| field.read(text, 3.0).ok().map(|entered| entered.number);
+        assert_eq!([" Never ", "0", "2"].map(read), [0.0, 0.0, 2.0].map(Some));
+        assert_eq!(read("nevermore"), None);
+        let plain = NumberField {
+            quantity: Quantity::within(0.0, 10.0, "s"),
+            ..field
+        };
+        assert_eq!(plain.text_with_unit(0.0), "0 s");
+        assert!(plain.read("never", 3.0).is_err());
+    }
 }

@@ -93,6 +93,8 @@ pub struct Quantity {
     pub is_logarithmic: bool,
     /// How much a drag of one point changes it, at least.
     pub step: f64,
+    /// What a zero is called, where it is no amount.
+    pub zero: Option<&'static str>,
 }
 
 impl Quantity {
@@ -126,6 +128,7 @@ impl Quantity {
             slider: None,
             is_logarithmic: false,
             step: 0.01,
+            zero: None,
         }
     }
 
@@ -150,6 +153,14 @@ impl Quantity {
     /// The same with another step.
     pub const fn step(self, step: f64) -> Self {
         Self { step, ..self }
+    }
+
+    /// The same with a word for a zero, which is no amount.
+    pub const fn zero_is(self, word: &'static str) -> Self {
+        Self {
+            zero: Some(word),
+            ..self
+        }
     }
 
     /// The same by the logarithm.
