@@ -21,12 +21,13 @@ pub(super) struct PerSample<T> {
     bytes: AtomicU64,
 }
 
-/// Where the samples of a batch belong: to places of a tile, and to each of those the same ones of its samples, which follow
-/// one another.
+/// Where the samples of a batch belong: to places of a tile, and to each of those the same ones of its samples.
 pub(super) struct BatchPlaces<'a> {
     pub tile: u32,
     pub places: &'a [usize],
     pub indices: Range<u64>,
+    /// The samples of a place follow one another; else a sample of each place.
+    pub by_place: bool,
 }
 
 impl BatchPlaces<'_> {
@@ -35,13 +36,23 @@ impl BatchPlaces<'_> {
         self.places.len() * (self.indices.end - self.indices.start) as usize
     }
 
-    /// Where each is kept.
-    fn each(&self) -> impl Iterator<Item = usize> {
-        self.places.iter().flat_map(|place| {
-            let indices = self.indices.clone();
-            indices.map(move |index| index as usize * TILE_PIXELS + place)
-        })
+    /// Hears place and index of each sample, in order.
+    pub fn each(&self, mut hear: impl FnMut(usize, u64)) {
+        if self.by_place {
+            for &place in self.places {
+                self.indices.clone().for_each(|index| hear(place, index));
+            }
+        } else {
+            for index in self.indices.clone() {
+                self.places.iter().for_each(|&place| hear(place, index));
+            }
+        }
     }
+}
+
+/// Where a sample is kept.
+fn kept_at(place: usize, index: u64) -> usize {
+    index as usize * TILE_PIXELS + place
 }
 
 impl<T: Copy + Default> PerSample<T> {
@@ -65,13 +76,14 @@ impl<T: Copy + Default> PerSample<T> {
     /// Tells what is known of each sample of a batch, in order.
     pub fn read(&self, of: &BatchPlaces, mut tell: impl FnMut(T)) {
         let tile = lock(&self.tiles[of.tile as usize]);
-        for at in of.each() {
-            tell(tile.get(at).copied().unwrap_or_default());
-        }
+        of.each(|place, index| {
+            let known = tile.get(kept_at(place, index));
+            tell(known.copied().unwrap_or_default());
+        });
     }
 
     /// Keeps what is known now of each sample of a batch, as far as there is room.
-    pub fn write(&self, of: &BatchPlaces, values: impl Iterator<Item = T>) {
+    pub fn write(&self, of: &BatchPlaces, mut values: impl Iterator<Item = T>) {
         if of.indices.start >= self.samples {
             return;
         }
@@ -82,11 +94,12 @@ impl<T: Copy + Default> PerSample<T> {
             self.bytes.fetch_add(more, Ordering::Relaxed);
             tile.resize(end, T::default());
         }
-        for (at, value) in of.each().zip(values) {
-            if let Some(kept) = tile.get_mut(at) {
+        of.each(|place, index| {
+            let value = values.next();
+            if let Some((kept, value)) = tile.get_mut(kept_at(place, index)).zip(value) {
                 *kept = value;
             }
-        }
+        });
     }
 
     /// Changes all that is known. On the current rayon pool.
@@ -123,6 +136,7 @@ mod tests {
             tile: 0,
             places,
             indices,
+            by_place: true,
         }
     }
 

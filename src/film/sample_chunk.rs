@@ -29,7 +29,7 @@ pub(super) struct BatchSize {
 
 const LARGEST_BATCH: usize = 512;
 /// Samples of a pixel that stand side by side in a batch, at most: their rays go nearly the same way from nearly the same
-/// place, and meet the same triangles. Of fewer than the least each pixel has one in turn.
+/// place, and meet the same triangles. Where fewer than the least are asked for, each pixel has one in turn.
 const DEEPEST: u64 = 64;
 const LEAST_DEEP: u64 = 8;
 /// Some milliseconds of rays through a large scene.
@@ -222,14 +222,13 @@ impl Scratch {
         if !is_whole {
             self.columns.reset(rows * places.len());
         }
+        let whole = is_whole.then_some(first);
         let mut indices = segment.start..segment.start;
         while indices.end < segment.end {
             let left = segment.end - indices.end;
-            let deep = if left < LEAST_DEEP {
-                1
-            } else {
-                left.min(DEEPEST)
-            };
+            let by_place = left >= LEAST_DEEP;
+            let turns = (batch.get() / places.len().max(1)).max(1) as u64;
+            let deep = left.min(if by_place { DEEPEST } else { turns });
             indices = indices.end..indices.end + deep;
             let mut at = 0;
             while at < places.len() {
@@ -242,10 +241,10 @@ impl Scratch {
                         tile: chunk.tile,
                         places: &places[at..at + wide],
                         indices: from..indices.end.min(from + most as u64),
+                        by_place,
                     };
                     rays += self.take_samples(work, tile.origin, &of, wanted)?;
-                    let whole = is_whole.then_some(first);
-                    self.sum_batch(planes.clone(), places.len(), (at, wide), whole);
+                    self.sum_batch(planes.clone(), (places.len(), at), &of, whole);
                     if stopped() {
                         return None;
                     }
@@ -271,11 +270,10 @@ impl Scratch {
         wanted: PlaneSet,
     ) -> Option<RayCounts> {
         self.samples.clear();
-        for place in of.places {
-            let pixel = origin + pixel_in_tile(*place);
-            let indices = of.indices.clone();
-            (self.samples).extend(indices.map(|index| SampleId { pixel, index }));
-        }
+        of.each(|place, index| {
+            let pixel = origin + pixel_in_tile(place);
+            self.samples.push(SampleId { pixel, index });
+        });
         if let Some(kept) = work.kept {
             kept.tell(of, &mut self.workspace.known);
         }
@@ -286,13 +284,13 @@ impl Scratch {
         Some(taken)
     }
 
-    /// Adds the batch's values, as many of each, to those of a chunk's pixels that begin at the one and are so many; where
-    /// those are all of a tile's to the chunk's sums from the `whole` on.
+    /// Adds the batch's values to the chunk's pixels, which are so many, from the one `at` on; where those are all of a
+    /// tile's to the chunk's sums from the `whole` on.
     fn sum_batch(
         &mut self,
         planes: impl Iterator<Item = usize>,
-        pixels: usize,
-        (at, wide): (usize, usize),
+        (pixels, at): (usize, usize),
+        of: &BatchPlaces,
         whole: Option<usize>,
     ) {
         let (sums, first) = match whole {
@@ -300,7 +298,7 @@ impl Scratch {
             None => (&mut self.columns, 0),
         };
         let count = self.samples.len();
-        let deep = count / wide;
+        let wide = of.places.len();
         for (row, plane) in planes.enumerate() {
             let values = &self.values[row * count..][..count];
             if plane != OWN && values.iter().all(|value| *value == Vec3::ZERO) {
@@ -308,10 +306,11 @@ impl Scratch {
                 continue;
             }
             let first = first + row * pixels + at;
-            if deep == 1 {
-                sums.add(first, values);
+            if of.by_place {
+                sums.add_series(first, count / wide, values);
             } else {
-                sums.add_series(first, deep, values);
+                let turns = values.chunks_exact(wide);
+                turns.for_each(|values| sums.add(first, values));
             }
         }
         let values = folded(&self.folded, &self.values, count);

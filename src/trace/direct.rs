@@ -124,7 +124,7 @@ impl<R: Recorder> Batch<'_, R> {
             } = &mut *shadow_rays;
             numbers.draw(asking, Purpose::Light(lamp.id()), self.settings);
         }
-        shadow_rays.find_parts(asked.has_extent && self.is_of_few_pixels());
+        shadow_rays.find_parts(asked.has_extent, self.samples);
         if asked.faint > 0.0 {
             let ShadowRays {
                 asking, chances, ..
@@ -134,14 +134,6 @@ impl<R: Recorder> Batch<'_, R> {
         }
         self.answer(asked, vertices, shadow_rays);
         self.collect(asked, row, vertices, shadow_rays);
-    }
-
-    /// Whether samples of one pixel fill packets. Rays of many pixels to a part of a small light would be farther apart than
-    /// those of neighbours to all of it.
-    fn is_of_few_pixels(&self) -> bool {
-        const OF_A_PACKET: usize = 16;
-        let first = self.samples.get(..OF_A_PACKET);
-        first.is_some_and(|first| first.iter().all(|sample| sample.pixel == first[0].pixel))
     }
 
     /// What a point of a light has to add so that it is always asked for. A dome is one light, and Classic light has no

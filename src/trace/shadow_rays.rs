@@ -29,7 +29,7 @@ pub(super) struct ShadowRays {
     pub askers: Vec<u32>,
     pub asking: Asking,
     pub numbers: Pairs,
-    /// The part of the light that the point of each question lies in.
+    /// The part of the light that the point of each question lies in; none where rays go in the order of the questions.
     pub parts: Vec<u32>,
     /// Where there are many lights, the number of each question that decides whether it is asked if it is faint.
     pub chances: Vec<f32>,
@@ -93,19 +93,31 @@ impl ShadowRays {
         self.are_gathered = false;
     }
 
-    /// Finds the part of a light that each question's point lies in: one part where the numbers choose none.
-    pub fn find_parts(&mut self, has_extent: bool) {
-        let count = self.askers.len();
-        self.parts.resize(count, 0);
-        if has_extent {
+    /// Finds the part of a light that each question's point lies in, where samples of one pixel fill packets. Rays of many
+    /// pixels to a part of a small light would be farther apart than those of neighbours to all of it.
+    pub fn find_parts(&mut self, has_extent: bool, samples: &[SampleId]) {
+        const OF_A_PACKET: usize = 16;
+        let first = samples.get(..OF_A_PACKET);
+        let fills_packets =
+            first.is_some_and(|first| first.iter().all(|sample| sample.pixel == first[0].pixel));
+        self.parts.clear();
+        if has_extent && fills_packets {
+            self.parts.resize(self.askers.len(), 0);
             parts_of(&self.numbers.u, &self.numbers.v, &mut self.parts);
-        } else {
-            self.parts.fill(0);
         }
     }
 
     /// Takes the rays of all shadows, those to each part of the light together: as packets they stay close to one another.
     pub fn sort_rays(&mut self) {
+        self.ranks.clear();
+        if self.parts.is_empty() {
+            self.sorted.clear();
+            let questions = self.shadows.iter().map(|shadow| shadow.question as usize);
+            self.sorted
+                .extend(questions.map(|question| self.rays[question]));
+            self.ranks.extend(0..self.shadows.len() as u32);
+            return;
+        }
         let mut counts = [0; ALL_PARTS];
         let part_of = |shadow: &Shadow| self.parts[shadow.question as usize] as usize % ALL_PARTS;
         for shadow in &self.shadows {
@@ -117,10 +129,7 @@ impl ShadowRays {
             all += count;
             first
         });
-        if self.sorted.len() < all {
-            self.sorted.resize(all, Ray::new(Vec3::ZERO, Vec3::ZERO));
-        }
-        self.ranks.clear();
+        self.sorted.resize(all, Ray::new(Vec3::ZERO, Vec3::ZERO));
         for shadow in &self.shadows {
             let rank = &mut next[part_of(shadow)];
             self.sorted[*rank] = self.rays[shadow.question as usize];
@@ -237,7 +246,20 @@ mod tests {
     #[test]
     fn rays_to_a_part_of_a_light_stand_together_and_each_shadow_finds_its_own() {
         let mut numbers = Numbers(3);
-        for (count, has_extent) in [(0, true), (1, true), (7, true), (300, true), (300, false)] {
+        let sample = |x: u64, index| SampleId {
+            pixel: glam::UVec2::new(x as u32, 0),
+            index,
+        };
+        let of_one: Vec<_> = (0..16).map(|i| sample(0, i)).collect();
+        let of_many: Vec<_> = (0..16).map(|i| sample(i / 8, i)).collect();
+        for (count, has_extent, samples) in [
+            (0, true, &of_one),
+            (1, true, &of_one),
+            (7, true, &of_one),
+            (300, true, &of_one),
+            (300, false, &of_one),
+            (300, true, &of_many),
+        ] {
             let mut shadow_rays = ShadowRays::default();
             shadow_rays.numbers.fill(2 * count, [0.0; 2]);
             for question in 0..2 * count {
@@ -259,19 +281,22 @@ mod tests {
                     });
                 }
             }
-            shadow_rays.find_parts(has_extent);
+            shadow_rays.find_parts(has_extent, samples);
             shadow_rays.sort_rays();
+            let is_sorted = has_extent && samples == &of_one;
+            assert_eq!(!shadow_rays.parts.is_empty(), is_sorted && count > 0);
+            assert_eq!(shadow_rays.sorted.len(), count);
             let mut parts = vec![None; count];
             for (shadow, &rank) in shadow_rays.shadows.iter().zip(&shadow_rays.ranks) {
                 let question = shadow.question as usize;
                 let own = shadow_rays.rays[question];
                 assert_eq!(shadow_rays.sorted[rank as usize], own);
-                let part = parts[rank as usize].replace(shadow_rays.parts[question]);
-                assert_eq!(part, None);
+                let part = shadow_rays.parts.get(question).copied();
+                assert_eq!(parts[rank as usize].replace(part.unwrap_or(0)), None);
             }
             assert!(parts.is_sorted() && parts.iter().all(Option::is_some));
             parts.dedup();
-            let expected = if has_extent { count.min(ALL_PARTS) } else { 1 };
+            let expected = if is_sorted { count.min(ALL_PARTS) } else { 1 };
             assert!(count < ALL_PARTS || parts.len() == expected, "{parts:?}");
         }
     }
