@@ -29,9 +29,9 @@ pub(super) struct BatchSize {
 
 const LARGEST_BATCH: usize = 512;
 /// Samples of a pixel that stand side by side in a batch, at most: their rays go nearly the same way from nearly the same
-/// place, and meet the same triangles. Where fewer than the least are asked for, each pixel has one in turn.
+/// place, and meet the same triangles. Where too few are asked for to fill packets, each pixel has one in turn.
 const DEEPEST: u64 = 64;
-const LEAST_DEEP: u64 = 8;
+const LEAST_DEEP: u64 = 16;
 /// Some milliseconds of rays through a large scene.
 const RAYS: u64 = 8192;
 const SHORT: Duration = Duration::from_micros(400);

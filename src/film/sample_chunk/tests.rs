@@ -84,6 +84,7 @@ fn the_sums_of_a_chunk_are_those_of_its_samples_one_by_one_whatever_a_batch_hold
     let mut scratch = Scratch::default();
     for (pixels, range) in [
         (Pixels::All, 0..1),
+        (Pixels::All, 2..9),
         (Pixels::All, 3..24),
         (Pixels::Half(1), 8..45),
     ] {
