@@ -6,6 +6,7 @@ use std::{
 };
 
 use obvhs::{aabb::Aabb, bvh2::Bvh2};
+use rayon::prelude::*;
 
 use super::{
     build_tree,
@@ -14,6 +15,9 @@ use super::{
     stats::TreeStats,
     wide::{TriangleBlock, WideBox, WideStats, WideTree},
 };
+
+/// The boxes of fewer instances take less time than handing them to other threads.
+const PARALLEL_SIZE: usize = 1 << 10;
 
 /// The instances, and a tree over them or over all their triangles. The default is empty: every ray misses.
 #[derive(Clone, Default)]
@@ -73,9 +77,12 @@ impl Aggregate {
         let mut boxes: Vec<Aabb> = Vec::new();
         let (tree, places) = match options.levels {
             Levels::Two => {
+                let bounds: Vec<Option<Aabb>> = (instances.par_iter().with_min_len(PARALLEL_SIZE))
+                    .map(Instance::world_bounds)
+                    .collect();
                 let mut numbers = Vec::new();
-                for (number, instance) in instances.iter().enumerate() {
-                    if let Some(bounds) = instance.world_bounds() {
+                for (number, bounds) in bounds.into_iter().enumerate() {
+                    if let Some(bounds) = bounds {
                         numbers.push(number as u32);
                         boxes.push(bounds);
                     }

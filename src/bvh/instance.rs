@@ -245,8 +245,28 @@ impl Instance {
 
     /// The box around the instance in the world, or `None` when its mesh has no triangle that is traced. It is wide
     /// enough for the rounding of every ray that enters (see the module).
+    ///
+    /// Where axes do not stay axes it is that of the mesh's [support](MeshTree::support): a turned box sticks out far
+    /// beyond what is in it (that of a ball to three times the ball's area).
     pub fn world_bounds(&self) -> Option<Aabb> {
-        self.mesh.bounds().map(|bounds| self.to_world_box(&bounds))
+        let whole = self.mesh.bounds()?;
+        if self.keeps_axes() {
+            return Some(self.to_world_box(&whole));
+        }
+        let rows = self.exact_linear().transpose();
+        let rows = [rows.x_axis, rows.y_axis, rows.z_axis];
+        let support = self.mesh.support();
+        let low = DVec3::from(rows.map(|row| -support.along(-row)));
+        let high = DVec3::from(rows.map(|row| support.along(row)));
+        Some(self.placed(low, high, &whole))
+    }
+
+    /// Whether a box stays a box in the world.
+    fn keeps_axes(&self) -> bool {
+        let matrix = &self.world_from_object.matrix3;
+        [matrix.x_axis, matrix.y_axis, matrix.z_axis]
+            .iter()
+            .all(|column| column.cmpne(Vec3A::ZERO).bitmask().count_ones() == 1)
     }
 
     /// The world box of a padded box in object space, conservative for hits inside it.
@@ -255,21 +275,24 @@ impl Instance {
             return *bounds;
         }
         let (min, max) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
-        let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
-        let linear = columns(&self.world_from_object.matrix3);
+        let linear = self.exact_linear();
+        let middle = linear * ((min + max) * 0.5);
+        let half = linear.abs() * ((max - min) * 0.5);
+        self.placed(middle - half, middle + half, bounds)
+    }
+
+    /// The world box of what reaches from `low` to `high` where the instance's linear part has turned it, and lies in
+    /// the padded box `within` before: swept over its way, and wide enough for rounding.
+    fn placed(&self, low: DVec3, high: DVec3, within: &Aabb) -> Aabb {
+        let largest = f64::from(within.min.abs().max(within.max.abs()).max_element());
+        let reach = low.abs().max(high.abs()).max_element();
         let (translation, velocity) = (
             self.entry.translation.as_dvec3(),
             self.entry.velocity.as_dvec3(),
         );
-        let (moved, half) = (linear * centre, linear.abs() * half);
-        let reach = (moved.abs() + half).max_element();
-        let largest = min.abs().max(max.abs()).max_element();
-        // Swept over [0, 1]: half of the way to either side of its middle.
-        let (centre, half) = (
-            moved + translation + 0.5 * velocity,
-            half + 0.5 * velocity.abs(),
-        );
-        let world = (centre.abs() + half).max_element();
+        let low = low + translation + velocity.min(DVec3::ZERO);
+        let high = high + translation + velocity.max(DVec3::ZERO);
+        let world = low.abs().max(high.abs()).max_element();
         // T + velocity · t is rounded twice, which a box that stands still does not see: 2u each.
         let farthest = (translation.abs() + velocity.abs()).max_element();
         let pad =
@@ -277,8 +300,8 @@ impl Instance {
                 + 7.0 * U * self.condition * reach
                 + 20.0 * U * self.norm * largest
                 + 6.0 * U * world;
-        let half = half + DVec3::splat(pad);
-        Aabb::new(round_down(centre - half), round_up(centre + half))
+        let pad = DVec3::splat(pad);
+        Aabb::new(round_down(low - pad), round_up(high + pad))
     }
 
     /// The factor by which |o|∞ pads the origin of a world ray, for the boxes above this instance.

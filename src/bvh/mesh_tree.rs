@@ -1,6 +1,9 @@
 //! One mesh and its tree: built once, shared by every instance.
 
-use std::time::{Duration, Instant};
+use std::{
+    sync::OnceLock,
+    time::{Duration, Instant},
+};
 
 use glam::Vec3A;
 use obvhs::{aabb::Aabb, bvh2::Bvh2};
@@ -11,6 +14,7 @@ use super::{
     options::BuildOptions,
     slab::{SlabRay, triangle_box},
     stats::TreeStats,
+    support::Support,
     triangles::Triangles,
     wedges::Wedges,
     wide::{TriangleBlock, WideBox, WideStats, WideTree},
@@ -27,6 +31,8 @@ pub struct MeshTree {
     pub(super) wide: WideTree,
     pub(super) blocks: Vec<TriangleBlock>,
     wedges: Wedges,
+    /// Made when somebody asks for it: most instances stand as their mesh was modelled.
+    support: OnceLock<Box<Support>>,
     /// The largest coordinate of a traced triangle, without its sign.
     reach: f32,
     build_time: Duration,
@@ -52,6 +58,7 @@ impl MeshTree {
         Self {
             reach: reach.max_element(),
             wedges,
+            support: OnceLock::new(),
             triangles,
             tree,
             wide,
@@ -86,6 +93,12 @@ impl MeshTree {
         self.tree.nodes.first().map(|root| *root.aabb())
     }
 
+    /// How far the triangles' boxes reach in every direction.
+    pub(super) fn support(&self) -> &Support {
+        self.support
+            .get_or_init(|| Box::new(Support::of(&self.tree)))
+    }
+
     /// The largest coordinate of its tree's box, without its sign.
     pub(super) fn reach(&self) -> f32 {
         self.reach
@@ -104,6 +117,7 @@ impl MeshTree {
             + size_of_val(self.tree.primitive_indices.as_slice())
             + self.wide.bytes()
             + size_of_val(self.blocks.as_slice())
+            + self.support.get().map_or(0, |_| size_of::<Support>())
             + self.wedges.bytes()
     }
 

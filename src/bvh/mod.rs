@@ -68,6 +68,7 @@ pub(crate) mod slab;
 mod specimens;
 mod split_plane;
 mod stats;
+mod support;
 mod surface_point;
 #[cfg(test)]
 mod tests;
