@@ -17,7 +17,7 @@ use super::{
 };
 
 /// The boxes of fewer instances take less time than handing them to other threads.
-const PARALLEL_SIZE: usize = 1 << 10;
+const PARALLEL_SIZE: usize = 1 << 7;
 
 /// The instances, and a tree over them or over all their triangles. The default is empty: every ray misses.
 #[derive(Clone, Default)]

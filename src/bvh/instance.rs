@@ -246,8 +246,8 @@ impl Instance {
     /// The box around the instance in the world, or `None` when its mesh has no triangle that is traced. It is wide
     /// enough for the rounding of every ray that enters (see the module).
     ///
-    /// Where axes do not stay axes it is that of the mesh's [support](MeshTree::support): a turned box sticks out far
-    /// beyond what is in it (that of a ball to three times the ball's area).
+    /// Where axes do not stay axes it is that of how far the mesh [reaches](MeshTree::reach_along) along them: a turned box
+    /// sticks out far beyond what is in it (that of a ball to three times the ball's area).
     pub fn world_bounds(&self) -> Option<Aabb> {
         let whole = self.mesh.bounds()?;
         if self.keeps_axes() {
@@ -255,9 +255,9 @@ impl Instance {
         }
         let rows = self.exact_linear().transpose();
         let rows = [rows.x_axis, rows.y_axis, rows.z_axis];
-        let support = self.mesh.support();
-        let low = DVec3::from(rows.map(|row| -support.along(-row)));
-        let high = DVec3::from(rows.map(|row| support.along(row)));
+        let ends = rows.map(|row| self.mesh.reach_along(row));
+        let low = DVec3::from(ends.map(|[_, behind]| -behind));
+        let high = DVec3::from(ends.map(|[ahead, _]| ahead));
         Some(self.placed(low, high, &whole))
     }
 

@@ -1,5 +1,5 @@
-//! How the wide trees of an aggregate hang together, and the questions that are compiled for each way apart: what a
-//! scene does not have costs nothing, not even the registers.
+//! The ways in which an aggregate is arranged (one mesh, a tree over meshes' trees, one tree over all triangles), and the
+//! questions that rays ask. Each is compiled for each arrangement apart, so that a scene pays for its own alone.
 
 use std::marker::PhantomData;
 

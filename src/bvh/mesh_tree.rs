@@ -5,7 +5,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-use glam::Vec3A;
+use glam::{DVec3, Vec3A};
 use obvhs::{aabb::Aabb, bvh2::Bvh2};
 use rayon::prelude::*;
 
@@ -14,7 +14,7 @@ use super::{
     options::BuildOptions,
     slab::{SlabRay, triangle_box},
     stats::TreeStats,
-    support::Support,
+    support::{Support, reach},
     triangles::Triangles,
     wedges::Wedges,
     wide::{TriangleBlock, WideBox, WideStats, WideTree},
@@ -93,10 +93,9 @@ impl MeshTree {
         self.tree.nodes.first().map(|root| *root.aabb())
     }
 
-    /// How far the triangles' boxes reach in every direction.
-    pub(super) fn support(&self) -> &Support {
-        self.support
-            .get_or_init(|| Box::new(Support::of(&self.tree)))
+    /// How far the boxes of its triangles, of which there are some, reach along a direction, and the other way: [`reach`].
+    pub(super) fn reach_along(&self, direction: DVec3) -> [f64; 2] {
+        reach(&self.tree, &self.support, direction)
     }
 
     /// The largest coordinate of its tree's box, without its sign.

@@ -6,8 +6,10 @@
 //! blend of a cell's four corners is never too small. Of a ball it is at most 2.6 % too large, of a cube never. What is more comes from the boxes: a ball of 8,192
 //! triangles has 1.06 to 1.3 times the area that a box round its corners has (one box turned: up to 3 times).
 
+use std::sync::OnceLock;
+
 use glam::{DVec3, IVec3};
-use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::{Bvh2, node::Bvh2Node};
 
 /// Cells along an edge of the cube, an even number: no cell lies across a plane between octants.
 const CELLS: usize = 6;
@@ -15,6 +17,8 @@ const CELLS: usize = 6;
 const HALF: i32 = CELLS as i32 / 2;
 /// Boxes of a tree that the shape is taken from.
 const MOST_BOXES: usize = 1024;
+/// Nodes of a tree whose boxes are looked at one by one each time: a table of them would take more memory than the mesh.
+const FEW_NODES: usize = 63;
 
 /// The support function of the boxes of a tree.
 #[derive(Clone, Debug)]
@@ -23,9 +27,38 @@ pub(super) struct Support {
     along: [[[f32; CELLS + 1]; CELLS + 1]; CELLS + 1],
 }
 
+/// A box by its middle and how far it reaches from there.
+type Middle = (DVec3, DVec3);
+
+fn middle(node: &Bvh2Node) -> Middle {
+    let (min, max) = (node.aabb().min.as_dvec3(), node.aabb().max.as_dvec3());
+    ((min + max) * 0.5, (max - min) * 0.5)
+}
+
+/// How far boxes reach along a direction, and the other way.
+fn ends(boxes: impl Iterator<Item = Middle>, direction: DVec3) -> [f64; 2] {
+    let size = direction.abs();
+    let start = [f64::NEG_INFINITY; 2];
+    boxes.fold(start, |[ahead, behind], (middle, half)| {
+        let (middle, half) = (direction.dot(middle), size.dot(half));
+        [ahead.max(half + middle), behind.max(half - middle)]
+    })
+}
+
+/// How far the leaves of a tree that has some reach along a direction of any length but zero, and the other way: no less
+/// (but for the rounding of f64), and hardly more. Of few the exact ends; else what `known` has or gets.
+pub(super) fn reach(tree: &Bvh2, known: &OnceLock<Box<Support>>, direction: DVec3) -> [f64; 2] {
+    if tree.nodes.len() <= FEW_NODES {
+        let leaves = tree.nodes.iter().filter(|node| node.is_leaf());
+        return ends(leaves.map(middle), direction);
+    }
+    let support = known.get_or_init(|| Box::new(Support::of(tree)));
+    [support.along(direction), support.along(-direction)]
+}
+
 impl Support {
     /// Of a tree with a node.
-    pub(super) fn of(tree: &Bvh2) -> Self {
+    fn of(tree: &Bvh2) -> Self {
         let mut nodes = vec![&tree.nodes[0]];
         // In the order of their depth: what was opened stands before `opened`.
         let mut opened = 0;
@@ -41,24 +74,21 @@ impl Support {
             }
         }
         leaves.extend(&nodes[opened..]);
-        let boxes = leaves.iter().map(|node| {
-            let (min, max) = (node.aabb().min.as_dvec3(), node.aabb().max.as_dvec3());
-            ((min + max) * 0.5, (max - min) * 0.5)
-        });
-        let boxes: Vec<(DVec3, DVec3)> = boxes.collect();
+        let boxes: Vec<Middle> = leaves.into_iter().map(middle).collect();
         let mut along = [[[0.0; CELLS + 1]; CELLS + 1]; CELLS + 1];
-        for (x, plane) in along.iter_mut().enumerate() {
-            for (y, line) in plane.iter_mut().enumerate() {
-                for (z, along) in line.iter_mut().enumerate() {
-                    let at = IVec3::new(x as i32, y as i32, z as i32) - HALF;
-                    if at.abs().max_element() == HALF {
-                        let direction = at.as_dvec3();
-                        let ends = boxes.iter().map(|(middle, half)| {
-                            direction.dot(*middle) + direction.abs().dot(*half)
-                        });
-                        *along = above(ends.fold(f64::NEG_INFINITY, f64::max));
-                    }
-                }
+        let places = 0..(CELLS + 1).pow(3);
+        // Each with its opposite.
+        for place in places.take((CELLS + 1).pow(3) / 2) {
+            let (x, y, z) = (
+                place / (CELLS + 1).pow(2),
+                place / (CELLS + 1) % (CELLS + 1),
+                place % (CELLS + 1),
+            );
+            let at = IVec3::new(x as i32, y as i32, z as i32) - HALF;
+            if at.abs().max_element() == HALF {
+                let [ahead, behind] = ends(boxes.iter().copied(), at.as_dvec3());
+                along[x][y][z] = above(ahead);
+                along[CELLS - x][CELLS - y][CELLS - z] = above(behind);
             }
         }
         Self { along }
@@ -66,7 +96,7 @@ impl Support {
 
     /// No less than the largest `direction · p` of all points p (but for the rounding of f64), and hardly more. The
     /// direction has any length but zero.
-    pub(super) fn along(&self, direction: DVec3) -> f64 {
+    fn along(&self, direction: DVec3) -> f64 {
         let size = direction.abs().max_element() / f64::from(HALF);
         let at = direction / size + f64::from(HALF);
         // The first of the two grid planes that it lies between, axis by axis. It lies in one of the cube's faces, which
@@ -177,7 +207,9 @@ mod tests {
             let mut random = Random::new(seed);
             let direction = IVec3::from(axis).as_dvec3() + random.direction().as_dvec3() * nudge;
             prop_assume!(direction != DVec3::ZERO);
-            let found = mesh.support().along(direction);
+            let [found, _] = mesh.reach_along(direction);
+            let [_, opposite] = mesh.reach_along(-direction);
+            prop_assert_eq!(found, opposite);
             let points = mesh.triangles().positions().iter();
             let ends = points.map(|point| direction.dot(point.as_dvec3()));
             let exact = ends.fold(f64::NEG_INFINITY, f64::max);

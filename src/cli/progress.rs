@@ -103,7 +103,7 @@ impl Drop for Progress {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::film::{ErrorEstimate, State, TrendPoint};
+    use crate::film::{Before, ErrorEstimate, State, TrendPoint};
     use crate::trace::RayCounts;
 
     #[test]
@@ -121,6 +121,7 @@ mod tests {
                 camera: 8_000_000,
                 ..RayCounts::default()
             },
+            before: Before::default(),
             seconds: 2.0,
             trend: vec![TrendPoint {
                 samples: 32.0,

@@ -10,7 +10,7 @@ use super::stats::{Stats, mrays_per_second, triangles};
 use super::stop::{SampleRange, StopArgs};
 use super::view::ViewArgs;
 use crate::film::views::View;
-use crate::film::{Ending, FirstHits, Status, render_lights, render_samples};
+use crate::film::{Ending, FirstHits, LightPictures, Status, render_lights, render_samples};
 use crate::inspect::build_time;
 use crate::io::{
     FileError, Part, PictureFormat, check_outputs, check_picture, check_room, check_writable,
@@ -123,7 +123,7 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
     } else {
         // Those that each light adds, and what shines by itself.
         let layers = if args.lights_separately {
-            world.lights.count() as u64 + 1
+            LightPictures::planes(world.lights.count()) as u64
         } else {
             0
         };

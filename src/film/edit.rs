@@ -10,7 +10,9 @@ use super::lock;
 use super::subject::{MOST_APART, Subject};
 use crate::scene::Lighting;
 use crate::trace::planes::OWN;
-use crate::trace::{Gains, Lamp, Lights, MaterialSet, World, other_points, samples_per_pixel};
+use crate::trace::{
+    Gains, Lamp, LightKind, Lights, MaterialSet, World, other_points, samples_per_pixel,
+};
 use glam::Vec3;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -116,16 +118,20 @@ impl Edit {
 /// were before. Where more lights change at once than there are planes nobody edits one.
 fn edited_first(old: &Subject, world: &World) -> Vec<u64> {
     let mut before: Vec<_> = old.world.lights.all().enumerate().collect();
-    before.sort_by_key(|(_, lamp)| lamp.id());
     let planes = &old.light.planes;
+    let mut lights_of = vec![0; planes.count()];
+    for (light, _) in &before {
+        lights_of[planes.of_light(*light)] += 1;
+    }
+    before.sort_by_key(|(_, lamp)| lamp.name());
     let is_edited = |lamp: Lamp| {
-        let was = before.binary_search_by_key(&lamp.id(), |(_, lamp)| lamp.id());
+        let was = before.binary_search_by_key(&lamp.name(), |(_, lamp)| lamp.name());
         let was = was.ok().map(|at| before[at]);
         let velocity = |lights: &Lights| lights.velocity(lamp.id());
         was.is_none_or(|(place, was)| {
             let is_same =
                 was.is_same(lamp) && velocity(&old.world.lights) == velocity(&world.lights);
-            !is_same && !planes.is_of_one(planes.of_light(place))
+            !is_same && lights_of[planes.of_light(place)] > 1
         })
     };
     let edited = world.lights.all().filter(|lamp| is_edited(*lamp));
@@ -142,17 +148,17 @@ fn edited_first(old: &Subject, world: &World) -> Vec<u64> {
     first
 }
 
-/// A light, and where it is kept.
-struct Kept<'a> {
+/// A light, and which plane it has.
+struct PlacedLight<'a> {
     lamp: Lamp<'a>,
     velocity: Vec3,
     plane: usize,
 }
 
-fn kept(subject: &Subject) -> Vec<Kept<'_>> {
+fn placed_lights(subject: &Subject) -> Vec<PlacedLight<'_>> {
     let lights = &subject.light.world.lights;
     (lights.all().enumerate())
-        .map(|(number, lamp)| Kept {
+        .map(|(number, lamp)| PlacedLight {
             velocity: lights.velocity(lamp.id()),
             plane: subject.light.planes.of_light(number),
             lamp,
@@ -163,29 +169,30 @@ fn kept(subject: &Subject) -> Vec<Kept<'_>> {
 /// Of each plane of the new subject the number of that which has the same light in the old one. `None` where a light that
 /// is seen differs.
 fn same_planes(old: &Subject, new: &Subject) -> Option<Vec<Option<usize>>> {
-    let (mut before, after) = (kept(old), kept(new));
-    before.sort_by_key(|kept| kept.lamp.id());
-    let find = |id: u64| {
-        let found = before.binary_search_by_key(&id, |kept| kept.lamp.id());
+    let (mut before, after) = (placed_lights(old), placed_lights(new));
+    before.sort_by_key(|light| light.lamp.name());
+    let find = |name: (LightKind, u64)| {
+        let found = before.binary_search_by_key(&name, |light| light.lamp.name());
         found.ok().map(|at| &before[at])
     };
     let mut from = vec![None; new.planes()];
     from[OWN] = Some(OWN);
     let mut stale = vec![false; new.planes()];
-    for kept in &after {
-        let same = find(kept.lamp.id())
-            .filter(|was| was.lamp.is_same(kept.lamp) && was.velocity == kept.velocity);
-        if same.is_none() && kept.lamp.is_seen() {
+    for light in &after {
+        let same = find(light.lamp.name())
+            .filter(|was| was.lamp.is_same(light.lamp) && was.velocity == light.velocity);
+        if same.is_none() && light.lamp.is_seen() {
             return None;
         }
         let plane = same.map(|was| was.plane);
-        stale[kept.plane] |= plane.is_none() || from[kept.plane].is_some_and(|p| Some(p) != plane);
-        from[kept.plane] = plane;
+        stale[light.plane] |=
+            plane.is_none() || from[light.plane].is_some_and(|p| Some(p) != plane);
+        from[light.plane] = plane;
     }
-    let mut ids: Vec<u64> = after.iter().map(|kept| kept.lamp.id()).collect();
-    ids.sort_unstable();
+    let mut names: Vec<_> = after.iter().map(|light| light.lamp.name()).collect();
+    names.sort_unstable();
     for was in &before {
-        if ids.binary_search(&was.lamp.id()).is_err() {
+        if names.binary_search(&was.lamp.name()).is_err() {
             if was.lamp.is_seen() {
                 return None;
             }
@@ -195,7 +202,8 @@ fn same_planes(old: &Subject, new: &Subject) -> Option<Vec<Option<usize>>> {
             }
         }
     }
-    let shared = |planes: &[Kept], plane| planes.iter().filter(|kept| kept.plane == plane).count();
+    let shared =
+        |planes: &[PlacedLight], plane| planes.iter().filter(|light| light.plane == plane).count();
     for (plane, (from, stale)) in from.iter_mut().zip(stale).enumerate().skip(OWN + 1) {
         let as_many = from.is_some_and(|from| shared(&before, from) == shared(&after, plane));
         if stale || !as_many {
@@ -229,8 +237,9 @@ impl Engine {
         }
         if edit.needs_rays() {
             let part = edit.part_of_sample(self.part_that_shows(edit.materials));
-            let seconds = self.seconds_a_sample() * part;
-            edit.is_long = seconds > LONGEST_SAMPLE.as_secs_f64();
+            // Before anybody knows how long it takes, it may be long.
+            let seconds = self.seconds_a_sample().map(|whole| whole * part);
+            edit.is_long = seconds.is_none_or(|seconds| seconds > LONGEST_SAMPLE.as_secs_f64());
             if edit.is_long && part > LARGEST_PART && !edit.sets_apart {
                 return false;
             }
@@ -264,6 +273,7 @@ impl Engine {
         self.kept.edit(edit.leaves_lights(&old), moved);
         let arrangement = old.arrangement.wrapping_add(1);
         edit.subject.arrangement = arrangement;
+        self.batch.suit(&edit.subject);
         self.set_subject(edit.subject);
         let mut emptied = 0;
         for tile in &self.tiles {
@@ -273,13 +283,12 @@ impl Engine {
                 emptied += tile.empty();
             }
         }
-        self.forget_samples(emptied);
+        self.start_over(emptied, needs_rays);
         if needs_rays {
             // Until it has light everywhere again, what is seen stays, or is coarse.
             self.set_divider(0);
             *lock(&self.preview) = None;
             self.begins_coarse.store(edit.is_long, Ordering::Relaxed);
-            self.start_over();
         }
     }
 }

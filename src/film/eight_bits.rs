@@ -66,7 +66,8 @@ fn rounded(value: f32) -> u8 {
 struct Steps {
     /// By the upper half of a number's bits, from [`LOWEST`] on: in the upper half of an entry the step of
     /// the smallest number with this half; in the lower one what it takes, added to a number's lower half,
-    /// for the sum to carry over into the next step where the number is of that one. It is never a second one.
+    /// for the sum to carry over into the next step where the number is of that one. A
+    /// half's numbers are of two steps at most.
     table: Box<[u32; PLACES]>,
 }
 

@@ -2,13 +2,14 @@
 
 use super::control::{Control, Signal};
 use super::edit::Edit;
+use super::error::Decline;
 use super::kept::Kept;
 use super::past_moves::PAST_BYTES;
 use super::pool::SharedPool;
 use super::preview::Preview;
 use super::queue::Queue;
 use super::sample_chunk::BatchSize;
-use super::status::{Ending, State, Status, TrendPoint, seconds_left};
+use super::status::{Before, Ending, State, Status, TrendPoint, seconds_left};
 use super::subject::Subject;
 use super::tile_planes::{BLEND_BYTES, PLANE_BYTES};
 use super::tile_state::TileState;
@@ -21,7 +22,7 @@ use bevy::math::URect;
 use glam::{UVec2, Vec2};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, OnceLock, PoisonError, RwLock};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, RwLock};
 use std::time::Duration;
 
 /// How a render goes about it. The samples are the same.
@@ -70,9 +71,25 @@ pub(super) struct Engine {
     begun: AtomicBool,
     /// Others come before its next pass.
     pub(super) begins_coarse: AtomicBool,
-    /// Seconds of a sample of every pixel, as they were before edits.
-    pub(super) pace: OnceLock<f64>,
+    pub(super) speed: Mutex<Speed>,
+    /// What the last pass told of errors of single pixels: the light that may be hidden from one, and how errors decline.
+    of_pixels: Mutex<(f64, Decline)>,
 }
+
+/// How long samples of every pixel take, for those who plan an edit.
+#[derive(Default)]
+pub(super) struct Speed {
+    /// Seconds of one, as measured before the first edit that set the clock back.
+    pub seconds_a_sample: Option<f64>,
+    /// What the clock told when its coarse pictures were done.
+    since: Duration,
+    /// Samples of a pixel at that time.
+    from: f64,
+}
+
+/// Parts of a sample from which on its time is told, and from which on it is told for good: the first tiles say little.
+const TOLD_FROM: f64 = 0.05;
+const KNOWN_FROM: f64 = 0.5;
 
 /// Another number for each render and each of its edits.
 fn next_number() -> u64 {
@@ -84,6 +101,8 @@ fn next_number() -> u64 {
 #[derive(Clone, Debug, Default)]
 struct Progress {
     rays: RayCounts,
+    /// What there was when the clock began anew.
+    before: Before,
     trend: Vec<TrendPoint>,
     ending: Option<Ending>,
 }
@@ -117,7 +136,8 @@ impl Engine {
             edit_waits: AtomicBool::new(false),
             begun: AtomicBool::new(false),
             begins_coarse: AtomicBool::new(mode.watched),
-            pace: OnceLock::new(),
+            speed: Mutex::default(),
+            of_pixels: Mutex::new((0.0, Decline::of([]))),
             mode,
             pool,
             grid,
@@ -209,6 +229,7 @@ impl Engine {
 
     /// Notes the error of the picture as it is now.
     pub(super) fn note_error(&self) {
+        *lock(&self.of_pixels) = (self.hidden_in_a_pixel(), self.decline());
         let Some(error) = self.error() else { return };
         let point = TrendPoint {
             samples: self.samples(),
@@ -219,6 +240,11 @@ impl Engine {
         // The same samples in other tints.
         trend.pop_if(|last| last.samples == point.samples);
         trend.push(point);
+    }
+
+    /// See [`Self::of_pixels`].
+    pub fn told_of_pixels(&self) -> (f64, Decline) {
+        lock(&self.of_pixels).clone()
     }
 
     /// Samples of a pixel, on average.
@@ -233,11 +259,6 @@ impl Engine {
         self.note_rays(rays);
     }
 
-    /// So many samples are no more.
-    pub(super) fn forget_samples(&self, samples: u64) {
-        self.done.fetch_sub(samples, Ordering::Relaxed);
-    }
-
     /// Whether its coarse pictures are behind it, and what it has can be edited.
     pub(super) fn has_begun(&self) -> bool {
         self.begun.load(Ordering::Acquire)
@@ -248,17 +269,47 @@ impl Engine {
         self.begun.store(true, Ordering::Release);
     }
 
-    /// How long a sample of every pixel took before the first edit that sets the clock back.
-    pub(super) fn seconds_a_sample(&self) -> f64 {
-        let now = || self.control.elapsed().as_secs_f64() / self.samples().max(f64::MIN_POSITIVE);
-        self.pace.get().copied().unwrap_or_else(now)
+    /// What the clock tells from here on is how long samples take.
+    pub(super) fn time_samples(&self) {
+        let mut speed = lock(&self.speed);
+        speed.since = self.control.elapsed();
+        speed.from = self.samples();
     }
 
-    /// An edit has work for it: its clock begins anew, and what was told of its errors is of another picture.
-    pub(super) fn start_over(&self) {
-        let _ = self.pace.set(self.seconds_a_sample());
-        self.control.restart_watch();
-        lock(&self.progress).trend.clear();
+    /// Seconds that a sample of every pixel takes, or took before the first edit; `None` while nobody knows.
+    pub(super) fn seconds_a_sample(&self) -> Option<f64> {
+        let speed = lock(&self.speed);
+        let now = || self.measured(&speed, TOLD_FROM);
+        speed.seconds_a_sample.or_else(now)
+    }
+
+    /// The same as measured now, from so many samples on.
+    fn measured(&self, speed: &Speed, least: f64) -> Option<f64> {
+        let samples = self.samples() - speed.from;
+        let took = self.control.elapsed().saturating_sub(speed.since);
+        (samples >= least).then(|| took.as_secs_f64() / samples)
+    }
+
+    /// So many samples are no more, by an edit. Where it has work its clock begins anew, and what was told of its errors is
+    /// of another picture.
+    pub(super) fn start_over(&self, forgotten: u64, has_work: bool) {
+        let mut speed = lock(&self.speed);
+        if has_work && speed.seconds_a_sample.is_none() {
+            speed.seconds_a_sample = self.measured(&speed, KNOWN_FROM);
+        }
+        drop(speed);
+        self.done.fetch_sub(forgotten, Ordering::Relaxed);
+        if has_work {
+            self.control.restart_watch();
+            self.time_samples();
+            let samples = self.samples();
+            let mut progress = lock(&self.progress);
+            progress.trend.clear();
+            progress.before = Before {
+                rays: progress.rays.total(),
+                samples,
+            };
+        }
     }
 
     /// It goes on.
@@ -295,6 +346,7 @@ impl Engine {
             samples: self.samples(),
             samples_wanted: (self.mode.samples.end - self.mode.samples.start) as f64,
             rays: progress.rays,
+            before: progress.before,
             seconds,
             trend: progress.trend,
             seconds_left: None,

@@ -187,4 +187,26 @@ mod tests {
             "what shines by itself is not rounded otherwise"
         );
     }
+
+    #[test]
+    fn of_many_lights_each_has_a_picture_and_those_beyond_the_most_share_one() {
+        let size = UVec2::new(9, 7);
+        let (camera, settings) = (test_scene::camera(), test_scene::settings(size, 4));
+        for points in [8, 9, 10, 29, 30, 31, 32, 100] {
+            let world = test_scene::many(1..points + 1);
+            let count = world.lights.count();
+            let (rendered, apart) = render_lights(&world, &camera, &settings, &|_| {});
+            assert_eq!(1 + apart.lights.len(), LightPictures::planes(count));
+            let mut ids: Vec<usize> = apart.lights.iter().map(|light| light.ids.len()).collect();
+            assert_eq!(ids.iter().sum::<usize>(), count);
+            ids.truncate(LightPictures::MOST);
+            assert!(ids.iter().all(|ids| *ids == 1), "{count}: {ids:?}");
+            for (i, pixel) in rendered.picture.pixels.iter().enumerate() {
+                let lights = apart.lights.iter().map(|light| light.picture.pixels[i]);
+                let sum = apart.own.pixels[i] + lights.sum::<Vec3>();
+                let difference = (sum - *pixel).abs().max_element();
+                assert!(difference <= 1e-5 * pixel.max_element(), "{count} {i}");
+            }
+        }
+    }
 }

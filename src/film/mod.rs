@@ -78,7 +78,7 @@ pub use picture::Picture;
 pub use progressive::Progressive;
 pub use render::{Rendered, render, render_samples, render_while};
 pub use snapshot::Snapshot;
-pub use status::{Ending, State, Status, TrendPoint, duration_text};
+pub use status::{Before, Ending, State, Status, TrendPoint, duration_text};
 pub use sum::Sum;
 pub use tiled_film::Film;
 pub use tiles::TILE;

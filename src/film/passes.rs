@@ -55,14 +55,15 @@ impl Engine {
         let mut hidden = 0.0;
         if goal > 0.0 && judged {
             let moves = self.moves();
-            let measured = ErrorEstimate::of(&moves, 0.0).unwrap_or_default();
-            hidden = if measured.relative_mse > 0.0 {
+            let measured = ErrorEstimate::of(&moves, 0.0);
+            hidden = if measured.is_none_or(|measured| measured.relative_mse > 0.0) {
                 self.unmet.hidden_by_emitters(&subject, OFTEN)
             } else {
                 self.unmet.hidden(&subject, OFTEN)
             };
-            let estimate = ErrorEstimate::of(&moves, hidden).unwrap_or_default();
-            if estimate.relative() <= goal {
+            // An error that is not known is not small.
+            let estimate = ErrorEstimate::of(&moves, hidden);
+            if estimate.is_some_and(|estimate| estimate.relative() <= goal) {
                 return Err(Ending::Error);
             }
         }

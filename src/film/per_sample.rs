@@ -9,7 +9,7 @@ use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// What all of a picture's samples may take together, in bytes.
+/// What a [`PerSample`] may take, in bytes. A render has four.
 const MOST_BYTES: u64 = 1 << 27;
 
 /// Something of each sample; its default where nothing is known.

@@ -173,18 +173,19 @@ impl Progressive {
         self.engine.film()
     }
 
-    /// Samples of one pixel so far, and its estimated relative error; `None` outside the picture. Cheap: for
-    /// what is under a pointer.
+    /// Samples of one pixel so far, and its estimated relative error, as far as the last pass told how errors decline; `None`
+    /// outside the picture. Cheap: for what is under a pointer.
     pub fn pixel(&self, pixel: UVec2) -> Option<(u32, PixelError)> {
-        let (film, place) = self.engine.tile_film(pixel)?;
-        let errors = film.errors_in(&self.engine.decline());
+        let (hidden, decline) = self.engine.told_of_pixels();
+        let (film, place) = self.engine.tile_film(pixel, hidden)?;
+        let errors = film.errors_in(&decline);
         let error = errors[(place.y * film.size().x + place.x) as usize];
         Some((film.count(place.x, place.y), error))
     }
 
     /// The exact sum of one pixel's samples so far, and their number; `None` outside the picture.
     pub fn pixel_sum(&self, pixel: UVec2) -> Option<(Sum, u32)> {
-        let (film, place) = self.engine.tile_film(pixel)?;
+        let (film, place) = self.engine.tile_film(pixel, 0.0)?;
         Some((film.sum(place.x, place.y), film.count(place.x, place.y)))
     }
 

@@ -24,7 +24,7 @@ use std::time::{Duration, Instant};
 /// it may take.
 pub(super) struct BatchSize {
     now: AtomicUsize,
-    most: usize,
+    most: AtomicUsize,
 }
 
 const LARGEST_BATCH: usize = 512;
@@ -39,15 +39,24 @@ const LONG: Duration = Duration::from_micros(1500);
 
 impl BatchSize {
     pub fn new(subject: &Subject) -> Self {
-        let most = RAYS / rays_of_first_hit(subject);
-        Self {
+        let size = Self {
             now: AtomicUsize::new(1),
-            most: (most as usize).clamp(1, LARGEST_BATCH),
-        }
+            most: AtomicUsize::new(1),
+        };
+        size.suit(subject);
+        size
+    }
+
+    /// Batches are of another subject from now on.
+    pub fn suit(&self, subject: &Subject) {
+        let most = RAYS / rays_of_first_hit(subject);
+        let most = (most as usize).clamp(1, LARGEST_BATCH);
+        self.most.store(most, Ordering::Relaxed);
     }
 
     pub fn get(&self) -> usize {
-        self.now.load(Ordering::Relaxed)
+        let most = self.most.load(Ordering::Relaxed);
+        self.now.load(Ordering::Relaxed).min(most)
     }
 
     fn learn(&self, samples: usize, took: Duration) {
@@ -63,7 +72,8 @@ impl BatchSize {
         } else {
             now
         };
-        self.now.store(next.clamp(1, self.most), Ordering::Relaxed);
+        let most = self.most.load(Ordering::Relaxed);
+        self.now.store(next.clamp(1, most), Ordering::Relaxed);
     }
 }
 
@@ -85,10 +95,11 @@ fn rays_of_first_hit(subject: &Subject) -> u64 {
     } else {
         points
     };
-    if features.glossy {
+    let materials = &world.materials;
+    if features.glossy && materials.iter().any(|m| m.mirror != Vec3::ZERO) {
         rays += u64::from(settings.gloss_samples);
     }
-    if features.translucency {
+    if features.translucency && world.needs.transparency {
         rays += u64::from(settings.translucency_samples);
     }
     rays

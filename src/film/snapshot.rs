@@ -113,8 +113,9 @@ impl Engine {
         Film::from_tiles(self.size(), tiles.collect(), hidden)
     }
 
-    /// The film of the one tile that a pixel lies in, and the pixel's place there.
-    pub fn tile_film(&self, pixel: UVec2) -> Option<(Film, UVec2)> {
+    /// The film of the one tile that a pixel lies in, of which a pixel may lack so much light as was `hidden` from it; and the
+    /// pixel's place there.
+    pub fn tile_film(&self, pixel: UVec2, hidden: f64) -> Option<(Film, UVec2)> {
         if pixel.cmpge(self.size()).any() {
             return None;
         }
@@ -122,7 +123,7 @@ impl Engine {
         let pixels = state.film_tile();
         let extent = state.tile.extent;
         drop(state);
-        let film = Film::from_tiles(extent, vec![pixels], self.hidden_in_a_pixel());
+        let film = Film::from_tiles(extent, vec![pixels], hidden);
         Some((film, pixel % TILE))
     }
 }

@@ -39,7 +39,9 @@ pub struct Status {
     pub samples_wanted: f64,
     /// Rays that the film's samples took so far.
     pub rays: RayCounts,
-    /// How long it has been tracing, pauses not counted.
+    /// What there was of both when its clock began anew with an edit.
+    pub before: Before,
+    /// How long it has been tracing, pauses not counted; since an edit that cost rays, where there was one.
     pub seconds: f64,
     /// The estimated error after every pass so far.
     pub trend: Vec<TrendPoint>,
@@ -48,6 +50,15 @@ pub struct Status {
     /// How coarse the picture is: at least every n-th pixel of every n-th row has a sample, n a power
     /// of two; 1 is the full resolution. `None` before the first picture.
     pub divider: Option<u32>,
+}
+
+/// What a render had when an edit set its clock to zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Before {
+    /// Rays of all kinds.
+    pub rays: u64,
+    /// Samples of a pixel, on average, that the edit left.
+    pub samples: f64,
 }
 
 /// The estimated error after one pass.
@@ -65,7 +76,7 @@ impl Status {
     /// Millions of rays a second, all threads together.
     pub fn mrays_per_s(&self) -> f64 {
         if self.seconds > 0.0 {
-            self.rays.total() as f64 / self.seconds * 1e-6
+            self.rays.total().saturating_sub(self.before.rays) as f64 / self.seconds * 1e-6
         } else {
             0.0
         }
@@ -116,8 +127,9 @@ pub(super) fn seconds_left(status: &Status, rules: &Sampling) -> Option<f64> {
     }
     // The first tiles say little: threads begin one after the other, and the sky comes first.
     let is_begun = status.seconds >= 2.0 || status.samples >= 0.01 * status.samples_wanted;
-    let by_samples = (is_begun && status.samples > 0.0)
-        .then(|| status.seconds * (status.samples_wanted / status.samples - 1.0));
+    let taken = status.samples - status.before.samples;
+    let by_samples = (is_begun && taken > 0.0)
+        .then(|| status.seconds / taken * (status.samples_wanted - status.samples));
     let by_time = (rules.time > 0.0).then(|| f64::from(rules.time) - status.seconds);
     let by_error = status
         .trend
@@ -159,6 +171,7 @@ mod tests {
                 camera: 16_000_000,
                 ..RayCounts::default()
             },
+            before: Before::default(),
             seconds: 8.0,
             divider: Some(1),
             trend: [1.0, 2.0, 4.0, 8.0].map(point).to_vec(),
@@ -217,6 +230,22 @@ mod tests {
             left(0.0125, 20.0)
         );
         assert_eq!(left(0.5, 20.0), 0.0);
+    }
+
+    #[test]
+    fn what_was_there_before_the_clock_began_anew_is_in_no_rate() {
+        let status = Status {
+            before: Before {
+                rays: 8_000_000,
+                samples: 70.0,
+            },
+            trend: Vec::new(),
+            ..status()
+        };
+        assert_eq!(status.mrays_per_s(), 1.0);
+        // 10 samples in 8 s.
+        let left = seconds_left(&status, &Sampling::default()).unwrap();
+        assert!((left - 736.0).abs() < 1e-9, "{left}");
     }
 
     #[test]

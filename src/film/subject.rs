@@ -29,8 +29,6 @@ pub(super) struct Subject {
 
 /// Lights of a picture that have a plane each, at the most; the others share one.
 pub(super) const MOST_APART: usize = 8;
-/// Those, that of the others, and that of what shines by itself.
-pub(super) const MOST_PLANES: usize = MOST_APART + 2;
 /// What all planes of a picture may take together, in bytes.
 const MOST_BYTES: f64 = 1e9;
 

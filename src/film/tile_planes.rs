@@ -3,13 +3,13 @@
 use super::Sum;
 use super::past_moves::{PastMoves, squares};
 use super::plane_sums::PlaneSums;
-use super::subject::{MOST_PLANES, Subject};
+use super::subject::Subject;
 use super::sum_columns::{Blend, CHANNELS, Sums, TileColors};
 use super::tile_state::Pixels;
 use super::tiled_film::FilmTile;
 use super::tiles::{TILE_PIXELS, half_of};
 use crate::trace::PlaneSet;
-use crate::trace::planes::OWN;
+use crate::trace::planes::{OWN, Planes};
 use glam::{DVec3, Vec3};
 
 /// The planes of a tile: one, where light is not kept apart.
@@ -18,7 +18,7 @@ pub(super) struct TilePlanes {
     planes: Vec<Plane>,
     /// Samples of each pixel of each half, plane by plane. Together and in place, since whoever plans a pass reads them of
     /// every tile.
-    counts: [[u32; 2]; MOST_PLANES],
+    counts: [[u32; 2]; Planes::MOST_OF_PICTURE],
     /// How far the picture of all of them moved.
     past: PastMoves,
     /// Whether it is known how far each of them moved.

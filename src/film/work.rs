@@ -41,10 +41,11 @@ impl Engine {
 
     fn run_passes(&self, told: &(dyn Fn(&Self) + Sync)) -> Ending {
         loop {
-            if self.begins_coarse.swap(false, Ordering::Relaxed)
-                && let Some(ending) = self.start_coarse()
-            {
-                return ending;
+            if self.begins_coarse.swap(false, Ordering::Relaxed) {
+                if let Some(ending) = self.start_coarse() {
+                    return ending;
+                }
+                self.time_samples();
             }
             self.set_begun();
             let chunks = match self.next_pass() {

@@ -28,6 +28,9 @@ pub(super) fn convert(image: &Image, is_around: bool) -> TextureResult {
     } else {
         trace_texture(image)?
     };
+    if is_around {
+        converted.texture.prepare_as_environment();
+    }
     Ok(TracedTexture {
         texture: Arc::new(converted.texture),
         sampler: sampler_of(image),

@@ -44,6 +44,11 @@ impl Lamp<'_> {
         }
     }
 
+    /// What tells it from all other lights: an entity may be lamps of several kinds.
+    pub fn name(self) -> (LightKind, u64) {
+        (self.kind(), self.id())
+    }
+
     /// Shadow rays at a first hit; `None` of a light without extent, and of one that is taken for its middle, which gets
     /// one. A dome has no middle that could stand for it.
     pub fn samples(self, settings: &RenderSettings) -> Option<u32> {

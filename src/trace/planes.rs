@@ -40,8 +40,10 @@ pub struct Untinted {
 }
 
 impl Planes {
-    /// Planes of lights in a picture, at the most: a [`PlaneSet`] and a pixel's memory have to hold them.
-    pub const MOST: usize = 32;
+    /// Planes of lights in a picture, at the most, that of those who share one among them.
+    pub const MOST: usize = 31;
+    /// Planes of a picture, at the most: those, and [`OWN`].
+    pub const MOST_OF_PICTURE: usize = 1 + Self::MOST;
 
     /// All in one.
     pub fn together() -> Self {
@@ -55,7 +57,7 @@ impl Planes {
         let ids: Vec<u64> = lights.all().map(|light| light.id()).collect();
         let wanted = first
             .iter()
-            .filter_map(|id| ids.iter().position(|other| other == id));
+            .flat_map(|id| (0..ids.len()).filter(|light| ids[*light] == *id));
         let mut is_alone = vec![false; ids.len()];
         let mut left = own;
         for light in wanted.chain(0..ids.len()) {

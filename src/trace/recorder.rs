@@ -7,7 +7,7 @@ use crate::bvh::{Hit, Ray};
 use glam::Vec3;
 
 /// Which of the four arrays of [`Lights`](super::Lights) a light is in, or that it is the environment.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 #[expect(missing_docs, reason = "the names say it all")]
 pub enum LightKind {

@@ -134,6 +134,13 @@ impl Texture {
         })
     }
 
+    /// Has all made now that a lighting environment needs of this map, equirectangular: some tenths of a second of a large
+    /// one. Else whoever needs it first waits for it.
+    pub fn prepare_as_environment(&self) {
+        self.brightest();
+        self.dome_table();
+    }
+
     /// Where light comes from around an equirectangular map; `None` of one that is the same everywhere.
     pub(super) fn dome_table(&self) -> Option<&DomeTable> {
         let table = || DomeTable::new(self).map(Box::new);

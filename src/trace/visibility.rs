@@ -78,7 +78,7 @@ pub(super) fn bit(point: u32) -> u64 {
 /// Which points of lights lie elsewhere in another world with the same surroundings, a bit for each. `None` where points are
 /// numbered otherwise there.
 pub fn other_points(old: &World, new: &World, settings: &RenderSettings) -> Option<u64> {
-    let named = |lamp: Lamp| (lamp.kind(), lamp.id(), lamp.samples(settings));
+    let named = |lamp: Lamp| (lamp.name(), lamp.samples(settings));
     let mut lamps = new.lamps(settings);
     let (mut first, mut others) = (0_u32, 0);
     for was in old.lamps(settings) {

@@ -249,6 +249,8 @@ impl Developer {
                         // What an edit changes is shown as soon as a new render is.
                         job.started = now;
                         self.seen = Some(seen);
+                        // A material may be another.
+                        job.first_hits = None;
                     }
                     job.subject = subject;
                     job.order = order;

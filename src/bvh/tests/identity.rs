@@ -12,7 +12,8 @@ use super::{
     transforms::any_transform,
 };
 use crate::bvh::{
-    Aggregate, BuildOptions, Builder, Hit, Instance, Levels, MeshTree, Preset, Ray, Triangles,
+    Aggregate, BuildOptions, Builder, Hit, Instance, Levels, MeshTree, Order, Preset, Ray,
+    Triangles,
 };
 
 /// Every builder with one level and two, and leaves and depths out of the ordinary.
@@ -48,15 +49,18 @@ fn build(meshes: &[(Triangles, Vec<Affine3A>)], options: &BuildOptions) -> Aggre
     Aggregate::build(instances.collect(), options)
 }
 
-/// Asserts that every way to build finds the same hits, alone and in batches, and returns how many there are.
+/// Asserts that every way to build finds the same hits, alone, in batches and in packets, and returns how many there are.
 fn assert_identical(what: &str, meshes: &[(Triangles, Vec<Affine3A>)], rays: &[Ray]) -> usize {
     let mut expected: Vec<Option<Hit>> = Vec::new();
     let mut expected_all: Vec<Vec<Hit>> = Vec::new();
     for (way, options) in ways().iter().enumerate() {
         let scene = build(meshes, options);
         let (mut hits, mut occluded, mut all) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut in_packets, mut occluded_in_packets) = (Vec::new(), Vec::new());
         scene.closest_hits(rays, &mut hits);
         scene.occlusions(rays, &mut occluded);
+        scene.closest_hits_in(Order::Tile, rays, &mut in_packets);
+        scene.occlusions_in(Order::Light, rays, &mut occluded_in_packets);
         if way == 0 {
             expected = rays.iter().map(|ray| brute(&scene, ray)).collect();
         }
@@ -70,6 +74,9 @@ fn assert_identical(what: &str, meshes: &[(Triangles, Vec<Affine3A>)], rays: &[R
                 expected[i]
             );
             assert_eq!(occluded[i], hits[i].is_some(), "{}", at());
+            let packed = in_packets[i];
+            assert!(same(packed, hits[i]), "{}: packed {packed:?}", at());
+            assert_eq!(occluded_in_packets[i], occluded[i], "{}: packed", at());
             if i % 16 == 0 {
                 scene.all_hits(ray, &mut all);
                 assert_eq!(all.first().copied(), hits[i], "{}", at());
@@ -225,19 +232,27 @@ fn builders_and_levels_agree_on_rays_almost_in_the_planes_of_triangles() {
     // so where no box above it is passed over.
     let mut random = Random::new(6);
     let mesh = scatter(80, 0.3, 61);
-    let rays: Vec<Ray> = (0..20_000)
-        .map(|_| {
+    let rays: Vec<Ray> = (0..5_000)
+        .flat_map(|_| {
             let [a, b, c] = mesh.corners(random.below(80) as u32);
             let mut within = || {
                 let (u, v) = (random.between(-3.0, 3.0), random.between(-3.0, 3.0));
                 a + (b - a) * u + (c - a) * v
             };
             let (from, to) = (within(), within());
-            Ray::new(from, to - from)
+            // So many that they stay together in a packet.
+            [Ray::new(from, to - from); 4]
         })
         .collect();
-    let hits = assert_identical("in planes", &[(mesh, vec![Affine3A::IDENTITY])], &rays);
-    assert!(hits > 3_000, "only {hits} hits");
+    // A turned mesh beside it, for which all boxes above are padded.
+    let turned = Affine3A::from_rotation_translation(
+        Quat::from_euler(glam::EulerRot::XYZ, 0.3, 0.5, 0.7),
+        Vec3::new(4.0, 0.0, 0.0),
+    );
+    for places in [vec![Affine3A::IDENTITY], vec![Affine3A::IDENTITY, turned]] {
+        let hits = assert_identical("in planes", &[(mesh.clone(), places)], &rays);
+        assert!(hits > 3_000, "only {hits} hits");
+    }
 }
 
 proptest! {

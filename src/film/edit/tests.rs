@@ -1,7 +1,7 @@
 use super::super::engine::{Engine, Mode};
 use super::super::subject::Subject;
 use super::super::test_scene::{camera, edited, lit, many, repainted, settings};
-use super::super::{Ending, Progressive, Snapshot};
+use super::super::{Ending, Progressive, Snapshot, lock};
 use crate::trace::{Gains, Lights, PointLight, Untinted, World};
 use glam::{UVec2, Vec3};
 use std::sync::Arc;
@@ -261,7 +261,7 @@ fn an_edit_that_takes_long_keeps_what_it_can_and_is_refused_where_that_is_hardly
     let engine = started(&world);
     let all = engine.status().rays.total();
     // As if it took ten seconds a sample.
-    engine.pace.set(10.0).unwrap();
+    lock(&engine.speed).seconds_a_sample = Some(10.0);
     let other = edited(&world, |lights| {
         lights.points[0].position.x += 0.1;
         lights.directionals[0].to_light = Vec3::Y;
@@ -274,7 +274,11 @@ fn an_edit_that_takes_long_keeps_what_it_can_and_is_refused_where_that_is_hardly
     let moved = edited(&world, |lights| lights.points[0].position.x += 0.1);
     assert!(engine.edit(moved.clone(), &Gains::default()));
     assert_eq!(engine.run(&|_| {}), Ending::Samples);
-    let more = engine.status().rays.total() - all;
+    let status = engine.status();
+    let more = status.rays.total() - all;
+    assert_eq!(status.before.rays, all);
+    let rate = more as f64 / status.seconds * 1e-6;
+    assert!((status.mrays_per_s() / rate - 1.0).abs() < 1e-9);
     assert!(more < all / 2, "{more} rays for one light, {all} for all");
     assert_eq!(engine.picture(), started(&moved).picture());
 }
@@ -417,7 +421,7 @@ fn a_light_that_is_set_apart_from_many_is_no_reason_to_begin_anew() {
     let engine = Engine::new(subject, mode, None);
     engine.run(&|_| {});
     // As if it took ten seconds a sample.
-    engine.pace.set(10.0).unwrap();
+    lock(&engine.speed).seconds_a_sample = Some(10.0);
     let mut now = world;
     let mut rays = Vec::new();
     for _ in 0..2 {

@@ -123,14 +123,17 @@ impl TriangleBlock {
             instance,
         } = *test;
         let triangle = triangle % 8;
+        // From the rays' own origins: a view that is padded for turned instances too has wider ones.
         let [x, y, z] = by_axis!(|axis| {
-            let face = if view.backwards[axis] { max } else { min };
-            view.near(axis, face[axis][triangle])
+            let backwards = view.backwards[axis];
+            let face = if backwards { max } else { min };
+            rays.near(axis, backwards, face[axis][triangle])
         });
         let entry = x.max(y).max(z);
         let [x, y, z] = by_axis!(|axis| {
-            let face = if view.backwards[axis] { min } else { max };
-            view.far(axis, face[axis][triangle])
+            let backwards = view.backwards[axis];
+            let face = if backwards { min } else { max };
+            rays.far(axis, backwards, face[axis][triangle])
         });
         let exit = x.min(y).min(z);
         let (zero, limit) = (S::Packet::splat(0.0), found.limit);

@@ -69,6 +69,20 @@ impl<L: Lanes> PacketRays<L> {
         [self.above[axis], self.below[axis]]
     }
 
+    /// Where the rays, which all go `backwards` along the axis or none, meet a face of a box that they meet first of two.
+    #[inline(always)]
+    pub(super) fn near(&self, axis: usize, backwards: bool, face: f32) -> L {
+        let [above, below] = self.padded(axis);
+        let from = if backwards { below } else { above };
+        L::splat(face).sub(from).mul(self.inverse[axis])
+    }
+
+    /// Where they meet a face of a box that they meet last of two.
+    #[inline(always)]
+    pub(super) fn far(&self, axis: usize, backwards: bool, face: f32) -> L {
+        self.near(axis, !backwards, face)
+    }
+
     /// One of the rays.
     #[inline(always)]
     pub(crate) fn ray(&self, lane: usize) -> ObjectRay {

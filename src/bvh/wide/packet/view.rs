@@ -8,9 +8,9 @@ pub(crate) struct View<S: InstructionSet> {
     /// Which faces the rays meet first, axis by axis: the lower ones (0) or the upper.
     near: [usize; 3],
     /// What those are measured from, ray by ray.
-    pub(super) near_origin: [S::Packet; 3],
-    pub(super) far_origin: [S::Packet; 3],
-    pub(super) inverse: [S::Packet; 3],
+    near_origin: [S::Packet; 3],
+    far_origin: [S::Packet; 3],
+    inverse: [S::Packet; 3],
     bounds: Bounds<S::Eight>,
     frame: Option<Frame<S::Packet>>,
     /// The longest component of the directions.
@@ -143,13 +143,13 @@ impl<S: InstructionSet> View<S> {
 
     /// Where the rays meet a face of a box that they meet first of two.
     #[inline(always)]
-    pub(super) fn near(&self, axis: usize, face: f32) -> S::Packet {
+    fn near(&self, axis: usize, face: f32) -> S::Packet {
         (S::Packet::splat(face).sub(self.near_origin[axis])).mul(self.inverse[axis])
     }
 
     /// Where the rays meet a face of a box that they meet last of two.
     #[inline(always)]
-    pub(super) fn far(&self, axis: usize, face: f32) -> S::Packet {
+    fn far(&self, axis: usize, face: f32) -> S::Packet {
         (S::Packet::splat(face).sub(self.far_origin[axis])).mul(self.inverse[axis])
     }
 }
