@@ -48,7 +48,7 @@ fn line(scene: &Scene) {
         .min_by(|a, b| a.seconds.total_cmp(&b.seconds))
         .expect("a run");
     let samples = f64::from(SIZE.element_product() * SAMPLES);
-    let rays = timed.rendered.rays.total() as f64;
+    let rays = timed.rendered.status.rays.total() as f64;
     let alone = seconds_a_ray(scene) * rays;
     let error = Reference::of(scene)
         .error_of(&timed.rendered.picture)

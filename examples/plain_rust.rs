@@ -76,7 +76,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         ppm.write_all(&pixel.map(|c| (c * 255.0).round() as u8))?;
     }
     ppm.flush()?;
-    let (rays, seconds) = (rendered.rays.total(), rendered.seconds);
+    let (rays, seconds) = (rendered.status.rays.total(), rendered.status.seconds);
     println!("plain.ppm: {rays} rays in {seconds:.2} s");
     Ok(())
 }

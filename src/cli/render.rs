@@ -184,13 +184,13 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
         drop(progress);
         if rendered.ending == Ending::Time && !args.quiet {
             let limit = f64::from(settings.sampling.time);
-            if rendered.seconds > limit + LATE {
+            if rendered.status.seconds > limit + LATE {
                 let file = file.display();
                 tell(
                     "note",
                     format_args!(
                         "{file}: the first sample of each pixel took {:.1} s, longer than the {limit} s asked for",
-                        rendered.seconds
+                        rendered.status.seconds
                     ),
                 );
             }
@@ -230,8 +230,8 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
                 file.display(),
                 settings.size.x,
                 settings.size.y,
-                rendered.seconds,
-                mrays_per_second(rendered.rays.total(), rendered.seconds),
+                rendered.status.seconds,
+                mrays_per_second(rendered.status.rays.total(), rendered.status.seconds),
             ))?;
         }
         stats.spp = stats.spp.max(spp);
@@ -243,8 +243,8 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
             stats.relative_error = Some(error.relative());
             stats.relative_error_is_bound = error.is_bound;
         }
-        stats.render_ms += rendered.seconds * 1e3;
-        stats.rays += rendered.rays;
+        stats.render_ms += rendered.status.seconds * 1e3;
+        stats.rays += rendered.status.rays;
     }
     stats.mrays_per_s = mrays_per_second(stats.rays.total(), stats.render_ms / 1e3);
     if let Some(file) = &args.stats {

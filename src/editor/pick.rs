@@ -54,10 +54,15 @@ pub(super) fn to_window(world: &mut World, point: Vec3) -> Option<Vec2> {
     camera.world_to_viewport(&place, point).ok()
 }
 
-/// What the tracer meets along a ray.
+/// What is seen along a ray.
+pub(super) fn seen(world: &World, from: Vec3, direction: Vec3) -> Option<Picked> {
+    let (traced, settings) = (world.resource::<Traced>(), world.resource());
+    view::pick(&traced.world, settings, &Ray::new(from, direction))
+}
+
+/// Where that is.
 pub(super) fn along(world: &World, from: Vec3, direction: Vec3) -> Option<Vec3> {
-    let traced = world.resource::<Traced>();
-    view::pick(&traced.world, &Ray::new(from, direction)).map(|picked| picked.point)
+    seen(world, from, direction).map(|picked| picked.point)
 }
 
 /// The same without what is to be passed over.
@@ -67,10 +72,9 @@ pub(super) fn past(
     direction: Dir3,
     passes: impl Fn(SceneId) -> bool,
 ) -> Option<Picked> {
-    let traced = &world.resource::<Traced>().world;
     let mut from = from;
     for _ in 0..MOST_PASSED {
-        let met = view::pick(traced, &Ray::new(from, *direction))?;
+        let met = seen(world, from, *direction)?;
         if !passes(met.id) {
             return Some(met);
         }
@@ -96,9 +100,7 @@ pub(super) fn at(world: &mut World, place: Vec2) -> Option<Found> {
     }
     let ray = ray(world, place)?;
     let (from, direction) = (ray.origin, *ray.direction);
-    let traced = world.resource::<Traced>();
-    let picked = view::pick(&traced.world, &Ray::new(from, direction));
-    let solid = picked.map(|picked| Found {
+    let solid = seen(world, from, direction).map(|picked| Found {
         id: picked.id,
         point: picked.point,
     });

@@ -1,5 +1,5 @@
 use crate::scene::RenderSettings;
-use crate::trace::{Camera, World, central_ray};
+use crate::trace::{Camera, World, central_ray, first_surface};
 use glam::UVec2;
 use rayon::prelude::*;
 
@@ -7,9 +7,9 @@ use rayon::prelude::*;
 /// `size` pixels, row by row from the top; infinite where it sees none.
 ///
 /// What a depth buffer is made of: one ray a pixel through its middle and the lens' middle, as the
-/// shutter opens, on the current rayon pool. Depths change only with the camera and the top level, so
-/// they can be kept over edits of lights and materials; and where they only hide lines, a `size` of a
-/// half or a quarter of the picture's will do.
+/// shutter opens, on the current rayon pool. Depths change only with the camera and the top level, and with
+/// materials where those let light through, so they can be kept over edits of lights; and where they only
+/// hide lines, a `size` of a half or a quarter of the picture's will do.
 pub fn depths(world: &World, camera: &Camera, settings: &RenderSettings, size: UVec2) -> Vec<f32> {
     let settings = RenderSettings {
         size,
@@ -25,7 +25,8 @@ pub fn depths(world: &World, camera: &Camera, settings: &RenderSettings, size: U
             );
             world.aggregate.closest_hits(rays, hits);
             for ((depth, ray), hit) in row.iter_mut().zip(&*rays).zip(&*hits) {
-                if let Some(hit) = hit {
+                let seen = hit.and_then(|hit| first_surface(world, &settings, ray, hit));
+                if let Some(hit) = seen {
                     *depth = hit.t * ray.direction.dot(camera.forward);
                 }
             }
@@ -40,14 +41,29 @@ mod tests {
     use crate::film::{FirstHits, test_scene};
     use crate::scene::Projection;
     use glam::Vec3;
+    use std::sync::Arc;
 
     #[test]
     fn depths_are_those_of_the_first_hits_along_the_view_axis() {
         let size = UVec2::new(41, 23);
-        let world = test_scene::world();
+        let plain = test_scene::world();
         let settings = test_scene::settings(size, 1);
         let mut camera = test_scene::camera();
-        for projection in [camera.projection, Projection::Orthographic { height: 3.0 }] {
+        // An object is not there at all.
+        let mut materials = (*plain.materials).clone();
+        materials[plain.objects[1].material as usize].opacity = 0.0;
+        let cut_out = World {
+            materials: Arc::new(materials),
+            ..plain.clone()
+        };
+        let perspective = camera.projection;
+        let flat = Projection::Orthographic { height: 3.0 };
+        let mut all = Vec::new();
+        for (world, projection) in [
+            (plain.clone(), perspective),
+            (plain, flat),
+            (cut_out.with_needs(), perspective),
+        ] {
             camera.projection = projection;
             let hits = FirstHits::trace(&world, &camera, &settings);
             let depths = depths(&world, &camera, &settings, size);
@@ -63,7 +79,9 @@ mod tests {
                 seen += u32::from(depth.is_finite());
             }
             assert!(seen > 100 && seen < size.element_product(), "{seen} seen");
+            all.push(depths);
         }
+        assert_ne!(all[0], all[2], "what was cut out was seen");
     }
 
     #[test]

@@ -66,6 +66,9 @@ impl FirstHits {
     }
 }
 
+/// Samples that are asked for at once.
+const AT_ONCE: usize = 1024;
+
 struct Row {
     centers: Vec<FirstHit>,
     means: Vec<Mean>,
@@ -88,17 +91,17 @@ impl Row {
         let pixels: Vec<UVec2> = (0..settings.size.x).map(|x| UVec2::new(x, y)).collect();
         let mut centers = vec![FirstHit::MISS; pixels.len()];
         central_hits(world, camera, settings, &pixels, &mut centers);
-        let mut hits = vec![FirstHit::MISS; samples as usize];
-        let mut ids = Vec::with_capacity(hits.len());
-        let means = pixels
-            .iter()
-            .map(|&pixel| {
-                ids.clear();
+        let (mut ids, mut hits, mut means) = (Vec::new(), Vec::new(), Vec::new());
+        let at_once = AT_ONCE / samples as usize;
+        for pixels in pixels.chunks(at_once) {
+            ids.clear();
+            for &pixel in pixels {
                 ids.extend((0..u64::from(samples)).map(|index| SampleId { pixel, index }));
-                first_hits(world, camera, settings, &ids, &mut hits);
-                Mean::of(&hits)
-            })
-            .collect();
+            }
+            hits.resize(ids.len(), FirstHit::MISS);
+            first_hits(world, camera, settings, &ids, &mut hits);
+            means.extend(hits.chunks(samples as usize).map(Mean::of));
+        }
         Self { centers, means }
     }
 }

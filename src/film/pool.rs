@@ -7,18 +7,18 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 use thread_priority::ThreadPriority;
 
-/// What a render is for, and so who waits for its threads.
+/// What a render is for, and so which threads it waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Purpose {
+pub(super) enum Priority {
     /// Somebody looks at it.
     View,
     /// A file: it takes what views leave over.
     File,
 }
 
-impl Purpose {
+impl Priority {
     /// Of 0, the least, to 99: niceness 5 and 11 on Linux. A thread begins with 50.
-    fn priority(self) -> u8 {
+    fn of_threads(self) -> u8 {
         match self {
             Self::View => 35,
             Self::File => 20,
@@ -77,23 +77,23 @@ impl Turn<'_> {
     }
 }
 
-/// The pool that all renders for a purpose share: a thread for each core.
+/// The pool that all renders of a priority share: a thread for each core.
 ///
 /// They give way to others. Both cores of a small machine are busy with tracing all the time, and who
 /// moves a light waits for the frame, and for the thread that develops the picture, not for samples. Nor does
 /// a view wait for a file, whose threads are others.
 ///
 /// An error where the system has no more threads; the next call tries again.
-pub(super) fn shared_pool(purpose: Purpose) -> io::Result<Arc<SharedPool>> {
+pub(super) fn shared_pool(priority: Priority) -> io::Result<Arc<SharedPool>> {
     static POOLS: [Mutex<Option<Arc<SharedPool>>>; 2] = [const { Mutex::new(None) }; 2];
-    let mut pool = super::lock(&POOLS[purpose as usize]);
+    let mut pool = super::lock(&POOLS[priority as usize]);
     if let Some(pool) = &*pool {
         return Ok(pool.clone());
     }
     let threads = ThreadPoolBuilder::new()
         .num_threads(rayon::current_num_threads())
         .thread_name(|i| format!("trace {i}"))
-        .start_handler(move |_| give_way(purpose.priority()))
+        .start_handler(move |_| give_way(priority.of_threads()))
         .build()
         .map_err(io::Error::other)?;
     Ok(pool.insert(Arc::new(SharedPool::new(threads))).clone())

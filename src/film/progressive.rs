@@ -2,7 +2,7 @@
 
 use super::control::Signal;
 use super::engine::{Engine, Mode};
-use super::pool::{Purpose, shared_pool};
+use super::pool::{Priority, shared_pool};
 use super::subject::Subject;
 use super::{Ending, Film, FilmMemory, LightMix, LightPictures, PixelError, Snapshot, Status, Sum};
 use crate::scene::RenderSettings;
@@ -49,7 +49,7 @@ impl Progressive {
     ) -> io::Result<Self> {
         let samples = 0..u64::from(samples_per_pixel(&world, &camera, &settings));
         let subject = Subject::mixed(world, camera, settings, Vec::new(), mix);
-        Self::start_for(Purpose::View, subject, samples, region)
+        Self::start_for(Priority::View, subject, samples, region)
     }
 
     /// [`start`](Self::start) for a file that is written in the end: on threads of its own, which give way to
@@ -61,11 +61,11 @@ impl Progressive {
     ) -> io::Result<Self> {
         let samples = 0..u64::from(samples_per_pixel(&world, &camera, &settings));
         let subject = Subject::new(world, camera, settings, false);
-        Self::start_for(Purpose::File, subject, samples, None)
+        Self::start_for(Priority::File, subject, samples, None)
     }
 
     fn start_for(
-        purpose: Purpose,
+        priority: Priority,
         subject: Subject,
         samples: Range<u64>,
         region: Option<URect>,
@@ -75,7 +75,7 @@ impl Progressive {
             samples,
             region,
         };
-        let engine = Arc::new(Engine::new(subject, mode, Some(shared_pool(purpose)?)));
+        let engine = Arc::new(Engine::new(subject, mode, Some(shared_pool(priority)?)));
         engine.set_focus(engine.area.center());
         let (edited, edits) = channel::<()>();
         let worker = Worker(engine.clone());

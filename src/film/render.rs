@@ -3,7 +3,7 @@ use super::engine::{Engine, Mode};
 use super::subject::Subject;
 use super::{Ending, Film, Picture, Status};
 use crate::scene::RenderSettings;
-use crate::trace::{Camera, RayCounts, World, samples_per_pixel};
+use crate::trace::{Camera, World, samples_per_pixel};
 use std::ops::Range;
 
 /// A finished picture, and what it took.
@@ -11,15 +11,11 @@ use std::ops::Range;
 pub struct Rendered {
     /// Linear, scene-referred.
     pub picture: Picture,
-    /// Rays traced, by kind.
-    pub rays: RayCounts,
-    /// Wall-clock time.
-    pub seconds: f64,
     /// The sums behind the picture.
     pub film: Film,
     /// Why it ended.
     pub ending: Ending,
-    /// Its last numbers.
+    /// Its last numbers: rays traced by kind, seconds of wall-clock time and more.
     pub status: Status,
 }
 
@@ -98,8 +94,6 @@ pub(super) fn finish(engine: Engine, ending: Ending) -> Rendered {
     let status = engine.status();
     Rendered {
         picture: engine.picture(),
-        rays: status.rays,
-        seconds: status.seconds,
         film: engine.into_film(),
         ending,
         status,

@@ -180,8 +180,8 @@ pub fn performance(
                 return Err(PerformanceError::Stopped);
             }
             done += 1.0;
-            column.render_ms.push(rendered.seconds * 1e3);
-            column.rays = rendered.rays.total();
+            column.render_ms.push(rendered.status.seconds * 1e3);
+            column.rays = rendered.status.rays.total();
             let first = picture.get_or_insert_with(|| rendered.picture.clone());
             if *first != rendered.picture {
                 return Err(PerformanceError::OtherPicture(title(column.builder)));

@@ -2,7 +2,7 @@
 
 use super::camera_rays::CameraRays;
 use super::{Camera, Cone, SampleId, Surface, World};
-use crate::bvh::{Counters, Ray};
+use crate::bvh::{Counters, Hit, Ray};
 use crate::scene::{PixelSampling, RenderSettings, SceneId};
 use glam::{UVec2, Vec2, Vec3};
 
@@ -91,6 +91,20 @@ pub fn central_ray(camera: &Camera, settings: &RenderSettings, pixel: UVec2) -> 
         0.0
     };
     camera.ray(pixel.as_vec2() + place, settings.size, middle_of_lens, time)
+}
+
+/// Of a ray that meets `hit` first, the first surface that is there at all: `hit`, or what shows where that and others are cut
+/// out, a crossing of opacity 0 being none. By the finest texels.
+pub fn first_surface(world: &World, settings: &RenderSettings, ray: &Ray, hit: Hit) -> Option<Hit> {
+    let mut next = Some(hit);
+    while let Some(hit) = next {
+        let may_be_cut_out = world.lets_light_through(&world.objects[hit.instance as usize]);
+        if !may_be_cut_out || Surface::at(world, settings, ray, 0.0, &hit).opacity > 0.0 {
+            return Some(hit);
+        }
+        next = world.aggregate.next_crossing(ray, &hit);
+    }
+    None
 }
 
 fn first_hit(world: &World, settings: &RenderSettings, cone: Cone, ray: &Ray) -> FirstHit {

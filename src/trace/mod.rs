@@ -93,7 +93,7 @@ pub use dome::{DOME, Dome};
 pub use emitters::emitters;
 pub use environment::{Environment, direction_at};
 pub use faint::FEW as FEW_LIGHTS;
-pub use first_hit::{FirstHit, central_hits, central_ray, first_hits};
+pub use first_hit::{FirstHit, central_hits, central_ray, first_hits, first_surface};
 pub use footprint::Cone;
 pub use gains::Gains;
 pub use in_view::in_view;

@@ -53,7 +53,7 @@ pub struct SegmentPlaces<const N: usize> {
 }
 
 /// The plane of the line and a receiver; components are towards the line and along it.
-struct Planes<const N: usize> {
+struct ReceiverPlanes<const N: usize> {
     distance: [f32; N],
     /// Component along the line of the first end.
     start: [f32; N],
@@ -151,8 +151,11 @@ impl SegmentFrame {
     }
 
     #[inline(always)]
-    fn planes<const GLOSSY: bool, const N: usize>(&self, receivers: &Receivers<N>) -> Planes<N> {
-        let mut planes = Planes {
+    fn planes<const GLOSSY: bool, const N: usize>(
+        &self,
+        receivers: &Receivers<N>,
+    ) -> ReceiverPlanes<N> {
+        let mut planes = ReceiverPlanes {
             distance: [0.0; N],
             start: [0.0; N],
             normal: [[0.0; N]; 2],
@@ -228,7 +231,7 @@ impl SegmentFrame {
     fn nodes<const GLOSSY: bool, const N: usize>(
         &self,
         receivers: &Receivers<N>,
-        planes: &Planes<N>,
+        planes: &ReceiverPlanes<N>,
     ) -> [[f32; N]; NODES] {
         let mut nodes = [[0.0; N]; NODES];
         for (k, nodes) in nodes.iter_mut().enumerate() {
@@ -258,7 +261,7 @@ impl SegmentFrame {
     #[inline(always)]
     fn u_at<const N: usize>(
         &self,
-        planes: &Planes<N>,
+        planes: &ReceiverPlanes<N>,
         i: usize,
         [towards, along]: [f32; 2],
     ) -> f32 {
@@ -267,7 +270,7 @@ impl SegmentFrame {
     }
 }
 
-impl<const N: usize> Planes<N> {
+impl<const N: usize> ReceiverPlanes<N> {
     /// The direction at a place in w, in [0, 1]: its cosine with the normal's part, and its components.
     #[inline(always)]
     fn direction(&self, i: usize, place: f32) -> (f32, [f32; 2]) {

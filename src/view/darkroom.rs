@@ -159,14 +159,16 @@ impl Seen {
 #[derive(PartialEq)]
 struct SurfacesOf {
     /// Kept, lest another is made at its address.
-    trees: KeptTrees,
+    trees: Same<Aggregate>,
+    /// Where some let light through.
+    materials: Option<Same<Vec<trace::Material>>>,
     camera: trace::Camera,
     size: UVec2,
 }
 
-struct KeptTrees(Arc<Aggregate>);
+struct Same<T>(Arc<T>);
 
-impl PartialEq for KeptTrees {
+impl<T> PartialEq for Same<T> {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
     }
@@ -304,7 +306,8 @@ impl Job {
             ..
         } = &*self.subject;
         let wanted = SurfacesOf {
-            trees: KeptTrees(world.aggregate.clone()),
+            trees: Same(world.aggregate.clone()),
+            materials: (world.needs.transparency).then(|| Same(world.materials.clone())),
             camera: camera.clone(),
             size: settings.size,
         };

@@ -6,7 +6,7 @@
 
 use super::{TracedRender, TracedView};
 use crate::bvh::{Hit, Ray};
-use crate::scene::SceneId;
+use crate::scene::{RenderSettings, SceneId};
 use crate::sync::Traced;
 use crate::trace;
 use bevy::camera::Camera;
@@ -39,9 +39,10 @@ pub struct Picked {
     pub hit: Hit,
 }
 
-/// What this ray meets first, at shutter time 0.
-pub fn pick(world: &trace::World, ray: &Ray) -> Option<Picked> {
+/// What is seen along this ray, at shutter time 0: not what is cut out there.
+pub fn pick(world: &trace::World, settings: &RenderSettings, ray: &Ray) -> Option<Picked> {
     let hit = world.aggregate.closest_hit(ray)?;
+    let hit = trace::first_surface(world, settings, ray, hit)?;
     let (id, normal) = side_of(world, &hit)?;
     let normal = if normal.dot(ray.direction) > 0.0 {
         -normal
@@ -68,7 +69,7 @@ pub(super) fn side_of(world: &trace::World, hit: &Hit) -> Option<(SceneId, Vec3)
 
 fn send_hits(
     rays: Res<RayMap>,
-    traced: Res<Traced>,
+    (traced, settings): (Res<Traced>, Res<RenderSettings>),
     views: Query<(&Camera, &GlobalTransform), (With<TracedView>, With<TracedRender>)>,
     entities: Query<(Entity, &SceneId)>,
     mut hits: MessageWriter<PointerHits>,
@@ -78,7 +79,7 @@ fn send_hits(
             continue;
         };
         let ray = Ray::new(ray.origin, *ray.direction);
-        let Some(picked) = pick(&traced.world, &ray) else {
+        let Some(picked) = pick(&traced.world, &settings, &ray) else {
             continue;
         };
         let Some((entity, _)) = entities.iter().find(|(_, id)| **id == picked.id) else {

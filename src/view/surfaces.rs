@@ -4,6 +4,7 @@ use super::darkroom::Subject;
 use super::pick::side_of;
 use crate::film::depths;
 use crate::scene::SceneId;
+use crate::trace::first_surface;
 use bevy::math::UVec2;
 use std::collections::BTreeSet;
 
@@ -12,7 +13,7 @@ const MOST_DEPTHS: f32 = 120_000.0;
 /// Rays across and down a view that look for backs: a few that are seen through a gap are no matter.
 const GRID: UVec2 = UVec2::new(48, 27);
 
-/// All that changes with camera and geometry alone.
+/// All that changes with camera and geometry alone, and with what is cut out of it.
 #[derive(Clone)]
 pub(super) struct Surfaces {
     /// Pixels.
@@ -58,7 +59,8 @@ fn backs(subject: &Subject) -> Vec<SceneId> {
     let mut hits = Vec::new();
     world.aggregate.closest_hits(&rays, &mut hits);
     let seen = rays.iter().zip(&hits).filter_map(|(ray, hit)| {
-        let (object, normal) = side_of(world, hit.as_ref()?)?;
+        let hit = first_surface(world, &subject.settings, ray, (*hit)?)?;
+        let (object, normal) = side_of(world, &hit)?;
         (normal.dot(ray.direction) > 0.0).then_some(object)
     });
     seen.collect::<BTreeSet<_>>().into_iter().collect()

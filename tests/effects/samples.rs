@@ -15,7 +15,10 @@ fn spread(world: &World, camera: &Camera, settings: &RenderSettings) -> (f64, Ra
             ..settings.clone()
         };
         let rendered = render(world, camera, &settings, &|_, _| {});
-        (f64::from(rendered.picture.pixels[0].x), rendered.rays)
+        (
+            f64::from(rendered.picture.pixels[0].x),
+            rendered.status.rays,
+        )
     };
     let values: Vec<f64> = (0..64).map(|seed| run(seed).0).collect();
     let mean = values.iter().sum::<f64>() / 64.0;

@@ -208,7 +208,7 @@ fn adaptive_samples_reach_the_same_error_with_fewer_rays() {
             [counts.iter().min(), counts.iter().max()].map(|n| n.copied().unwrap_or_default());
         let [before, after] =
             [&uniform, &adaptive].map(|r| measured.reference.errors_of(&r.picture)[0]);
-        let rays = uniform.rays.total() as f64 / adaptive.rays.total() as f64;
+        let rays = uniform.status.rays.total() as f64 / adaptive.status.rays.total() as f64;
         let gain = rays * (before / after).powf(1.0 / SLOPE);
         let estimated = adaptive.status.error().unwrap().relative();
         let factor = estimated / after;

@@ -3,7 +3,6 @@
 use super::parents::with_descendants;
 use super::plugin::{select, step};
 use super::{AddAt, add_model, name_of, scene_entity};
-use crate::bvh::Ray;
 use crate::editor::command::{Command, State, commands, flip};
 use crate::editor::extent::{Extent, extent_now, scene_extent};
 use crate::editor::notice::Notices;
@@ -15,8 +14,6 @@ use crate::io::FileError;
 use crate::scene::{
     DirectionalLamp, ParallelogramLamp, PointLamp, SceneCamera, SceneId, SegmentLamp,
 };
-use crate::sync::Traced;
-use crate::view;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::event::Event;
 use bevy::ecs::hierarchy::Children;
@@ -221,17 +218,13 @@ fn landing(world: &mut World, at: Option<Vec2>, reach: f32) -> Option<(Vec3, Opt
         .get_resource::<Viewport>()
         .map(|view| view.rect.center());
     let ray = at.or(middle).and_then(|at| pick::ray(world, at));
-    let hit = |from: Vec3, direction: Vec3| {
-        let traced = world.resource::<Traced>();
-        view::pick(&traced.world, &Ray::new(from, direction))
-    };
-    let seen = ray.and_then(|ray| hit(ray.origin, *ray.direction));
+    let seen = ray.and_then(|ray| pick::seen(world, ray.origin, *ray.direction));
     let above = match seen {
         Some(seen) if seen.normal.y >= LEVEL => return Some((seen.point, Some(seen.id))),
         Some(seen) => seen.point + reach * seen.normal,
         None => world.resource::<AddAt>().place,
     };
-    if let Some(below) = hit(above, Vec3::NEG_Y) {
+    if let Some(below) = pick::seen(world, above, Vec3::NEG_Y) {
         return Some((below.point, Some(below.id)));
     }
     let floor = scene_extent(world)?.least.y;

@@ -76,10 +76,10 @@ fn with_an_error_to_stop_at_it_is_the_picture_of_a_render_that_nobody_watches() 
 
 #[test]
 fn a_file_has_threads_of_its_own_and_a_view_shares_those_of_views() {
-    let pool = |purpose| shared_pool(purpose).unwrap();
-    let (view, file) = (pool(Purpose::View), pool(Purpose::File));
+    let pool = |priority| shared_pool(priority).unwrap();
+    let (view, file) = (pool(Priority::View), pool(Priority::File));
     assert!(!Arc::ptr_eq(&view, &file));
-    assert!(Arc::ptr_eq(&view, &pool(Purpose::View)));
+    assert!(Arc::ptr_eq(&view, &pool(Priority::View)));
     let render = Progressive::start_for_file(world(), camera(), settings(SIZE, 4)).unwrap();
     assert_eq!(render.wait(), Ending::Samples);
     assert_eq!(render.snapshot().picture, as_a_file(4));

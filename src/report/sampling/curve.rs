@@ -175,8 +175,13 @@ fn point(pictures: &[Rendered], reference: &Picture) -> Option<Point> {
     let square = |rendered: &Rendered| rendered.picture.rmse(reference).map_or(f64::NAN, |e| e * e);
     Some(Point {
         samples: mean(&|rendered| rendered.status.samples),
-        seconds: median(pictures.iter().map(|rendered| rendered.seconds).collect()),
-        rays: mean(&|rendered| rendered.rays.total() as f64),
+        seconds: median(
+            pictures
+                .iter()
+                .map(|rendered| rendered.status.seconds)
+                .collect(),
+        ),
+        rays: mean(&|rendered| rendered.status.rays.total() as f64),
         rmse: mean(&square).sqrt(),
         relative_mse: mean(&|rendered| relative_mse(&rendered.picture, reference)),
         estimate,
