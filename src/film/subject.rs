@@ -4,6 +4,7 @@ use super::LightMix;
 use super::tile_planes::PLANE_BYTES;
 use super::tiles::TileGrid;
 use crate::scene::RenderSettings;
+use crate::trace::planes::Planes;
 use crate::trace::{Camera, Gains, Untinted, World};
 use glam::UVec2;
 use std::time::Duration;
@@ -29,6 +30,8 @@ pub(super) struct Subject {
 
 /// Lights of a picture that have a plane each, at the most; the others share one.
 pub(super) const MOST_APART: usize = 8;
+// They, that of the others, and that of what shines by itself.
+const _: () = assert!(MOST_APART + 2 <= Planes::MOST_OF_PICTURE);
 /// What all planes of a picture may take together, in bytes.
 const MOST_BYTES: f64 = 1e9;
 
