@@ -1,28 +1,27 @@
-//! The colour of a glowing body.
+//! The colour of a glowing body, to eyes that take daylight for white: the mixer and a lamp's own field mean the same by a
+//! number of kelvins.
 
 use crate::scene::Quantity;
 use bevy::math::Vec3;
 
-/// The temperature whose light counts as white, in kelvin: another one multiplies a light by what differs from it.
-pub(super) const WHITE: f32 = 6500.0;
-/// What [`factor`] is known of.
-pub(super) const RANGE: [f32; 2] = [1667.0, 25_000.0];
+/// The temperature whose light counts as white, in kelvin: that of D65, sRGB's white.
+pub(super) const WHITE: f32 = 6504.0;
+/// What [`color`] is known of.
+const RANGE: [f32; 2] = [1667.0, 25_000.0];
 /// What a light's own temperature may be: a screen shows no redder white.
 pub(super) const OF_LIGHTS: Quantity = Quantity::within(2000.0, RANGE[1] as f64, "K").step(20.0);
 
-/// What a light is multiplied by, linear RGB, so that what was as a body of 6500 K shines as one of this temperature does, of
-/// the same luminance. Kelvin, brought into [`RANGE`].
-pub(super) fn factor(kelvin: f32) -> Vec3 {
-    if kelvin == WHITE {
-        return Vec3::ONE;
-    }
+/// What white light becomes that shines as a body of this temperature does, linear sRGB of about the same luminance: of
+/// [`WHITE`] exactly white. Kelvin, brought into [`RANGE`]. Daylight is not quite the colour of a body of its temperature
+/// (it is greener), so that all are seen relative to that.
+pub(super) fn color(kelvin: f32) -> Vec3 {
     let [least, most] = RANGE;
-    color(kelvin.clamp(least, most)) / color(WHITE)
+    body(kelvin.clamp(least, most)) / body(WHITE)
 }
 
 /// Linear sRGB of luminance 1. The chromaticity is that of Kim et al., "Design of Advanced Color Temperature Control System
 /// for HDTV Applications" (2002): cubics that follow Planck's law to about 0.001 in x and y.
-pub(super) fn color(kelvin: f32) -> Vec3 {
+fn body(kelvin: f32) -> Vec3 {
     let t = 1e3 / kelvin;
     let x = if kelvin < 4000.0 {
         ((-0.266_123_9 * t - 0.234_358_9) * t + 0.877_695_6) * t + 0.179_910
@@ -57,8 +56,8 @@ pub(super) fn nearest(linear: Vec3) -> f32 {
         return WHITE;
     }
     let is_redder = |kelvin: f32| {
-        let body = color(kelvin);
-        body.x * linear.z > linear.x * body.z
+        let glow = color(kelvin);
+        glow.x * linear.z > linear.x * glow.z
     };
     let [mut cool, mut hot] = [OF_LIGHTS.least as f32, OF_LIGHTS.most as f32];
     // Halved so often, the two are neighbours in f32.
@@ -83,17 +82,17 @@ mod tests {
         for kelvin in [
             1700.0, 2200.0, 2300.0, 3900.0, 4100.0, 6500.0, 9000.0, 25_000.0,
         ] {
-            let light = factor(kelvin);
+            let light = color(kelvin);
             let ratio = light.x / light.z.max(1e-6);
             assert!(ratio < before, "{kelvin} K: {light}");
             before = ratio;
-            let luminance = luminance(color(kelvin));
+            let luminance = luminance(light);
             assert!((luminance - 1.0).abs() < 0.02, "{kelvin} K: {luminance}");
         }
-        assert_eq!(factor(WHITE), Vec3::ONE);
-        assert_eq!(factor(0.0), factor(RANGE[0]));
+        assert_eq!(color(WHITE), Vec3::ONE);
+        assert_eq!(color(0.0), color(RANGE[0]));
         // A lamp's 2856 K, CIE illuminant A, has the chromaticity (0.4476, 0.4074).
-        let lamp = color(2856.0);
+        let lamp = body(2856.0);
         let expected = Vec3::new(1.845, 0.826, 0.233);
         assert!((lamp - expected).abs().max_element() < 0.01, "{lamp}");
     }
@@ -108,6 +107,7 @@ mod tests {
             }
         }
         assert_eq!(nearest(Vec3::ZERO), WHITE);
+        assert_eq!(nearest(Vec3::ONE).round(), WHITE);
         let [red, blue] = [Vec3::X, Vec3::Z].map(nearest);
         assert!(
             (red - 2000.0).abs() < 1.0 && (blue - 25_000.0).abs() < 1.0,

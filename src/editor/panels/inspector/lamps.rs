@@ -65,16 +65,21 @@ fn temperature_ui<L>(
     let mut active = several.first().clone();
     // Of most colours it is a guess: more digits would say what nobody knows.
     let mut kelvin = temperature::nearest(linear(&colors(&mut active)[0])).round();
-    let says = "Colours the light as a body of this temperature glows, as bright as it was: a candle has 1900 K, a bulb 2800, noon 5500, a blue sky 12000";
+    let says = "Colours the light as a body of this temperature glows, as bright as it was: a candle has 1900 K, a bulb 2800, noon 5500, white 6504, a blue sky 12000";
     if number_row(ui, "Temperature", says, &mut kelvin, OF_LIGHTS) {
-        let glow = temperature::color(kelvin);
         several.change(|lamp| {
             for color in colors(lamp) {
-                let [red, green, blue] = (glow * luminance(linear(color))).to_array();
+                let [red, green, blue] = glowing(kelvin, linear(color)).to_array();
                 *color = LinearRgba::new(red, green, blue, color.alpha);
             }
         });
     }
+}
+
+/// The colour of a body of this temperature, as bright as this colour: white of what was as bright as white, to the bit.
+fn glowing(kelvin: f32, as_bright_as: Vec3) -> Vec3 {
+    let glow = temperature::color(kelvin);
+    glow * (luminance(as_bright_as) / luminance(glow))
 }
 
 /// How long a segment is: its middle stays.
@@ -173,4 +178,23 @@ fn colors_ui(ui: &mut Ui, several: &mut Several<ParallelogramLamp>) {
             several.change(|lamp| lamp.colors = all);
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::temperature::{WHITE, nearest};
+    use super::*;
+
+    #[test]
+    fn a_white_light_is_called_daylight_and_called_so_again_it_is_white() {
+        let warm = glowing(2800.0, Vec3::ONE);
+        assert!(warm.x > 1.2 && warm.z < 0.5, "{warm}");
+        for brightness in [0.5, 1.0, 40.0] {
+            let white = Vec3::splat(brightness);
+            assert_eq!(nearest(white).round(), WHITE);
+            assert_eq!(glowing(WHITE, white), white);
+            let again = glowing(WHITE, brightness * warm);
+            assert!((again / white - 1.0).abs().max_element() < 1e-6, "{again}");
+        }
+    }
 }

@@ -69,6 +69,7 @@ pub(super) fn rows_of(lights: &[LightRow], folded: &BTreeSet<String>) -> Vec<Row
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bevy::math::Vec3;
 
     #[test]
     fn lights_stand_together_whose_names_differ_in_a_number_at_the_end() {
@@ -83,6 +84,7 @@ mod tests {
                 id: SceneId(id),
                 name: name.into(),
                 is_shown: true,
+                color: Vec3::ONE,
             })
             .collect();
         let count = |folded: &BTreeSet<String>| rows_of(&lights, folded).len();

@@ -17,7 +17,7 @@ use bevy::ecs::entity::Entity;
 use bevy::ecs::name::Name;
 use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
-use bevy::ecs::world::World;
+use bevy::ecs::world::{EntityRef, World};
 use bevy::math::Vec3;
 use std::collections::{BTreeSet, HashMap};
 
@@ -28,8 +28,8 @@ pub(super) struct Strip {
     pub gain: f32,
     /// Multiplies it too, channel by channel.
     pub color: LinearRgba,
-    /// Kelvin; [`WHITE`] leaves it as it is.
-    pub kelvin: f32,
+    /// Kelvin that it is given, and those that the scene gives it; `None` leaves it as it is.
+    pub kelvin: Option<[f32; 2]>,
     pub is_muted: bool,
     pub is_solo: bool,
 }
@@ -39,7 +39,7 @@ impl Default for Strip {
         Self {
             gain: 1.0,
             color: LinearRgba::WHITE,
-            kelvin: WHITE,
+            kelvin: None,
             is_muted: false,
             is_solo: false,
         }
@@ -50,7 +50,28 @@ impl Strip {
     /// What colour and temperature make of a white light.
     fn hue(&self) -> Vec3 {
         let color = Vec3::new(self.color.red, self.color.green, self.color.blue);
-        color * temperature::factor(self.kelvin)
+        let [to, from] = self.kelvin.unwrap_or([WHITE; 2]).map(temperature::color);
+        // Neither has a channel of nothing within the temperatures of lights.
+        color * to / from
+    }
+
+    /// How hot a body is that glows as it makes of a light.
+    pub fn kelvin_of(&self, light: &LightRow) -> f32 {
+        match self.kelvin {
+            None => light.kelvin(),
+            Some([to, from]) if from == light.kelvin() => to,
+            // The scene's was changed since.
+            Some(kelvin) => {
+                let [to, from] = kelvin.map(temperature::color);
+                temperature::nearest(light.color * to / from).round()
+            }
+        }
+    }
+
+    /// Has a light glow as a body so hot.
+    pub fn set_kelvin(&mut self, light: &LightRow, kelvin: f32) {
+        let own = light.kelvin();
+        self.kelvin = (kelvin != own).then_some([kelvin, own]);
     }
 
     /// What its light is multiplied by where it is heard.
@@ -134,17 +155,44 @@ pub(super) struct LightRow {
     pub name: String,
     /// It is not hidden.
     pub is_shown: bool,
+    /// Linear; of one with a gradient its first.
+    pub color: Vec3,
+}
+
+impl LightRow {
+    /// How hot a body is that glows so, as the light's own field says it.
+    pub fn kelvin(&self) -> f32 {
+        temperature::nearest(self.color).round()
+    }
+}
+
+fn color_of(lamp: EntityRef) -> Vec3 {
+    let first = |colors: &[LinearRgba]| colors.first().copied();
+    let color = (lamp.get::<PointLamp>().map(|lamp| lamp.color))
+        .or_else(|| lamp.get::<DirectionalLamp>().map(|lamp| lamp.color))
+        .or_else(|| first(&lamp.get::<SegmentLamp>()?.colors))
+        .or_else(|| first(&lamp.get::<ParallelogramLamp>()?.colors));
+    color.map_or(Vec3::ONE, |color| {
+        Vec3::new(color.red, color.green, color.blue)
+    })
 }
 
 /// All lights of the scene, by their names and numbers.
 pub(super) fn lights(world: &mut World) -> Vec<LightRow> {
-    let mut query =
-        world.query_filtered::<(&SceneId, Option<&Name>, Option<&InheritedVisibility>), AnyLamp>();
-    let rows = query.iter(world).map(|(&id, name, visibility)| LightRow {
-        id,
-        name: name.map_or_else(|| format!("light {}", id.0), ToString::to_string),
-        is_shown: visibility.is_none_or(|visibility| visibility.get()),
-    });
+    let mut query = world.query_filtered::<(
+        &SceneId,
+        Option<&Name>,
+        Option<&InheritedVisibility>,
+        EntityRef,
+    ), AnyLamp>();
+    let rows = query
+        .iter(world)
+        .map(|(&id, name, visibility, lamp)| LightRow {
+            id,
+            name: name.map_or_else(|| format!("light {}", id.0), ToString::to_string),
+            is_shown: visibility.is_none_or(|visibility| visibility.get()),
+            color: color_of(lamp),
+        });
     let mut rows: Vec<LightRow> = rows.collect();
     rows.sort_by(|a, b| (&a.name, a.id).cmp(&(&b.name, b.id)));
     rows

@@ -3,7 +3,7 @@
 use super::super::fields::{color_ui, number, number_row, row};
 use super::super::number_field::set_owner;
 use super::super::says::Says;
-use super::super::temperature::{RANGE, WHITE};
+use super::super::temperature::OF_LIGHTS;
 use super::mix::{LightRow, Mixer};
 use super::sketches::Sketch;
 use super::{Shares, share_text};
@@ -21,7 +21,6 @@ const GAIN: Quantity = Quantity::within(0.0, Gains::MOST as f64, "×")
     .shown(0.01, 100.0)
     .logarithmic()
     .step(0.02);
-const KELVIN: Quantity = Quantity::within(RANGE[0] as f64, RANGE[1] as f64, "K").step(20.0);
 
 /// A button that is on or off, and what programs that read the screen aloud call it; true where it was clicked.
 pub(super) fn toggle(ui: &mut Ui, text: &str, is_on: bool, says: &str) -> bool {
@@ -112,9 +111,12 @@ pub(super) fn light_ui(
             row(ui, "Colour", &says, |ui| {
                 color_ui(ui, &format!("Colour of {name}: white is as the scene has it"), &mut strip.color, false);
                 let says = format!(
-                    "Temperature of {name}: its light becomes that of a body so hot, where the scene's is taken for one of {WHITE} K"
+                    "Temperature of {name}: its light becomes that of a body so hot; it says what the light itself is said to have"
                 );
-                number(ui, &says, &mut strip.kelvin, KELVIN);
+                let mut kelvin = strip.kelvin_of(light);
+                if number(ui, &says, &mut kelvin, OF_LIGHTS) {
+                    strip.set_kelvin(light, kelvin);
+                }
             });
         });
     });

@@ -1,7 +1,8 @@
 //! The mixer as a person meets it, without a window.
 
+use super::super::temperature::{WHITE, nearest};
 use super::super::tests::Desk;
-use super::mix::{Mixer, Strip};
+use super::mix::{Mixer, Strip, lights};
 use crate::editor::action::Action;
 use crate::editor::document::{Document, adopt};
 use crate::editor::history::{History, undo};
@@ -127,11 +128,39 @@ fn the_mix_is_baked_as_one_step_that_undo_takes_back() {
 }
 
 #[test]
+fn the_mixer_and_a_lights_own_field_say_one_temperature_and_mean_the_same_by_it() {
+    let mut desk = open();
+    let (entity, id, _) = lamp(&mut desk);
+    let row = |desk: &mut Desk| {
+        let mut rows = lights(desk.world()).into_iter();
+        rows.find(|row| row.id == id).unwrap()
+    };
+    for own in [LinearRgba::WHITE, LinearRgba::rgb(1.0, 0.8, 0.5)] {
+        desk.world().get_mut::<PointLamp>(entity).unwrap().color = own;
+        let light = row(&mut desk);
+        assert_eq!(light.kelvin(), nearest(light.color).round());
+        let mut strip = Strip::default();
+        assert_eq!(strip.kelvin_of(&light), light.kelvin());
+        assert_eq!(strip.kelvin_of(&light) == WHITE, own == LinearRgba::WHITE);
+        strip.set_kelvin(&light, 3000.0);
+        assert_eq!(strip.kelvin_of(&light), 3000.0);
+        set(&mut desk, id, |set| *set = strip.clone());
+        run(&mut desk, "lights.bake");
+        let baked = row(&mut desk);
+        let error = (baked.kelvin() - 3000.0).abs();
+        assert!(error <= 1.0, "{} K", baked.kelvin());
+        // The one that it has leaves it as it is.
+        strip.set_kelvin(&light, light.kelvin());
+        assert_eq!(strip, Strip::default());
+    }
+}
+
+#[test]
 fn with_lights_in_one_plane_the_view_hears_of_it_and_another_scene_of_no_mix() {
     let mut desk = open();
     adopt(desk.world(), "cornell-box", None);
     let (_, id, _) = lamp(&mut desk);
-    set(&mut desk, id, |strip| strip.kelvin = 3000.0);
+    set(&mut desk, id, |strip| strip.kelvin = Some([3000.0, WHITE]));
     desk.world().resource_mut::<Preferences>().lights_apart = false;
     desk.settle();
     let warm = mix(&mut desk);
