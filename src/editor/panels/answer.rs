@@ -21,13 +21,16 @@ use bevy::ecs::system::{Res, ResMut};
 use bevy::ecs::world::World;
 use bevy::math::{Ray3d, Vec2};
 use bevy_egui::egui::{
-    self, Align2, Area, CursorIcon, Id, Label, Order, Pos2, Rect, RichText, Stroke, vec2,
+    self, Align, Align2, Area, CursorIcon, Id, Label, Order, Pos2, Rect, RichText, Stroke,
+    Vec2 as Extent, vec2,
 };
 
 /// Points.
 const WIDTH: f32 = 300.0;
 /// Points between the answer and the legend of the lines.
 const GAP: f32 = 6.0;
+/// How much less a part of the legend is missed than one of a card with buttons.
+const LEGEND_MISSED: f32 = 0.1;
 /// How far away it is where a ray met nothing.
 const FAR: f32 = 1e5;
 
@@ -89,7 +92,7 @@ pub(super) fn forget_scene(_: On<SceneOpened>, mut answer: ResMut<Answer>) {
 }
 
 /// The cross of a command that waits for a click.
-pub(super) fn armed_ui(context: &egui::Context, world: &World) {
+pub(super) fn armed_ui(context: &egui::Context, free: Rect, world: &World) {
     let text = match world.get_resource::<Armed>() {
         None | Some(Armed::No) => return,
         Some(Armed::Why(Question::Black)) => "Click a pixel: why is it black? (Esc: none)",
@@ -103,10 +106,16 @@ pub(super) fn armed_ui(context: &egui::Context, world: &World) {
         return;
     };
     context.set_cursor_icon(CursorIcon::Crosshair);
-    Area::new(Id::new("what is waited for"))
+    let id = Id::new("what is waited for");
+    let known = context.memory(|memory| memory.area_rect(id));
+    let size = known.map_or(vec2(WIDTH, 30.0), |known| known.size());
+    let (pivot, corner) = corner_free(free, at, [16.0, 8.0], size, &clickable(context));
+    Area::new(id)
         .order(Order::Tooltip)
         .interactable(false)
-        .fixed_pos(at + vec2(16.0, 16.0))
+        .pivot(pivot)
+        .fixed_pos(corner)
+        .constrain_to(free)
         .show(context, |ui| {
             egui::Frame::popup(ui.style()).show(ui, |ui| ui.label(text));
         });
@@ -257,6 +266,74 @@ pub(super) fn corner_beside(free: Rect, at: Pos2, [after, before]: [f32; 2]) -> 
     (pivot, at + vec2(away(right), away(below)))
 }
 
+/// The same for what goes with the pointer: at the first corner, from that one on, at which it lies over nothing that can be
+/// clicked, or over the least of it.
+pub(super) fn corner_free(
+    free: Rect,
+    at: Pos2,
+    [after, before]: [f32; 2],
+    size: Extent,
+    taken: &[(Rect, f32)],
+) -> (Align2, Pos2) {
+    let away = |align| match align {
+        Align::Min => after,
+        _ => -before,
+    };
+    let (first, _) = corner_beside(free, at, [after, before]);
+    let flipped = |align| match align {
+        Align::Min => Align::Max,
+        _ => Align::Min,
+    };
+    let [x, y] = first.0;
+    let corners = [
+        [x, y],
+        [flipped(x), y],
+        [x, flipped(y)],
+        [flipped(x), flipped(y)],
+    ];
+    let hidden = |[x, y]: [Align; 2]| {
+        let corner = at + vec2(away(x), away(y));
+        let wanted = Align2([x, y]).anchor_size(corner, size);
+        let last = (free.max - size).max(free.min);
+        let stands = Rect::from_min_size(wanted.min.clamp(free.min, last), size);
+        let over = taken.iter().map(|(taken, missed)| {
+            let part = taken.intersect(stands);
+            if part.is_positive() {
+                part.area() * missed
+            } else {
+                0.0
+            }
+        });
+        let over: f32 = over.sum();
+        // Over what it is about it would be worst.
+        over + if stands.contains(at) {
+            stands.area()
+        } else {
+            0.0
+        }
+    };
+    let least = corners.into_iter().map(|corner| (hidden(corner), corner));
+    let least = least.reduce(|best, next| if next.0 < best.0 { next } else { best });
+    let [x, y] = least.map_or(first.0, |(_, corner)| corner);
+    (Align2([x, y]), at + vec2(away(x), away(y)))
+}
+
+/// Where cards and windows lie over the picture that have something to click, and how much each is missed where something
+/// lies over it: the legend of the lines is only read, and folded now and then.
+pub(super) fn clickable(context: &egui::Context) -> Vec<(Rect, f32)> {
+    let legend = line_legend::layer();
+    context.memory(|memory| {
+        let layers = memory.areas().visible_layer_ids().into_iter();
+        let layers =
+            layers.filter(|layer| matches!(layer.order, Order::Middle | Order::Foreground));
+        let place = |layer: egui::LayerId| {
+            let missed = if layer == legend { LEGEND_MISSED } else { 1.0 };
+            Some((memory.area_rect(layer.id)?, missed))
+        };
+        layers.filter_map(place).collect()
+    })
+}
+
 /// The part of the free rectangle in which a card that wants to stand there hides nothing of what is taken already: right of
 /// that, else below it.
 fn room_beside(free: Rect, wanted: Rect, taken: Option<Rect>) -> Rect {
@@ -311,5 +388,35 @@ mod tests {
         let free = at(220.0, 50.0, 1000.0, 700.0);
         let far = Rect::from_min_size(pos2(800.0, 400.0), card);
         assert_eq!(room_beside(free, far, Some(legend)), free);
+    }
+
+    #[test]
+    fn what_goes_with_the_pointer_lies_over_no_button_where_another_corner_is_free() {
+        let free = Rect::from_min_size(pos2(200.0, 50.0), vec2(1000.0, 700.0));
+        let (size, gaps) = (vec2(180.0, 120.0), [18.0, 14.0]);
+        let stands = |at: Pos2, taken: &[(Rect, f32)]| {
+            let (pivot, corner) = corner_free(free, at, gaps, size, taken);
+            pivot.anchor_size(corner, size)
+        };
+        let at = pos2(500.0, 300.0);
+        let usual = stands(at, &[]);
+        assert_eq!(usual.min, at + vec2(18.0, 18.0), "right of it and below");
+        let answer = Rect::from_min_size(at + vec2(40.0, 60.0), vec2(300.0, 90.0));
+        let card = stands(at, &[(answer, 1.0)]);
+        assert!(!card.intersects(answer) && !card.contains(at), "{card}");
+        // Where there is something everywhere, over the least of it.
+        let left = Rect::from_min_max(pos2(200.0, 50.0), at - vec2(20.0, 0.0));
+        let below = Rect::from_min_max(pos2(200.0, 310.0), free.max);
+        let above = Rect::from_min_max(pos2(510.0, 50.0), pos2(1200.0, 200.0));
+        let everywhere = [left, below, above].map(|taken| (taken, 1.0));
+        let card = stands(at, &everywhere);
+        assert!(card.max.y < at.y && card.min.x > at.x, "{card}");
+        // Rather over what is only read.
+        let read = [(left, 1.0), (below, LEGEND_MISSED), (above, 1.0)];
+        let card = stands(at, &read);
+        assert_eq!(card.min, usual.min);
+        // In a corner it stays in the view, and off the pointer.
+        let card = stands(free.max - vec2(5.0, 5.0), &[]);
+        assert!(free.contains_rect(card), "{card}");
     }
 }

@@ -94,7 +94,7 @@ pub(super) fn overlays_ui(
     over |= with(world, |world, answer| {
         answer_ui(ui.ctx(), free, world, answer)
     });
-    armed_ui(ui.ctx(), world);
+    armed_ui(ui.ctx(), free, world);
     if !only_picture {
         over |= with(world, |world, tried| {
             let room = Rect::from_min_max(free.min, free.max - vec2(0.0, below));

@@ -1,6 +1,6 @@
 //! What the lines over the picture stand for: beside the pointer, and of the chosen node in a corner.
 
-use super::answer::{Answer, corner_beside};
+use super::answer::{Answer, clickable, corner_free};
 use super::line_legend;
 use super::says::Says;
 use crate::bvh::primitives_below;
@@ -15,6 +15,9 @@ use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{self, Grid, Id, Order, Rect, RichText, Ui, pos2};
 use std::sync::Arc;
+
+/// Points that a card beside the pointer takes, until it is known.
+const USUAL: egui::Vec2 = egui::vec2(200.0, 120.0);
 
 /// What was told last, of what.
 #[derive(Resource, Default)]
@@ -80,8 +83,11 @@ fn hovered_ui(context: &egui::Context, free: Rect, world: &World, tales: &mut Ta
         return;
     };
     let at = to_points(context, hovered.at);
-    let (pivot, corner) = corner_beside(free, at, [18.0, 14.0]);
-    egui::Area::new(Id::new("what is under the pointer"))
+    let id = Id::new("what is under the pointer");
+    let known = context.memory(|memory| memory.area_rect(id));
+    let size = known.map_or(USUAL, |known| known.size());
+    let (pivot, corner) = corner_free(free, at, [18.0, 14.0], size, &clickable(context));
+    egui::Area::new(id)
         .order(Order::Tooltip)
         .interactable(false)
         .pivot(pivot)
