@@ -86,7 +86,8 @@ fn set_one(
     };
     let before = range_problems(place.as_partial_reflect());
     let path = through_variants(place.as_partial_reflect(), path);
-    let property = Property::of(info, &path).filter(|_| !path.is_empty());
+    let property = Property::of_value(place.as_partial_reflect(), &path);
+    let property = property.filter(|_| !path.is_empty());
     let root = place.as_partial_reflect_mut();
     let (Some(property), Ok(field)) = (property, path.as_str().reflect_element_mut(root)) else {
         let all = Property::all(info);

@@ -100,7 +100,7 @@ impl<C: Component<Mutability = Mutable> + Clone + PartialEq + Reflect + Typed> S
     /// without one) reaches those that have it.
     pub fn properties(&mut self, ui: &mut Ui, paths: &[&str]) {
         for path in paths {
-            if let Some(property) = Property::of(C::type_info(), path) {
+            if let Some(property) = Property::of_value(self.first().as_partial_reflect(), path) {
                 self.property(ui, &property);
             }
         }
@@ -108,7 +108,7 @@ impl<C: Component<Mutability = Mutable> + Clone + PartialEq + Reflect + Typed> S
 
     /// Which variant of an enum they are, where that is to be chosen; the name of another one that was.
     pub fn variant_ui(&self, ui: &mut Ui, path: &str) -> Option<&'static str> {
-        let property = Property::of(C::type_info(), path)?;
+        let property = Property::of_value(self.first().as_partial_reflect(), path)?;
         let name = |value: &C| match path.reflect_element(value.as_partial_reflect()) {
             Ok(value) => match value.reflect_ref() {
                 ReflectRef::Enum(value) => value.variant_name().to_owned(),

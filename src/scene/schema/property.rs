@@ -6,7 +6,8 @@ use bevy::math::UVec2;
 use bevy::reflect::attributes::CustomAttributes;
 use bevy::reflect::enums::{Enum, VariantInfo};
 use bevy::reflect::{
-    Access, GetPath, ParsedPath, PartialReflect, Reflect, ReflectMut, ReflectPath, TypeInfo, Typed,
+    Access, GetPath, ParsedPath, PartialReflect, Reflect, ReflectMut, ReflectPath, ReflectRef,
+    TypeInfo, Typed,
 };
 use bevy::transform::components::Transform;
 use std::sync::LazyLock;
@@ -76,6 +77,23 @@ impl Property {
         let mut property = Self::root(of);
         for step in ParsedPath::parse(path).ok()?.0 {
             property.go(&step.access)?;
+        }
+        property.path = path.to_owned();
+        Some(property)
+    }
+
+    /// The same of a value: variants of an enum may have parts of the same name, and that of the variant is meant which it
+    /// is.
+    pub fn of_value(value: &dyn PartialReflect, path: &str) -> Option<Self> {
+        let mut property = Self::root(value.get_represented_type_info()?);
+        let steps = ParsedPath::parse(path).ok()?.0;
+        for (i, step) in steps.iter().enumerate() {
+            let here = ParsedPath(steps[..i].to_vec());
+            let variant = match here.reflect_element(value).map(PartialReflect::reflect_ref) {
+                Ok(ReflectRef::Enum(value)) => Some(value.variant_name()),
+                _ => None,
+            };
+            property.go_in(&step.access, variant)?;
         }
         property.path = path.to_owned();
         Some(property)
@@ -205,7 +223,12 @@ impl Property {
 
     /// Goes on to a part of it.
     fn go(&mut self, to: &Access<'static>) -> Option<()> {
-        let (attributes, kind) = part_of(self.kind, to)?;
+        self.go_in(to, None)
+    }
+
+    /// The same where it is this variant of an enum; any, where it is not known which.
+    fn go_in(&mut self, to: &Access<'static>, variant: Option<&str>) -> Option<()> {
+        let (attributes, kind) = part_of(self.kind, to, variant)?;
         let is_pair = matches!(self.kind, TypeInfo::Array(info) if info.capacity() == 2);
         // Bevy's own component says nothing of itself.
         let is_place = self.kind.is::<Transform>() && *to == Access::Field("translation".into());
@@ -239,21 +262,27 @@ impl Property {
 fn part_of(
     kind: &'static TypeInfo,
     to: &Access,
+    variant: Option<&str>,
 ) -> Option<(&'static CustomAttributes, &'static TypeInfo)> {
+    let is_it = |other: &&VariantInfo| variant.is_none_or(|variant| other.name() == variant);
     static NONE: LazyLock<CustomAttributes> = LazyLock::new(CustomAttributes::default);
     match (kind, to) {
         (TypeInfo::Struct(info), Access::Field(name)) => {
             let field = info.field(name)?;
             Some((field.custom_attributes(), field.type_info()?))
         }
-        (TypeInfo::Enum(info), Access::Field(name)) => info.iter().find_map(|variant| {
-            let field = variant.as_struct_variant().ok()?.field(name)?;
-            Some((field.custom_attributes(), field.type_info()?))
-        }),
-        (TypeInfo::Enum(info), Access::TupleIndex(index)) => info.iter().find_map(|variant| {
-            let field = variant.as_tuple_variant().ok()?.field_at(*index)?;
-            Some((&*NONE, field.type_info()?))
-        }),
+        (TypeInfo::Enum(info), Access::Field(name)) => {
+            info.iter().filter(is_it).find_map(|variant| {
+                let field = variant.as_struct_variant().ok()?.field(name)?;
+                Some((field.custom_attributes(), field.type_info()?))
+            })
+        }
+        (TypeInfo::Enum(info), Access::TupleIndex(index)) => {
+            info.iter().filter(is_it).find_map(|variant| {
+                let field = variant.as_tuple_variant().ok()?.field_at(*index)?;
+                Some((&*NONE, field.type_info()?))
+            })
+        }
         (TypeInfo::TupleStruct(info), Access::TupleIndex(index)) => {
             let field = info.field_at(*index)?;
             Some((field.custom_attributes(), field.type_info()?))
@@ -342,7 +371,7 @@ pub fn quantity_of<T: Typed>(path: &str) -> Quantity {
     let mut kind = T::type_info();
     let mut quantity = None;
     for step in ParsedPath::parse(path).map_or(Vec::new(), |path| path.0) {
-        let Some((attributes, part)) = part_of(kind, &step.access) else {
+        let Some((attributes, part)) = part_of(kind, &step.access, None) else {
             break;
         };
         quantity = attributes.get().copied().or(quantity);
@@ -390,7 +419,10 @@ pub fn keep_order(root: &mut dyn PartialReflect, set: &str) {
 mod tests {
     use super::super::Unit;
     use super::*;
-    use crate::scene::{Lens, PointLamp, RenderSettings, SceneCamera, SegmentLamp};
+    use crate::scene::{
+        Lens, MeshSource, PointLamp, RenderSettings, SceneCamera, SegmentLamp, Shape,
+    };
+    use bevy::math::{Vec2, Vec3};
 
     #[test]
     fn parts_are_found_by_their_paths_and_inherit_what_is_said_of_the_whole() {
@@ -402,6 +434,41 @@ mod tests {
         let fov = quantity_of::<SceneCamera>("projection.fov_y");
         assert!(fov.is_open && fov.unit == Unit::ANGLE);
         assert!(Property::of(Lens::type_info(), "focus").is_none());
+    }
+
+    #[test]
+    fn of_parts_of_the_same_name_that_of_the_variant_is_meant_which_a_value_is() {
+        let corners = |shape| {
+            let source = MeshSource::Shape(shape);
+            let property = Property::of_value(source.as_partial_reflect(), "0.corners").unwrap();
+            match property.kind {
+                TypeInfo::Array(info) => info.capacity(),
+                _ => panic!("{property:?}"),
+            }
+        };
+        let flat = |count| [Vec3::ZERO, Vec3::X, Vec3::ONE, Vec3::Y][count];
+        let triangle = corners(Shape::Triangle {
+            corners: [0, 1, 2].map(flat),
+        });
+        let quadrilateral = corners(Shape::Quadrilateral {
+            corners: [0, 1, 2, 3].map(flat),
+        });
+        assert_eq!([triangle, quadrilateral], [3, 4]);
+        let size = |shape: Shape| {
+            let source = MeshSource::Shape(shape);
+            Property::of_value(source.as_partial_reflect(), "0.size").unwrap()
+        };
+        let cuboid = size(Shape::Cuboid { size: Vec3::ONE });
+        assert!(cuboid.kind.is::<Vec3>(), "{:?}", cuboid.kind);
+        assert_eq!(cuboid.says, "Edge lengths");
+        let ground = size(Shape::Ground {
+            size: Vec2::ONE,
+            tile: Vec2::ONE,
+        });
+        assert!(ground.kind.is::<Vec2>(), "{:?}", ground.kind);
+        let lamp = PointLamp::default();
+        let angle = Property::of_value(lamp.as_partial_reflect(), "cone.0.inner");
+        assert!(angle.is_none(), "a lamp without a cone has no angle");
     }
 
     #[test]
