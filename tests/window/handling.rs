@@ -48,6 +48,7 @@ fn the_view_is_turned_moved_and_looked_through_cameras_with() {
         Wheel(3),
         Run("view.keep"),
         Exists("Camera 2"),
+        Selected(["Camera 2"]),
         AssertNot(of: Some("Camera 2"), path: "Transform.translation.z", is: 1.0796, within: 0.05),
         Quit,
     ]"#;

@@ -93,10 +93,14 @@ fn toggle_projection(world: &mut World) {
 fn has_a_camera(world: &World) -> State {
     let cameras = world.try_query_filtered::<(), With<SceneCamera>>();
     let any = cameras.is_some_and(|mut cameras| cameras.iter(world).next().is_some());
-    State::when(
-        any,
-        "The scene has no camera; Ctrl+B adds one where the view stands.",
-    )
+    let is_through = world.resource::<LookThrough>().camera.is_some();
+    State {
+        on: Some(is_through),
+        ..State::when(
+            any,
+            "The scene has no camera; Ctrl+B adds one where the view stands.",
+        )
+    }
 }
 
 fn toggle_lock(world: &mut World) {
@@ -159,6 +163,7 @@ fn add_bookmark(world: &mut World) {
         return;
     };
     move_camera(world, id, &eye);
+    edits::select(world, vec![id]);
     world.resource_mut::<History>().name_next("Keep this view");
     look_through(world, Some(id));
 }

@@ -5,7 +5,7 @@ use super::fields::number_row;
 use super::says::Says;
 use crate::editor::action::Action;
 use crate::editor::command::{Command, CommandTable, shortcut};
-use crate::editor::navigation::{field_of_view, set_field_of_view};
+use crate::editor::navigation::{LookThrough, field_of_view, set_field_of_view};
 use crate::editor::preferences::Preferences;
 use crate::editor::texts::{file_name, path_text};
 use crate::scene::{Quantity, SceneCamera, SceneId};
@@ -104,9 +104,16 @@ pub(super) fn item_ui(ui: &mut Ui, world: &mut World, command: &Command) {
     }
 }
 
-/// What is no row: a file or a camera.
-fn other_ui(ui: &mut Ui, world: &mut World, name: &str, says: &str, action: Action) {
-    if ui.button(name).says(says).clicked() {
+/// What is no row: a file, or a camera, which `is_on` where it is looked through.
+fn other_ui(
+    ui: &mut Ui,
+    world: &mut World,
+    (name, is_on): (&str, bool),
+    says: &str,
+    action: Action,
+) {
+    let button = Button::selectable(is_on, name);
+    if ui.add(button).says(says).clicked() {
         world.write_message(action);
         ui.close();
     }
@@ -118,7 +125,7 @@ fn recent_ui(ui: &mut Ui, world: &mut World) {
         ui.menu_button("Open recent", |ui| {
             for file in recent {
                 let (name, says) = (file_name(&file), path_text(&file));
-                other_ui(ui, world, &name, &says, Action::Open(file));
+                other_ui(ui, world, (&name, false), &says, Action::Open(file));
             }
         });
     });
@@ -143,10 +150,18 @@ fn field_of_view_ui(ui: &mut Ui, world: &mut World) {
 /// The scene's cameras.
 fn look_through_ui(ui: &mut Ui, world: &mut World) {
     let says = "Leaves the camera: the view moves freely again";
-    other_ui(ui, world, "Free view", says, Action::LookThrough(None));
+    let now = world.resource::<LookThrough>().camera;
+    let free = ("Free view", now.is_none());
+    other_ui(ui, world, free, says, Action::LookThrough(None));
     for (id, name) in cameras(world) {
         let says = "Shows the scene as this camera sees it, with its lens and its shutter";
-        other_ui(ui, world, &name, says, Action::LookThrough(Some(id)));
+        other_ui(
+            ui,
+            world,
+            (&name, now == Some(id)),
+            says,
+            Action::LookThrough(Some(id)),
+        );
     }
 }
 

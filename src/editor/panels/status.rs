@@ -2,6 +2,8 @@
 
 use super::dialogs::{Dialog, Dialogs};
 use super::says::{Says, take_hint};
+use crate::editor::edits::name_of;
+use crate::editor::navigation::LookThrough;
 use crate::editor::notice::Notices;
 use crate::editor::render_job::RenderJob;
 use crate::editor::texts::counted;
@@ -101,6 +103,7 @@ pub(super) fn status_ui(ui: &mut Ui, world: &mut World, bar: &mut StatusBar) {
                 "Memory of the whole program",
             );
         }
+        camera_ui(ui, world);
         opens = job_ui(ui, world);
         if let Some(hint) = hint {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
@@ -118,6 +121,15 @@ pub(super) fn status_ui(ui: &mut Ui, world: &mut World, bar: &mut StatusBar) {
 
 fn figure(ui: &mut Ui, text: &str, says: &str) {
     ui.label(text).says(says);
+}
+
+/// Which of the scene's cameras is looked through.
+fn camera_ui(ui: &mut Ui, world: &World) {
+    let through = world.get_resource::<LookThrough>();
+    if let Some(camera) = through.and_then(|through| through.camera) {
+        let says = "The camera that the view looks through: moving the view leaves it (0)";
+        figure(ui, &format!("through {}", name_of(world, camera)), says);
+    }
 }
 
 /// How far a render to a file is; true where its dialog is asked for.
@@ -253,7 +265,7 @@ impl Memory {
 }
 
 /// `12`, `3.5`: an average that is whole is shown whole.
-fn count(samples: f64) -> String {
+pub(super) fn count(samples: f64) -> String {
     if samples.fract() == 0.0 || samples >= 100.0 {
         format!("{samples:.0}")
     } else {
