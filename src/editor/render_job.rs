@@ -63,6 +63,8 @@ pub enum RenderRefused {
 #[derive(Resource, Default)]
 pub struct RenderJob {
     job: Option<Job>,
+    /// What became of the last one that was written: its message has gone before somebody comes back to a long one.
+    done: Option<String>,
 }
 
 /// How far a render to a file is.
@@ -111,6 +113,11 @@ impl RenderJob {
             fraction,
             writing: matches!(job.stage, Stage::Writing(..)),
         })
+    }
+
+    /// What was written last, in how long and how good; `None` until then, and while another one is rendered.
+    pub fn done(&self) -> Option<&str> {
+        self.done.as_deref().filter(|_| self.job.is_none())
     }
 
     /// Stops rendering, and writes nothing. What is already being written is written.
@@ -198,12 +205,13 @@ fn carry_on(world: &mut World) {
     }
     world.resource_scope(|world, mut jobs: Mut<RenderJob>| {
         let Some(job) = jobs.job.take() else { return };
-        jobs.job = step(world, job);
+        jobs.done = None;
+        jobs.job = step(world, job, &mut jobs.done);
     });
 }
 
-/// The job as it goes on; `None` where it has ended.
-fn step(world: &mut World, job: Job) -> Option<Job> {
+/// The job as it goes on; `None` where it has ended, and what was done then.
+fn step(world: &mut World, job: Job, done: &mut Option<String>) -> Option<Job> {
     let file = job.request.file.clone();
     let fault = |world: &mut World, why: String| {
         let text = format!("{}: not rendered: {why}", file.display());
@@ -252,7 +260,8 @@ fn step(world: &mut World, job: Job) -> Option<Job> {
                         status.seconds,
                         status.samples,
                     );
-                    world.resource_mut::<Notices>().tell(text);
+                    world.resource_mut::<Notices>().tell(text.clone());
+                    *done = Some(text);
                 }
                 Ok(Err(error)) => world.resource_mut::<Notices>().fault(error.to_string()),
                 Err(_) => return fault(world, "writing it failed by a bug".into()),

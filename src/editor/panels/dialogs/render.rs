@@ -14,7 +14,7 @@ use crate::editor::viewport::traced_render;
 use crate::film::duration_text;
 use crate::scene::{RenderSettings, SceneId};
 use bevy::ecs::world::World;
-use bevy_egui::egui::{self, Color32, ComboBox, ProgressBar, RichText, TextEdit, Ui};
+use bevy_egui::egui::{self, Color32, ComboBox, Label, ProgressBar, RichText, TextEdit, Ui};
 use std::path::Path;
 
 /// What is entered, kept while the dialog is closed.
@@ -77,6 +77,9 @@ pub(super) fn render_ui(ui: &mut Ui, world: &mut World, dialogs: &mut Dialogs) {
     if let Some(refused) = &form.refused {
         let color: Color32 = ui.visuals().error_fg_color;
         ui.label(RichText::new(refused).color(color));
+    }
+    if let Some(done) = world.resource::<RenderJob>().done() {
+        ui.add(Label::new(RichText::new(done).weak()).wrap());
     }
     ui.add_space(8.0);
     let says = "Begins; the editing goes on meanwhile";

@@ -8,6 +8,7 @@ use crate::editor::action::Action;
 use crate::editor::document::{Document, Purpose, Question, adopt};
 use crate::editor::inspection::DebugRay;
 use crate::editor::inspection::debug_ray::Shot;
+use crate::editor::notice::Notices;
 use crate::editor::render_job::{RenderFrom, RenderJob, RenderRequest, start_render};
 use crate::editor::viewport::{Show, Viewport};
 use crate::inspect::InspectSettings;
@@ -242,6 +243,39 @@ fn a_dialog_that_had_less_to_show_grows_again() {
     }
     desk.settle();
     assert_eq!(height(&desk), form);
+}
+
+#[test]
+fn the_dialog_tells_what_was_rendered_however_long_ago() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut desk = Desk::open("triangle");
+    let file = folder.path().join("done.png");
+    let request = RenderRequest {
+        file: file.clone(),
+        camera: RenderFrom::FirstCamera,
+        settings: RenderSettings {
+            size: UVec2::splat(8),
+            spp: 1,
+            ..RenderSettings::default()
+        },
+    };
+    start_render(desk.world(), request).unwrap();
+    let start = Instant::now();
+    while desk.world().resource::<RenderJob>().progress().is_some() {
+        assert!(start.elapsed().as_secs() < 60, "it goes on");
+        desk.settle();
+    }
+    desk.world().resource_mut::<Notices>().close_all();
+    desk.world().write_message(Action::run("file.render"));
+    desk.settle();
+    let done = desk
+        .world()
+        .resource::<RenderJob>()
+        .done()
+        .unwrap()
+        .to_owned();
+    assert!(done.contains("done.png"), "{done}");
+    assert!(desk.find(&done).is_some());
 }
 
 #[test]
