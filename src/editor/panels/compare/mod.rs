@@ -15,8 +15,10 @@ mod histogram;
 mod window;
 mod zoom;
 
+use super::status::count;
 use crate::editor::command::{Command, State, commands};
 use crate::editor::document::SceneOpened;
+use crate::editor::history::History;
 use crate::editor::notice::Notices;
 use crate::editor::viewport::{Viewport, traced_render, traced_view};
 use crate::view::{TracedPicture, TracedRender};
@@ -34,6 +36,8 @@ pub(super) use window::window_ui;
 
 /// How many are kept; the oldest goes then. One of two megapixels takes 32 MB.
 const MOST: usize = 8;
+/// Letters of a step that are a part of a picture's name.
+const LONGEST_STEP: usize = 32;
 
 /// The pictures that were kept, the oldest first.
 #[derive(Resource, Default)]
@@ -79,14 +83,23 @@ fn color_image(picture: &TracedPicture) -> ColorImage {
 }
 
 impl KeptPictures {
-    fn add(&mut self, picture: TracedPicture, samples: f64) {
+    /// `after` is the step that the scene was edited with last.
+    fn add(&mut self, picture: TracedPicture, samples: f64, after: Option<&str>) {
         self.count += 1;
         if self.all.len() == MOST {
             self.all.remove(0);
         }
         self.all.push(Kept {
             number: self.count,
-            name: format!("{}: {} spp", self.count, samples.floor()),
+            name: match after {
+                Some(step) => format!(
+                    "{}: {} spp, {}",
+                    self.count,
+                    count(samples),
+                    shortened(step)
+                ),
+                None => format!("{}: {} spp", self.count, count(samples)),
+            },
             picture: Arc::new(picture),
             texture: None,
         });
@@ -94,6 +107,16 @@ impl KeptPictures {
 
     fn find(&self, number: u32) -> Option<&Kept> {
         self.all.iter().find(|kept| kept.number == number)
+    }
+}
+
+/// A step may be called after things with long names.
+fn shortened(step: &str) -> String {
+    let mut letters = step.chars();
+    let text: String = letters.by_ref().take(LONGEST_STEP).collect();
+    match letters.next() {
+        Some(_) => text + "…",
+        None => text,
     }
 }
 
@@ -135,8 +158,11 @@ fn keep(world: &mut World) {
         return;
     };
     let samples = status.samples;
+    // Which of two is meant is told best by what was done between them.
+    let step = world.get_resource::<History>().and_then(History::undo_text);
+    let step = step.map(str::to_owned);
     let mut kept = world.resource_mut::<KeptPictures>();
-    kept.add(picture, samples);
+    kept.add(picture, samples, step.as_deref());
     let text = format!("Kept picture {}: hold C to see it.", kept.count);
     world.resource_mut::<Notices>().tell(text);
 }

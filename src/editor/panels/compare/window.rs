@@ -9,6 +9,7 @@ use crate::editor::background::{Background, Outcome};
 use crate::editor::panels::fields::number;
 use crate::editor::panels::save_form::{SaveForm, save_ui};
 use crate::editor::panels::says::Says;
+use crate::editor::panels::status::count;
 use crate::editor::viewport::traced_render;
 use crate::film::Picture;
 use crate::inspect::color_text;
@@ -285,7 +286,7 @@ fn choices_ui(ui: &mut Ui, kept: &KeptPictures, comparison: &mut Comparison) {
             .find(number)
             .map_or("–".into(), |kept| kept.name.clone()),
         Side::Now => samples.map_or("the view".into(), |spp| {
-            format!("the view: {} spp", spp.floor())
+            format!("the view: {} spp", count(spp))
         }),
     };
     ui.horizontal_wrapped(|ui| {

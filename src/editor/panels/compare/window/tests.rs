@@ -26,8 +26,8 @@ fn two_kept_pictures_are_compared_in_figures_and_another_scene_forgets_them() {
     desk.settle();
     assert!(desk.find("Difference").is_none(), "nothing was kept");
     let mut kept = desk.world().resource_mut::<KeptPictures>();
-    kept.add(picture(1.0), 16.0);
-    kept.add(picture(1.1), 64.0);
+    kept.add(picture(1.0), 16.5, None);
+    kept.add(picture(1.1), 64.0, Some("Change lighting"));
     desk.settle();
     desk.click_on("Compare");
     // A window that appears is measured before it is drawn.
@@ -38,8 +38,8 @@ fn two_kept_pictures_are_compared_in_figures_and_another_scene_forgets_them() {
     assert_eq!(comparison.sides, [Side::Kept(2), Side::Now]);
     comparison.sides = [Side::Kept(1), Side::Kept(2)];
     desk.settle();
-    desk.place_of("1: 16 spp");
-    desk.place_of("2: 64 spp");
+    desk.place_of("1: 16.5 spp");
+    desk.place_of("2: 64 spp, Change lighting");
     wait_for(&mut desk, "RMSE 0.10000");
     desk.place_of("10.000 % brighter");
     desk.click_on("Relative");
@@ -66,7 +66,7 @@ fn two_kept_pictures_are_compared_in_figures_and_another_scene_forgets_them() {
 fn the_window_covers_no_panel_after_the_editors_became_small() {
     let mut desk = Desk::open("cornell-box");
     let mut kept = desk.world().resource_mut::<KeptPictures>();
-    kept.add(picture(1.0), 1.0);
+    kept.add(picture(1.0), 1.0, None);
     kept.comparison = Some(Comparison::new(1));
     let id = egui::Id::new("compare pictures");
     for size in [USUAL, SMALL] {
@@ -122,7 +122,7 @@ fn what_is_seen_of_a_comparison_is_written_pixel_by_pixel() {
 fn more_than_a_few_kept_pictures_drop_the_oldest() {
     let mut kept = KeptPictures::default();
     for _ in 0..=super::super::MOST {
-        kept.add(picture(1.0), 1.0);
+        kept.add(picture(1.0), 1.0, None);
     }
     assert_eq!(kept.all.len(), super::super::MOST);
     assert!(kept.find(1).is_none() && kept.find(2).is_some());
