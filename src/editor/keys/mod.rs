@@ -14,6 +14,7 @@ pub(super) use name::{letter_key, named_key};
 
 use super::action::Action;
 use super::command::CommandTable;
+use super::embed::Editing;
 use super::handles::{note_command, type_axis_and_number, type_into_drag};
 use super::notice::Notices;
 use super::pointer::{self, PointerUse};
@@ -115,7 +116,11 @@ fn press_keys(
         let WindowEvent::KeyboardInput(input) = event else {
             continue;
         };
-        if input.state != ButtonState::Pressed || modifiers.alt {
+        if input.state != ButtonState::Pressed {
+            continue;
+        }
+        if modifiers.alt {
+            refuse_alt(world, input.key_code);
             continue;
         }
         let keys = Keys {
@@ -140,8 +145,7 @@ fn press_keys(
     }
 }
 
-/// Gives the keys to the command that waits for them; `false` where none does.
-fn record(world: &mut World, keys: Keys) -> bool {
+fn is_modifier(key: KeyCode) -> bool {
     use KeyCode::{
         AltLeft, AltRight, ControlLeft, ControlRight, ShiftLeft, ShiftRight, SuperLeft, SuperRight,
     };
@@ -155,10 +159,23 @@ fn record(world: &mut World, keys: Keys) -> bool {
         SuperLeft,
         SuperRight,
     ];
+    modifiers.contains(&key)
+}
+
+/// No command is sent with Alt, which is the mouse's: who wants to give it to one is told so.
+fn refuse_alt(world: &mut World, key: KeyCode) {
+    if world.resource::<Recording>().0.is_some() && !is_modifier(key) {
+        let text = "Keys send commands alone, with Ctrl or with Shift; Alt goes with the mouse.";
+        world.resource_mut::<Notices>().tell(text);
+    }
+}
+
+/// Gives the keys to the command that waits for them; `false` where none does.
+fn record(world: &mut World, keys: Keys) -> bool {
     let Some(id) = world.resource::<Recording>().0.clone() else {
         return false;
     };
-    if modifiers.contains(&keys.key) {
+    if is_modifier(keys.key) {
         return true;
     }
     world.resource_mut::<Recording>().0 = None;
@@ -200,6 +217,13 @@ fn press(world: &mut World, keys: Keys, repeats: bool) {
     let table = world.resource::<CommandTable>();
     let bindings = &world.resource::<Preferences>().keys;
     let Some(command) = table.of_keys(keys, bindings) else {
+        // Beside the panels of an app it may be the app's own.
+        let is_asked = keys.ctrl && !is_modifier(keys.key) && !repeats;
+        if is_asked && !world.contains_resource::<Editing>() {
+            let text = format!("No command: {}. F1 lists all keys.", keys.text());
+            let mut notices = world.resource_mut::<Notices>();
+            notices.tell_in_place("No command", text);
+        }
         return;
     };
     if !repeats || command.repeats {
@@ -246,6 +270,50 @@ mod tests {
         // A Cyrillic one is meant by its place, and so is a digit with Shift.
         assert_eq!(meant_key(&input(KeyCode::KeyZ, "я")), KeyCode::KeyZ);
         assert_eq!(meant_key(&input(KeyCode::Digit1, "!")), KeyCode::Digit1);
+    }
+
+    #[test]
+    fn keys_with_ctrl_that_send_nothing_say_so_and_those_with_alt_why_they_are_none() {
+        let mut world = World::new();
+        world.init_resource::<Notices>();
+        world.init_resource::<Preferences>();
+        world.init_resource::<PointerUse>();
+        world.init_resource::<CommandTable>();
+        world.init_resource::<Recording>();
+        let told = |world: &mut World| {
+            let mut notices = world.resource_mut::<Notices>();
+            let told: Vec<String> = notices.shown().iter().map(|n| n.text.clone()).collect();
+            notices.close_all();
+            told
+        };
+        for (keys, repeats, expected) in [
+            (
+                "Ctrl+E",
+                false,
+                &["No command: Ctrl+E. F1 lists all keys."][..],
+            ),
+            ("Ctrl+E", true, &[]),
+            ("E", false, &[]),
+        ] {
+            press(&mut world, keys.parse().unwrap(), repeats);
+            assert_eq!(told(&mut world), expected, "{keys}");
+        }
+        let ctrl = Keys {
+            ctrl: true,
+            shift: false,
+            key: KeyCode::ControlLeft,
+        };
+        press(&mut world, ctrl, false);
+        refuse_alt(&mut world, KeyCode::KeyA);
+        assert_eq!(told(&mut world), [""; 0]);
+        world.insert_resource(Recording(Some("edit.undo".into())));
+        refuse_alt(&mut world, KeyCode::AltLeft);
+        refuse_alt(&mut world, KeyCode::KeyA);
+        assert_eq!(told(&mut world).len(), 1);
+        // In an app of its own such keys may be the app's.
+        world.insert_resource(Editing(true));
+        press(&mut world, "Ctrl+E".parse().unwrap(), false);
+        assert_eq!(told(&mut world), [""; 0]);
     }
 
     #[test]
