@@ -73,7 +73,10 @@ impl TypedDrag {
             Tool::Turn => "an angle",
             Tool::Scale => "a factor",
         };
-        format!("“{}” is not {wanted}", self.text)
+        match &*self.text {
+            "" => format!("Type {wanted} first; Esc puts all back"),
+            text => format!("“{text}” is not {wanted}"),
+        }
     }
 }
 
