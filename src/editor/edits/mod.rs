@@ -3,6 +3,7 @@
 
 mod add;
 mod copy;
+mod group;
 mod import;
 mod index;
 mod names;
@@ -12,6 +13,8 @@ mod remove;
 
 pub use add::{AddAt, add, add_model};
 pub use copy::{Clipboard, copy, duplicate, paste};
+pub(in crate::editor) use group::is_group;
+pub use group::{Ungrouped, group, ungroup};
 pub(in crate::editor) use import::{DroppedAt, ModelAdded, import};
 pub use index::{SceneIndex, scene_entity};
 pub use names::{name_of, rename, unique_name};

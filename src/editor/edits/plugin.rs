@@ -1,8 +1,8 @@
 //! The commands that edit and select, each a step of its own.
 
 use super::{
-    AddAt, Clipboard, SceneIndex, add, copy, delete, duplicate, import, name_of, paste, rename,
-    reparent, scene_entity, set_visible,
+    AddAt, Clipboard, SceneIndex, add, copy, delete, duplicate, group, import, is_group, name_of,
+    paste, rename, reparent, roots_of, scene_entity, set_visible, ungroup,
 };
 use crate::editor::action::{Addition, shapes};
 use crate::editor::command::{AddCommands, Command, Over, State, commands};
@@ -14,6 +14,7 @@ use bevy::app::{App, Plugin};
 use bevy::camera::visibility::Visibility;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::world::World;
+use bevy::transform::components::Transform;
 use std::collections::HashSet;
 
 /// Does what [`Action`](crate::editor::Action)s ask for that edit the scene or select in it. Needs
@@ -53,6 +54,10 @@ fn commands() -> Vec<Command> {
             => |world| step(world, step_delete); menu("Edit", 2); over(ANY); state(is_any_selected),
         "edit.hide" "Hide or show" ["H"] "A hidden entity is not traced"
             => |world| step(world, step_hide); menu("Edit", 2); over(ANY); state(is_any_selected),
+        "edit.group" "Group" ["Ctrl+G"] "Puts the selected entities below a new group: what is done to it is done to all of them"
+            => |world| step(world, step_group); menu("Edit", 2); over(ANY); state(can_be_grouped),
+        "edit.ungroup" "Ungroup" ["Ctrl+Shift+G"] "Takes the selected groups away; what is below them stays, and stays where it is"
+            => |world| step(world, step_ungroup); menu("Edit", 2); over(ANY); state(is_any_group_selected),
         "select.all" "Select all" ["Ctrl+A"] "Selects every entity"
             => select_all; menu("Edit", 3); over(&[Over::Nothing]),
         "select.none" "Select nothing" ["Escape"] "Selects no entity, lets go of a chosen ray or box, and brings the panels back"
@@ -67,11 +72,11 @@ fn commands() -> Vec<Command> {
             => |world| step_add(world, &Addition::SegmentLamp); menu("Add", 2),
         "add.parallelogram-light" "Parallelogram light" [] "A glowing surface with a colour at each corner: soft shadows"
             => |world| step_add(world, &Addition::ParallelogramLamp); menu("Add", 2),
-        "add.camera" "Camera" [] "Adds a camera"
+        "add.camera" "Camera" [] "Adds a camera at what the view looks at; Keep this view as a camera adds one where the view stands"
             => |world| step_add(world, &Addition::Camera); menu("Add", 3),
         "add.material" "Shared material" [] "A material that several objects can use: one change reaches all of them"
             => |world| step_add(world, &Addition::Material); menu("Add", 3),
-        "add.group" "Group" [] "An empty place: what is dragged onto it in the list moves with it"
+        "add.group" "Empty group" [] "An empty place: what is dragged onto it in the list moves with it"
             => |world| step_add(world, &Addition::Group); menu("Add", 3),
     }
 }
@@ -92,6 +97,24 @@ fn shape_commands() -> impl Iterator<Item = Command> {
 fn is_any_selected(world: &World) -> State {
     let any = !world.resource::<Selection>().is_empty();
     State::when(any, "Nothing is selected.")
+}
+
+fn can_be_grouped(world: &World) -> State {
+    let nothing = is_any_selected(world);
+    if nothing.why_not.is_some() {
+        return nothing;
+    }
+    let stands = |&id: &SceneId| {
+        scene_entity(world, id).is_some_and(|entity| world.get::<Transform>(entity).is_some())
+    };
+    let any = world.resource::<Selection>().ids().iter().any(stands);
+    State::when(any, "A material stands nowhere: it is in no group.")
+}
+
+fn is_any_group_selected(world: &World) -> State {
+    let mut selected = world.resource::<Selection>().ids().iter();
+    let any = selected.any(|&id| scene_entity(world, id).is_some_and(|id| is_group(world, id)));
+    State::when(any, "No group is selected.")
 }
 
 fn is_any_copied(world: &World) -> State {
@@ -206,6 +229,26 @@ pub(in crate::editor) fn step_reparent(
             None => format!("Put {whose} at the top"),
         })
     });
+}
+
+fn step_group(world: &mut World) -> Option<String> {
+    let ids = selected(world);
+    let name = format!("Group {}", call(world, &roots_of(world, &ids)));
+    let group = group(world, &ids)?;
+    select(world, vec![group]);
+    Some(name)
+}
+
+fn step_ungroup(world: &mut World) -> Option<String> {
+    let ids = selected(world);
+    let name = format!("Ungroup {}", call(world, &ids));
+    let ungrouped = ungroup(world, &ids);
+    select(world, ungrouped.freed);
+    if ungrouped.lost_motion {
+        let text = "The group's motion went with it: what was below it stands still.";
+        world.resource_mut::<Notices>().tell(text);
+    }
+    Some(name)
 }
 
 fn step_paste(world: &mut World) -> Option<String> {

@@ -37,7 +37,7 @@ fn start() -> Command {
         "Begins the first level",
         run,
     )
-    .keys(&["Ctrl+Shift+G"])
+    .keys(&["Ctrl+Shift+J"])
     .menu("Game", 0)
     .over(&[Over::Nothing])
 }
@@ -54,7 +54,7 @@ fn a_row_that_an_app_adds_stands_in_its_menu_the_palette_the_keys_and_the_menu_o
     let mut desk = with_row(start());
     let runs = |desk: &mut Desk| desk.world().resource::<Runs>().0;
     desk.click_on("Game");
-    assert!(desk.find("Ctrl+Shift+G").is_some(), "menus show keys");
+    assert!(desk.find("Ctrl+Shift+J").is_some(), "menus show keys");
     desk.click_on("Start the game");
     assert_eq!(runs(&mut desk), 1, "by the menu");
 
@@ -64,7 +64,7 @@ fn a_row_that_an_app_adds_stands_in_its_menu_the_palette_the_keys_and_the_menu_o
     assert_eq!(runs(&mut desk), 2, "by the palette");
     assert!(desk.world().resource::<OpenPalette>().0.is_none());
 
-    let keys: Keys = "Ctrl+Shift+G".parse().unwrap();
+    let keys: Keys = "Ctrl+Shift+J".parse().unwrap();
     let table = desk.world().resource::<CommandTable>();
     let bindings = Default::default();
     let row = table.of_keys(keys, &bindings).expect("it has keys");
@@ -73,7 +73,7 @@ fn a_row_that_an_app_adds_stands_in_its_menu_the_palette_the_keys_and_the_menu_o
     desk.settle();
     desk.world().resource_mut::<Dialogs>().bindings_search = "start the".into();
     desk.settle();
-    desk.place_of("Ctrl+Shift+G");
+    desk.place_of("Ctrl+Shift+J");
     desk.key(Key::Escape);
 
     desk.settle();
@@ -154,7 +154,7 @@ fn names_and_explanations_of_the_palette_end_in_an_ellipsis_before_its_keys() {
             let mut found = texts.iter().filter(|(text, ..)| text == wanted);
             found.next().map(|(_, place, _)| *place)
         };
-        let keys = place("Ctrl+Shift+G").expect("its keys");
+        let keys = place("Ctrl+Shift+J").expect("its keys");
         let title = place(name).expect("its name");
         assert!(title.right() < keys.left(), "{title:?} beside {keys:?}");
         let says = texts
