@@ -27,6 +27,8 @@ pub enum Action {
     Rename(SceneId, String),
     /// Makes the second the parent of the first ones; `None`: they get no parent. Places in the world stay.
     Reparent(Vec<SceneId>, Option<SceneId>),
+    /// Gives the objects among the first ones a shared material, the second.
+    AssignMaterial(Vec<SceneId>, SceneId),
     /// Looks through this camera; `None`: freely again.
     LookThrough(Option<SceneId>),
     /// Shoots a debug ray through a pixel of the traced view, column and row from its top left.

@@ -39,6 +39,7 @@ pub(super) fn dispatch(world: &mut World) {
             Action::Select(ids) => edits::select(world, ids),
             Action::Rename(id, name) => edits::step_rename(world, id, &name),
             Action::Reparent(ids, parent) => edits::step_reparent(world, &ids, parent),
+            Action::AssignMaterial(ids, material) => edits::step_assign(world, &ids, material),
             Action::LookThrough(camera) => navigation::look_through(world, camera),
             Action::ShootPixel(column, row) => inspection::shoot_pixel(world, [column, row].into()),
         }

@@ -6,6 +6,7 @@ mod copy;
 mod group;
 mod import;
 mod index;
+mod material;
 mod names;
 mod parents;
 mod plugin;
@@ -17,9 +18,13 @@ pub(in crate::editor) use group::is_group;
 pub use group::{Ungrouped, group, ungroup};
 pub(in crate::editor) use import::{DroppedAt, ModelAdded, import};
 pub use index::{SceneIndex, scene_entity};
+pub use material::assign_material;
+pub(in crate::editor) use material::{is_object, share_material};
 pub use names::{name_of, rename, unique_name};
 pub(in crate::editor) use parents::{all_below, ancestors};
 pub use parents::{reparent, roots_of};
 pub use plugin::EditsPlugin;
-pub(in crate::editor) use plugin::{select, step, step_add, step_rename, step_reparent};
+pub(in crate::editor) use plugin::{
+    select, step, step_add, step_assign, step_rename, step_reparent,
+};
 pub use remove::{delete, set_visible};

@@ -1,8 +1,8 @@
 //! The commands that edit and select, each a step of its own.
 
 use super::{
-    AddAt, Clipboard, SceneIndex, add, copy, delete, duplicate, group, import, is_group, name_of,
-    paste, rename, reparent, roots_of, scene_entity, set_visible, ungroup,
+    AddAt, Clipboard, SceneIndex, add, assign_material, copy, delete, duplicate, group, import,
+    is_group, name_of, paste, rename, reparent, roots_of, scene_entity, set_visible, ungroup,
 };
 use crate::editor::action::{Addition, shapes};
 use crate::editor::command::{AddCommands, Command, Over, State, commands};
@@ -228,6 +228,15 @@ pub(in crate::editor) fn step_reparent(
             Some(parent) => format!("Put {whose} below {}", name_of(world, parent)),
             None => format!("Put {whose} at the top"),
         })
+    });
+}
+
+/// Gives objects a shared material.
+pub(in crate::editor) fn step_assign(world: &mut World, ids: &[SceneId], material: SceneId) {
+    step(world, |world| {
+        let given = assign_material(world, ids, material);
+        let name = name_of(world, material);
+        (!given.is_empty()).then(|| format!("Give {} the material {name}", call(world, &given)))
     });
 }
 

@@ -77,6 +77,8 @@ enum Deed {
     StartName(usize),
     Rename(usize),
     Drop(Vec<SceneId>, Option<SceneId>),
+    /// Objects get a material.
+    Assign(Vec<SceneId>, SceneId),
     Nothing,
 }
 
@@ -142,6 +144,7 @@ pub(super) fn hierarchy_ui(ui: &mut Ui, world: &mut World, panel: &mut Hierarchy
         ui.painter()
             .rect_stroke(shown.inner_rect, 3.0, stroke, StrokeKind::Inside);
     }
+    deeds.extend(landing::over_picture_ui(ui, world));
     // A click on another row ends a renaming: both count, the name first.
     deeds.sort_by_key(|deed| !matches!(deed, Deed::Rename(_)));
     for deed in deeds {
@@ -251,6 +254,9 @@ fn perform(ui: &Ui, world: &mut World, panel: &mut Hierarchy, rows: &[Row], deed
         Deed::Nothing => world.resource_mut::<Selection>().set([]),
         Deed::Drop(ids, parent) => {
             world.write_message(Action::Reparent(ids, parent));
+        }
+        Deed::Assign(objects, material) => {
+            world.write_message(Action::AssignMaterial(objects, material));
         }
     }
 }

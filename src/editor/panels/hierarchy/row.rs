@@ -25,12 +25,18 @@ impl List<'_> {
         match self.rows[index] {
             Row::Item(at) => self.item_ui(ui, index, at, panel, deeds),
             Row::Materials(count) => folder_ui(ui, count, panel, deeds),
-            Row::User { object, material } => self.user_ui(ui, object, material, deeds),
+            Row::User { object, material } => self.user_ui(ui, index, [object, material], deeds),
         }
     }
 
     /// An object below the material that it has: to be seen and chosen.
-    fn user_ui(&self, ui: &mut Ui, object: usize, material: usize, deeds: &mut Vec<Deed>) {
+    fn user_ui(
+        &self,
+        ui: &mut Ui,
+        index: usize,
+        [object, material]: [usize; 2],
+        deeds: &mut Vec<Deed>,
+    ) {
         let item = &self.outline.items[object];
         let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
         let of = self.outline.items[material].id.0;
@@ -49,6 +55,8 @@ impl List<'_> {
         if response.secondary_clicked() {
             deeds.push(Deed::Menu(object));
         }
+        let dropped = landing::drop_on_user_ui(ui, self, index, material, rect, &response);
+        deeds.extend(dropped);
     }
 
     fn item_ui(

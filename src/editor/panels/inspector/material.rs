@@ -8,11 +8,11 @@ use super::maps::Thumbnails;
 use super::material_maps::{alpha_ui, maps_ui};
 use super::presets::{PRESETS, Preset};
 use super::switches::switches_ui;
+use crate::editor::edits::{is_object, share_material};
 use crate::editor::texts::counted;
-use crate::scene::{MeshSource, Phong, PhongMaps, SceneId, UsesMaterial};
+use crate::scene::{Phong, PhongMaps, SceneId, UsesMaterial};
 use bevy::ecs::entity::Entity;
 use bevy::ecs::world::World;
-use bevy::mesh::Mesh3d;
 use bevy::platform::collections::HashSet;
 use bevy_egui::egui::{ComboBox, Ui};
 use std::sync::Arc;
@@ -100,10 +100,13 @@ fn assign_ui(ui: &mut Ui, world: &mut World, entities: &[Entity], owner: Entity)
     let mut users = world.query::<&UsesMaterial>();
     let count = users.iter(world).filter(|uses| uses.0 == owner).count();
     if objects.is_empty() {
-        ui.weak(format!(
-            "Used by {}: a change here reaches all of them.",
-            counted(count as u64, "object")
-        ));
+        ui.weak(match count {
+            0 => {
+                "No object has it yet: drop it onto one, in the list or in the picture.".to_owned()
+            }
+            1 => "One object has it.".to_owned(),
+            _ => format!("{count} objects have it: a change here reaches all of them."),
+        });
         return;
     }
     let is_shared = world
@@ -157,26 +160,13 @@ fn assign_ui(ui: &mut Ui, world: &mut World, entities: &[Entity], owner: Entity)
         });
     }
     match chosen {
-        Some(Some(material)) => assign(world, &objects, material),
+        Some(Some(material)) => share_material(world, &objects, material),
         Some(None) => {
             for &object in &objects {
                 world.entity_mut(object).remove::<UsesMaterial>();
             }
         }
         None => {}
-    }
-}
-
-/// What the outline calls one, without a search through all of it.
-fn is_object(world: &World, entity: Entity) -> bool {
-    world.get::<Mesh3d>(entity).is_some() || world.get::<MeshSource>(entity).is_some()
-}
-
-fn assign(world: &mut World, objects: &[Entity], material: Entity) {
-    for &object in objects {
-        if world.get::<UsesMaterial>(object) != Some(&UsesMaterial(material)) {
-            world.entity_mut(object).insert(UsesMaterial(material));
-        }
     }
 }
 
@@ -209,7 +199,7 @@ mod tests {
         };
         let material = world.spawn(shared.clone()).id();
         let objects = [0, 1].map(|_| world.spawn(Phong::default()).id());
-        assign(&mut world, &objects, material);
+        share_material(&mut world, &objects, material);
         assert_eq!(owner_of(&world, objects[0]), material);
         make_single(&mut world, &objects[..1]);
         assert_eq!(owner_of(&world, objects[0]), objects[0]);

@@ -6,9 +6,10 @@ use super::super::state::Renaming;
 use super::desk::Desk;
 use crate::editor::action::Action;
 use crate::editor::edits::name_of;
+use crate::editor::history::History;
 use crate::editor::selection::Selection;
 use crate::editor::viewport::Viewport;
-use crate::scene::{PointLamp, SceneId};
+use crate::scene::{Phong, PointLamp, SceneId, UsesMaterial};
 use bevy::ecs::name::Name;
 use bevy_egui::egui::{Event, Key, Modifiers, vec2};
 use std::time::Instant;
@@ -122,6 +123,40 @@ fn arrows_go_through_the_rows_and_fold_them_and_letters_find_names() {
     assert_eq!(selected(&mut desk), "Lamp");
     desk.key(Key::ArrowLeft);
     assert_eq!(selected(&mut desk), names[0]);
+}
+
+#[test]
+fn an_object_dropped_onto_a_material_or_a_material_onto_an_object_gets_it_in_one_step() {
+    let mut desk = Desk::open("cornell-box");
+    let material = SceneId(500);
+    let brick = (material, Name::new("Brick"), Phong::default());
+    let brick = desk.world().spawn(brick).id();
+    desk.settle();
+    let (floor, _) = desk.named("Floor");
+    let (short, _) = desk.named("Short block");
+    let has = |desk: &mut Desk, object| {
+        desk.settle();
+        desk.world().get::<UsesMaterial>(object) == Some(&UsesMaterial(brick))
+    };
+    let steps = |desk: &mut Desk| desk.world().resource::<History>().position();
+    desk.settle();
+    let first = steps(&mut desk);
+    let [from, to] = ["Floor", "Brick"].map(|name| desk.place_of(name));
+    desk.drag(from, to - from);
+    assert!(has(&mut desk, floor));
+    assert_eq!(steps(&mut desk), first + 1);
+    let text = desk.world().resource::<History>().undo_text();
+    assert_eq!(text, Some("Give Floor the material Brick"));
+    let [from, to] = ["Brick", "Short block"].map(|name| desk.place_of(name));
+    desk.drag(from, to - from);
+    assert!(has(&mut desk, short));
+    // A light has no material, and stays where it is.
+    let (_, lamp) = desk.named("Lamp");
+    let [from, to] = ["Lamp", "Brick"].map(|name| desk.place_of(name));
+    desk.drag(from, to - from);
+    desk.settle();
+    assert_eq!(steps(&mut desk), first + 2);
+    assert_eq!(name_of(desk.world(), lamp), "Lamp");
 }
 
 #[test]
