@@ -244,7 +244,7 @@ impl Engine {
 
     /// See [`Self::of_pixels`].
     pub fn told_of_pixels(&self) -> (f64, Decline) {
-        lock(&self.of_pixels).clone()
+        *lock(&self.of_pixels)
     }
 
     /// Samples of a pixel, on average.
