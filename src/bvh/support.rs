@@ -3,8 +3,9 @@
 //! The support function h(d) is the largest d · p of all points p of a shape, and where a shape ends in a turned space
 //! is its support along that space's axes. It is known here in the directions of a grid on a cube's faces. Between them
 //! it follows from being convex and homogeneous: h(Σ wᵢ dᵢ) <= Σ wᵢ h(dᵢ) for weights that are not negative, so that the
-//! blend of a cell's four corners is never too small. Of a ball it is at most 2.6 % too large, of a cube never. What is more comes from the boxes: a ball of 8,192
-//! triangles has 1.06 to 1.3 times the area that a box round its corners has (one box turned: up to 3 times).
+//! blend of a cell's four corners is never too small. Of a ball it is at most 2.6 % too large, of a cube never. What is
+//! more comes from the boxes that the shape is taken from: of a ball of 8,192 triangles the box round it has 1.06 to 1.3
+//! times the area of one round its corners (its own box, turned: up to 3 times).
 
 use std::sync::OnceLock;
 

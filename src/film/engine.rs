@@ -229,8 +229,10 @@ impl Engine {
 
     /// Notes the error of the picture as it is now.
     pub(super) fn note_error(&self) {
-        *lock(&self.of_pixels) = (self.hidden_in_a_pixel(), self.decline());
-        let Some(error) = self.error() else { return };
+        let moves = self.moves();
+        let error = self.error_of(&moves);
+        *lock(&self.of_pixels) = (self.hidden_with(error), Decline::of(&moves));
+        let Some(error) = error else { return };
         let point = TrendPoint {
             samples: self.samples(),
             seconds: self.control.elapsed().as_secs_f64(),
