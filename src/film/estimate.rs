@@ -1,7 +1,7 @@
 //! How far a render is from the converged picture, as its tiles tell.
 
 use super::engine::Engine;
-use super::error::{Decline, ErrorEstimate, Moves};
+use super::error::{ErrorEstimate, Moves};
 use rayon::prelude::*;
 
 impl Engine {
