@@ -19,6 +19,10 @@ use std::time::{Duration, Instant};
 const OFFERED: usize = 6;
 /// Files and folders of one folder that are looked at.
 const MOST: usize = 2000;
+/// What a scene's name ends with where one is suggested.
+const SUGGESTED: &str = ".scn.ron";
+/// What names end with of what is saved.
+const EXTENSIONS: [&str; 3] = [SUGGESTED, ".obj", ".glb"];
 /// How often a folder is looked at again.
 const AGAIN: Duration = Duration::from_secs(1);
 
@@ -199,7 +203,10 @@ pub(super) fn path_ui(
         }
     }
     let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-    let path = path_of(&form.text);
+    let path = path_of(match purpose {
+        Purpose::SaveAs => without_suggested(&form.text),
+        Purpose::Open | Purpose::Import => &form.text,
+    });
     whole_path_ui(ui, &path);
     if let Some(given) = &form.given {
         let verb = match purpose {
@@ -291,6 +298,14 @@ fn end_caret(ui: &Ui, id: Id, text: &str) {
     select_letters(ui, id, end..end);
 }
 
+/// A path without the extension that was suggested, where its own was typed before it: over a selected stem people type
+/// whole names.
+fn without_suggested(text: &str) -> &str {
+    let typed = text.strip_suffix(SUGGESTED);
+    let is_whole = |typed: &&str| EXTENSIONS.iter().any(|own| typed.ends_with(own));
+    typed.filter(is_whole).unwrap_or(text)
+}
+
 /// Which letters of a path are the file's name without its extensions.
 fn stem(text: &str) -> Range<usize> {
     let (folder, name) = split(text);
@@ -342,6 +357,20 @@ mod tests {
             ("", 0..0),
         ] {
             assert_eq!(stem(text), letters, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_whole_name_that_is_typed_over_a_stem_is_the_name() {
+        for (text, path) in [
+            ("/tmp/room.scn.ron.scn.ron", "/tmp/room.scn.ron"),
+            ("/tmp/room.glb.scn.ron", "/tmp/room.glb"),
+            ("room.scn.ron", "room.scn.ron"),
+            ("room.v2.scn.ron", "room.v2.scn.ron"),
+            ("room.glb", "room.glb"),
+            ("", ""),
+        ] {
+            assert_eq!(without_suggested(text), path);
         }
     }
 
