@@ -246,7 +246,7 @@ impl Instance {
     /// The box around the instance in the world, or `None` when its mesh has no triangle that is traced. It is wide
     /// enough for the rounding of every ray that enters (see the module).
     ///
-    /// Where axes do not stay axes it is that of how far the mesh [reaches](MeshTree::reach_along) along them: a turned box
+    /// Where axes do not stay axes it is that of how far the mesh itself reaches along them: a turned box
     /// sticks out far beyond what is in it (that of a ball to three times the ball's area).
     pub fn world_bounds(&self) -> Option<Aabb> {
         let whole = self.mesh.bounds()?;
