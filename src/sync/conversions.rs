@@ -28,9 +28,6 @@ pub(super) fn convert(image: &Image, is_around: bool) -> TextureResult {
     } else {
         trace_texture(image)?
     };
-    if is_around {
-        converted.texture.prepare_as_environment();
-    }
     Ok(TracedTexture {
         texture: Arc::new(converted.texture),
         sampler: sampler_of(image),
@@ -158,7 +155,15 @@ impl Conversions {
             };
             self.threads.run(move || {
                 // A panic would be a bug; it must not take the app with it, nor keep it waiting.
-                let texture = catch_unwind(AssertUnwindSafe(|| convert(&image, is_around)));
+                let converted = || {
+                    let converted = convert(&image, is_around)?;
+                    // No frame waits for it here; where the environment lights nothing it is done in vain.
+                    if is_around {
+                        converted.texture.prepare_as_environment();
+                    }
+                    Ok(converted)
+                };
+                let texture = catch_unwind(AssertUnwindSafe(converted));
                 let broken = |_| Err(TextureFault::Broken("it could not be converted".into()));
                 let texture = texture.unwrap_or_else(broken);
                 Finished {
