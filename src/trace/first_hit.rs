@@ -2,7 +2,7 @@
 
 use super::camera_rays::CameraRays;
 use super::{Camera, Cone, SampleId, Surface, World};
-use crate::bvh::{Counters, Hit, Ray};
+use crate::bvh::{Counters, Hit, Ray, Visitor};
 use crate::scene::{PixelSampling, RenderSettings, SceneId};
 use glam::{UVec2, Vec2, Vec3};
 
@@ -96,37 +96,49 @@ pub fn central_ray(camera: &Camera, settings: &RenderSettings, pixel: UVec2) -> 
 /// Of a ray that meets `hit` first, the first surface that is there at all: `hit`, or what shows where that and others are cut
 /// out, a crossing of opacity 0 being none. By the finest texels.
 pub fn first_surface(world: &World, settings: &RenderSettings, ray: &Ray, hit: Hit) -> Option<Hit> {
+    // What most rays meet is there without a look at it.
+    if !world.lets_light_through(&world.objects[hit.instance as usize]) {
+        return Some(hit);
+    }
+    let found = first_there(world, settings, Cone::default(), ray, hit, &mut ());
+    found.map(|(hit, _)| hit)
+}
+
+fn first_there(
+    world: &World,
+    settings: &RenderSettings,
+    cone: Cone,
+    ray: &Ray,
+    hit: Hit,
+    visitor: &mut impl Visitor,
+) -> Option<(Hit, Surface)> {
     let mut next = Some(hit);
     while let Some(hit) = next {
-        let may_be_cut_out = world.lets_light_through(&world.objects[hit.instance as usize]);
-        if !may_be_cut_out || Surface::at(world, settings, ray, 0.0, &hit).opacity > 0.0 {
-            return Some(hit);
+        let depth = hit.t * ray.direction.length();
+        let surface = Surface::at(world, settings, ray, cone.width_at(depth), &hit);
+        if surface.opacity > 0.0 {
+            return Some((hit, surface));
         }
-        next = world.aggregate.next_crossing(ray, &hit);
+        next = world.aggregate.next_crossing_with(ray, &hit, visitor);
     }
     None
 }
 
 fn first_hit(world: &World, settings: &RenderSettings, cone: Cone, ray: &Ray) -> FirstHit {
     let mut cost = Counters::default();
-    let aggregate = &world.aggregate;
-    let mut next = aggregate.closest_hit_with(ray, &mut cost);
-    while let Some(hit) = next {
-        let depth = hit.t * ray.direction.length();
-        let surface = Surface::at(world, settings, ray, cone.width_at(depth), &hit);
-        if surface.opacity > 0.0 {
-            return FirstHit {
-                albedo: surface.diffuse,
-                normal: surface.normal,
-                depth,
-                object: Some(SceneId(world.objects[hit.instance as usize].id)),
-                cost,
-            };
-        }
-        next = aggregate.next_crossing_with(ray, &hit, &mut cost);
-    }
-    FirstHit {
-        cost,
-        ..FirstHit::MISS
+    let hit = world.aggregate.closest_hit_with(ray, &mut cost);
+    let found = hit.and_then(|hit| first_there(world, settings, cone, ray, hit, &mut cost));
+    match found {
+        Some((hit, surface)) => FirstHit {
+            albedo: surface.diffuse,
+            normal: surface.normal,
+            depth: hit.t * ray.direction.length(),
+            object: Some(SceneId(world.objects[hit.instance as usize].id)),
+            cost,
+        },
+        None => FirstHit {
+            cost,
+            ..FirstHit::MISS
+        },
     }
 }
