@@ -27,6 +27,8 @@ pub struct AddAt {
     pub place: Vec3,
     /// Greater than 0.
     pub size: f32,
+    /// How the view is turned: a camera looks the same way.
+    pub view: Quat,
 }
 
 impl Default for AddAt {
@@ -34,14 +36,17 @@ impl Default for AddAt {
         Self {
             place: Vec3::ZERO,
             size: 1.0,
+            view: Quat::IDENTITY,
         }
     }
 }
 
 /// How high above its place a lamp of a size of 1 is added: in the floor, where others stand, it would light nothing of it.
 const LAMP_HEIGHT: f32 = 1.5;
+/// How far before its place a camera of a size of 1 is added: it sees what stands there, and the view, farther back, sees it.
+const CAMERA_DISTANCE: f32 = 2.5;
 
-/// Adds a thing at a place, a lamp above it. `None` where no shape is called so.
+/// Adds a thing at a place, a lamp above it, a camera before it. `None` where no shape is called so.
 pub fn add(world: &mut World, what: &Addition, at: AddAt) -> Option<SceneId> {
     let id = FreeIds::new(world).next();
     let place = Transform::from_translation(at.place);
@@ -89,7 +94,11 @@ pub fn add(world: &mut World, what: &Addition, at: AddAt) -> Option<SceneId> {
             };
             spawn(world, id, "Parallelogram light", (lamp, scaled_above));
         }
-        Addition::Camera => spawn(world, id, "Camera", (SceneCamera::default(), place)),
+        Addition::Camera => {
+            let back = CAMERA_DISTANCE * at.size * (at.view * Vec3::Z);
+            let before = Transform::from_translation(at.place + back).with_rotation(at.view);
+            spawn(world, id, "Camera", (SceneCamera::default(), before));
+        }
         Addition::Material => spawn(world, id, "Material", Phong::default()),
     }
     Some(id)
@@ -137,8 +146,13 @@ mod tests {
             let place = Vec3::new(3.0, 0.7, -2.0);
             let mut app = headless_editor();
             let world = app.world_mut();
+            let at = AddAt {
+                place,
+                size,
+                ..AddAt::default()
+            };
             let mut added = |what: Addition| {
-                let id = add(world, &what, AddAt { place, size }).unwrap();
+                let id = add(world, &what, at).unwrap();
                 let entity = crate::editor::edits::scene_entity(world, id).unwrap();
                 let own = *world.get::<Transform>(entity).unwrap();
                 assert!(own.translation.y > place.y, "{what:?}");
@@ -162,5 +176,23 @@ mod tests {
                 assert!((0.3..1.0).contains(&radiance), "{what:?}: {radiance}");
             }
         }
+    }
+    #[test]
+    fn a_camera_looks_at_where_it_is_added_as_the_view_does() {
+        let mut app = headless_editor();
+        let world = app.world_mut();
+        let at = AddAt {
+            place: Vec3::new(3.0, 0.7, -2.0),
+            size: 0.2,
+            view: Quat::from_rotation_y(2.0) * Quat::from_rotation_x(-0.4),
+        };
+        let id = add(world, &Addition::Camera, at).unwrap();
+        let entity = crate::editor::edits::scene_entity(world, id).unwrap();
+        let own = world.get::<Transform>(entity).unwrap();
+        let to_place = at.place - own.translation;
+        assert!((to_place.length() - 0.5).abs() < 1e-5, "{own:?}");
+        let looks = own.rotation * Vec3::NEG_Z;
+        assert!(looks.dot(to_place.normalize()) > 0.999_99, "{own:?}");
+        assert!(looks.dot(at.view * Vec3::NEG_Z) > 0.999_99, "{own:?}");
     }
 }

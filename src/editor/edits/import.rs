@@ -253,6 +253,7 @@ mod tests {
         app.insert_resource(AddAt {
             place: Vec3::new(-0.15, 0.4, 0.22),
             size: 0.1,
+            ..AddAt::default()
         });
         app.update();
         let folder = tempfile::tempdir().unwrap();

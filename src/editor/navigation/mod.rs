@@ -198,6 +198,7 @@ fn aim_additions(eye: Res<Eye>, mut at: ResMut<AddAt>) {
     at.set_if_neq(AddAt {
         place: round_place(eye.pivot, size),
         size,
+        view: eye.transform().rotation,
     });
 }
 
@@ -250,7 +251,12 @@ mod tests {
             app.update();
         }
         let at = *app.world().resource::<AddAt>();
-        assert_eq!(at, AddAt::default());
+        let view = app.world().resource::<Eye>().transform().rotation;
+        let as_in_a_file = AddAt {
+            view,
+            ..AddAt::default()
+        };
+        assert_eq!(at, as_in_a_file);
     }
 
     #[test]
