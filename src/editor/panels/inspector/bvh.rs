@@ -13,9 +13,10 @@ use super::still_plot::still_plot;
 use crate::bvh::{LARGEST_LEAF_BIN, MeshTree, TreeStats};
 use crate::editor::inspection::Inspected;
 use crate::editor::inspection::choice::Node;
+use crate::editor::selection::Selection;
 use crate::editor::texts::{counted, grouped};
 use crate::inspect::{InspectSettings, Names, TreeChoice};
-use crate::scene::{Property, RenderSettings, TreeSettings};
+use crate::scene::{Property, RenderSettings, SceneId, TreeSettings};
 use crate::sync::Traced;
 use crate::trace;
 use bevy::ecs::resource::Resource;
@@ -62,6 +63,8 @@ pub(in super::super) struct Trees {
     of: Option<(Arc<trace::World>, u64)>,
     trees: Vec<Tree>,
     shown: usize,
+    /// What was selected when the list went to its tree.
+    followed: Option<SceneId>,
 }
 
 impl Trees {
@@ -125,6 +128,25 @@ impl Trees {
         self.shown = self.shown.min(self.trees.len().saturating_sub(1));
     }
 
+    /// Goes to the tree of what was selected since. Returns whether it went anywhere.
+    fn follow(&mut self, world: &trace::World, selected: Option<SceneId>) -> bool {
+        if self.followed == selected {
+            return false;
+        }
+        self.followed = selected;
+        let object = selected.and_then(|id| world.objects.iter().find(|known| known.id == id.0));
+        let found = object.and_then(|object| {
+            let is_its = |tree: &Tree| {
+                (tree.mesh.as_ref()).is_some_and(|mesh| Arc::ptr_eq(mesh, &object.mesh.tree))
+            };
+            self.trees.iter().position(is_its)
+        });
+        if let Some(found) = found {
+            self.shown = found;
+        }
+        found.is_some()
+    }
+
     /// Keeps nothing but which one is shown.
     fn forget(&mut self) {
         self.of = None;
@@ -139,7 +161,7 @@ pub(super) fn bvh_ui(ui: &mut Ui, world: &mut World) {
         let paths = shown_settings(&settings);
         properties_ui(ui, &mut settings, &paths);
         ui.horizontal(|ui| {
-            let says = "Two levels, PLOC: quick to trace";
+            let says = "Two levels, binned SAH: quick to trace";
             if ui.button("Default").says(says).clicked() {
                 settings.tree = TreeSettings::default();
             }
@@ -165,7 +187,9 @@ pub(super) fn bvh_ui(ui: &mut Ui, world: &mut World) {
         section(ui, "Trees that are traced", true, |ui| {
             is_open = true;
             trees.update(&traced, world.get_resource().unwrap_or(&Names::default()));
-            list_ui(ui, &mut trees);
+            let selection = world.get_resource::<Selection>();
+            let went = trees.follow(&traced, selection.and_then(Selection::active));
+            list_ui(ui, &mut trees, went);
             ways_ui(ui, world, &traced, &trees);
             figures_ui(ui, &trees);
         });
@@ -184,15 +208,20 @@ fn shown_settings(settings: &RenderSettings) -> Vec<&'static str> {
     SETTINGS_OF_TREES.iter().copied().filter(is_read).collect()
 }
 
-/// A row for each tree: whose it is, what it holds, what a ray pays in it. Only those that are seen are laid out.
-fn list_ui(ui: &mut Ui, trees: &mut Trees) {
+/// A row for each tree: whose it is, what it holds, what a ray pays in it. Only those that are seen are laid out; the one
+/// whose figures are shown is among them where it `went` there.
+fn list_ui(ui: &mut Ui, trees: &mut Trees, went: bool) {
     ui.spacing_mut().item_spacing.y = 0.0;
     let rows = trees.trees.len();
-    ScrollArea::vertical()
+    let mut area = ScrollArea::vertical()
         .id_salt("list of trees")
         .max_height(ROW * rows.min(ROWS) as f32)
-        .auto_shrink([false, true])
-        .show_rows(ui, ROW, rows, |ui, range| {
+        .auto_shrink([false, true]);
+    if went {
+        let before = trees.shown.saturating_sub(ROWS / 2);
+        area = area.vertical_scroll_offset(ROW * before as f32);
+    }
+    area.show_rows(ui, ROW, rows, |ui, range| {
             for at in range {
                 let tree = &trees.trees[at];
                 let figures = format!(
@@ -205,7 +234,7 @@ fn list_ui(ui: &mut Ui, trees: &mut Trees) {
                     .truncate()
                     .right_text(RichText::new(figures).small());
                 let row = ui.add_sized(vec2(ui.available_width(), ROW), row);
-                let says = "Whose tree it is, the largest first; triangles, and the SAH cost: a click shows its figures";
+                let says = "Whose tree it is, the largest first; triangles, and the SAH cost: a click shows its figures, and so does selecting an object";
                 if row.says(says).clicked() {
                     trees.shown = at;
                 }
@@ -371,6 +400,29 @@ mod tests {
         }
         assert!(!places[0].is_empty());
         assert_eq!(places[0], places[1]);
+    }
+
+    #[test]
+    fn the_list_goes_to_the_tree_of_what_is_selected_and_stays_where_a_click_went_after_it() {
+        let mut app = headless_editor();
+        let source = SceneSource::Builtin(builtin::find("cornell-box").unwrap());
+        open(app.world_mut(), &source, OpenOptions::default()).unwrap();
+        app.update();
+        let world = &app.world().resource::<Traced>().world;
+        let mut trees = Trees::default();
+        trees.update(world, &Names::default());
+        assert!(trees.trees.len() > 2);
+        for object in world.objects.iter() {
+            assert!(trees.follow(world, Some(SceneId(object.id))));
+            let shown = trees.trees[trees.shown].mesh.as_ref().unwrap();
+            assert!(Arc::ptr_eq(shown, &object.mesh.tree));
+        }
+        let last = world.objects.last().map(|object| SceneId(object.id));
+        trees.shown = 0;
+        assert!(!trees.follow(world, last));
+        // What has no tree leads nowhere.
+        assert!(!trees.follow(world, None));
+        assert_eq!(trees.shown, 0);
     }
 
     #[test]
