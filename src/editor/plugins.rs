@@ -16,7 +16,7 @@ use super::pointer::PointerPlugin;
 use super::render_job::RenderJobPlugin;
 use super::selection::Selection;
 use super::trees::TreesPlugin;
-use super::viewport::{Viewport, forget_region};
+use super::viewport::{self, Viewport};
 use crate::view::{GlassboxPlugins, RasterPlugin, SymbolsPlugin};
 use bevy::app::{App, Plugin, PluginGroup, PluginGroupBuilder};
 
@@ -101,6 +101,6 @@ impl Plugin for StatePlugin {
         app.init_resource::<Selection>()
             .init_resource::<Viewport>()
             .init_resource::<Notices>()
-            .add_observer(forget_region);
+            .add_observer(viewport::forget_scene);
     }
 }

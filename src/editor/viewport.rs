@@ -33,14 +33,18 @@ pub(super) fn traced_view_mut(world: &mut World) -> Option<Mut<'_, TracedView>> 
     views.single_mut(world).ok()
 }
 
-/// The part of the picture, and the numbers, that one scene was looked at for say nothing about another.
-pub(super) fn forget_region(
+/// The part of the picture, and the numbers, that one scene was looked at for say nothing about another, which is not
+/// kept waiting either.
+pub(super) fn forget_scene(
     _: On<SceneOpened>,
     mut views: Query<&mut TracedView, With<EditorCamera>>,
 ) {
     for mut view in &mut views {
         if view.region.is_some() || view.range.is_some() {
             (view.region, view.range) = (None, None);
+        }
+        if view.paused {
+            view.paused = false;
         }
     }
 }
@@ -70,6 +74,8 @@ pub struct Viewport {
     pub divider: f32,
     /// Whether the pointer is over the scene: not over a panel, a menu or a popup.
     pub hovered: bool,
+    /// Whether function keys send commands: no question and no menu is open.
+    pub takes_function_keys: bool,
     /// Whether keys are meant for the scene: nothing is being typed into.
     pub takes_keys: bool,
     /// Whether letters and digits are, too: the list of entities does not find names by them.
@@ -84,6 +90,7 @@ impl Default for Viewport {
             show: Show::default(),
             divider: 0.5,
             hovered: false,
+            takes_function_keys: true,
             takes_keys: true,
             takes_letters: true,
         }

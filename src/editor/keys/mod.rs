@@ -135,14 +135,24 @@ fn press_keys(
             continue;
         }
         let viewport = world.resource::<Viewport>();
+        // Nothing that is typed into reads them.
+        let takes = match is_function_key(keys.key) {
+            true => viewport.takes_function_keys,
+            false => viewport.takes_keys,
+        };
         let writes = matches!(input.logical_key, Key::Character(_) | Key::Space);
         // The list of entities has letters, and Escape, which gives them back.
         let for_list = writes && !keys.ctrl || keys.key == KeyCode::Escape;
-        if !viewport.takes_keys || for_list && !viewport.takes_letters {
+        if !takes || for_list && !viewport.takes_letters {
             continue;
         }
         press(world, keys, input.repeat);
     }
+}
+
+fn is_function_key(key: KeyCode) -> bool {
+    use KeyCode::{F1, F2, F3, F4, F5, F6, F7, F8, F9, F10, F11, F12};
+    [F1, F2, F3, F4, F5, F6, F7, F8, F9, F10, F11, F12].contains(&key)
 }
 
 fn is_modifier(key: KeyCode) -> bool {

@@ -53,6 +53,7 @@ mod outline;
 mod outline_rows;
 mod overlays;
 mod palette;
+mod panel_focus;
 mod pattern;
 mod rays;
 mod readout;
@@ -152,6 +153,7 @@ fn add_panels(app: &mut App) {
         .init_resource::<overlays::RegionDrag>()
         .init_resource::<overlays::UnderPointer>()
         .init_resource::<palette::OpenPalette>()
+        .init_resource::<panel_focus::PanelStep>()
         .init_resource::<pattern::ShownPattern>()
         .init_resource::<rays::RaysPanel>()
         .init_resource::<status::StatusBar>()
@@ -163,6 +165,7 @@ fn add_panels(app: &mut App) {
         .add_observer(overlays::forget_scene)
         .add_observer(mixer::forget_scene)
         .add_commands(commands::commands())
+        .add_commands(panel_focus::commands())
         .add_commands(mixer::commands())
         .add_commands(compare::commands())
         .add_observer(commands::let_go)
@@ -229,6 +232,7 @@ fn panels_ui(context: &egui::Context, world: &mut World) {
     with(world, |world, palette| {
         palette::palette_ui(context, world, palette)
     });
+    panel_focus::step(context, world);
     theme::ring_ui(context);
     gesture::note_gesture(context, world);
     let letters_taken = world.resource::<hierarchy::Hierarchy>().list_keys.focused;
@@ -379,18 +383,25 @@ fn note_viewport(
         && pointer.is_some_and(|at| is_over(at) && !in_front(at))
         && !context.egui_is_using_pointer();
     let modal = context.memory(|memory| memory.top_modal_layer().is_some());
-    let takes_keys = !modal && !context.egui_wants_keyboard_input() && !context.any_popup_open();
+    let takes_function_keys = !modal && !context.any_popup_open();
+    let takes_keys = takes_function_keys && !context.egui_wants_keyboard_input();
     let takes_letters = takes_keys && !letters_taken;
     let viewport = world.resource::<Viewport>();
-    let keys = [takes_keys, takes_letters];
-    if (viewport.rect, viewport.twin) != places
-        || viewport.hovered != hovered
-        || [viewport.takes_keys, viewport.takes_letters] != keys
-    {
+    let keys = [takes_function_keys, takes_keys, takes_letters];
+    let known = [
+        viewport.takes_function_keys,
+        viewport.takes_keys,
+        viewport.takes_letters,
+    ];
+    if (viewport.rect, viewport.twin) != places || viewport.hovered != hovered || known != keys {
         let mut viewport = world.resource_mut::<Viewport>();
         (viewport.rect, viewport.twin) = places;
         viewport.hovered = hovered;
-        [viewport.takes_keys, viewport.takes_letters] = keys;
+        [
+            viewport.takes_function_keys,
+            viewport.takes_keys,
+            viewport.takes_letters,
+        ] = keys;
     }
 }
 

@@ -6,7 +6,7 @@
 
 use crate::bvh::{BuildOptions, Builder, Levels};
 use crate::editor::background::{Background, Outcome, Watch};
-use crate::editor::document::Document;
+use crate::editor::document::{Document, SceneOpened};
 use crate::editor::viewport::{traced_render, traced_view_mut};
 use crate::inspect::{BuilderFigures, compare_builders_told, same_geometry};
 use crate::report::performance::{Performance, PerformanceError, PerformanceTest, performance};
@@ -14,7 +14,9 @@ use crate::scene::{RenderSettings, Sampling};
 use crate::sync::{Traced, TracedCameras};
 use crate::trace::{self, Camera};
 use crate::view::TracedRender;
+use bevy::ecs::observer::On;
 use bevy::ecs::resource::Resource;
+use bevy::ecs::system::ResMut;
 use bevy::ecs::world::{Mut, World};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -272,6 +274,12 @@ impl Measurements {
             view.paused = false;
         }
     }
+}
+
+/// What is measured of another scene is no more of use, and would keep this one waiting.
+pub(super) fn forget_scene(_: On<SceneOpened>, mut all: ResMut<Measurements>) {
+    all.comparison.cancel();
+    all.performance.cancel();
 }
 
 /// Carries [`Measurements`] on.

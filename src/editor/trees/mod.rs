@@ -36,6 +36,7 @@ impl Plugin for TreeStudyPlugin {
             .init_resource::<pair::TreePair>()
             .init_resource::<BoxRanges>()
             .add_commands(commands::commands())
+            .add_observer(measure::forget_scene)
             .add_systems(EditorUpdate, measure::carry_on)
             .add_systems(PostUpdate, pair::build_pair.after(SyncSystems));
     }

@@ -12,6 +12,7 @@ use crate::editor::action::Action;
 use crate::editor::inspection::{DebugRay, debug_ray::Shot};
 use crate::editor::notice::Notices;
 use crate::editor::preferences::Preferences;
+use crate::editor::viewport::Viewport;
 use crate::io::builtin::SCENES;
 use crate::sync::TracedCameras;
 use bevy::math::UVec2;
@@ -180,4 +181,35 @@ fn tab_reaches_every_control_once_and_the_one_that_has_the_keys_is_seen() {
         unseen.is_empty(),
         "nobody sees that they have the keys: {unseen:#?}"
     );
+}
+
+#[test]
+fn f6_goes_from_panel_to_panel_and_back_to_the_picture_and_shift_f6_the_other_way() {
+    let mut desk = Desk::open("cornell-box");
+    let (_, lamp) = desk.named("Lamp");
+    desk.select([lamp]);
+    let step = |desk: &mut Desk, id: &str| {
+        desk.world().write_message(Action::run(id.to_owned()));
+        desk.settle();
+        let focused = desk.context.memory(|memory| memory.focused());
+        focused.map(|id| desk.context.read_response(id).unwrap().interact_rect)
+    };
+    let there: Vec<egui::Rect> = std::iter::from_fn(|| step(&mut desk, "view.next-panel"))
+        .take(20)
+        .collect();
+    let panel = |id: &'static str| {
+        egui::PanelState::load(&desk.context, egui::Id::new(id)).map(|state| state.rect)
+    };
+    for id in ["menu", "toolbar", "hierarchy", "inspector"] {
+        let panel = panel(id).unwrap();
+        let here = there.iter().filter(|stop| panel.contains(stop.center()));
+        assert_eq!(here.count(), 1, "{id}: {there:?}");
+    }
+    // The picture's keys are commands again.
+    assert!(desk.world().resource::<Viewport>().takes_keys);
+    let mut back: Vec<egui::Rect> = std::iter::from_fn(|| step(&mut desk, "view.previous-panel"))
+        .take(20)
+        .collect();
+    back.reverse();
+    assert_eq!(back, there);
 }

@@ -4,14 +4,16 @@ use super::super::inspector::{Inspector, Tab};
 use super::desk::{Desk, USUAL};
 use crate::bvh::Builder;
 use crate::editor::action::Action;
+use crate::editor::document::adopt;
 use crate::editor::history::History;
 use crate::editor::inspection::{DebugRay, Inspected, Which};
 use crate::editor::trees::measure::{BUILDERS, Measurements, Stale};
 use crate::editor::trees::pair::{SideState, TreePair};
-use crate::editor::viewport::Viewport;
+use crate::editor::viewport::{Viewport, traced_view_mut};
 use crate::inspect::{
     BoxChoice, BoxRange, BuilderFigures, InspectPreset, InspectSettings, Names, compare_builders,
 };
+use crate::io::{OpenOptions, SceneSource, builtin, open};
 use crate::scene::{self, RenderSettings, SceneId};
 use crate::sync::{Traced, TracedCameras};
 use crate::view::TracedView;
@@ -184,6 +186,25 @@ fn what_is_cancelled_leaves_what_was_measured_and_lets_the_view_go_on() {
     assert!(!desk.paused(), "the view goes on");
     let said = "Cancelled: nothing new was measured.";
     assert!(desk.find(said).is_some() && desk.find(COMPARE).is_some());
+}
+
+#[test]
+fn another_scene_waits_neither_for_what_was_measured_of_the_last_nor_for_its_pause() {
+    let mut desk = Desk::in_tab_bvh("knot");
+    let open_head = |desk: &mut Desk| {
+        let source = SceneSource::Builtin(builtin::find("head").unwrap());
+        open(desk.world(), &source, OpenOptions::default()).unwrap();
+        adopt(desk.world(), "head", None);
+        desk.settle();
+    };
+    desk.click_on(COMPARE);
+    assert!(desk.paused(), "the view waits");
+    open_head(&mut desk);
+    assert!(!desk.world().resource::<Measurements>().running());
+    assert!(!desk.paused(), "the view goes on");
+    traced_view_mut(desk.world()).unwrap().paused = true;
+    open_head(&mut desk);
+    assert!(!desk.paused(), "the picture is the new scene's");
 }
 
 #[test]
