@@ -19,6 +19,14 @@ use bevy::transform::components::GlobalTransform;
 #[derive(Resource, Default)]
 pub struct TracedCameras(pub Vec<TracedCamera>);
 
+impl TracedCameras {
+    /// The first of these that is a camera of the scene, else the scene's first.
+    pub fn first_of(&self, wanted: impl IntoIterator<Item = SceneId>) -> Option<&TracedCamera> {
+        let with = |id: SceneId| self.0.iter().find(|camera| camera.id == id);
+        wanted.into_iter().find_map(with).or_else(|| self.0.first())
+    }
+}
+
 /// One camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TracedCamera {

@@ -11,7 +11,7 @@ use crate::editor::inspection::{DebugRay, DrawnSet, Seen, Source, seen_from};
 use crate::editor::viewport::EditorCamera;
 use crate::inspect::{InspectSettings, LineSet, Subject, System, TreeCounts, rebuilt};
 use crate::scene::{Builder, RenderSettings};
-use crate::sync::{Traced, TracedCameras};
+use crate::sync::Traced;
 use crate::trace::{Camera, RayTree, World};
 use crate::view::DrawnLines;
 use bevy::ecs::query::With;
@@ -260,15 +260,10 @@ impl TreePair {
 }
 
 /// Counts, and makes those lines again that may be others.
-#[expect(
-    clippy::too_many_arguments,
-    reason = "a system's parameters are the list of what it reads"
-)]
 pub(super) fn draw_pair(
     mut commands: Commands,
     inspect: Res<InspectSettings>,
     settings: Res<RenderSettings>,
-    cameras: Res<TracedCameras>,
     ray: Res<DebugRay>,
     view: Single<Seen, With<EditorCamera>>,
     mut lines: Query<&mut DrawnLines>,
@@ -300,10 +295,7 @@ pub(super) fn draw_pair(
         };
         side.count(&counted, &settings);
         let rays = source.rays.as_deref();
-        let of_scene = cameras.0.first().map(|camera| &camera.camera);
-        let photographer = of_scene.unwrap_or(camera);
-        let subject =
-            Subject::new(&source.world, photographer, &settings, &inspect, rays).seen_by(camera);
+        let subject = Subject::new(&source.world, camera, &settings, &inspect, rays);
         for (system, drawn) in SYSTEMS.into_iter().zip(&mut side.drawn) {
             let is_on = system.is_wanted(&inspect) && (rays.is_some() || !system.needs_rays());
             let is_other = match is_on {
