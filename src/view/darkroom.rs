@@ -5,8 +5,7 @@
 //! of each pass becomes smaller (Cycles' render scheduler does the same).
 
 use super::darkroom_threads::pool;
-use super::surfaces::Surfaces;
-use crate::bvh::Aggregate;
+use super::surfaces::{Surfaces, SurfacesOf};
 use crate::film::views::{Scale, Source, Sources, View, show};
 use crate::film::{Ending, FirstHits, Progressive, Snapshot, State, develop_rgba8};
 use crate::scene::{Output, RenderSettings};
@@ -155,25 +154,6 @@ impl Seen {
     }
 }
 
-/// All that surfaces depend on.
-#[derive(PartialEq)]
-struct SurfacesOf {
-    /// Kept, lest another is made at its address.
-    trees: Same<Aggregate>,
-    /// Where some let light through.
-    materials: Option<Same<Vec<trace::Material>>>,
-    camera: trace::Camera,
-    size: UVec2,
-}
-
-struct Same<T>(Arc<T>);
-
-impl<T> PartialEq for Same<T> {
-    fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &other.0)
-    }
-}
-
 impl Developer {
     fn new(newest: Arc<Mutex<Option<Print>>>) -> Self {
         Self {
@@ -299,18 +279,7 @@ impl Job {
         }
         let of = self.render.number();
         let changed = self.render.refresh(snapshot);
-        let Subject {
-            world,
-            camera,
-            settings,
-            ..
-        } = &*self.subject;
-        let wanted = SurfacesOf {
-            trees: Same(world.aggregate.clone()),
-            materials: (world.needs.transparency).then(|| Same(world.materials.clone())),
-            camera: camera.clone(),
-            size: settings.size,
-        };
+        let wanted = SurfacesOf::new(&self.subject);
         // The first picture does not wait for them, but the last shows them.
         let are_new = surfaces_of.as_ref() != Some(&wanted);
         let surfaces = are_new && (self.printed || ended);

@@ -17,6 +17,8 @@ use std::time::{Duration, Instant};
 
 /// A render that is to be replaced may take so long to its first picture.
 const LONGEST_WAIT: Duration = Duration::from_millis(100);
+/// How long until what could not begin, for want of threads, is tried again.
+const RETRY: Duration = Duration::from_secs(2);
 
 /// The render that a [`TracedView`] shows.
 #[derive(Component, Default)]
@@ -26,8 +28,8 @@ pub struct TracedRender {
     pub(super) darkroom: Option<Darkroom>,
     /// What the print on the screen says of itself.
     pub(super) shown: Option<PrintInfo>,
-    /// Why it never renders again.
-    pub(super) failed: Option<String>,
+    /// Why it could not begin, and when that was found.
+    failed: Option<(String, Instant)>,
     /// Why it does not render as things are.
     pub(super) refused: Option<String>,
     /// Of which render it was said that it has ended.
@@ -119,10 +121,21 @@ impl TracedRender {
             && !matches!(running.render.status().state, State::Ended(_))
     }
 
-    /// Nothing is rendered from now on.
-    pub(super) fn fail(&mut self, problem: String) {
+    /// Whether it could not begin a moment ago.
+    pub(super) fn has_just_failed(&self) -> bool {
+        let failed = self.failed.as_ref();
+        failed.is_some_and(|(_, since)| since.elapsed() < RETRY)
+    }
+
+    /// Nothing is rendered for a while. Returns the problem where it is another one than before.
+    pub(super) fn fail(&mut self, problem: String) -> Option<String> {
+        let is_known = (self.failed.as_ref()).is_some_and(|(known, _)| *known == problem);
+        self.failed = Some((problem.clone(), Instant::now()));
+        if is_known {
+            return None;
+        }
         error!("{problem}");
-        self.failed = Some(problem);
+        Some(problem)
     }
 
     pub(super) fn retire(&mut self) {
@@ -180,7 +193,7 @@ impl TracedRender {
 
     /// Renders this instead of what was rendered before: edits that render where what it has stays true for the most
     /// part, and begins another one elsewhere.
-    pub(super) fn begin(&mut self, wanted: Wanted) {
+    pub(super) fn begin(&mut self, wanted: Wanted) -> Option<String> {
         let started = Instant::now();
         if let Self {
             running: Some(running),
@@ -191,7 +204,7 @@ impl TracedRender {
         {
             running.started = started;
             darkroom.develop(&running.render, &running.subject(), wanted.order);
-            return;
+            return None;
         }
         self.retire();
         let Wanted {
@@ -206,10 +219,10 @@ impl TracedRender {
         let render = match Progressive::start_region(scene, seen_from, how, region, &mix) {
             Ok(render) => Arc::new(render),
             Err(problem) => {
-                self.fail(format!("the traced view cannot render: {problem}"));
-                return;
+                return self.fail(format!("the traced view cannot render: {problem}"));
             }
         };
+        self.failed = None;
         let running = Running {
             render,
             world,
@@ -226,6 +239,7 @@ impl TracedRender {
             darkroom.develop(&running.render, &running.subject(), order);
         }
         self.running = Some(running);
+        None
     }
 }
 

@@ -189,15 +189,16 @@ fn attend(
         commands.entity(view).try_insert(TracedRender::default());
     }
     for (entity, mut render) in &mut views {
-        if render.darkroom.is_some() || render.failed.is_some() {
+        if render.darkroom.is_some() || render.has_just_failed() {
             continue;
         }
         match Darkroom::open() {
             Ok(darkroom) => render.darkroom = Some(darkroom),
             Err(problem) => {
                 let problem = format!("the traced view has no thread to develop on: {problem}");
-                render.fail(problem.clone());
-                commands.trigger(Failed { entity, problem });
+                if let Some(problem) = render.fail(problem) {
+                    commands.trigger(Failed { entity, problem });
+                }
             }
         }
     }
@@ -232,7 +233,7 @@ fn follow(
 ) {
     for (entity, view, own, mut render, camera, transform, projection) in &mut views {
         // One that was given to a view just now has a thread with the next frame.
-        if render.failed.is_some() || render.darkroom.is_none() {
+        if render.has_just_failed() || render.darkroom.is_none() {
             continue;
         }
         let optics = view.optics_of.and_then(|id| {
@@ -295,8 +296,7 @@ fn follow(
         } else if render.is_awaited(size) {
             continue;
         } else {
-            render.begin(wanted);
-            if let Some(problem) = render.failed.clone() {
+            if let Some(problem) = render.begin(wanted) {
                 commands.trigger(Failed { entity, problem });
             }
         }
@@ -365,6 +365,10 @@ fn show_prints(
         let Some(print) = render.darkroom.as_ref().and_then(Darkroom::take) else {
             continue;
         };
+        if render.running.is_none() {
+            // It was made of what is not shown any more.
+            continue;
+        }
         let Print {
             size,
             bytes,
