@@ -64,8 +64,8 @@ documented! {
         /// Boxes of the trees' nodes.
         #[reflect(@Label("Draw"))]
         pub on: bool,
-        /// Binary: as the builder made them, and as debug rays walk them; wide: up to eight children a node, through which
-        /// pictures are traced.
+        /// Binary: as the builder made them; wide: up to sixteen children a node, through which pictures and debug rays are
+        /// traced.
         pub form: TreeForm,
         /// A range of levels, one leaf, or the way to a triangle.
         #[reflect(@Label("Which"))]
@@ -155,7 +155,7 @@ documented! {
         /// Two children a node, as the builder made it.
         #[default]
         Binary,
-        /// Up to eight children a node, made of the binary form: what rays are traced through.
+        /// Up to sixteen children a node, made of the binary form: what rays are traced through.
         ///
         /// Some of the binary form's nodes, the levels between them left out; rays of pictures and debug rays go through it.
         /// Its levels are drawn, by level or by visits.

@@ -120,6 +120,7 @@ impl System {
             }
             Self::Lights => {
                 key.add(&(Arc::as_ptr(&subject.world.lights) as usize));
+                key.add_dome(subject);
                 key.add_objects(subject);
                 key.add_text(subject.camera);
             }
@@ -155,6 +156,24 @@ impl Key {
         let world = subject.world;
         self.add(&(Arc::as_ptr(&world.aggregate) as usize));
         self.add(&(Arc::as_ptr(&world.objects) as usize));
+    }
+
+    /// What an environment that is a light is drawn by.
+    fn add_dome(&mut self, subject: &Subject) {
+        let environment = &subject.world.environment;
+        self.add(&environment.lights);
+        if environment.lights {
+            let map = environment.map.as_ref().map(Arc::as_ptr);
+            self.add(&map.map(|map| map as usize));
+            self.add_text(&(
+                environment.background,
+                environment.rotation,
+                environment.intensity,
+            ));
+            let settings = subject.settings;
+            self.add_text(&(settings.lighting, settings.features.environment));
+            self.add_text(&settings.output.exposure);
+        }
     }
 
     /// By where they are in memory, as parts of the world: a pixel's samples may have half a million.

@@ -77,4 +77,22 @@ impl Mesh {
             tangents: Vec::new(),
         }
     }
+
+    /// Bytes of all of it, the tree included.
+    pub fn bytes(&self) -> usize {
+        let Self {
+            tree,
+            normals,
+            uvs,
+            colors,
+            alphas,
+            tangents,
+        } = self;
+        tree.bytes()
+            + size_of_val(&**normals)
+            + size_of_val(&**uvs)
+            + size_of_val(&**colors)
+            + size_of_val(&**alphas)
+            + size_of_val(&**tangents)
+    }
 }

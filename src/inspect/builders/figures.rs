@@ -70,10 +70,7 @@ impl BuilderFigures {
             .objects
             .iter()
             .filter(|object| seen.insert(Arc::as_ptr(&object.mesh)))
-            .map(|object| {
-                let mesh = &object.mesh;
-                mesh.tree.bytes() + size_of_val(&*mesh.normals) + size_of_val(&*mesh.uvs)
-            })
+            .map(|object| object.mesh.bytes())
             .sum();
         let bytes = meshes + aggregate.bytes();
         let triangles: u64 = world
