@@ -91,10 +91,11 @@ fn measure(args: &Report, parts: Vec<Part>, scenes: &[PathBuf]) -> Result<(), Fa
     if let Some(table) = &args.editing {
         check_outputs(outputs.iter().map(PathBuf::as_path), [&**table])?;
     }
-    let subjects = scenes
+    let mut subjects = scenes
         .iter()
         .map(|scene| subject(scene, args, &outputs))
         .collect::<Result<Vec<Subject>, Failure>>()?;
+    Subject::tell_apart(&mut subjects);
     let editing = args.editing.as_deref().map(table).transpose()?;
     if parts.contains(&Part::Kernels) {
         report::kernels::check_embree().map_err(Failure::System)?;
@@ -229,16 +230,39 @@ fn table(file: &Path) -> Result<Table, Failure> {
 
 /// This process' own command line, as one would type it.
 fn command() -> String {
-    let words = std::env::args().skip(1);
+    let words = std::env::args_os().skip(1);
+    let words = words.map(|word| quoted(&word.to_string_lossy()));
     std::iter::once("glassbox".to_owned())
         .chain(words)
         .collect::<Vec<_>>()
         .join(" ")
 }
 
+/// As a shell takes it for one word.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "-_./=+,:@%".contains(c);
+    match !word.is_empty() && word.chars().all(is_plain) {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', r"'\''")),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn words_with_spaces_and_quotes_are_one_word_to_a_shell() {
+        for (word, shown) in [
+            ("--files=a/b-1.5.md", "--files=a/b-1.5.md"),
+            ("my room.obj", "'my room.obj'"),
+            ("it's", r"'it'\''s'"),
+            ("", "''"),
+            ("$HOME", "'$HOME'"),
+        ] {
+            assert_eq!(quoted(word), shown);
+        }
+    }
 
     #[test]
     fn parts_come_first_and_everything_else_is_a_scene() {

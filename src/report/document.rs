@@ -1,7 +1,7 @@
 //! A report as files: Markdown, CSV, and plots and pictures that the Markdown shows.
 
 use super::{Report, Section};
-use crate::io::{FileError, Staged, stage_picture};
+use crate::io::{FileError, Folder, Staged, stage_picture};
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
@@ -38,8 +38,9 @@ pub fn write_report(report: &Report, file: &Path, folder: &Path) -> Result<(), F
 }
 
 /// What the names of a report's tables, plots and pictures are, or begin with before a dash.
-const FILES: [&str; 9] = [
+const FILES: [&str; 10] = [
     "kernels",
+    "arrangements",
     "leaks",
     "builders",
     "sampling",
@@ -61,11 +62,11 @@ pub fn is_report_file(name: &str) -> bool {
 
 /// What comes before a file's name in a link from the report to the folder.
 fn way(file: &Path, folder: &Path) -> String {
-    let home = file.parent().unwrap_or(Path::new(""));
-    let parts = folder.strip_prefix(home).unwrap_or(folder).components();
-    parts
-        .map(|part| format!("{}/", part.as_os_str().to_string_lossy()))
-        .collect()
+    match Folder::of(file, true).name_of(folder) {
+        here if here.is_empty() => here,
+        // A space would end the link.
+        there => format!("{}/", there.replace(' ', "%20")),
+    }
 }
 
 fn stage_text(file: &Path, text: &str) -> Result<Staged, FileError> {
@@ -130,6 +131,18 @@ fn section_text(section: &Section, way: &str) -> String {
 mod tests {
     use super::super::{Axis, Marker, Options, Part, Plot, Series, Table};
     use super::*;
+
+    #[test]
+    fn links_lead_from_the_report_to_its_files_wherever_they_lie() {
+        for (file, folder, shown) in [
+            ("R.md", "assets/report", "assets/report/"),
+            ("out/R.md", "out", ""),
+            ("docs/R.md", "assets/r", "../assets/r/"),
+            ("/a/R.md", "/b/my files", "../b/my%20files/"),
+        ] {
+            assert_eq!(way(Path::new(file), Path::new(folder)), shown);
+        }
+    }
 
     #[test]
     fn every_file_that_the_report_refers_to_is_there() {

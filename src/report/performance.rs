@@ -4,7 +4,7 @@ use super::timing::median;
 use crate::bvh::{BuildOptions, Builder, Levels};
 use crate::film::{Ending, Picture, render_while};
 use crate::inspect::{build_time, builder_name, counted, rebuilt};
-use crate::scene::RenderSettings;
+use crate::scene::{RenderSettings, Sampling};
 use crate::trace::{Camera, World, samples_per_pixel};
 use bevy::platform::collections::HashSet;
 use glam::UVec2;
@@ -118,7 +118,8 @@ impl PerformanceColumn {
 }
 
 /// Builds the scene's trees with each builder and renders the picture `runs` times with each, taking
-/// turns, so that what else the machine does meets all of them alike. Runs on the current rayon
+/// turns, so that what else the machine does meets all of them alike. All of its samples are rendered, whatever time the
+/// scene gives itself. Runs on the current rayon
 /// pool. Breaking ends it within the tiles that are being rendered.
 pub fn performance(
     test: &PerformanceTest,
@@ -139,6 +140,13 @@ pub fn performance(
     let builders: Vec<Builder> = (test.builders.iter().copied())
         .filter(|&builder| builder != Builder::None || left_out.is_none())
         .collect();
+    let settings = &RenderSettings {
+        sampling: Sampling {
+            time: 0.0,
+            ..settings.sampling
+        },
+        ..settings.clone()
+    };
     let options = *world.aggregate.options();
     let runs = test.runs.max(1);
     let mut worlds = Vec::with_capacity(builders.len());
@@ -400,6 +408,37 @@ mod tests {
         assert!((four.sigma() - (38.0_f64 / 3.0).sqrt()).abs() < 1e-12);
         assert_eq!(four.mrays_per_s(), 1000.0);
         assert_eq!(column(vec![5.0]).sigma(), 0.0);
+    }
+
+    #[test]
+    fn every_builder_renders_all_samples_whatever_time_the_scene_gives_itself() {
+        let mut app = crate::app::headless_app();
+        let scene = crate::io::builtin::find("cornell-box").unwrap();
+        (scene.spawn)(app.world_mut());
+        app.update();
+        let world = app.world().resource::<crate::sync::Traced>().world.clone();
+        let cameras = &app.world().resource::<crate::sync::TracedCameras>().0;
+        let settings = RenderSettings {
+            size: UVec2::new(64, 64),
+            spp: 64,
+            sampling: Sampling {
+                time: 1e-3,
+                ..Sampling::default()
+            },
+            ..RenderSettings::default()
+        };
+        let test = PerformanceTest {
+            scene: "box".into(),
+            builders: vec![Builder::Median, Builder::Sah],
+            runs: 1,
+            with_none: false,
+        };
+        let mut tell = |_: &str, _: f32| ControlFlow::Continue(());
+        let measured = performance(&test, &world, &cameras[0].camera, &settings, &mut tell);
+        let measured = measured.map_err(|error| error.to_string()).unwrap();
+        let rays: Vec<u64> = measured.columns.iter().map(|column| column.rays).collect();
+        // A camera ray a sample at least.
+        assert!(rays[0] >= 64 * 64 * 64 && rays[0] == rays[1], "{rays:?}");
     }
 
     #[test]

@@ -85,7 +85,7 @@ impl Cell {
 
     fn exact(&self) -> String {
         match self {
-            Self::Text(text) if text.contains([',', '"', '\n']) => {
+            Self::Text(text) if text.contains([',', '"', '\n', '\r']) => {
                 format!("\"{}\"", text.replace('"', "\"\""))
             }
             Self::Text(text) => text.clone(),
@@ -166,7 +166,8 @@ impl Table {
         text
     }
 
-    /// Reads what [`Self::csv`] writes: a header, then rows of as many fields (RFC 4180). The error names the line.
+    /// Reads a header, then rows of as many fields, a line each (RFC 4180, but for line breaks within fields). The error
+    /// names the line.
     pub fn from_csv(file: &str, title: &str, text: &str) -> Result<Self, String> {
         let mut lines = text
             .lines()

@@ -93,6 +93,7 @@ pub(super) fn shrunk(subject: &Subject, effort: &Effort, options: &Options) -> R
     RenderSettings {
         size: UVec2::new(size.x.max(1.0) as u32, size.y.max(1.0) as u32),
         jitter: 1,
+        sequence: Sequence::Sobol,
         seed: options.seed,
         sampling: Sampling::default(),
         ..subject.settings.clone()
@@ -106,7 +107,6 @@ fn rendered(subject: &Subject, settings: &RenderSettings) -> Rendered {
 pub(super) fn reference(subject: &Subject, settings: &RenderSettings, effort: &Effort) -> Picture {
     let settings = RenderSettings {
         spp: effort.reference,
-        sequence: Sequence::Sobol,
         seed: settings.seed.wrapping_add(0x5eed),
         ..settings.clone()
     };

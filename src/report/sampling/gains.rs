@@ -45,32 +45,81 @@ impl Gains {
     }
 
     pub fn findings(&self) -> Vec<String> {
+        // Nothing is known of scenes without noise.
         let mean = |logs: &[f64]| {
             let known: Vec<f64> = logs.iter().copied().filter(|log| log.is_finite()).collect();
             let mean = known.iter().sum::<f64>() / known.len() as f64;
-            digits(mean.exp(), 2)
+            (!known.is_empty()).then(|| digits(mean.exp(), 2))
         };
-        let least = self.estimates.iter().copied().fold(f64::INFINITY, f64::min);
-        let most = self.estimates.iter().copied().fold(0.0, f64::max);
-        vec![
-            format!(
-                "With the same number of samples the error with Owen-scrambled Sobol points is {} times that with independent \
-                 random numbers and {} times that with stratified jitter; they reach an error of 1 % in {} times the random \
-                 numbers' time (geometric means over the scenes).",
-                mean(&self.against_independent),
-                mean(&self.against_jitter),
-                mean(&self.time),
-            ),
-            format!(
-                "To reach the same true error, adaptive sampling needs {} times the rays of uniform sampling (geometric mean \
-                 over the scenes).",
-                mean(&self.adaptive),
-            ),
-            format!(
+        let mut findings = Vec::new();
+        if let (Some(independent), Some(jitter)) =
+            (mean(&self.against_independent), mean(&self.against_jitter))
+        {
+            let time = mean(&self.time).map(|time| {
+                format!("; they reach an error of 1 % in {time} times the random numbers' time")
+            });
+            findings.push(format!(
+                "With the same number of samples the error with Owen-scrambled Sobol points is {independent} times that with \
+                 independent random numbers and {jitter} times that with stratified jitter{} (geometric means over the \
+                 scenes).",
+                time.unwrap_or_default(),
+            ));
+        }
+        if let Some(rays) = mean(&self.adaptive) {
+            findings.push(format!(
+                "To reach the same true error, adaptive sampling needs {rays} times the rays of uniform sampling (geometric \
+                 mean over the scenes)."
+            ));
+        }
+        let known = self
+            .estimates
+            .iter()
+            .copied()
+            .filter(|part| part.is_finite());
+        let [least, most] = [f64::min, f64::max].map(|end| known.clone().reduce(end));
+        if let (Some(least), Some(most)) = (least, most) {
+            findings.push(format!(
                 "With Sobol points the film's own estimate of the error was {} to {} times the true error.",
                 digits(least, 2),
                 digits(most, 2),
-            ),
-        ]
+            ));
+        }
+        findings
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_scenes_without_noise_nothing_is_found() {
+        let flat = Point {
+            samples: 16.0,
+            seconds: 1.0,
+            rays: 1e6,
+            rmse: 0.0,
+            relative_mse: 0.0,
+            estimate: Some(0.0),
+            decline: None,
+        };
+        let mut gains = Gains::default();
+        gains.add(&[vec![flat], vec![flat], vec![flat], vec![]]);
+        assert_eq!(gains.findings(), [""; 0]);
+        let noisy = |relative_mse: f64| Point {
+            relative_mse,
+            estimate: Some(0.5 * relative_mse.sqrt()),
+            ..flat
+        };
+        gains.add(&[
+            vec![noisy(0.04)],
+            vec![noisy(0.04)],
+            vec![noisy(0.01)],
+            vec![],
+        ]);
+        let findings = gains.findings();
+        assert_eq!(findings.len(), 2, "{findings:?}");
+        assert!(findings[0].contains("is 0.50 times"), "{findings:?}");
+        assert!(findings[1].contains("0.50 to 0.50"), "{findings:?}");
     }
 }
