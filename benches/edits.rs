@@ -84,7 +84,11 @@ fn main() {
         return planes::main();
     }
     let mut arguments = std::env::args().skip_while(|argument| argument != "--csv");
-    let file = arguments.nth(1);
+    let file = arguments.next().map(|_| {
+        // Cargo appends a flag of its own.
+        let file = arguments.next().filter(|name| !name.starts_with("--"));
+        file.expect("--csv wants a file")
+    });
     let mut table = Table::new("editing", "Edits", &COLUMNS);
     println!("{} threads", rayon::current_num_threads());
     for (scene, instances) in [

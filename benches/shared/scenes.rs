@@ -20,6 +20,12 @@ pub fn scenes(size: UVec2) -> impl Iterator<Item = Scene> {
         .skip(1)
         .filter(|argument| !argument.starts_with("--"))
         .collect();
+    for name in &named {
+        assert!(
+            builtin::find(name).is_some(),
+            "there is no built-in scene {name}"
+        );
+    }
     builtin::SCENES
         .iter()
         .filter(move |scene| named.is_empty() || named.iter().any(|name| name == scene.name))

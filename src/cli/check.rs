@@ -1,6 +1,7 @@
 //! `glassbox check`: whether files can be shown, and what of them cannot.
 
 use super::Failure;
+use super::memory::MemoryArgs;
 use super::output::say;
 use crate::app::headless_app;
 use crate::inspect::counted;
@@ -34,6 +35,8 @@ pub(super) struct Check {
     /// Let the files refer to others outside their own folder
     #[arg(long)]
     allow_outside: bool,
+    #[command(flatten)]
+    memory: MemoryArgs,
 }
 
 /// What a file holds.
@@ -68,10 +71,11 @@ struct Noted {
 }
 
 pub(super) fn run(args: Check) -> Result<(), Failure> {
-    let mut app = headless_app();
     let mut all = Vec::new();
     for file in &args.files {
-        let checked = check(app.world_mut(), file, args.allow_outside);
+        // What one file holds would lie beside what the next one needs.
+        let mut app = headless_app();
+        let checked = check(app.world_mut(), file, &args);
         if !args.json {
             print(&checked)?;
         }
@@ -99,9 +103,10 @@ pub(super) fn run(args: Check) -> Result<(), Failure> {
     }
 }
 
-fn check(world: &mut World, file: &Path, allow_outside: bool) -> Checked {
+fn check(world: &mut World, file: &Path, args: &Check) -> Checked {
     let options = OpenOptions {
-        allow_outside,
+        allow_outside: args.allow_outside,
+        limits: args.memory.limits(),
         unframed: true,
         ..OpenOptions::default()
     };

@@ -2,7 +2,7 @@
 
 use super::Failure;
 use super::gizmos::{Gizmos, PresetArg, gizmo_list};
-use super::output::{say, tell};
+use super::output::{check_room, say, tell};
 use super::progress::Progress;
 use super::set::{Assignment, parse_size};
 use super::settings::{BuilderArg, SettingArgs, check_scene};
@@ -105,6 +105,18 @@ pub(super) fn run(args: Inspect) -> Result<(), Failure> {
             "nothing is asked for: give --pixel X,Y or --picture OUT.png".into(),
         ));
     }
+    let chooses_lines = args.preset.is_some() || !args.gizmo.is_empty();
+    if chooses_lines && args.picture.is_none() && !args.json {
+        return Err(Failure::Usage(
+            "--preset and --gizmo choose lines: give --picture OUT.png or --json, which show them"
+                .into(),
+        ));
+    }
+    if args.eye.is_some() && args.picture.is_none() {
+        return Err(Failure::Usage(
+            "--eye is where the picture is drawn from: give --picture OUT.png".into(),
+        ));
+    }
     if let Some(file) = &args.picture {
         let format = PictureFormat::of(file).map_err(Failure::of_output)?;
         if format.is_linear() {
@@ -129,9 +141,10 @@ fn inspect(args: &Inspect, gizmos: &InspectSettings) -> Result<(), Failure> {
     let settings = settings.clone();
     check_scene(&stage.name, &settings)?;
     if let Some(file) = &args.picture {
-        let size = settings.size;
-        check_picture(file, size.x.into(), size.y.into()).map_err(Failure::of_output)?;
-        stage.check_film(size)?;
+        let [width, height] = settings.size.to_array().map(u64::from);
+        let format = check_picture(file, width, height).map_err(Failure::of_output)?;
+        check_room(file, format.picture_bytes(width, height), args.quiet)?;
+        stage.check_film(settings.size)?;
     }
     let world = stage.sync().world.clone();
     let names = stage.names();

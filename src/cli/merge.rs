@@ -3,12 +3,13 @@
 use super::Failure;
 use super::memory::MemoryArgs;
 use super::mix::{self, Gain};
-use super::output::{say, tell};
+use super::output::{check_room, say, tell};
 use super::shown::read_output;
 use crate::io::{
     self, Limits, PictureFormat, check_outputs, check_picture, check_writable, film_bytes,
-    read_part, write_part, write_rendered,
+    part_bytes, read_part, write_part, write_rendered,
 };
+use crate::scene::Output;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -38,7 +39,9 @@ pub(super) fn run(args: Merge) -> Result<(), Failure> {
         return mix::run(&args, format);
     }
     let mut merge = io::Merge::default();
-    let mut output = None;
+    let mut output: Option<Output> = None;
+    // Those that were to be shown in another way.
+    let mut others = Vec::new();
     for file in &args.parts {
         let limits = Limits {
             // Beside what the parts before it have become.
@@ -47,8 +50,21 @@ pub(super) fn run(args: Merge) -> Result<(), Failure> {
         };
         let part = read_part(file, &limits)?;
         let size = part.film.size();
-        check_picture(&args.output, size.x.into(), size.y.into()).map_err(Failure::of_output)?;
-        output.get_or_insert(read_output(file, &part.output)?);
+        let [width, height] = size.to_array().map(u64::from);
+        check_picture(&args.output, width, height).map_err(Failure::of_output)?;
+        let shown = read_output(file, &part.output)?;
+        match &output {
+            None => {
+                let bytes = match format {
+                    PictureFormat::Exr => part_bytes(width, height),
+                    _ => format.picture_bytes(width, height),
+                };
+                check_room(&args.output, bytes, args.quiet)?;
+                output = Some(shown);
+            }
+            Some(first) if *first != shown => others.push(file.display().to_string()),
+            Some(_) => {}
+        }
         merge.add(file, part)?;
     }
     let part = merge.finish()?;
@@ -60,6 +76,19 @@ pub(super) fn run(args: Merge) -> Result<(), Failure> {
     }
     if args.quiet {
         return Ok(());
+    }
+    if let (Some(other), Some(first)) = (others.first(), args.parts.first()) {
+        let more = match others.len() - 1 {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        tell(
+            "note",
+            format_args!(
+                "{other}{more}: rendered with other settings of exposure or view transform; the picture has those of {}",
+                first.display()
+            ),
+        );
     }
     for pair in part.samples.windows(2) {
         if let [before, after] = pair {

@@ -2,7 +2,7 @@
 
 use super::Failure;
 use super::merge::Merge;
-use super::output::{say, tell};
+use super::output::{check_room, say, tell};
 use super::shown::read_output;
 use crate::io::{LightLayers, Limits, PictureFormat, check_picture, layer_name, write_rendered};
 use crate::scene::Output;
@@ -67,7 +67,15 @@ pub(super) fn run(args: &Merge, format: PictureFormat) -> Result<(), Failure> {
     };
     let mut lights = LightLayers::read(file, &limits)?;
     let size = lights.picture.size();
-    check_picture(&args.output, size.x.into(), size.y.into()).map_err(Failure::of_output)?;
+    let [width, height] = size.to_array().map(u64::from);
+    check_picture(&args.output, width, height).map_err(Failure::of_output)?;
+    let layers = match format {
+        // The picture itself beside its layers.
+        PictureFormat::Exr => 1 + lights.layers.len() as u64,
+        _ => 1,
+    };
+    let bytes = format.picture_bytes(width, height).saturating_mul(layers);
+    check_room(&args.output, bytes, args.quiet)?;
     let factors = factors(file, &lights, &args.gain)?;
     let output = output_of(file, &lights)?;
     let clamped = lights.mix(&factors);
@@ -83,7 +91,7 @@ pub(super) fn run(args: &Merge, format: PictureFormat) -> Result<(), Failure> {
             &[("Mix", given.clone())],
         )?;
     }
-    if clamped > 0 {
+    if clamped > 0 && !args.quiet {
         let text = format!(
             "{clamped} pixels are brighter than a file can say, and are as bright as it can"
         );

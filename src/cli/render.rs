@@ -1,7 +1,7 @@
 //! `glassbox render`: a scene to picture files.
 
 use super::Failure;
-use super::output::{say, tell};
+use super::output::{check_room, say, tell};
 use super::progress::Progress;
 use super::settings::{BuilderArg, SettingArgs, builder_name, check_scene, list};
 use super::shown::output_text;
@@ -13,8 +13,8 @@ use crate::film::views::View;
 use crate::film::{Ending, FirstHits, LightPictures, Status, render_lights, render_samples};
 use crate::inspect::build_time;
 use crate::io::{
-    FileError, Part, PictureFormat, check_outputs, check_picture, check_room, check_writable,
-    part_bytes, picture_notes, replace_file, write_lights, write_part, write_rendered,
+    FileError, Part, PictureFormat, check_outputs, check_picture, check_writable, part_bytes,
+    picture_notes, replace_file, write_lights, write_part, write_rendered,
 };
 use crate::sync::TracedCamera;
 use crate::trace::{Crossings, RayCounts, digest, samples_per_pixel};
@@ -77,6 +77,13 @@ pub(super) fn run(args: Render) -> Result<(), Failure> {
             args.view.view
         )));
     }
+    let ends_early = args.stop.error.is_some() || args.stop.time.is_some();
+    if ends_early && args.view.is_of_first_hits() {
+        return Err(Failure::Usage(format!(
+            "--error and --time end renderings: the view `{}` is made of camera rays alone, and has no samples",
+            args.view.view
+        )));
+    }
     if args.lights_separately && (format != PictureFormat::Exr || args.view.view != View::Shaded) {
         return Err(Failure::Usage(format!(
             "{}: --lights-separately writes layers of a shaded picture, and only an .exr has layers",
@@ -98,7 +105,7 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
     let mut stage = Stage::open(&args.scene, args.quiet)?;
     args.settings.apply(stage.app.world_mut())?;
     let settings = stage.settings();
-    args.stop.apply(settings, args.settings.spp.is_some());
+    args.stop.apply(settings, args.settings.give_spp());
     if let Some(builder) = args.builder {
         settings.tree.builder = builder.builder();
     }
@@ -129,10 +136,8 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
         };
         format.picture_bytes(width, height) * (1 + layers)
     };
-    let doubt = check_room(&args.output, bytes.saturating_mul(files.len() as u64))?;
-    if let Some(doubt) = doubt.filter(|_| !args.quiet) {
-        tell("warning", doubt);
-    }
+    let bytes = bytes.saturating_mul(files.len() as u64);
+    check_room(&args.output, bytes, args.quiet)?;
 
     let mut stats = Stats {
         scene: args.scene.scene.display().to_string(),
@@ -154,9 +159,19 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
         if args.view.is_of_first_hits() {
             let start = Instant::now();
             let hits = FirstHits::trace(&world, &camera.camera, &settings);
-            stats.render_ms += start.elapsed().as_secs_f64() * 1e3;
+            let seconds = start.elapsed().as_secs_f64();
+            stats.render_ms += seconds * 1e3;
             stats.rays.camera += hits.rays;
             args.view.write_first_hits(file, &hits, &settings.output)?;
+            if !args.quiet {
+                say(format_args!(
+                    "{}: {}x{}, {}, {seconds:.2} s",
+                    file.display(),
+                    settings.size.x,
+                    settings.size.y,
+                    args.view.view,
+                ))?;
+            }
             continue;
         }
         if !args.quiet

@@ -109,8 +109,13 @@ pub(super) fn set_value(
             .map(|number| number as f32)
             .map_err(|why| format!("wanted a number: {why}"))
     };
+    // `*=2` changes each of the numbers that there are, `*=1,1,2` each by its own.
     let numbers = |before: &[f32]| -> Result<Vec<f32>, String> {
-        let parts: Vec<&str> = value.split(',').collect();
+        let (sign, listed) = value.split_at(value.find('=').map_or(0, |at| at + 1));
+        let mut parts: Vec<&str> = listed.split(',').collect();
+        if parts.len() == 1 && !sign.is_empty() {
+            parts = vec![parts[0]; before.len()];
+        }
         if parts.len() != before.len() {
             return Err(format!(
                 "wanted {} numbers, with commas between",
@@ -118,7 +123,8 @@ pub(super) fn set_value(
             ));
         }
         let all = parts.iter().zip(before);
-        all.map(|(part, before)| number(part, *before)).collect()
+        all.map(|(part, before)| number(&format!("{sign}{part}"), *before))
+            .collect()
     };
     let whole = |before: u64, most: u64, wanted: &str| {
         // Exact where f64 is not.
@@ -299,6 +305,29 @@ mod tests {
         ] {
             let error = set(text).unwrap_err();
             assert!(error.contains(part), "`{text}` gives `{error}`");
+        }
+    }
+
+    #[test]
+    fn a_change_of_a_vector_changes_each_of_its_numbers() {
+        let property = Property {
+            kind: Vec3::type_info(),
+            ..Property::of(RenderSettings::type_info(), "output.exposure").unwrap()
+        };
+        let color = LinearRgba::rgb(4.0, 2.0, 1.0);
+        let set = |value: &str| {
+            let (mut place, mut shade) = (Vec3::new(4.0, 2.0, 1.0), color);
+            set_value(&mut place, &property, value)?;
+            set_value(&mut shade, &property, value)?;
+            assert_eq!(shade, LinearRgba::rgb(place.x, place.y, place.z));
+            Ok::<_, String>(place)
+        };
+        assert_eq!(set("*=0.5,0.5,2"), Ok(Vec3::new(2.0, 1.0, 2.0)));
+        assert_eq!(set("*=0.5"), Ok(Vec3::new(2.0, 1.0, 0.5)));
+        assert_eq!(set("+=0, 1 ,0"), Ok(Vec3::new(4.0, 3.0, 1.0)));
+        assert_eq!(set("0,1,0"), Ok(Vec3::Y));
+        for bad in ["*=1,2", "1", "*="] {
+            assert!(set(bad).is_err(), "{bad}");
         }
     }
 

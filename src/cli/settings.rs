@@ -94,6 +94,11 @@ impl SettingArgs {
         self.apply_settings(&mut world.resource_mut::<RenderSettings>())
     }
 
+    /// Whether one of the flags says how many samples a pixel has.
+    pub fn give_spp(&self) -> bool {
+        self.spp.is_some() || self.set.iter().any(|set| set.parts().0 == "spp")
+    }
+
     fn apply_settings(&self, settings: &mut RenderSettings) -> Result<(), Failure> {
         let before = range_problems(settings);
         for assignment in self.set.iter().filter(|set| !set.is_of_entity()) {
@@ -167,6 +172,24 @@ pub(super) fn table(properties: &[Property], values: &impl GetPath) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use clap::FromArgMatches;
+
+    #[test]
+    fn samples_of_a_pixel_are_given_by_either_flag() {
+        for (flags, given) in [
+            (&["--spp", "8"][..], true),
+            (&["--set", "spp=8"], true),
+            (&["--set", "spp*=2"], true),
+            (&["--set", "seed=8"], false),
+            (&[], false),
+        ] {
+            let command = SettingArgs::augment_args(clap::Command::new("glassbox"));
+            let words = ["glassbox"].iter().chain(flags);
+            let matches = command.try_get_matches_from(words).unwrap();
+            let args = SettingArgs::from_arg_matches(&matches).unwrap();
+            assert_eq!(args.give_spp(), given, "{flags:?}");
+        }
+    }
 
     #[test]
     fn the_list_names_every_setting_with_its_default_and_range() {

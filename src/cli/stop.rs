@@ -1,7 +1,7 @@
 //! `--error`, `--time`, `--adaptive` and `--samples`: how much of a picture is rendered.
 
 use super::Failure;
-use crate::scene::{RenderSettings, Sampling};
+use crate::scene::{RenderSettings, Sampling, range_problems};
 use clap::{ArgAction, Args};
 use std::ops::Range;
 use std::str::FromStr;
@@ -87,7 +87,12 @@ impl StopArgs {
                 )));
             }
         }
-        Ok(())
+        let mut settings = RenderSettings::default();
+        self.apply(&mut settings, true);
+        match range_problems(&settings).into_iter().next() {
+            Some(problem) => Err(Failure::Usage(problem.to_string())),
+            None => Ok(()),
+        }
     }
 
     /// Writes the flags into a scene's settings; `spp` tells whether --spp was given.
@@ -172,6 +177,23 @@ mod tests {
             .check()
             .is_ok()
         );
+    }
+
+    #[test]
+    fn what_no_scene_could_say_is_the_command_lines_fault() {
+        for (error, time, says) in [
+            (Some(2000.0), None, "sampling.error is 2000"),
+            (None, Some(1e8), "sampling.time is"),
+        ] {
+            let args = StopArgs {
+                error,
+                time,
+                ..StopArgs::default()
+            };
+            let failure = args.check().unwrap_err();
+            assert!(matches!(failure, Failure::Usage(_)), "{failure}");
+            assert!(failure.to_string().contains(says), "{failure}");
+        }
     }
 
     #[test]

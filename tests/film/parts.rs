@@ -71,6 +71,23 @@ fn a_part_shows_as_its_scene_was_to_be_shown() {
     run(&["--spp", "4", "-o", "whole.png"]);
     succeeds(folder, &["merge", "part.exr", "-o", "merged.png"]);
     assert!(pixels(folder, "merged.png") == pixels(folder, "whole.png"));
+    // One that was to be shown in another way has the same samples: which way is taken is said.
+    succeeds(
+        folder,
+        &[&what[..], &["--samples", "4..8", "-o", "other.exr"]].concat(),
+    );
+    let merged = glassbox(
+        folder,
+        &["merge", "part.exr", "other.exr", "-o", "both.png"],
+    );
+    let (_, said) = texts(&merged);
+    assert!(merged.status.success(), "{said}");
+    assert!(
+        said.contains("other.exr") && said.contains("those of part.exr"),
+        "{said}"
+    );
+    let merged = glassbox(folder, &["merge", "part.exr", "part.exr", "-o", "both.png"]);
+    assert!(!texts(&merged).1.contains("those of"));
 }
 
 #[test]

@@ -119,6 +119,16 @@ fn what_cannot_be_inspected_ends_with_one_line_and_no_file() {
             vec!["--gizmo boxs.on", "boxes.on"],
         ),
         (
+            "inspect triangle --pixel 1,1 --preset black",
+            2,
+            vec!["--preset", "--picture", "--json"],
+        ),
+        (
+            "inspect triangle --pixel 1,1 --eye 0,0,1 --target 0,0,0",
+            2,
+            vec!["--picture"],
+        ),
+        (
             "inspect triangle --pixel 1,1 --camera top",
             1,
             vec!["no camera `top`"],
