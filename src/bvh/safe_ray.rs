@@ -71,20 +71,21 @@ impl SafeRay {
         let mut direction = Vec3A::from(ray.direction) + 0.0;
         let size = direction.abs();
         let mut longest = size.max_element();
-        let mut scale = 1.0;
+        let (mut scale, mut end) = (1.0, ray.t_max);
         // Packed comparisons, which a NaN fails; the largest of several numbers may hide one.
         let ordinary = size.cmple(Vec3A::splat(1.0 / ORDINARY)).all();
         if !(ordinary & (longest >= ORDINARY)) {
             scale = ordinary_scale(direction)?;
             direction *= scale;
             longest *= scale;
+            end /= scale;
         }
         let near = origin.abs().cmple(Vec3A::splat(REACH)).all();
         let sane = near & (ray.t_max > 0.0) & (ray.time >= 0.0) & (ray.time <= 1.0);
         sane.then(|| Self {
             world: ObjectRay::new(origin, direction, longest),
             start: 0.0,
-            end: ray.t_max / scale,
+            end,
             time: ray.time,
             starts_on: ray.starts_on,
             measure: Measure {

@@ -65,9 +65,10 @@ impl Shear {
     #[inline(always)]
     pub(crate) fn new(origin: Vec3A, direction: Vec3A) -> Self {
         let size = direction.abs();
-        // Chosen without a branch, since rays that follow each other may go anywhere.
+        // Chosen without a branch, since rays that follow each other may go anywhere: each of these is one instruction
+        // or two, but the larger one by `in_plane` would be a jump.
         let in_plane = usize::from(size.x <= size.y);
-        let most = if in_plane == 0 { size.x } else { size.y };
+        let most = if size.x > size.y { size.x } else { size.y };
         let z = if most > size.z { in_plane } else { 2 };
         let axes = FRAMES[z];
         let [x, y, z] = axes;
