@@ -94,6 +94,8 @@ pub(super) struct Item {
     parent: Option<usize>,
     /// Where in the list its descendants end.
     pub end: usize,
+    /// It is shown or hidden: a material is neither.
+    pub can_hide: bool,
     /// Hidden itself.
     pub hidden: bool,
     /// Hidden itself or by an ancestor.
@@ -178,7 +180,7 @@ type Parts<'a> = (
 
 /// Components whose absence shows.
 type Shows = (
-    (SceneId, Name, ChildOf, UsesMaterial, Disabled),
+    (SceneId, Name, ChildOf, Visibility, UsesMaterial, Disabled),
     (Mesh3d, MeshSource, Phong, SceneCamera),
     (PointLamp, DirectionalLamp, SegmentLamp, ParallelogramLamp),
 );
@@ -225,6 +227,7 @@ pub(super) fn outline_scene(
                 depth: 0,
                 parent: None,
                 end: 0,
+                can_hide: visibility.is_some(),
                 hidden,
                 unseen: hidden,
                 material: material.map(|material| material.0),

@@ -21,11 +21,11 @@ use super::theme::accent;
 use crate::editor::action::Action;
 use crate::editor::command::Over;
 use crate::editor::document::SceneOpened;
+use crate::editor::edits::set_visible;
 use crate::editor::history::History;
 use crate::editor::pointer::RightClicked;
 use crate::editor::selection::Selection;
 use crate::scene::SceneId;
-use bevy::camera::visibility::Visibility;
 use bevy::ecs::observer::On;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::ResMut;
@@ -220,17 +220,11 @@ fn perform(ui: &Ui, world: &mut World, panel: &mut Hierarchy, rows: &[Row], deed
         Deed::FoldMaterials => panel.folded.toggle_folder(),
         Deed::Hide(at) => {
             let item = &world.resource::<Outline>().items[at];
-            let (entity, hidden) = (item.entity, item.hidden);
+            let (id, hidden) = (item.id, item.hidden);
             let verb = if hidden { "Show" } else { "Hide" };
             let name = format!("{verb} {}", item.name);
             world.resource_mut::<History>().name_next(name);
-            let visibility = match hidden {
-                true => Visibility::Inherited,
-                false => Visibility::Hidden,
-            };
-            if let Ok(mut entity) = world.get_entity_mut(entity) {
-                entity.insert(visibility);
-            }
+            set_visible(world, &[id], hidden);
         }
         Deed::StartName(at) => {
             let item = &world.resource::<Outline>().items[at];

@@ -69,7 +69,8 @@ impl List<'_> {
     ) {
         let item = &self.outline.items[at];
         let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
-        let body = Rect::from_min_max(rect.min, pos2(rect.max.x - EYE, rect.max.y));
+        let eye = if item.can_hide { EYE } else { 0.0 };
+        let body = Rect::from_min_max(rect.min, pos2(rect.max.x - eye, rect.max.y));
         let id = ui.id().with(("row", item.id.0));
         let response = ui.interact(body, id, Sense::click_and_drag());
         let selected = self.selection.contains(item.id);
@@ -94,7 +95,7 @@ impl List<'_> {
         } else {
             name_ui(ui, field, &item.name, ink);
         }
-        if eye_ui(ui, item, rect, selected) {
+        if item.can_hide && eye_ui(ui, item, rect, selected) {
             deeds.push(Deed::Hide(at));
         }
         if response.clicked() {

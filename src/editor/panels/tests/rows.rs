@@ -10,7 +10,9 @@ use crate::editor::history::History;
 use crate::editor::selection::Selection;
 use crate::editor::viewport::Viewport;
 use crate::scene::{Phong, PointLamp, SceneId, UsesMaterial};
+use bevy::camera::visibility::Visibility;
 use bevy::ecs::name::Name;
+use bevy_egui::egui::accesskit::Role;
 use bevy_egui::egui::{Event, Key, Modifiers, vec2};
 use std::time::Instant;
 
@@ -157,6 +159,37 @@ fn an_object_dropped_onto_a_material_or_a_material_onto_an_object_gets_it_in_one
     desk.settle();
     assert_eq!(steps(&mut desk), first + 2);
     assert_eq!(name_of(desk.world(), lamp), "Lamp");
+}
+
+#[test]
+fn the_eye_does_what_h_does_and_a_material_has_none() {
+    let mut desk = Desk::open("cornell-box");
+    desk.context.enable_accesskit();
+    desk.world()
+        .spawn((SceneId(500), Name::new("Brick"), Phong::default()));
+    desk.settle();
+    let eyes = desk.controls(Role::CheckBox);
+    let eye = |desk: &Desk, name: &str| {
+        let row = desk.place_of(name);
+        let eye = eyes.iter().find(|eye| (eye.y - row.y).abs() < 6.0);
+        eye.copied().filter(|eye| eye.x < row.x + 250.0)
+    };
+    assert_eq!(eye(&desk, "Brick"), None, "nothing of it is to be hidden");
+    let (floor, _) = desk.named("Floor");
+    desk.world().entity_mut(floor).insert(Visibility::Visible);
+    desk.settle();
+    let seen = |desk: &mut Desk| *desk.world().get::<Visibility>(floor).unwrap();
+    let at = eye(&desk, "Floor").expect("an object has an eye");
+    for (expected, step) in [
+        (Visibility::Hidden, "Hide Floor"),
+        (Visibility::Inherited, "Show Floor"),
+    ] {
+        desk.click(at);
+        desk.settle();
+        assert_eq!(seen(&mut desk), expected);
+        let history = desk.world().resource::<History>();
+        assert_eq!(history.undo_text(), Some(step));
+    }
 }
 
 #[test]
