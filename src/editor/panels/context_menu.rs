@@ -58,17 +58,18 @@ pub(super) fn context_menu_ui(context: &egui::Context, world: &mut World, menu: 
         .filter(|row| row.over.contains(&over) || is_pixel && row.over.contains(&Over::Pixel))
         .cloned()
         .collect();
+    let mut chosen = false;
     Popup::new(id, context.clone(), at, LayerId::background())
         .kind(PopupKind::Menu)
         .open_memory(opens.map(|_| SetOpenCommand::Bool(true)))
         .show(|ui| {
             ui.set_min_width(190.0);
             for row in &rows {
-                item_ui(ui, world, row);
+                chosen |= item_ui(ui, world, row);
             }
         });
+    menu.chosen_at = (chosen && is_pixel).then_some(in_window);
     if !Popup::is_id_open(context, id) {
         menu.over = None;
-        menu.chosen_at = is_pixel.then_some(in_window);
     }
 }

@@ -66,7 +66,9 @@ pub(super) fn menu_ui(ui: &mut Ui, world: &mut World, path: &str) {
     entries.sort_by_key(|(group, _)| *group);
     for (i, (group, entry)) in entries.iter().enumerate() {
         match entry {
-            Entry::Row(row) => item_ui(ui, world, row),
+            Entry::Row(row) => {
+                item_ui(ui, world, row);
+            }
             Entry::Menu(menu) => {
                 let name = menu.rsplit('/').next().unwrap_or(menu);
                 ui.menu_button(name, |ui| menu_ui(ui, world, menu));
@@ -89,8 +91,9 @@ pub(super) fn menu_ui(ui: &mut Ui, world: &mut World, path: &str) {
     }
 }
 
-/// One command: its name, its keys, whether it is on; grey with the reason where it cannot be run.
-pub(super) fn item_ui(ui: &mut Ui, world: &mut World, command: &Command) {
+/// One command: its name, its keys, whether it is on; grey with the reason where it cannot be run. True where it was
+/// clicked.
+pub(super) fn item_ui(ui: &mut Ui, world: &mut World, command: &Command) -> bool {
     let state = command.state_in(world);
     let mut button = Button::selectable(state.on == Some(true), command.title(&state));
     if let Some(keys) = shortcut(world, command) {
@@ -98,10 +101,12 @@ pub(super) fn item_ui(ui: &mut Ui, world: &mut World, command: &Command) {
     }
     let says = state.why_not.as_deref().unwrap_or(&command.help);
     let ready = state.why_not.is_none();
-    if ui.add_enabled(ready, button).says(says).clicked() {
+    let clicked = ui.add_enabled(ready, button).says(says).clicked();
+    if clicked {
         world.write_message(Action::Run(command.id.clone()));
         ui.close();
     }
+    clicked
 }
 
 /// What is no row: a file, or a camera, which `is_on` where it is looked through.

@@ -278,3 +278,19 @@ fn the_menu_over_a_pixel_answers_for_that_pixel_and_that_over_a_row_asks_nothing
     let armed = *desk.world().resource::<Armed>();
     assert_eq!(armed, Armed::Why(Question::Black), "from anywhere else");
 }
+
+#[test]
+fn a_question_of_the_toolbar_waits_for_a_click_though_a_menu_is_open_over_a_pixel() {
+    let mut desk = Desk::open("cornell-box");
+    desk.world().init_resource::<Armed>();
+    let at = Vec2::new(640.0, 300.0);
+    let over = Over::Nothing;
+    desk.world().trigger(RightClicked { at, over });
+    desk.settle();
+    desk.place_of("Why is this pixel black?");
+    desk.click_on("Why black?");
+    desk.settle();
+    assert_eq!(desk.find("Why is this pixel black?"), None, "it is closed");
+    let armed = *desk.world().resource::<Armed>();
+    assert_eq!(armed, Armed::Why(Question::Black));
+}
