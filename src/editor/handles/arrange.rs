@@ -13,6 +13,7 @@ use bevy::ecs::entity::Entity;
 use bevy::ecs::world::World;
 use bevy::math::{Dir3, Vec3};
 use bevy::transform::components::Transform;
+use std::collections::HashSet;
 
 const AXES: [(&str, Vec3); 3] = [("x", Vec3::X), ("y", Vec3::Y), ("z", Vec3::Z)];
 
@@ -136,20 +137,70 @@ fn distribute(world: &mut World, name: &str, axis: Vec3) {
     shift_all(world, &format!("Distribute in {name}"), moves);
 }
 
-/// The height of what is below a point and is not of these.
-fn below(world: &World, from: Vec3, own: Entity) -> Option<f32> {
-    let met = pick::past(world, from, Dir3::NEG_Y, |id| hangs_on(world, id, &[own]))?;
+/// The height of what is below a point, of the objects that count.
+fn below(world: &World, from: Vec3, counts: impl Fn(SceneId) -> bool) -> Option<f32> {
+    let met = pick::past(world, from, Dir3::NEG_Y, |id| !counts(id))?;
     Some(met.point.y)
 }
 
+/// What was put down, or stays: others may stand on it.
+struct Put {
+    entity: Entity,
+    /// As it was.
+    extent: Extent,
+    /// Metres.
+    up: f32,
+}
+
+impl Put {
+    /// The height of what is below a point once it has moved. What moves up takes along what stood on it, though its top
+    /// is above that point then.
+    fn below(&self, world: &World, from: Vec3) -> Option<f32> {
+        let Extent { least, most } = self.extent;
+        let [x, z] = [0, 2].map(|axis| (least[axis]..=most[axis]).contains(&from[axis]));
+        // Most are beside it, and each costs a ray.
+        if !(x && z) {
+            return None;
+        }
+        let from = from + Vec3::Y * (-self.up).max(0.0);
+        let is_its = |id| hangs_on(world, id, |entity| entity == self.entity);
+        let height = below(world, from, is_its)?;
+        Some(height + self.up)
+    }
+}
+
+/// Lowest first: what stands on another one of them comes to stand where that has moved to, which no ray meets there yet.
 fn put_down(world: &mut World) {
-    let all = selected(world);
-    let moves = all.iter().filter_map(|(id, own)| {
-        let entity = scene_entity(world, *id)?;
-        let floor = below(world, own.centre(), entity)?;
-        Some((*id, Vec3::Y * (floor - own.least.y)))
-    });
-    let moves: Vec<(SceneId, Vec3)> = moves.collect();
+    let mut all = selected(world);
+    all.sort_by(|(_, a), (_, b)| a.least.y.total_cmp(&b.least.y));
+    let entities = all.iter().filter_map(|(id, _)| scene_entity(world, *id));
+    let entities: HashSet<Entity> = entities.collect();
+    let mut put: Vec<Put> = Vec::new();
+    let mut moves = Vec::new();
+    for (id, extent) in &all {
+        let Some(entity) = scene_entity(world, *id) else {
+            continue;
+        };
+        let from = extent.centre();
+        let is_other = |id| !hangs_on(world, id, |entity| entities.contains(&entity));
+        let mut floor = below(world, from, is_other);
+        for put in put.iter().rev() {
+            // A ray for those alone that may be higher.
+            if floor.is_none_or(|floor| floor < put.extent.most.y + put.up) {
+                floor = floor
+                    .into_iter()
+                    .chain(put.below(world, from))
+                    .reduce(f32::max);
+            }
+        }
+        let up = floor.map(|floor| floor - extent.least.y);
+        moves.extend(up.map(|up| (*id, Vec3::Y * up)));
+        put.push(Put {
+            entity,
+            extent: *extent,
+            up: up.unwrap_or(0.0),
+        });
+    }
     if moves.is_empty() && !all.is_empty() {
         let text = "There is nothing below what is selected.";
         world.resource_mut::<Notices>().tell(text);
@@ -161,6 +212,8 @@ fn put_down(world: &mut World) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::editor::action::Addition;
+    use crate::editor::edits::{AddAt, add};
     use crate::editor::headless_editor;
     use crate::editor::history::undo;
     use crate::io::{OpenOptions, SceneSource, builtin, open};
@@ -241,5 +294,62 @@ mod tests {
             let now = app.world().get::<Transform>(block).unwrap().translation.y;
             assert!(now.abs() < 1e-4, "from {height} m to {now} m");
         }
+    }
+
+    #[test]
+    fn a_stack_in_the_air_or_in_the_floor_is_put_down_as_one_whatever_was_selected_first() {
+        let mut app = headless_editor();
+        let world = app.world_mut();
+        let floor = add_cube(world, Vec3::new(0.0, -0.5, 0.0));
+        let scale = Vec3::new(20.0, 1.0, 20.0);
+        let entity = scene_entity(world, floor).unwrap();
+        world.get_mut::<Transform>(entity).unwrap().scale = scale;
+        // The third one stands beside the stack, and the fourth upon what stays where it is.
+        let stack = [0.0, 1.0, 0.2, 0.4];
+        let ids = stack.map(|_| add_cube(world, Vec3::ZERO));
+        let stays = add_cube(world, Vec3::new(-5.0, 0.5, 0.0));
+        let xs = [0.0, 0.25, 5.0, -5.0];
+        for above in [1.5, -0.3] {
+            let world = app.world_mut();
+            for ((id, x), y) in ids.into_iter().zip(xs).zip(stack) {
+                let entity = scene_entity(world, id).unwrap();
+                let mut place = world.get_mut::<Transform>(entity).unwrap();
+                let on = if x < 0.0 { 1.0 } else { 0.0 };
+                place.translation = Vec3::new(x, 0.5 + on + y + above, 0.0);
+            }
+            app.update();
+            app.update();
+            for selected in [[0, 1, 2, 3], [1, 3, 0, 2]] {
+                let world = app.world_mut();
+                world
+                    .resource_mut::<Selection>()
+                    .set(selected.map(|i| ids[i]));
+                put_down(world);
+                let heights = ids.map(|id| {
+                    let entity = scene_entity(world, id).unwrap();
+                    world.get::<Transform>(entity).unwrap().translation.y
+                });
+                for (height, expected) in heights.into_iter().zip([0.5, 1.5, 0.5, 1.5]) {
+                    let text = format!("{heights:?} from {above}, {selected:?}");
+                    assert!((height - expected).abs() < 1e-4, "{text}");
+                }
+                assert!(undo(world));
+                app.update();
+                app.update();
+            }
+        }
+        let entity = scene_entity(app.world(), stays).unwrap();
+        let place = app.world().get::<Transform>(entity).unwrap();
+        assert_eq!(place.translation.y, 0.5);
+    }
+
+    /// A cube whose sides are 1 m.
+    fn add_cube(world: &mut World, place: Vec3) -> SceneId {
+        let cube = Addition::Shape("Cuboid".into());
+        let at = AddAt {
+            place,
+            ..AddAt::default()
+        };
+        add(world, &cube, at).unwrap()
     }
 }

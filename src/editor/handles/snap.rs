@@ -51,7 +51,7 @@ pub(super) fn landing_at(world: &mut World, mover: &Mover) -> Option<Vec3> {
 }
 
 fn landing(world: &World, ray: Ray3d, to: SnapTo, mover: &Mover) -> Option<Vec3> {
-    let is_moved = |id| hangs_on(world, id, &mover.entities);
+    let is_moved = |id| hangs_on(world, id, |entity| mover.entities.contains(&entity));
     let met = pick::past(world, ray.origin, ray.direction, is_moved)?;
     match to {
         SnapTo::Steps => None,
@@ -80,11 +80,10 @@ fn corners(world: &World, met: &Picked) -> Option<[Vec3; 3]> {
     Some(corners.map(|corner| instance.to_world_point(corner)))
 }
 
-/// Whether it is one of these, or hangs on one.
-pub(super) fn hangs_on(world: &World, id: SceneId, roots: &[Entity]) -> bool {
-    scene_entity(world, id).is_some_and(|entity| {
-        roots.contains(&entity) || ancestors(world, entity).any(|above| roots.contains(&above))
-    })
+/// Whether it is one of the roots, or hangs on one.
+pub(super) fn hangs_on(world: &World, id: SceneId, is_root: impl Fn(Entity) -> bool) -> bool {
+    scene_entity(world, id)
+        .is_some_and(|entity| is_root(entity) || ancestors(world, entity).any(is_root))
 }
 
 #[cfg(test)]
