@@ -11,6 +11,7 @@ use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{Camera, Camera3d, Projection, RenderTarget};
 use bevy::ecs::component::Component;
 use bevy::ecs::entity::Entity;
+use bevy::ecs::event::Event;
 use bevy::ecs::query::{Changed, Or, With, Without};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::schedule::IntoScheduleConfigs;
@@ -28,6 +29,13 @@ impl Default for Editing {
     fn default() -> Self {
         Self(true)
     }
+}
+
+/// The editor was switched on or off: what came and went meanwhile, it has not heard of.
+#[derive(Event, Clone, Copy, Debug)]
+pub(super) struct Switched {
+    /// Whether it is on now.
+    pub on: bool,
 }
 
 /// Run condition: the editor is on. What shall rest beneath it is given `.run_if(not(in_editor))`.
@@ -201,7 +209,6 @@ fn rest_cameras(
 mod tests {
     use super::*;
     use bevy::app::Update;
-    use bevy::ecs::event::Event;
     use bevy::ecs::observer::{ObserverSystemExt, On};
     use bevy::ecs::schedule::common_conditions::not;
 

@@ -1,10 +1,11 @@
 //! When the editor works: once a frame, after the systems of `Update` and before what is derived
 //! from the scene. An app's own systems run before or after all of it, never in between.
 
-use super::embed::Editing;
+use super::embed::{Editing, Switched};
 use super::history::within;
 use bevy::app::{App, MainScheduleOrder, Update};
 use bevy::ecs::schedule::{ScheduleLabel, SystemSet};
+use bevy::ecs::system::Local;
 use bevy::ecs::world::World;
 
 /// Everything that answers to a hand: keys, pointer, actions, files.
@@ -27,8 +28,15 @@ pub(super) fn add_to(app: &mut App) {
         .insert_after(Update, RunEditor);
 }
 
-fn run(world: &mut World) {
-    if world.get_resource::<Editing>().is_none_or(|on| on.0) {
+fn run(world: &mut World, mut before: Local<Option<bool>>) {
+    let on = world.get_resource::<Editing>().is_none_or(|on| on.0);
+    if before.replace(on).is_some_and(|before| before != on) {
+        within(world, |world| {
+            world.trigger(Switched { on });
+            world.flush();
+        });
+    }
+    if on {
         within(world, |world| world.run_schedule(EditorUpdate));
     }
 }

@@ -14,7 +14,7 @@ pub(super) use name::{letter_key, named_key};
 
 use super::action::Action;
 use super::command::CommandTable;
-use super::embed::Editing;
+use super::embed::{Editing, Switched};
 use super::handles::{note_command, type_axis_and_number, type_into_drag};
 use super::notice::Notices;
 use super::pointer::{self, PointerUse};
@@ -23,11 +23,12 @@ use super::schedule::{Dispatch, EditorUpdate};
 use super::viewport::Viewport;
 use bevy::app::{App, Plugin};
 use bevy::ecs::message::{MessageCursor, Messages};
+use bevy::ecs::observer::On;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Local, Res, ResMut};
 use bevy::ecs::world::{Mut, World};
-use bevy::input::ButtonState;
 use bevy::input::keyboard::{Key, KeyCode, KeyboardInput};
+use bevy::input::{ButtonInput, ButtonState};
 use bevy::prelude::IntoScheduleConfigs;
 use bevy::window::WindowEvent;
 use std::str::FromStr;
@@ -41,13 +42,16 @@ pub(super) struct KeysPlugin;
 
 impl Plugin for KeysPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<Recording>().add_systems(
-            EditorUpdate,
-            (
-                press_keys.before(pointer::use_pointer).before(Dispatch),
-                name_conflicts,
-            ),
-        );
+        app.init_resource::<Recording>()
+            .init_resource::<Keyboard>()
+            .add_observer(take_over)
+            .add_systems(
+                EditorUpdate,
+                (
+                    press_keys.before(pointer::use_pointer).before(Dispatch),
+                    name_conflicts,
+                ),
+            );
     }
 }
 
@@ -82,6 +86,21 @@ pub(super) struct Modifiers {
 }
 
 impl Modifiers {
+    /// Those of the keys that are held.
+    fn of(held: &ButtonInput<KeyCode>) -> Self {
+        use KeyCode::{
+            AltLeft, AltRight, ControlLeft, ControlRight, ShiftLeft, ShiftRight, SuperLeft,
+            SuperRight,
+        };
+        let is_mac = cfg!(target_os = "macos");
+        Self {
+            ctrl: held.any_pressed([ControlLeft, ControlRight])
+                || is_mac && held.any_pressed([SuperLeft, SuperRight]),
+            shift: held.any_pressed([ShiftLeft, ShiftRight]),
+            alt: held.any_pressed([AltLeft, AltRight]),
+        }
+    }
+
     /// Takes an event into account.
     pub fn read(&mut self, event: &WindowEvent) {
         match event {
@@ -104,15 +123,48 @@ impl Modifiers {
     }
 }
 
-fn press_keys(
-    world: &mut World,
-    mut cursor: Local<MessageCursor<WindowEvent>>,
-    mut modifiers: Local<Modifiers>,
+/// What came of the window, for one who goes through it event by event.
+#[derive(Default)]
+pub(super) struct Inbox {
+    cursor: MessageCursor<WindowEvent>,
+    /// By the events that were gone through.
+    pub modifiers: Modifiers,
+}
+
+impl Inbox {
+    /// What came since.
+    pub fn take(&mut self, messages: &Messages<WindowEvent>) -> Vec<WindowEvent> {
+        self.cursor.read(messages).cloned().collect()
+    }
+
+    /// What came so far was for others. Which keys are held by now, Bevy knows.
+    pub fn skip(&mut self, messages: &Messages<WindowEvent>, held: Option<&ButtonInput<KeyCode>>) {
+        self.cursor.clear(messages);
+        self.modifiers = held.map_or_else(Modifiers::default, Modifiers::of);
+    }
+}
+
+/// The keyboard's share.
+#[derive(Resource, Default)]
+struct Keyboard(Inbox);
+
+/// No key was heard while the editor was off.
+fn take_over(
+    _: On<Switched>,
+    messages: Res<Messages<WindowEvent>>,
+    held: Option<Res<ButtonInput<KeyCode>>>,
+    mut keyboard: ResMut<Keyboard>,
 ) {
-    let messages = world.resource::<Messages<WindowEvent>>();
-    let events: Vec<WindowEvent> = cursor.read(messages).cloned().collect();
+    keyboard.0.skip(&messages, held.as_deref());
+}
+
+fn press_keys(world: &mut World) {
+    let events = world
+        .resource_scope(|world, mut keyboard: Mut<Keyboard>| keyboard.0.take(world.resource()));
     for event in events {
+        let modifiers = &mut world.resource_mut::<Keyboard>().0.modifiers;
         modifiers.read(&event);
+        let modifiers = *modifiers;
         let WindowEvent::KeyboardInput(input) = event else {
             continue;
         };
@@ -259,6 +311,8 @@ fn meant_key(input: &KeyboardInput) -> KeyCode {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::editor::command::{AddCommands, Command};
+    use crate::editor::schedule;
     use bevy::ecs::entity::Entity;
 
     fn input(key_code: KeyCode, logical: &str) -> KeyboardInput {
@@ -324,6 +378,60 @@ mod tests {
         world.insert_resource(Editing(true));
         press(&mut world, "Ctrl+E".parse().unwrap(), false);
         assert_eq!(told(&mut world), [""; 0]);
+    }
+
+    #[test]
+    fn keys_that_came_while_the_editor_was_off_are_nothing_to_it_but_those_that_are_held() {
+        let mut app = App::new();
+        app.add_message::<WindowEvent>()
+            .insert_resource(Editing(true))
+            .init_resource::<ButtonInput<KeyCode>>()
+            .init_resource::<CommandTable>()
+            .init_resource::<Notices>()
+            .init_resource::<PointerUse>()
+            .init_resource::<Preferences>()
+            .init_resource::<Viewport>()
+            .add_message::<Action>()
+            .add_commands([Command::new("delete", "Delete", "", |_| {}).keys(&["Delete"])]);
+        schedule::add_to(&mut app);
+        app.add_plugins(KeysPlugin);
+        let key = |app: &mut App, code: KeyCode, state: ButtonState| {
+            let mut held = app.world_mut().resource_mut::<ButtonInput<KeyCode>>();
+            match state {
+                ButtonState::Pressed => held.press(code),
+                ButtonState::Released => held.release(code),
+            }
+            let event = KeyboardInput {
+                state,
+                ..input(code, "")
+            };
+            app.world_mut()
+                .write_message(WindowEvent::KeyboardInput(event));
+        };
+        let switch = |app: &mut App, on: bool| {
+            app.insert_resource(Editing(on));
+            app.update();
+            let modifiers = app.world().resource::<Keyboard>().0.modifiers;
+            let mut actions = app.world_mut().resource_mut::<Messages<Action>>();
+            (modifiers.ctrl, actions.drain().count())
+        };
+        let [pressed, released] = [ButtonState::Pressed, ButtonState::Released];
+        key(&mut app, KeyCode::ControlLeft, pressed);
+        assert_eq!(switch(&mut app, true), (true, 0));
+        // Ctrl+Delete is the app's key that switches: Delete alone would be a command.
+        key(&mut app, KeyCode::Delete, pressed);
+        switch(&mut app, false);
+        key(&mut app, KeyCode::ControlLeft, released);
+        switch(&mut app, false);
+        assert_eq!(switch(&mut app, true), (false, 0), "Ctrl was let go");
+        switch(&mut app, false);
+        key(&mut app, KeyCode::ControlLeft, pressed);
+        switch(&mut app, false);
+        switch(&mut app, false);
+        key(&mut app, KeyCode::Delete, pressed);
+        assert_eq!(switch(&mut app, true), (true, 0), "Ctrl is held");
+        key(&mut app, KeyCode::ControlLeft, released);
+        assert_eq!(switch(&mut app, true), (false, 0));
     }
 
     #[test]

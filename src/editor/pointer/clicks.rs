@@ -32,7 +32,7 @@ pub(super) fn click(world: &mut World, at: Vec2) {
     }
     let found = pick::at(world, at).map(|found| found.id);
     let pointer = world.resource::<Pointer>();
-    let adds = pointer.modifiers.ctrl;
+    let adds = pointer.inbox.modifiers.ctrl;
     let now = Instant::now();
     let again = pointer.last_click.is_some_and(|(when, place)| {
         now.duration_since(when) <= DOUBLE && place.distance(at) <= STILL
@@ -142,7 +142,7 @@ pub(super) fn select_box(world: &mut World, from: Vec2, to: Vec2) {
         .collect();
     inside.sort_unstable();
     let mut wanted = world.resource::<Selection>().clone();
-    if world.resource::<Pointer>().modifiers.ctrl {
+    if world.resource::<Pointer>().inbox.modifiers.ctrl {
         for id in inside {
             wanted.add(id);
         }

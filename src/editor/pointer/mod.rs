@@ -10,8 +10,9 @@ pub(super) use clicks::ask_pixel;
 
 use super::action::Action;
 use super::command::Over;
+use super::embed::Switched;
 use super::handles::{self, GripDrag, grip_at};
-use super::keys::Modifiers;
+use super::keys::Inbox;
 use super::navigation::{self, LookThrough, ViewDrag};
 use super::pick;
 use super::schedule::{Dispatch, EditorUpdate};
@@ -21,15 +22,18 @@ use crate::inspect::Question;
 use crate::view::{Outlined, Symbols};
 use bevy::app::{App, Plugin};
 use bevy::ecs::event::Event;
-use bevy::ecs::message::{MessageCursor, Messages};
+use bevy::ecs::message::Messages;
+use bevy::ecs::observer::On;
+use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::schedule::IntoScheduleConfigs;
-use bevy::ecs::system::{Local, Res, ResMut};
-use bevy::ecs::world::World;
-use bevy::input::ButtonState;
+use bevy::ecs::system::{Commands, Query, Res, ResMut};
+use bevy::ecs::world::{Mut, World};
+use bevy::input::keyboard::KeyCode;
 use bevy::input::mouse::{MouseButton, MouseScrollUnit};
+use bevy::input::{ButtonInput, ButtonState};
 use bevy::math::{Rect, Vec2};
-use bevy::window::WindowEvent;
+use bevy::window::{PrimaryWindow, Window, WindowEvent};
 use bevy_egui::{EguiPrimaryContextPass, egui};
 use clicks::{answer_target, click, right_click, select_box};
 use std::time::{Duration, Instant};
@@ -49,6 +53,7 @@ impl Plugin for PointerPlugin {
         app.init_resource::<PointerUse>()
             .init_resource::<Armed>()
             .init_resource::<Pointer>()
+            .add_observer(take_over)
             .add_systems(
                 EditorUpdate,
                 (
@@ -119,16 +124,17 @@ struct Pointer {
     held: Option<MouseButton>,
     /// Where and when it was pressed, while the pointer has not moved since.
     pressed: Option<(Vec2, Instant)>,
-    modifiers: Modifiers,
+    inbox: Inbox,
     last_click: Option<(Instant, Vec2)>,
 }
 
 /// Goes through what happened in the window since the last frame.
-pub(super) fn use_pointer(world: &mut World, mut cursor: Local<MessageCursor<WindowEvent>>) {
-    let messages = world.resource::<Messages<WindowEvent>>();
-    let events: Vec<WindowEvent> = cursor.read(messages).cloned().collect();
+pub(super) fn use_pointer(world: &mut World) {
+    let events = world
+        .resource_scope(|world, mut pointer: Mut<Pointer>| pointer.inbox.take(world.resource()));
     for event in events {
-        world.resource_mut::<Pointer>().modifiers.read(&event);
+        let mut pointer = world.resource_mut::<Pointer>();
+        pointer.inbox.modifiers.read(&event);
         match event {
             WindowEvent::CursorMoved(moved) => go(world, moved.position),
             WindowEvent::MouseButtonInput(input) => match input.state {
@@ -145,6 +151,27 @@ pub(super) fn use_pointer(world: &mut World, mut cursor: Local<MessageCursor<Win
             WindowEvent::WindowFocused(focus) if !focus.focused => let_go(world),
             _ => {}
         }
+    }
+}
+
+/// The pointer was not heard while the editor was off: what it held then is let go, and where it is, the window knows.
+fn take_over(
+    switched: On<Switched>,
+    messages: Res<Messages<WindowEvent>>,
+    held: Option<Res<ButtonInput<KeyCode>>>,
+    windows: Query<&Window, With<PrimaryWindow>>,
+    mut pointer: ResMut<Pointer>,
+    mut commands: Commands,
+) {
+    pointer.inbox.skip(&messages, held.as_deref());
+    if !switched.on {
+        commands.queue(let_go);
+        return;
+    }
+    pointer.at = None;
+    let at = windows.single().ok().and_then(Window::cursor_position);
+    if let Some(at) = at {
+        commands.queue(move |world: &mut World| go(world, at));
     }
 }
 
@@ -169,7 +196,7 @@ fn go(world: &mut World, to: Vec2) {
             PointerUse::View(kind)
         }
         PointerUse::Grip(mut drag) => {
-            let modifiers = world.resource::<Pointer>().modifiers;
+            let modifiers = world.resource::<Pointer>().inbox.modifiers;
             drag.follow(world, to, modifiers);
             PointerUse::Grip(drag)
         }
@@ -189,7 +216,7 @@ fn press(world: &mut World, button: MouseButton) {
     handles::forget_keyed(world);
     let (at, modifiers) = {
         let pointer = world.resource::<Pointer>();
-        (pointer.at, pointer.modifiers)
+        (pointer.at, pointer.inbox.modifiers)
     };
     let Some(at) = at else {
         return;
@@ -274,8 +301,9 @@ fn release(world: &mut World, button: MouseButton) {
     }
 }
 
-/// Ends what is going on, as where the window loses the keyboard and with it the release.
+/// Ends what is going on, as where the window loses the keyboard and with it the release: none was a click.
 fn let_go(world: &mut World) {
+    world.resource_mut::<Pointer>().pressed = None;
     if let Some(button) = world.resource::<Pointer>().held {
         let is_click = matches!(
             world.resource::<PointerUse>(),
@@ -321,7 +349,7 @@ fn turn_wheel(world: &mut World, notches: f32) {
         PointerUse::View(ViewDrag::Fly)
     );
     if notches != 0.0 && (flying || is_over_scene(world, at)) {
-        if world.resource::<Pointer>().modifiers.ctrl && !flying {
+        if world.resource::<Pointer>().inbox.modifiers.ctrl && !flying {
             navigation::widen(world, notches);
         } else {
             navigation::wheel(world, at, notches);
@@ -393,4 +421,49 @@ fn draw_box(world: &mut World) {
             egui::Stroke::new(1.0, color),
             egui::StrokeKind::Inside,
         );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::embed::Editing;
+    use crate::editor::schedule;
+
+    #[test]
+    fn a_drag_ends_where_the_editor_is_switched_off_and_the_pointer_is_where_it_is_then() {
+        let mut app = App::new();
+        app.add_message::<WindowEvent>()
+            .insert_resource(Editing(true))
+            .init_resource::<Selection>()
+            .init_resource::<Viewport>();
+        schedule::add_to(&mut app);
+        app.init_resource::<PointerUse>()
+            .init_resource::<Pointer>()
+            .add_observer(take_over)
+            .add_systems(EditorUpdate, use_pointer);
+        let mut window = Window::default();
+        window.resolution.set(800.0, 600.0);
+        let window = app.world_mut().spawn((window, PrimaryWindow)).id();
+        app.update();
+        let world = app.world_mut();
+        let mut pointer = world.resource_mut::<Pointer>();
+        pointer.at = Some(Vec2::ZERO);
+        pointer.held = Some(MouseButton::Left);
+        pointer.inbox.modifiers.ctrl = true;
+        world.insert_resource(PointerUse::Click { at: Vec2::ZERO });
+        world.insert_resource(Editing(false));
+        app.update();
+        let world = app.world_mut();
+        let used = world.resource::<PointerUse>();
+        assert!(matches!(used, PointerUse::Free), "{used:?}");
+        let pointer = world.resource::<Pointer>();
+        assert_eq!(pointer.held, None);
+        assert!(!pointer.inbox.modifiers.ctrl);
+        let at = Vec2::new(40.0, 30.0);
+        let mut window = world.get_mut::<Window>(window).unwrap();
+        window.set_cursor_position(Some(at));
+        world.insert_resource(Editing(true));
+        app.update();
+        assert_eq!(app.world().resource::<Pointer>().at, Some(at));
+    }
 }
