@@ -17,8 +17,9 @@ use bevy::ecs::entity_disabling::Disabled;
 use bevy::math::{Affine3A, Vec2, Vec3, Vec3A};
 use bevy::platform::collections::{HashMap, HashSet};
 use bevy::prelude::{
-    Added, App, Changed, Children, Commands, Component, DetectChanges, Entity, IntoScheduleConfigs,
-    Or, Plugin, PostUpdate, Query, RemovedComponents, Res, ResMut, Resource, With, Without,
+    Added, App, Changed, Children, Commands, Component, DetectChanges, DetectChangesMut, Entity,
+    IntoScheduleConfigs, Or, Plugin, PostUpdate, Query, RemovedComponents, Res, ResMut, Resource,
+    With, Without,
 };
 use bevy::transform::TransformSystems;
 use bevy::transform::components::GlobalTransform;
@@ -187,6 +188,16 @@ type Edited = Or<(
     Changed<Aabb>,
 )>;
 
+/// Without them a symbol is another one, or none.
+type Lost<'w, 's> = (
+    RemovedComponents<'w, 's, PointLamp>,
+    RemovedComponents<'w, 's, DirectionalLamp>,
+    RemovedComponents<'w, 's, SegmentLamp>,
+    RemovedComponents<'w, 's, ParallelogramLamp>,
+    RemovedComponents<'w, 's, SceneCamera>,
+    RemovedComponents<'w, 's, Aabb>,
+);
+
 type Groups<'w, 's> = Query<'w, 's, (Entity, &'static SceneId), (With<Children>, Without<Aabb>)>;
 type Below<'w, 's> = Query<'w, 's, &'static Children>;
 type Measured<'w, 's> = Query<'w, 's, (&'static GlobalTransform, &'static Aabb)>;
@@ -218,8 +229,9 @@ fn draw_symbols(
     selected: Query<(Entity, &SceneId)>,
     (groups, below, measured): (Groups, Below, Measured),
     (mut gone, mut enabled): (RemovedComponents<SceneId>, RemovedComponents<Disabled>),
+    mut lost: Lost,
     disabled: Query<Entity, (With<SceneId>, Added<Disabled>)>,
-    mut drawn: Query<&mut DrawnLines, With<SymbolOf>>,
+    mut drawn: Query<(&mut DrawnLines, &mut SymbolOf)>,
 ) {
     for entity in gone.read().chain(&disabled) {
         if let Some(lines) = symbols.lines.remove(&entity) {
@@ -236,13 +248,19 @@ fn draw_symbols(
             other = true;
         }
     }
-    for entity in edited.iter().chain(enabled.read()) {
+    let (point, directional, segment, parallelogram, camera, aabb) = &mut lost;
+    let lost: Vec<Entity> = (point.read().chain(directional.read()))
+        .chain(segment.read().chain(parallelogram.read()))
+        .chain(camera.read().chain(aabb.read()))
+        .collect();
+    let lost = lost.iter().copied();
+    for entity in edited.iter().chain(enabled.read()).chain(lost.clone()) {
         if symbols.lines.contains_key(&entity) || lasting.contains(entity) {
             redo.insert(entity);
         }
     }
     // Around what has changed there may be a group with an outline.
-    if !outlined.0.is_empty() && !edited.is_empty() {
+    if !outlined.0.is_empty() && (!edited.is_empty() || lost.len() > 0) {
         let chosen = groups.iter().filter(|(_, id)| outlined.0.contains(id));
         redo.extend(chosen.map(|(entity, _)| entity));
     }
@@ -313,24 +331,20 @@ fn draw_symbols(
             width: WIDTH,
             on_top: false,
         };
+        let symbol = SymbolOf {
+            id: *id,
+            is_picked: lasting.contains(entity),
+        };
         let held = symbols.lines.get(&entity).copied();
         match held.and_then(|lines| drawn.get_mut(lines).ok()) {
-            Some(mut before) => {
-                if *before != wanted {
-                    *before = wanted;
-                }
+            Some((mut lines, mut before)) => {
+                lines.set_if_neq(wanted);
+                before.set_if_neq(symbol);
             }
             None if wanted.lines.is_empty() => {}
             None => {
                 let lines = commands
-                    .spawn((
-                        RenderLayers::layer(OVERLAY_LAYER),
-                        SymbolOf {
-                            id: *id,
-                            is_picked: lasting.contains(entity),
-                        },
-                        wanted,
-                    ))
+                    .spawn((RenderLayers::layer(OVERLAY_LAYER), symbol, wanted))
                     .id();
                 symbols.lines.insert(entity, lines);
             }
@@ -380,5 +394,56 @@ mod tests {
         let none = world.spawn_empty().id();
         let none = move |below: Below, measured: Measured| bounds_below(none, &below, &measured);
         assert!(world.run_system_once(none).unwrap().is_none());
+    }
+
+    /// What draws symbols, alone.
+    fn drawing() -> App {
+        let mut app = App::new();
+        app.init_resource::<Traced>()
+            .init_resource::<Symbols>()
+            .init_resource::<Outlined>()
+            .init_resource::<SymbolsOf>()
+            .add_systems(PostUpdate, draw_symbols);
+        app
+    }
+
+    /// How many lines each symbol has, and whether it is picked by them.
+    fn drawn(app: &mut App) -> Vec<(usize, bool)> {
+        app.update();
+        let mut all = app.world_mut().query::<(&SymbolOf, &DrawnLines)>();
+        let all = all.iter(app.world());
+        all.map(|(symbol, drawn)| (drawn.lines.len(), symbol.is_picked))
+            .collect()
+    }
+
+    #[test]
+    fn what_is_a_light_no_more_has_no_symbol_and_is_picked_by_none() {
+        let mut app = drawing();
+        let place = GlobalTransform::IDENTITY;
+        let id = SceneId(7);
+        let lamp = (PointLamp::default(), InheritedVisibility::VISIBLE);
+        let entity = app.world_mut().spawn((id, place, lamp)).id();
+        let [(lines, true)] = drawn(&mut app)[..] else {
+            panic!("a light has a symbol");
+        };
+        assert!(lines > 0);
+        app.world_mut().entity_mut(entity).remove::<PointLamp>();
+        assert_eq!(drawn(&mut app), [(0, false)]);
+        // What is selected has its axes then.
+        app.world_mut().resource_mut::<Outlined>().0 = vec![id];
+        let axes = drawn(&mut app);
+        assert!(matches!(axes[..], [(1.., false)]), "{axes:?}");
+        app.world_mut()
+            .entity_mut(entity)
+            .insert(PointLamp::default());
+        let lamp = drawn(&mut app);
+        assert!(matches!(lamp[..], [(_, true)]) && lamp != axes, "{lamp:?}");
+        app.world_mut().entity_mut(entity).remove::<PointLamp>();
+        assert_eq!(drawn(&mut app), axes);
+        let unit = Aabb::from_min_max(Vec3::splat(-1.0), Vec3::splat(1.0));
+        app.world_mut().entity_mut(entity).insert(unit);
+        assert_eq!(drawn(&mut app), [(12, false)], "the box of an object");
+        app.world_mut().entity_mut(entity).remove::<Aabb>();
+        assert_eq!(drawn(&mut app), axes);
     }
 }
