@@ -13,6 +13,8 @@ pub(super) struct Escaped;
 #[derive(Resource, Clone, Debug, Default, PartialEq)]
 pub struct Selection {
     ids: Vec<SceneId>,
+    /// The same, found without a search: a list asks for each of its rows.
+    known: HashSet<SceneId>,
 }
 
 impl Selection {
@@ -28,7 +30,7 @@ impl Selection {
 
     /// Whether it is selected.
     pub fn contains(&self, id: SceneId) -> bool {
-        self.ids.contains(&id)
+        self.known.contains(&id)
     }
 
     /// Nothing is selected.
@@ -41,30 +43,31 @@ impl Selection {
         self.ids.clear();
         self.ids.extend(ids);
         // Of those named twice the last counts.
-        let mut seen = HashSet::new();
+        self.known.clear();
         self.ids.reverse();
-        self.ids.retain(|&id| seen.insert(id));
+        self.ids.retain(|&id| self.known.insert(id));
         self.ids.reverse();
     }
 
-    /// Selects it too, as the active one.
-    pub fn add(&mut self, id: SceneId) {
-        self.ids.retain(|&other| other != id);
-        self.ids.push(id);
+    /// Selects these too, the last as the active one.
+    pub fn add(&mut self, ids: impl IntoIterator<Item = SceneId>) {
+        let before = std::mem::take(&mut self.ids);
+        self.set(before.into_iter().chain(ids));
     }
 
     /// Selects it where it is not, and the other way round.
     pub fn toggle(&mut self, id: SceneId) {
-        if self.contains(id) {
-            self.ids.retain(|&other| other != id);
-        } else {
+        if self.known.insert(id) {
             self.ids.push(id);
+        } else {
+            self.retain(|other| other != id);
         }
     }
 
     /// Keeps those that pass.
     pub fn retain(&mut self, keep: impl Fn(SceneId) -> bool) {
         self.ids.retain(|&id| keep(id));
+        self.known.retain(|&id| keep(id));
     }
 }
 
@@ -77,10 +80,16 @@ mod tests {
         let mut selection = Selection::default();
         selection.set([1, 2, 1].map(SceneId));
         assert_eq!(selection.ids(), [2, 1].map(SceneId));
-        selection.add(SceneId(2));
+        selection.add([SceneId(2)]);
         assert_eq!(selection.active(), Some(SceneId(2)));
         selection.toggle(SceneId(2));
         selection.toggle(SceneId(3));
         assert_eq!(selection.ids(), [1, 3].map(SceneId));
+        let contained = [1, 2, 3].map(|id| selection.contains(SceneId(id)));
+        assert_eq!(contained, [true, false, true]);
+        selection.retain(|id| id != SceneId(1));
+        assert!(!selection.contains(SceneId(1)));
+        selection.add([4, 3].map(SceneId));
+        assert_eq!(selection.ids(), [4, 3].map(SceneId));
     }
 }

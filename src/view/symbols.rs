@@ -17,12 +17,13 @@ use bevy::ecs::entity_disabling::Disabled;
 use bevy::math::{Affine3A, Vec2, Vec3, Vec3A};
 use bevy::platform::collections::{HashMap, HashSet};
 use bevy::prelude::{
-    Added, App, Changed, Children, Commands, Component, DetectChanges, DetectChangesMut, Entity,
-    IntoScheduleConfigs, Or, Plugin, PostUpdate, Query, RemovedComponents, Res, ResMut, Resource,
-    With, Without,
+    Added, App, Changed, ChildOf, Children, Commands, Component, DetectChanges, DetectChangesMut,
+    Entity, IntoScheduleConfigs, Or, Plugin, PostUpdate, Query, RemovedComponents, Res, ResMut,
+    Resource, With, Without,
 };
 use bevy::transform::TransformSystems;
 use bevy::transform::components::GlobalTransform;
+use std::iter;
 
 /// Draws symbols, for cameras of [`OVERLAY_LAYER`]. Needs [`LinesPlugin`](super::LinesPlugin).
 pub struct SymbolsPlugin;
@@ -85,6 +86,10 @@ struct SymbolsOf {
     lines: HashMap<Entity, Entity>,
     /// Metres: the radius of a light without an extent.
     size: f32,
+    /// Those of [`Outlined`]: thousands may be selected, and none is looked for in all of them.
+    chosen: HashSet<SceneId>,
+    /// How many were made again in the last frame: a test's proof that others are not.
+    redone: usize,
 }
 
 impl Default for SymbolsOf {
@@ -92,6 +97,8 @@ impl Default for SymbolsOf {
         Self {
             lines: HashMap::default(),
             size: SIZE_ALONE,
+            chosen: HashSet::default(),
+            redone: 0,
         }
     }
 }
@@ -198,23 +205,62 @@ type Lost<'w, 's> = (
     RemovedComponents<'w, 's, Aabb>,
 );
 
-type Groups<'w, 's> = Query<'w, 's, (Entity, &'static SceneId), (With<Children>, Without<Aabb>)>;
+type Groups<'w, 's> = Query<'w, 's, &'static SceneId, Without<Aabb>>;
+type Above<'w, 's> = Query<'w, 's, &'static ChildOf>;
 type Below<'w, 's> = Query<'w, 's, &'static Children>;
 type Measured<'w, 's> = Query<'w, 's, (&'static GlobalTransform, &'static Aabb)>;
+type Moved = (With<Aabb>, Or<(Changed<GlobalTransform>, Changed<Aabb>)>);
 
-/// The box in the world around what hangs below an entity; `None` where that has no size.
-fn bounds_below(entity: Entity, below: &Below, measured: &Measured) -> Option<Aabb> {
-    let mut bounds: Option<[Vec3A; 2]> = None;
-    for (place, aabb) in measured.iter_many(below.iter_descendants(entity)) {
-        let place = place.affine();
-        let center = place.transform_point3a(aabb.center);
-        let axes = place.matrix3;
-        let [x, y, z] = aabb.half_extents.to_array();
-        let half = axes.x_axis.abs() * x + axes.y_axis.abs() * y + axes.z_axis.abs() * z;
-        let [least, most] = bounds.unwrap_or([center - half, center + half]);
-        bounds = Some([least.min(center - half), most.max(center + half)]);
+/// Least and most corner of a box in the world; `None` where nothing has a size.
+type Bounds = Option<[Vec3A; 2]>;
+
+fn union(a: Bounds, b: Bounds) -> Bounds {
+    match (a, b) {
+        (Some([least, most]), Some([lesser, greater])) => {
+            Some([least.min(lesser), most.max(greater)])
+        }
+        (a, b) => a.or(b),
     }
-    bounds.map(|[least, most]| Aabb::from_min_max(least.into(), most.into()))
+}
+
+fn world_bounds(place: &GlobalTransform, aabb: &Aabb) -> [Vec3A; 2] {
+    let place = place.affine();
+    let center = place.transform_point3a(aabb.center);
+    let axes = place.matrix3;
+    let [x, y, z] = aabb.half_extents.to_array();
+    let half = axes.x_axis.abs() * x + axes.y_axis.abs() * y + axes.z_axis.abs() * z;
+    [center - half, center + half]
+}
+
+/// The box in the world around what hangs below an entity; `None` where that has no size. Of groups within groups, all may
+/// be asked for: each is looked into once, and `known` remembers it.
+fn bounds_below(
+    entity: Entity,
+    below: &Below,
+    measured: &Measured,
+    known: &mut HashMap<Entity, Bounds>,
+) -> Option<Aabb> {
+    let own = |entity: Entity| {
+        let (place, aabb) = measured.get(entity).ok()?;
+        Some(world_bounds(place, aabb))
+    };
+    let mut waiting = vec![(entity, false)];
+    while let Some((entity, are_children_known)) = waiting.pop() {
+        if known.contains_key(&entity) {
+            continue;
+        }
+        let children = below.get(entity).map_or(&[][..], |children| children);
+        if !are_children_known && !children.is_empty() {
+            waiting.push((entity, true));
+            waiting.extend(children.iter().map(|&child| (child, false)));
+            continue;
+        }
+        let with_below = |&child: &Entity| union(own(child), known.get(&child).copied().flatten());
+        let bounds = children.iter().map(with_below).fold(None, union);
+        known.insert(entity, bounds);
+    }
+    let [least, most] = known.get(&entity).copied().flatten()?;
+    Some(Aabb::from_min_max(least.into(), most.into()))
 }
 
 fn draw_symbols(
@@ -227,7 +273,12 @@ fn draw_symbols(
     lasting: Query<Entity, HasSymbol>,
     edited: Query<Entity, (With<SceneId>, Edited)>,
     selected: Query<(Entity, &SceneId)>,
-    (groups, below, measured): (Groups, Below, Measured),
+    (groups, above, below, measured): (Groups, Above, Below, Measured),
+    moved: Query<Entity, Moved>,
+    (regrouped, mut emptied): (
+        Query<Entity, Changed<Children>>,
+        RemovedComponents<Children>,
+    ),
     (mut gone, mut enabled): (RemovedComponents<SceneId>, RemovedComponents<Disabled>),
     mut lost: Lost,
     disabled: Query<Entity, (With<SceneId>, Added<Disabled>)>,
@@ -259,24 +310,38 @@ fn draw_symbols(
             redo.insert(entity);
         }
     }
-    // Around what has changed there may be a group with an outline.
-    if !outlined.0.is_empty() && (!edited.is_empty() || lost.len() > 0) {
-        let chosen = groups.iter().filter(|(_, id)| outlined.0.contains(id));
-        redo.extend(chosen.map(|(entity, _)| entity));
+    let SymbolsOf {
+        lines: held,
+        size,
+        chosen,
+        redone,
+    } = &mut *symbols;
+    if outlined.is_changed() {
+        *chosen = outlined.0.iter().copied().collect();
     }
+    // Around what has changed there may be groups with an outline.
+    let changed = moved.iter().chain(lost);
+    let changed = changed.chain(&regrouped).chain(emptied.read());
+    let mut seen: HashSet<Entity> = HashSet::default();
+    for entity in changed.filter(|_| !chosen.is_empty()) {
+        let way = iter::once(entity).chain(above.iter_ancestors(entity));
+        let new = way.take_while(|&entity| seen.insert(entity));
+        redo.extend(new.filter(|&entity| groups.get(entity).is_ok_and(|id| chosen.contains(id))));
+    }
+    *redone = redo.len();
     if !other && redo.is_empty() {
         return;
     }
-    // Thousands may be selected: none is looked for in all of them.
-    let chosen: HashSet<SceneId> = outlined.0.iter().copied().collect();
     if other {
-        redo.extend(symbols.lines.keys());
+        redo.extend(held.keys());
         redo.extend(&lasting);
         if !chosen.is_empty() {
             let selected = selected.iter().filter(|(_, id)| chosen.contains(*id));
             redo.extend(selected.map(|(entity, _)| entity));
         }
     }
+    *redone = redo.len();
+    let mut known: HashMap<Entity, Bounds> = HashMap::default();
     for entity in redo {
         let Ok((_, id, place, visible, point, directional, segment, parallelogram, camera, aabb)) =
             things.get(entity)
@@ -285,7 +350,7 @@ fn draw_symbols(
         };
         let place = place.affine();
         let mut sketch = Sketch {
-            size: symbols.size,
+            size: *size,
             ..Sketch::default()
         };
         let visible = visible.is_none_or(|visible| visible.get());
@@ -319,10 +384,12 @@ fn draw_symbols(
         if let Some(tint) = sketch.tint {
             match aabb {
                 Some(aabb) => sketch.bounds(&place, aabb, tint),
-                None if sketch.lines.is_empty() => match bounds_below(entity, &below, &measured) {
-                    Some(bounds) => sketch.bounds(&Affine3A::IDENTITY, &bounds, tint),
-                    None => sketch.axes(&place, tint),
-                },
+                None if sketch.lines.is_empty() => {
+                    match bounds_below(entity, &below, &measured, &mut known) {
+                        Some(bounds) => sketch.bounds(&Affine3A::IDENTITY, &bounds, tint),
+                        None => sketch.axes(&place, tint),
+                    }
+                }
                 None => {}
             }
         }
@@ -335,8 +402,8 @@ fn draw_symbols(
             id: *id,
             is_picked: lasting.contains(entity),
         };
-        let held = symbols.lines.get(&entity).copied();
-        match held.and_then(|lines| drawn.get_mut(lines).ok()) {
+        let before = held.get(&entity).copied();
+        match before.and_then(|lines| drawn.get_mut(lines).ok()) {
             Some((mut lines, mut before)) => {
                 lines.set_if_neq(wanted);
                 before.set_if_neq(symbol);
@@ -346,7 +413,7 @@ fn draw_symbols(
                 let lines = commands
                     .spawn((RenderLayers::layer(OVERLAY_LAYER), symbol, wanted))
                     .id();
-                symbols.lines.insert(entity, lines);
+                held.insert(entity, lines);
             }
         }
     }
@@ -373,7 +440,7 @@ mod tests {
     #[test]
     fn a_group_has_an_outline_around_all_that_hangs_below_it() {
         use bevy::ecs::system::RunSystemOnce;
-        use bevy::prelude::{ChildOf, Transform, World};
+        use bevy::prelude::{Transform, World};
         let mut world = World::new();
         let root = world.spawn(GlobalTransform::IDENTITY).id();
         let unit = Aabb::from_min_max(Vec3::splat(-1.0), Vec3::splat(1.0));
@@ -381,19 +448,21 @@ mod tests {
         let inner = world.spawn((ChildOf(root), GlobalTransform::IDENTITY)).id();
         world.spawn((ChildOf(inner), GlobalTransform::from(place), unit));
         world.spawn((ChildOf(root), GlobalTransform::IDENTITY, unit));
-        let bounds = move |below: Below, measured: Measured| bounds_below(root, &below, &measured);
-        let bounds = world.run_system_once(bounds).unwrap().unwrap();
+        let of = |entity: Entity| {
+            move |below: Below, measured: Measured| {
+                bounds_below(entity, &below, &measured, &mut HashMap::default())
+            }
+        };
+        let bounds = world.run_system_once(of(root)).unwrap().unwrap();
         let found = [bounds.min(), bounds.max()].map(Vec3::from);
         assert_eq!(
             found,
             [Vec3::new(-1.0, -2.0, -2.0), Vec3::new(5.0, 2.0, 2.0)]
         );
-        let alone = move |below: Below, measured: Measured| bounds_below(inner, &below, &measured);
-        assert!(world.run_system_once(alone).unwrap().is_some());
+        assert!(world.run_system_once(of(inner)).unwrap().is_some());
         world.despawn(inner);
         let none = world.spawn_empty().id();
-        let none = move |below: Below, measured: Measured| bounds_below(none, &below, &measured);
-        assert!(world.run_system_once(none).unwrap().is_none());
+        assert!(world.run_system_once(of(none)).unwrap().is_none());
     }
 
     /// What draws symbols, alone.
@@ -445,5 +514,43 @@ mod tests {
         assert_eq!(drawn(&mut app), [(12, false)], "the box of an object");
         app.world_mut().entity_mut(entity).remove::<Aabb>();
         assert_eq!(drawn(&mut app), axes);
+    }
+
+    #[test]
+    fn of_thousands_of_outlined_groups_those_around_what_changed_are_made_again() {
+        let mut app = drawing();
+        let world = app.world_mut();
+        let unit = Aabb::from_min_max(Vec3::splat(-1.0), Vec3::splat(1.0));
+        let mut parts = Vec::new();
+        let mut ids = Vec::new();
+        for number in 1..=2000 {
+            let id = SceneId(number);
+            let outer = world.spawn((id, GlobalTransform::IDENTITY)).id();
+            let below = (GlobalTransform::IDENTITY, ChildOf(outer));
+            let inner = world.spawn((SceneId(10_000 + number), below)).id();
+            ids.extend([id, SceneId(10_000 + number)]);
+            // Not of the scene: a part of a model that an app has put there.
+            let part = (GlobalTransform::IDENTITY, unit, ChildOf(inner));
+            parts.push(world.spawn(part).id());
+        }
+        world.resource_mut::<Outlined>().0 = ids;
+        let redone = |app: &mut App| {
+            app.update();
+            app.world().resource::<SymbolsOf>().redone
+        };
+        assert_eq!(redone(&mut app), 4000);
+        assert_eq!(redone(&mut app), 0);
+        let place = GlobalTransform::from_xyz(5.0, 0.0, 0.0);
+        app.world_mut().entity_mut(parts[3]).insert(place);
+        assert_eq!(redone(&mut app), 2, "the two groups around it");
+        app.world_mut().despawn(parts[4]);
+        assert_eq!(redone(&mut app), 2);
+        let mut all = app.world_mut().query::<(&SymbolOf, &DrawnLines)>();
+        let mut least: Vec<f32> = (all.iter(app.world()))
+            .filter(|(symbol, _)| [4, 10_004].contains(&symbol.id.0))
+            .flat_map(|(_, drawn)| drawn.lines.iter().map(|line| line.ends[0].x))
+            .collect();
+        least.sort_by(f32::total_cmp);
+        assert_eq!(least[0], 4.0);
     }
 }

@@ -143,9 +143,7 @@ pub(super) fn select_box(world: &mut World, from: Vec2, to: Vec2) {
     inside.sort_unstable();
     let mut wanted = world.resource::<Selection>().clone();
     if world.resource::<Pointer>().inbox.modifiers.ctrl {
-        for id in inside {
-            wanted.add(id);
-        }
+        wanted.add(inside);
     } else {
         wanted.set(inside);
     }

@@ -287,7 +287,7 @@ fn click(
     let ids: Vec<SceneId> = places.iter().map(|&at| outline.items[at].id).collect();
     let mut selection = world.resource_mut::<Selection>();
     match (shift, ctrl) {
-        (true, true) => ids.into_iter().for_each(|id| selection.add(id)),
+        (true, true) => selection.add(ids),
         (true, false) => selection.set(ids),
         (false, true) => selection.toggle(id),
         (false, false) => selection.set([id]),
