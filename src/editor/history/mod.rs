@@ -90,7 +90,8 @@ impl History {
         self.done
     }
 
-    /// Tells states of the scene apart: it is the same number again when undo or redo lead back.
+    /// Tells states of the scene apart: it is the same number again when undo or redo lead back, and a step leads to a
+    /// greater one than there ever was.
     pub fn state(&self) -> u64 {
         match self
             .done

@@ -21,8 +21,8 @@ const MOST: usize = 32;
 pub(super) struct Framings(Vec<Framing>);
 
 struct Framing {
-    /// How many steps of the history were done.
-    position: usize,
+    /// The history's state. Positions fall, too, when the oldest steps are forgotten.
+    state: u64,
     before: (Eye, Option<SceneId>),
     after: Eye,
 }
@@ -65,13 +65,13 @@ fn show(world: &mut World, extent: Extent) {
     });
     end_gesture(world);
     let after = world.resource::<Eye>().clone();
-    let position = world.get_resource::<History>().map_or(0, History::position);
+    let state = world.get_resource::<History>().map_or(0, History::state);
     let mut framings = world.resource_mut::<Framings>();
     if framings.0.len() == MOST {
         framings.0.remove(0);
     }
     framings.0.push(Framing {
-        position,
+        state,
         before: (before, through),
         after,
     });
@@ -87,7 +87,7 @@ pub(super) fn unframe(
     if !history.is_changed() {
         return;
     }
-    while let Some(framing) = framings.0.pop_if(|last| last.position > history.position()) {
+    while let Some(framing) = framings.0.pop_if(|last| last.state > history.state()) {
         if *eye == framing.after && !through.locked {
             (*eye, through.camera) = framing.before;
         }
@@ -101,6 +101,7 @@ mod tests {
     use crate::editor::history::{reset, undo};
     use crate::editor::viewport::Viewport;
     use crate::scene::PointLamp;
+    use bevy::app::App;
     use bevy::ecs::system::RunSystemOnce;
     use bevy::transform::components::Transform;
 
@@ -136,5 +137,39 @@ mod tests {
             let now = world.resource::<Eye>();
             assert_eq!(*now, if moved { left } else { before.clone() }, "{place}");
         }
+    }
+
+    #[test]
+    fn a_framed_view_stays_where_the_oldest_steps_are_forgotten() {
+        let mut app = headless_editor();
+        app.init_resource::<Eye>()
+            .init_resource::<LookThrough>()
+            .init_resource::<Framings>()
+            .init_resource::<Viewport>();
+        let lamp = app.world_mut().spawn((SceneId(1), PointLamp::default()));
+        let lamp = lamp.id();
+        app.update();
+        reset(app.world_mut());
+        let step = |app: &mut App, x: f32| {
+            let world = app.world_mut();
+            world.get_mut::<Transform>(lamp).unwrap().translation.x = x;
+            app.update();
+            let world = app.world_mut();
+            world.run_system_once(unframe).unwrap();
+            world.resource::<History>().position()
+        };
+        assert_eq!(step(&mut app, 5.0), 1);
+        assert_eq!(step(&mut app, 6.0), 2);
+        frame(app.world_mut(), true);
+        let framed = app.world().resource::<Eye>().clone();
+        // One that takes more memory than all may.
+        let mut history = app.world_mut().resource_mut::<History>();
+        history.name_next("n".repeat(100 << 20));
+        assert_eq!(step(&mut app, 7.0), 1, "the others are forgotten");
+        assert_eq!(*app.world().resource::<Eye>(), framed);
+        let world = app.world_mut();
+        assert!(undo(world));
+        world.run_system_once(unframe).unwrap();
+        assert_eq!(*world.resource::<Eye>(), framed);
     }
 }
