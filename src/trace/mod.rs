@@ -107,7 +107,7 @@ pub use needs::{Needs, samples_per_pixel};
 pub use parallelogram_frame::ParallelogramFrame;
 pub use parallelogram_warp::Places;
 pub use planes::{PlaneSet, Planes, Untinted};
-pub use probe::{MOST_RAYS, ProbeError, Samples, probe};
+pub use probe::{MOST_RAYS, ProbeError, Samples, probe, probe_while};
 pub use radiance::{SampleId, Workspace, radiance, radiance_in_planes};
 pub use ray_counts::RayCounts;
 pub use ray_tree::{

@@ -12,7 +12,7 @@ use super::{Camera, SampleId, Surface, Workspace, World, samples_per_pixel};
 use crate::bvh::{Counters, Hit, Ray};
 use crate::scene::{Lighting, RenderSettings};
 use glam::{UVec2, Vec3};
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 
 /// No more samples are evaluated once there are this many rays: some hundred megabytes.
 pub const MOST_RAYS: usize = 1 << 19;
@@ -59,15 +59,33 @@ pub fn probe(
     pixel: UVec2,
     samples: &Samples,
 ) -> Result<RayTree, ProbeError> {
+    let mut go_on = || ControlFlow::Continue(());
+    match probe_while(world, camera, settings, pixel, samples, &mut go_on) {
+        ControlFlow::Continue(rays) => rays,
+        // It is never told to end.
+        ControlFlow::Break(()) => Ok(RayTree::default()),
+    }
+}
+
+/// The same, asking before each sample whether it shall go on.
+pub fn probe_while(
+    world: &World,
+    camera: &Camera,
+    settings: &RenderSettings,
+    pixel: UVec2,
+    samples: &Samples,
+    go_on: &mut dyn FnMut() -> ControlFlow<()>,
+) -> ControlFlow<(), Result<RayTree, ProbeError>> {
     let size = settings.size;
+    let refused = |why| ControlFlow::Continue(Err(why));
     if pixel.cmpge(size).any() {
-        return Err(ProbeError::Outside { pixel, size });
+        return refused(ProbeError::Outside { pixel, size });
     }
     let count = u64::from(samples_per_pixel(world, camera, settings));
     let indices: Range<u64> = match *samples {
         Samples::All => 0..count,
         Samples::One(index) if index < count => index..index + 1,
-        Samples::One(index) => return Err(ProbeError::NoSuchSample { index, count }),
+        Samples::One(index) => return refused(ProbeError::NoSuchSample { index, count }),
     };
     let mut recording = Recording::new(world, settings);
     let mut workspace = Workspace::default();
@@ -77,6 +95,7 @@ pub fn probe(
         ..RayTree::default()
     };
     for index in indices.clone() {
+        go_on()?;
         if recording.rays.len() > MOST_RAYS {
             tree.left_out = indices.end - index;
             break;
@@ -96,7 +115,7 @@ pub fn probe(
         let [value] = value;
         tree.samples.push(ProbedSample { index, value });
     }
-    Ok(recording.finish(tree))
+    ControlFlow::Continue(Ok(recording.finish(tree)))
 }
 
 /// What a recorder has written so far, and where the batch is.
@@ -396,5 +415,40 @@ impl Recorder for Recording<'_> {
         }
         ray.added += value;
         self.order.push(number);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_scene;
+    use super::*;
+    use glam::Quat;
+
+    #[test]
+    fn no_sample_is_evaluated_after_it_was_told_to_end() {
+        let world = test_scene::world();
+        let eye = Vec3::new(0.0, 0.0, 4.0);
+        let camera = Camera::new(eye, Quat::IDENTITY, Default::default(), Default::default());
+        let settings = RenderSettings {
+            size: UVec2::splat(16),
+            spp: 8,
+            ..RenderSettings::default()
+        };
+        let count = u64::from(samples_per_pixel(&world, &camera, &settings));
+        let tell = |most: u64| {
+            let mut asked = 0;
+            let mut go_on = || {
+                asked += 1;
+                match asked <= most {
+                    true => ControlFlow::Continue(()),
+                    false => ControlFlow::Break(()),
+                }
+            };
+            let (pixel, all) = (UVec2::splat(8), Samples::All);
+            let rays = probe_while(&world, &camera, &settings, pixel, &all, &mut go_on);
+            (rays.is_continue(), asked)
+        };
+        assert_eq!(tell(3), (false, 4));
+        assert_eq!(tell(count), (true, count));
     }
 }

@@ -2,7 +2,7 @@
 //! written down. It stays where it is when the view moves, and is shot again when the scene changes.
 
 use super::view_of;
-use crate::editor::background::{Background, Outcome};
+use crate::editor::background::{Background, Outcome, Watch};
 use crate::editor::command::{Command, Over, State, commands};
 use crate::editor::notice::Notices;
 use crate::editor::pick;
@@ -10,11 +10,12 @@ use crate::editor::viewport::Viewport;
 use crate::inspect::{Addition, Names};
 use crate::scene::{Output, RenderSettings};
 use crate::sync::Traced;
-use crate::trace::{Camera, RayTree, Samples, World, probe, samples_per_pixel};
+use crate::trace::{Camera, RayTree, Samples, World, probe_while, samples_per_pixel};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Res, ResMut};
 use bevy::ecs::world;
 use bevy::math::{UVec2, Vec2};
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// Why nothing is shot where nothing is traced.
@@ -100,10 +101,14 @@ impl Of {
             && self.settings == other.settings
     }
 
-    fn trace(&self) -> Found {
+    fn trace(&self, go_on: &mut dyn FnMut() -> ControlFlow<()>) -> Found {
         let (world, camera, settings) = (&self.world, &self.camera, &self.settings);
         let samples = self.which.samples();
-        let rays = probe(world, camera, settings, self.pixel, &samples);
+        let rays = probe_while(world, camera, settings, self.pixel, &samples, go_on);
+        let ControlFlow::Continue(rays) = rays else {
+            // Who ended it does not listen any more.
+            return Err(String::new());
+        };
         let rays = rays.map_err(|problem| problem.to_string())?;
         let addition = Addition::of(world, camera, settings, &rays);
         Ok((rays, addition))
@@ -198,16 +203,17 @@ impl DebugRay {
         names: &Names,
     ) {
         if let Some((of, work)) = self.under_way.take() {
-            let found = match work.take() {
-                Outcome::Pending => {
-                    self.under_way = Some((of, work));
-                    return;
-                }
-                Outcome::Done(found) => found,
-                // Not tried again until something else is asked for: it would end so in every frame.
-                Outcome::Lost => Err(LOST.into()),
-            };
+            // Rays of a pixel that is picked no more are not waited for: dropped, the work ends.
             if self.asks_for(&of) {
+                let found = match work.take() {
+                    Outcome::Pending => {
+                        self.under_way = Some((of, work));
+                        return;
+                    }
+                    Outcome::Done(found) => found,
+                    // Not tried again until something else is asked for: it would end so in every frame.
+                    Outcome::Lost => Err(LOST.into()),
+                };
                 // Shown even where the scene has moved on: the next ones follow.
                 self.take(of, found, names);
             }
@@ -230,19 +236,21 @@ impl DebugRay {
         if self.of.as_ref().is_some_and(|known| known.is(&of)) {
             return;
         }
+        let mut to_the_end = || ControlFlow::Continue(());
         if of.which != Which::All {
-            let found = of.trace();
+            let found = of.trace(&mut to_the_end);
             self.take(of, found, names);
             return;
         }
         // Thousands of samples may take seconds, and no frame waits for them; the pool's threads belong to the picture,
         // which may keep them for long.
         let traces = of.clone();
-        match Background::start("debug ray", move |_| traces.trace()) {
+        let work = move |watch: &Watch| traces.trace(&mut || watch.tell("rays", 0.0));
+        match Background::start("debug ray", work) {
             Ok(work) => self.under_way = Some((of, work)),
             // A system without another thread: then a frame has to wait.
             Err(_) => {
-                let found = of.trace();
+                let found = of.trace(&mut to_the_end);
                 self.take(of, found, names);
             }
         }
@@ -349,6 +357,7 @@ mod tests {
     use super::super::tests::{Bench, SIZE};
     use super::*;
     use crate::sync::TracedCameras;
+    use std::sync::mpsc::channel;
     use std::thread;
     use std::time::{Duration, Instant};
 
@@ -376,6 +385,41 @@ mod tests {
                 return;
             }
             thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    #[test]
+    fn rays_of_another_pixel_or_of_one_sample_do_not_wait_for_those_that_are_under_way() {
+        let mut bench = Bench::open("cornell-box");
+        bench.ray().which = Which::All;
+        bench.shoot([300, 240]);
+        bench.wait();
+        for of_one_sample in [false, true] {
+            // It never ends by itself, and says when it was told to.
+            let (told, hears) = channel();
+            let work = Background::start("test", move |watch| {
+                while watch.tell("on and on", 0.0).is_continue() {
+                    thread::sleep(Duration::from_millis(1));
+                }
+                told.send(()).map_err(|gone| gone.to_string())?;
+                Err(String::new())
+            });
+            let mut ray = bench.ray();
+            let of = ray.of.take().unwrap();
+            ray.under_way = Some((of, work.unwrap()));
+            bench.app.update();
+            assert!(bench.ray().is_busy());
+            if of_one_sample {
+                bench.ray().which = Which::First;
+                bench.app.update();
+            } else {
+                bench.shoot([10, 12]);
+                bench.wait();
+            }
+            hears.recv_timeout(Duration::from_secs(60)).unwrap();
+            let rays = bench.ray().rays().unwrap().clone();
+            assert_eq!(rays.pixel, UVec2::new(10, 12));
+            assert_eq!(rays.samples.len() == 1, of_one_sample);
         }
     }
 
