@@ -5,7 +5,7 @@ use super::reference::TracedPicture;
 use super::traced::TracedView;
 use crate::film::views::Scale;
 use crate::film::{LightMix, Progressive, State, Status};
-use crate::scene::{RenderSettings, SceneId};
+use crate::scene::{Output, RenderSettings, SceneId};
 use crate::trace;
 use bevy::asset::Handle;
 use bevy::image::Image;
@@ -95,6 +95,11 @@ impl TracedRender {
         let running = self.running.as_ref()?;
         let (render, output) = (running.render.clone(), running.order.output);
         Some(move || TracedPicture::of(&render, &output))
+    }
+
+    /// How its picture is made of what it renders.
+    pub fn output(&self) -> Option<&Output> {
+        Some(&self.running.as_ref()?.order.output)
     }
 
     /// What stands on the screen.

@@ -11,9 +11,9 @@ use crate::editor::panels::save_form::{SaveForm, save_ui};
 use crate::editor::panels::says::Says;
 use crate::editor::panels::status::count;
 use crate::editor::viewport::traced_render;
-use crate::film::Picture;
+use crate::film::{Picture, State};
 use crate::inspect::color_text;
-use crate::scene::Quantity;
+use crate::scene::{Output, Quantity};
 use crate::view::TracedRender;
 use bevy::ecs::world::{Mut, World};
 use bevy::math::{UVec2, Vec3};
@@ -68,11 +68,39 @@ struct Drawn {
     sides: [Side; 2],
     look: Look,
     pair: Pair,
-    /// Samples of each pixel of the view's picture.
-    samples: f64,
+    /// When the view's picture was taken.
+    of: Option<Moment>,
     /// Taken by the texture as soon as it is there.
     image: Option<ColorImage>,
     texture: Option<TextureHandle>,
+}
+
+/// What the view's picture depends on: another one is not looked for until some of it is different.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Moment {
+    /// The render's.
+    number: u64,
+    /// Of each pixel.
+    samples: f64,
+    /// How coarse it is.
+    divider: Option<u32>,
+    state: State,
+    output: Output,
+}
+
+impl Moment {
+    fn of(render: &TracedRender) -> Option<Self> {
+        // First: what comes in meanwhile is then another moment's.
+        let number = render.render()?.number();
+        let status = render.status()?;
+        Some(Self {
+            number,
+            samples: status.samples,
+            divider: status.divider,
+            state: status.state,
+            output: *render.output()?,
+        })
+    }
 }
 
 impl Comparison {
@@ -117,18 +145,21 @@ impl Comparison {
         self.drawn = Some(drawn);
     }
 
-    /// Begins to compute what is wanted and not there yet; and again what the view shows, from time to time.
+    /// Begins to compute what is wanted and not there yet; and again what the view shows, from time to time, where that is
+    /// another picture by then.
     fn begin(&mut self, world: &World, kept: &KeptPictures) {
         if self.under_way.is_some() {
             return;
         }
         let (sides, look) = (self.sides, self.look);
         let before = self.drawn.as_ref().filter(|drawn| drawn.sides == sides);
-        let looks_again = sides.contains(&Side::Now) && self.begun.elapsed() >= AGAIN;
+        let render = traced_render(world);
+        let now = render.and_then(Moment::of);
+        let is_other = before.is_some_and(|before| before.of != now);
+        let looks_again = is_other && sides.contains(&Side::Now) && self.begun.elapsed() >= AGAIN;
         if !looks_again && before.is_some_and(|before| before.look == look) {
             return;
         }
-        let render = traced_render(world);
         let source = |number: usize| match sides[number] {
             Side::Kept(kept_number) => {
                 let kept = kept.find(kept_number)?;
@@ -143,8 +174,9 @@ impl Comparison {
             self.drawn = None;
             return;
         };
-        let status = render.and_then(TracedRender::status);
-        let samples = status.map_or(0.0, |status| status.samples);
+        let of = before
+            .filter(|_| !looks_again)
+            .map_or(now, |before| before.of);
         let before = before.map(|before| before.pair.clone());
         let work = move |_: &_| {
             let pair = Pair::of([first, second], before);
@@ -153,7 +185,7 @@ impl Comparison {
                 sides,
                 look,
                 pair,
-                samples,
+                of,
                 texture: None,
             }
         };
@@ -280,13 +312,13 @@ fn at(picture: &Picture, pixel: UVec2) -> Vec3 {
 
 /// Which two, and how they are shown.
 fn choices_ui(ui: &mut Ui, kept: &KeptPictures, comparison: &mut Comparison) {
-    let samples = comparison.drawn.as_ref().map(|drawn| drawn.samples);
+    let of = comparison.drawn.as_ref().and_then(|drawn| drawn.of);
     let name = |side: Side| match side {
         Side::Kept(number) => kept
             .find(number)
             .map_or("–".into(), |kept| kept.name.clone()),
-        Side::Now => samples.map_or("the view".into(), |spp| {
-            format!("the view: {} spp", count(spp))
+        Side::Now => of.map_or("the view".into(), |of| {
+            format!("the view: {} spp", count(of.samples))
         }),
     };
     ui.horizontal_wrapped(|ui| {

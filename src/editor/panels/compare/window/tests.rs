@@ -4,7 +4,12 @@ use crate::editor::document::adopt;
 use crate::editor::panels::compare::even_picture as picture;
 use crate::editor::panels::tests::{Desk, SMALL, USUAL, type_nonsense};
 use crate::editor::panels::theme::tests::assert_readable;
-use crate::editor::viewport::Viewport;
+use crate::editor::viewport::{EditorCamera, Viewport};
+use crate::scene::RenderSettings;
+use crate::view::TracedViewPlugin;
+use bevy::app::Plugin;
+use bevy::camera::{Camera, RenderTargetInfo};
+use bevy::ecs::query::With;
 use bevy_egui::egui::Theme;
 use std::thread::sleep;
 
@@ -60,6 +65,51 @@ fn two_kept_pictures_are_compared_in_figures_and_another_scene_forgets_them() {
     desk.settle();
     assert!(desk.find("Difference").is_none());
     assert!(desk.world().resource::<KeptPictures>().all.is_empty());
+}
+
+#[test]
+fn the_views_picture_is_looked_at_again_while_it_becomes_another_and_not_once_it_is_done() {
+    let mut desk = Desk::open("triangle");
+    TracedViewPlugin.build(&mut desk.app);
+    let mut cameras = (desk.world()).query_filtered::<&mut Camera, With<EditorCamera>>();
+    let mut camera = cameras.single_mut(desk.world()).unwrap();
+    camera.computed.target_info = Some(RenderTargetInfo {
+        physical_size: UVec2::new(32, 24),
+        scale_factor: 1.0,
+    });
+    let mut kept = desk.world().resource_mut::<KeptPictures>();
+    kept.add(picture(1.0), 1.0, None);
+    kept.comparison = Some(Comparison::new(1));
+    // When it was begun to be compared as the render stands now.
+    let begun = |desk: &mut Desk| {
+        let start = Instant::now();
+        loop {
+            assert!(start.elapsed() < Duration::from_secs(60), "never compared");
+            sleep(Duration::from_millis(5));
+            desk.settle();
+            let now = traced_render(desk.world()).and_then(Moment::of);
+            let kept = desk.world().resource::<KeptPictures>();
+            let comparison = kept.comparison.as_ref().unwrap();
+            let drawn = comparison.drawn.as_ref().and_then(|drawn| drawn.of);
+            let is_done = now.is_some_and(|now| matches!(now.state, State::Ended(_)));
+            if is_done && drawn == now {
+                return comparison.begun;
+            }
+        }
+    };
+    let first = begun(&mut desk);
+    sleep(2 * AGAIN);
+    assert_eq!(begun(&mut desk), first, "it is the same picture");
+    desk.world()
+        .resource_mut::<RenderSettings>()
+        .output
+        .exposure = 1.0;
+    desk.settle();
+    let second = begun(&mut desk);
+    assert!(second > first, "another exposure is another picture");
+    desk.world().resource_mut::<RenderSettings>().seed += 1;
+    desk.settle();
+    assert!(begun(&mut desk) > second, "another render is one, too");
 }
 
 #[test]
