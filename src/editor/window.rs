@@ -6,12 +6,18 @@ use super::plugins::parts;
 use super::preferences::config_folder;
 use super::script::Script;
 use crate::io::{Limits, SceneFiles, SceneSource};
+use crate::view::TracedPickingPlugin;
 use bevy::DefaultPlugins;
-use bevy::app::{App, AppExit, PluginGroup};
+use bevy::app::{App, AppExit, PluginGroup, PluginGroupBuilder};
 use bevy::log::{Level, LogPlugin};
 use bevy::window::{Window, WindowPlugin};
 use std::path::Path;
 use std::process::ExitCode;
+
+/// Nobody observes pointers in the editor's own window: nothing is picked for them.
+fn parts_of_program(document: DocumentPlugin) -> PluginGroupBuilder {
+    parts(document).disable::<TracedPickingPlugin>()
+}
 
 /// Opens the window with this scene, until it is closed, and plays the script in it. All scenes that are opened share
 /// the limits.
@@ -40,7 +46,7 @@ pub fn run(scene: SceneSource, script: Option<Script>, limits: Limits) -> ExitCo
         ..DocumentPlugin::default()
     };
     app.add_plugins(DefaultPlugins.set(window).set(log))
-        .add_plugins(parts(document))
+        .add_plugins(parts_of_program(document))
         .add_plugins(PacePlugin);
     #[cfg(unix)]
     app.add_plugins(super::signals::SignalsPlugin);
@@ -56,5 +62,18 @@ pub fn run(scene: SceneSource, script: Option<Script>, limits: Limits) -> ExitCo
     match app.run() {
         AppExit::Success => ExitCode::SUCCESS,
         AppExit::Error(code) => ExitCode::from(code.get()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_picked_for_pointers_in_the_editors_own_window() {
+        let program = parts_of_program(DocumentPlugin::default());
+        assert!(!program.enabled::<TracedPickingPlugin>());
+        let guest = parts(DocumentPlugin::default());
+        assert!(guest.enabled::<TracedPickingPlugin>());
     }
 }

@@ -12,7 +12,7 @@ use bevy::transform::components::Transform;
 
 /// Which entity has which number.
 #[derive(Resource, Default)]
-pub(super) struct IdOwners {
+pub(crate) struct IdOwners {
     owners: HashMap<u64, Entity>,
     /// The other way round.
     numbers: EntityHashMap<u64>,
@@ -22,6 +22,11 @@ pub(super) struct IdOwners {
 }
 
 impl IdOwners {
+    /// Whose number it was when the scene was last taken over.
+    pub fn owner(&self, id: SceneId) -> Option<Entity> {
+        self.owners.get(&id.0).copied()
+    }
+
     /// The entity has no number any more.
     fn free(&mut self, entity: Entity) {
         if let Some(number) = self.numbers.remove(&entity) {
