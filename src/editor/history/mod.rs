@@ -81,7 +81,7 @@ impl History {
     }
 
     /// The names of all steps, those that were undone last.
-    pub fn steps(&self) -> impl Iterator<Item = &str> {
+    pub fn steps(&self) -> impl ExactSizeIterator<Item = &str> {
         self.steps.iter().map(|step| step.name.as_str())
     }
 

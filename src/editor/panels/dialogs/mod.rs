@@ -83,6 +83,11 @@ pub(super) fn dialogs_ui(context: &egui::Context, world: &mut World, dialogs: &m
     dialogs.before = dialogs.open;
 }
 
+/// How high what is in a dialog may be; more is scrolled. Points.
+fn most_height(context: &egui::Context) -> f32 {
+    (context.content_rect().height() - 140.0).max(120.0)
+}
+
 /// A dialog with a title and a way out; false where it was closed: by its button, by Escape, or by a
 /// click beside it.
 fn modal_ui(context: &egui::Context, title: &str, width: f32, body: impl FnOnce(&mut Ui)) -> bool {
@@ -104,7 +109,7 @@ fn modal_ui(context: &egui::Context, title: &str, width: f32, body: impl FnOnce(
         });
         ui.separator();
         ScrollArea::vertical()
-            .max_height((screen.y - 140.0).max(120.0))
+            .max_height(most_height(ui.ctx()))
             .auto_shrink([false, true])
             .show(ui, body);
     });
