@@ -26,8 +26,9 @@ use bevy::ecs::observer::On;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::ResMut;
 use bevy::ecs::world::World;
+use bevy_egui::egui::text::{LayoutJob, TextWrapping};
 use bevy_egui::egui::{
-    self, Align2, Color32, ColorImage, FontId, Rect, TextureHandle, TextureOptions, Ui, pos2, vec2,
+    self, Color32, ColorImage, FontId, Rect, TextureHandle, TextureOptions, Ui, pos2, vec2,
 };
 use std::sync::Arc;
 use window::Comparison;
@@ -36,6 +37,8 @@ pub(super) use window::window_ui;
 
 /// How many are kept; the oldest goes then. One of two megapixels takes 32 MB.
 const MOST: usize = 8;
+/// Points of the ground to the left and to the right of a name.
+const BESIDE_NAME: f32 = 6.0;
 /// Letters of a step that are a part of a picture's name.
 const LONGEST_STEP: usize = 32;
 
@@ -201,19 +204,38 @@ pub(super) fn compare_ui(ui: &mut Ui, free: Rect, world: &mut World) {
     };
     let texture = last.texture(ui.ctx()).id();
     let name = format!("kept picture {}", last.name);
+    let size = last.picture.size().as_vec2();
     // Its own part of the picture, where the view is split.
-    let part = Rect::from_min_max(pos2(divider, 0.0), pos2(1.0, 1.0));
-    let place = Rect::from_min_max(
-        pos2(free.min.x + divider * free.width(), free.min.y),
-        free.max,
-    );
-    let painter = ui.painter();
-    painter.image(texture, place, part, Color32::WHITE);
+    let place = free.with_min_x(free.min.x + divider * free.width());
+    let whole = fitted(free, size.x / size.y);
+    let painter = ui.painter().with_clip_rect(place);
+    if whole != free {
+        painter.rect_filled(place, 0.0, Color32::BLACK);
+    }
+    let all = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+    painter.image(texture, whole, all, Color32::WHITE);
+    let mut name = LayoutJob::simple_singleline(name, FontId::proportional(13.0), Color32::WHITE);
+    name.wrap = TextWrapping::truncate_at_width((place.width() - 2.0 * BESIDE_NAME).max(0.0));
+    let name = painter.layout_job(name);
     let at = pos2(place.center().x, place.max.y - 14.0);
-    let back = Rect::from_center_size(at, vec2(170.0, 20.0));
+    let text = Rect::from_center_size(at, name.size());
+    let back = text.expand2(vec2(BESIDE_NAME, 2.0));
     painter.rect_filled(back, 4.0, Color32::from_black_alpha(170));
-    let font = FontId::proportional(13.0);
-    painter.text(at, Align2::CENTER_CENTER, name, font, Color32::WHITE);
+    painter.galley(text.min, name, Color32::WHITE);
+}
+
+/// The largest rectangle of this shape (width by height) in the middle of another one: all of that where a rounded pixel
+/// makes the difference.
+fn fitted(free: Rect, shape: f32) -> Rect {
+    let wanted = vec2(
+        free.width().min(free.height() * shape),
+        free.height().min(free.width() / shape),
+    );
+    let missing = free.size() - wanted;
+    match missing.max_elem() > 1.5 {
+        true => Rect::from_center_size(free.center(), wanted),
+        false => free,
+    }
 }
 
 /// A small picture of one brightness.
