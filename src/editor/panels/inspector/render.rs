@@ -196,6 +196,25 @@ impl ViewCrossings {
         self.of = Some(*of);
         self.under_way = None;
     }
+
+    /// What was found of the render of this number; where that is not known yet, it is looked for.
+    fn of(
+        &mut self,
+        number: u64,
+        look: impl FnOnce() -> Option<Crossings> + Send + 'static,
+    ) -> Option<Crossings> {
+        self.take();
+        // One at a time: in a drag every frame asks for another.
+        if self.under_way.is_none() && self.of != Some(number) {
+            match Background::start("crossings", |_: &Watch| look()) {
+                Ok(work) => self.under_way = Some((number, work)),
+                // Without a thread nothing is said.
+                Err(_) => (self.of, self.found) = (Some(number), None),
+            }
+        }
+        // What was found of another render is nothing of this one.
+        self.found.filter(|_| self.of == Some(number))
+    }
 }
 
 fn crossings_text(ui: &Ui, world: &mut World) -> Option<String> {
@@ -208,23 +227,14 @@ fn crossings_text(ui: &Ui, world: &mut World) -> Option<String> {
     }
     let subject = (traced.clone(), camera.clone(), settings.clone());
     let mut kept = world.resource_mut::<ViewCrossings>();
-    kept.take();
-    // One at a time: in a drag every frame asks for another.
-    if kept.under_way.is_none() && kept.of != Some(number) {
-        let work = move |_: &Watch| {
-            let (world, camera, settings) = subject;
-            Crossings::many(&world, &camera, &settings)
-        };
-        match Background::start("crossings", work) {
-            Ok(work) => kept.under_way = Some((number, work)),
-            // Without a thread nothing is said.
-            Err(_) => kept.of = Some(number),
-        }
-    }
+    let found = kept.of(number, move || {
+        let (world, camera, settings) = subject;
+        Crossings::many(&world, &camera, &settings)
+    });
     if kept.under_way.is_some() {
         ui.ctx().request_repaint_after(TICK);
     }
-    let found = kept.found?;
+    let found = found?;
     let entity = scene_entity(world, found.object);
     let name = entity.and_then(|entity| world.get::<Name>(entity));
     Some(found.text(name.map(Name::as_str)))
@@ -251,7 +261,35 @@ fn sizes_ui(ui: &mut Ui, settings: &mut RenderSettings) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::SETTINGS;
+    use crate::scene::{SETTINGS, SceneId};
+    use std::sync::mpsc::channel;
+    use std::time::Instant;
+
+    #[test]
+    fn what_rays_of_one_render_go_through_is_not_said_of_the_next() {
+        let mut kept = ViewCrossings::default();
+        let leaf = Crossings {
+            a_ray: 40.0,
+            object: SceneId(7),
+        };
+        let start = Instant::now();
+        while kept.of(1, move || Some(leaf)).is_none() {
+            assert!(start.elapsed() < Duration::from_secs(60), "never found");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        let (go, waits) = channel::<()>();
+        let look = move || {
+            let _ = waits.recv();
+            None
+        };
+        assert_eq!(kept.of(2, look), None, "it is being looked for");
+        drop(go);
+        while kept.of != Some(2) {
+            assert!(start.elapsed() < Duration::from_secs(60), "never found");
+            assert_eq!(kept.of(2, || None), None);
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
 
     #[test]
     fn every_setting_of_the_table_has_its_field_in_this_tab_or_in_that_of_the_trees() {
