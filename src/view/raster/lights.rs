@@ -7,9 +7,11 @@ use bevy::color::{Color, ColorToComponents, LinearRgba};
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::light::{DirectionalLight, PointLight, RectLight, SpotLight};
 use bevy::math::{Quat, Vec3};
+use bevy::platform::collections::hash_map::Entry;
+use bevy::platform::collections::{HashMap, HashSet};
 use bevy::prelude::{
-    Added, Changed, Commands, Component, DetectChanges, DetectChangesMut, Entity, Or, Query, Ref,
-    RemovedComponents, With, Without,
+    Added, Changed, Commands, Component, DetectChanges, DetectChangesMut, Entity, Has, Or, Query,
+    Ref, RemovedComponents, Without,
 };
 use bevy::transform::components::{GlobalTransform, Transform};
 use std::f32::consts::{FRAC_PI_2, PI};
@@ -19,7 +21,26 @@ const REACH: f32 = 1.0e4;
 
 /// A light of Bevy's that stands for one of ours.
 #[derive(Component, Clone)]
-pub struct RasterTwin(Entity);
+pub struct RasterTwin {
+    of: Entity,
+    kind: Kind,
+}
+
+/// Which of an entity's components it stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Kind {
+    Point,
+    Directional,
+    Segment,
+    Parallelogram,
+}
+
+/// As what a light of ours is drawn.
+enum Drawn {
+    Point(PointLight),
+    Spot(SpotLight),
+    Directional(DirectionalLight),
+}
 
 type LampQuery<'w, 's> = Query<
     'w,
@@ -49,72 +70,110 @@ type EditedLamp = Or<(
     Changed<InheritedVisibility>,
 )>;
 
-/// The lights are few: a change of one makes all twins again.
+/// Whose twins have to be others, or none: those of others stay as they are, and a light that shines on in the same way
+/// keeps its twin.
 pub(super) fn give_lights(
     mut commands: Commands,
-    edited: Query<(), (AnyLamp, EditedLamp)>,
-    disabled: Query<(), (AnyLamp, Added<Disabled>)>,
+    edited: Query<Entity, (AnyLamp, EditedLamp)>,
+    disabled: Query<Entity, (AnyLamp, Added<Disabled>)>,
     mut enabled: RemovedComponents<Disabled>,
     mut no_point: RemovedComponents<PointLamp>,
     mut no_directional: RemovedComponents<DirectionalLamp>,
     mut no_segment: RemovedComponents<SegmentLamp>,
     mut no_parallelogram: RemovedComponents<ParallelogramLamp>,
     lamps: LampQuery,
-    twins: Query<Entity, With<RasterTwin>>,
+    twins: Query<(Entity, &RasterTwin, Shines)>,
 ) {
-    // Not `||`: every reader has to be emptied.
-    let gone = no_point.read().count()
-        + no_directional.read().count()
-        + no_segment.read().count()
-        + no_parallelogram.read().count()
-        + enabled.read().count();
-    if gone == 0 && edited.is_empty() && disabled.is_empty() {
+    let gone = (no_point.read().chain(no_directional.read()))
+        .chain(no_segment.read().chain(no_parallelogram.read()))
+        .chain(enabled.read());
+    let others: HashSet<Entity> = edited.iter().chain(&disabled).chain(gone).collect();
+    if others.is_empty() {
         return;
     }
-    for twin in &twins {
-        commands.entity(twin).despawn();
-    }
-    for (entity, point, directional, segment, parallelogram, visible) in &lamps {
+    let mut held: HashMap<(Entity, Kind), (Entity, Shining)> = twins
+        .iter()
+        .filter(|(_, twin, _)| others.contains(&twin.of))
+        .map(|(entity, twin, shines)| ((twin.of, twin.kind), (entity, shines)))
+        .collect();
+    for (of, point, directional, segment, parallelogram, visible) in lamps.iter_many(&others) {
         if !visible.get() {
             continue;
         }
-        let lit = (RasterTwin(entity), RenderLayers::layer(RASTER_LAYER));
-        if let Some(lamp) = point {
-            match lamp.cone {
-                None => commands.spawn((lit.clone(), point_light(lamp.color, lamp.intensity))),
-                Some(cone) => {
-                    let angles = [cone.inner, cone.outer];
-                    commands.spawn((lit.clone(), spot_light(lamp.color, lamp.intensity, angles)))
-                }
+        let drawn = [
+            point.map(|lamp| (Kind::Point, of_point(lamp))),
+            directional.map(|lamp| (Kind::Directional, of_directional(lamp))),
+            segment.map(|lamp| (Kind::Segment, of_segment(lamp))),
+            parallelogram.map(|lamp| (Kind::Parallelogram, of_parallelogram(lamp))),
+        ];
+        for (kind, drawn) in drawn.into_iter().flatten() {
+            let known = match held.entry((of, kind)) {
+                Entry::Occupied(known) if drawn.is(known.get().1) => Some(known.remove().0),
+                _ => None,
+            };
+            let mut twin = match known {
+                Some(twin) => commands.entity(twin),
+                None => commands.spawn(RenderLayers::layer(RASTER_LAYER)),
+            };
+            // Told anew whose it is, it is put where that stands.
+            twin.insert(RasterTwin { of, kind });
+            match drawn {
+                Drawn::Point(light) => twin.insert(light),
+                Drawn::Spot(light) => twin.insert(light),
+                Drawn::Directional(light) => twin.insert(light),
             };
         }
-        if let Some(lamp) = directional {
-            commands.spawn((
-                lit.clone(),
-                DirectionalLight {
-                    color: Color::LinearRgba(lamp.color),
-                    illuminance: lamp.intensity / exposure().exposure(),
-                    shadow_maps_enabled: false,
-                    ..DirectionalLight::default()
-                },
-            ));
+    }
+    for (twin, _) in held.into_values() {
+        commands.entity(twin).despawn();
+    }
+}
+
+/// As what a twin shines: a point, a spot, from infinitely far.
+type Shines = (Has<PointLight>, Has<SpotLight>, Has<DirectionalLight>);
+type Shining = (bool, bool, bool);
+
+impl Drawn {
+    /// Whether a twin shines as one of this kind.
+    fn is(&self, (point, spot, directional): Shining) -> bool {
+        match self {
+            Self::Point(_) => point,
+            Self::Spot(_) => spot,
+            Self::Directional(_) => directional,
         }
-        if let Some(lamp) = segment {
-            let length = lamp.ends[0].distance(lamp.ends[1]);
-            let color = mean(&lamp.colors);
-            commands.spawn((lit.clone(), point_light(color, lamp.intensity * length)));
+    }
+}
+
+fn of_point(lamp: &PointLamp) -> Drawn {
+    match lamp.cone {
+        None => Drawn::Point(point_light(lamp.color, lamp.intensity)),
+        Some(cone) => {
+            let angles = [cone.inner, cone.outer];
+            Drawn::Spot(spot_light(lamp.color, lamp.intensity, angles))
         }
-        if let Some(lamp) = parallelogram {
-            let area = lamp.edges[0].cross(lamp.edges[1]).length();
-            let color = mean(&lamp.colors);
-            let intensity = lamp.intensity * area;
-            if lamp.two_sided {
-                commands.spawn((lit, point_light(color, intensity)));
-            } else {
-                let light = spot_light(color, intensity, [0.0, FRAC_PI_2]);
-                commands.spawn((lit, light));
-            }
-        }
+    }
+}
+
+fn of_directional(lamp: &DirectionalLamp) -> Drawn {
+    Drawn::Directional(DirectionalLight {
+        color: Color::LinearRgba(lamp.color),
+        illuminance: lamp.intensity / exposure().exposure(),
+        shadow_maps_enabled: false,
+        ..DirectionalLight::default()
+    })
+}
+
+fn of_segment(lamp: &SegmentLamp) -> Drawn {
+    let length = lamp.ends[0].distance(lamp.ends[1]);
+    Drawn::Point(point_light(mean(&lamp.colors), lamp.intensity * length))
+}
+
+fn of_parallelogram(lamp: &ParallelogramLamp) -> Drawn {
+    let area = lamp.edges[0].cross(lamp.edges[1]).length();
+    let (color, intensity) = (mean(&lamp.colors), lamp.intensity * area);
+    match lamp.two_sided {
+        true => Drawn::Point(point_light(color, intensity)),
+        false => Drawn::Spot(spot_light(color, intensity, [0.0, FRAC_PI_2])),
     }
 }
 
@@ -172,11 +231,11 @@ pub(super) fn move_lights(
     >,
 ) {
     for (twin, mut transform, mut global, mut visibility) in &mut twins {
-        let Ok((place, segment, parallelogram)) = lamps.get(twin.0) else {
+        let Ok((place, segment, parallelogram)) = lamps.get(twin.of) else {
             *visibility = Visibility::Hidden;
             continue;
         };
-        if !place.is_changed() && !twin.is_added() {
+        if !place.is_changed() && !twin.is_changed() {
             continue;
         }
         let affine = place.affine();
@@ -195,5 +254,72 @@ pub(super) fn move_lights(
         if transform.set_if_neq(moved) {
             *global = GlobalTransform::from(moved);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::app::{App, Update};
+    use bevy::ecs::schedule::IntoScheduleConfigs;
+
+    /// A twin, its lumens where it is a point, and where it stands.
+    type Twin = (Entity, Option<f32>, Vec3);
+
+    /// The twins, by whose they are.
+    fn twins(app: &mut App) -> HashMap<Entity, Twin> {
+        app.update();
+        app.update();
+        let mut all = (app.world_mut())
+            .query::<(Entity, &RasterTwin, Option<&PointLight>, &GlobalTransform)>();
+        let all = all.iter(app.world()).map(|(entity, twin, light, place)| {
+            let lumens = light.map(|light| light.intensity);
+            (twin.of, (entity, lumens, place.translation()))
+        });
+        all.collect()
+    }
+
+    #[test]
+    fn an_edited_light_keeps_its_twin_and_leaves_those_of_others_alone() {
+        let mut app = App::new();
+        app.add_systems(Update, (give_lights, move_lights).chain());
+        let seen = (GlobalTransform::IDENTITY, InheritedVisibility::VISIBLE);
+        let world = app.world_mut();
+        let point = world.spawn((PointLamp::default(), seen)).id();
+        let segment = world.spawn((SegmentLamp::default(), seen)).id();
+        let before = twins(&mut app);
+        assert_eq!(before.len(), 2);
+        // Brighter, or longer, so that its middle is elsewhere.
+        let world = app.world_mut();
+        world.get_mut::<PointLamp>(point).unwrap().intensity *= 2.0;
+        let mut line = world.get_mut::<SegmentLamp>(segment).unwrap();
+        line.ends[1] = line.ends[0] + Vec3::X * 8.0;
+        let middle = line.ends[0] + Vec3::X * 4.0;
+        let after = twins(&mut app);
+        for of in [point, segment] {
+            assert_eq!(before[&of].0, after[&of].0);
+        }
+        let lumens = |twins: &HashMap<Entity, Twin>| twins[&point].1.unwrap();
+        assert_eq!(lumens(&after), 2.0 * lumens(&before));
+        assert_eq!(after[&segment].2, middle);
+        // As a spot it is another light of Bevy's, and the segment's stays.
+        let mut lamp = app.world_mut().get_mut::<PointLamp>(point).unwrap();
+        lamp.cone = Some(Default::default());
+        let spot = twins(&mut app);
+        assert_eq!((spot.len(), spot[&point].1), (2, None));
+        assert_eq!(spot[&segment], after[&segment]);
+        for hide in [true, false] {
+            let visible = match hide {
+                true => InheritedVisibility::HIDDEN,
+                false => InheritedVisibility::VISIBLE,
+            };
+            app.world_mut().entity_mut(point).insert(visible);
+            let now = twins(&mut app);
+            assert_eq!(now.len(), if hide { 1 } else { 2 });
+            assert_eq!(now[&segment], after[&segment]);
+        }
+        app.world_mut().entity_mut(segment).remove::<SegmentLamp>();
+        app.world_mut().despawn(point);
+        assert_eq!(twins(&mut app).len(), 0);
     }
 }
