@@ -2,11 +2,14 @@
 
 use super::pair::TreePair;
 use crate::editor::command::{Command, Over, State, commands};
+use crate::editor::document::SceneOpened;
 use crate::editor::notice::Notices;
 use crate::inspect::{BoxChoice, BoxRange, BoxSettings, InspectSettings, TreeChoice, TreeForm};
 use crate::sync::Traced;
 use crate::trace;
+use bevy::ecs::observer::On;
 use bevy::ecs::resource::Resource;
+use bevy::ecs::system::ResMut;
 use bevy::ecs::world::{Mut, World};
 use std::sync::Arc;
 
@@ -35,6 +38,11 @@ impl BoxRanges {
         }
         self.range
     }
+}
+
+/// The trees are those of another scene, whose world is large.
+pub(super) fn forget_scene(_: On<SceneOpened>, mut ranges: ResMut<BoxRanges>) {
+    *ranges = BoxRanges::default();
 }
 
 pub(super) fn commands() -> Vec<Command> {

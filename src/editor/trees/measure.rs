@@ -37,7 +37,8 @@ pub(in crate::editor) struct Measurements {
 /// One kind of them.
 pub(in crate::editor) struct Measurement<T> {
     running: Option<(Background<Result<T, String>>, Subject)>,
-    done: Option<(T, Subject)>,
+    /// Figures outlive their subject, which goes with its scene.
+    done: Option<(T, Option<Subject>)>,
     said: Option<String>,
 }
 
@@ -108,6 +109,9 @@ impl<T: Send + 'static> Measurement<T> {
     /// Why what was measured is not of the scene as it is now.
     pub fn stale(&self, world: &World) -> Option<Stale> {
         let (_, then) = self.done.as_ref()?;
+        let Some(then) = then else {
+            return Some(Stale::Scene);
+        };
         let now = subject(world)?;
         let options = |subject: &Subject| BuildOptions {
             builder: Builder::None,
@@ -139,13 +143,22 @@ impl<T: Send + 'static> Measurement<T> {
         }
     }
 
+    /// Another scene was opened. What is being measured of the one before is of no more use, and would keep this one waiting;
+    /// what was measured does not hold its world.
+    fn forget_scene(&mut self) {
+        self.cancel();
+        if let Some((_, of)) = &mut self.done {
+            *of = None;
+        }
+    }
+
     fn carry_on(&mut self) {
         let Some((work, of)) = &self.running else {
             return;
         };
         match work.take() {
             Outcome::Pending => return,
-            Outcome::Done(Ok(done)) => self.done = Some((done, of.clone())),
+            Outcome::Done(Ok(done)) => self.done = Some((done, Some(of.clone()))),
             Outcome::Done(Err(why)) => self.said = Some(why),
             Outcome::Lost => self.said = Some("It ended by a bug of Glassbox.".into()),
         }
@@ -276,10 +289,9 @@ impl Measurements {
     }
 }
 
-/// What is measured of another scene is no more of use, and would keep this one waiting.
 pub(super) fn forget_scene(_: On<SceneOpened>, mut all: ResMut<Measurements>) {
-    all.comparison.cancel();
-    all.performance.cancel();
+    all.comparison.forget_scene();
+    all.performance.forget_scene();
 }
 
 /// Carries [`Measurements`] on.

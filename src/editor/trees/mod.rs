@@ -35,8 +35,9 @@ impl Plugin for TreeStudyPlugin {
             .init_resource::<measure::Measurements>()
             .init_resource::<pair::TreePair>()
             .init_resource::<BoxRanges>()
-            .add_commands(commands::commands())
+            .add_observer(commands::forget_scene)
             .add_observer(measure::forget_scene)
+            .add_commands(commands::commands())
             .add_systems(EditorUpdate, measure::carry_on)
             .add_systems(PostUpdate, pair::build_pair.after(SyncSystems));
     }

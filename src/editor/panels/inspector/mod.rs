@@ -67,7 +67,12 @@ pub(super) struct Inspector {
 }
 
 /// Another scene was opened: the numbers of its entities are those of others.
-pub(super) fn forget_scene(_: On<SceneOpened>, mut panel: ResMut<Inspector>) {
+pub(super) fn forget_scene(
+    _: On<SceneOpened>,
+    mut panel: ResMut<Inspector>,
+    mut trees: ResMut<Trees>,
+) {
+    *trees = Trees::default();
     panel.naming = None;
     panel.preset = None;
     panel.thumbnails.forget_fields();

@@ -7,6 +7,7 @@ use crate::editor::action::Action;
 use crate::editor::document::adopt;
 use crate::editor::history::History;
 use crate::editor::inspection::{DebugRay, Inspected, Which};
+use crate::editor::trees::BoxRanges;
 use crate::editor::trees::measure::{BUILDERS, Measurements, Stale};
 use crate::editor::trees::pair::{SideState, TreePair};
 use crate::editor::viewport::{Viewport, traced_view_mut};
@@ -21,6 +22,7 @@ use bevy::ecs::query::With;
 use bevy::ecs::world::World;
 use bevy::transform::components::Transform;
 use bevy_egui::egui::vec2;
+use std::sync::Arc;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -376,4 +378,27 @@ fn each_question_sets_its_lines_and_the_master_switch_keeps_them() {
             }
         );
     }
+}
+
+#[test]
+fn nothing_holds_the_world_of_a_scene_after_another_was_opened_and_figures_say_that_they_are_of_it()
+{
+    let mut desk = Desk::in_tab_bvh("cornell-box");
+    adopt(desk.world(), "cornell-box", None);
+    desk.click_on(COMPARE);
+    desk.until_measured();
+    assert_eq!(desk.stale(), None);
+    let traced = desk.world().resource::<Traced>().world.clone();
+    let boxes = desk.world().resource::<InspectSettings>().boxes.clone();
+    let mut ranges = desk.world().resource_mut::<BoxRanges>();
+    ranges.of(&traced, &boxes);
+    let world = Arc::downgrade(&traced);
+    drop(traced);
+    // Where nothing of them is drawn, they learn nothing of the new scene.
+    desk.world().resource_mut::<Inspector>().tab = Tab::Object;
+    desk.settle();
+    assert!(world.strong_count() > 0);
+    desk.world().write_message(Action::Open("triangle".into()));
+    desk.until("let go", move |_| world.strong_count() == 0);
+    assert_eq!(desk.stale(), Some(Stale::Scene));
 }
