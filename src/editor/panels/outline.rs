@@ -125,7 +125,12 @@ impl Outline {
 
     /// Where the objects are that have a shared material.
     pub fn users(&self, material: &Item) -> &[usize] {
-        self.users.get(&material.entity).map_or(&[], Vec::as_slice)
+        self.users_of(material.entity)
+    }
+
+    /// The same by the material's entity.
+    pub fn users_of(&self, material: Entity) -> &[usize] {
+        self.users.get(&material).map_or(&[], Vec::as_slice)
     }
 
     /// Where the parent of an item is.

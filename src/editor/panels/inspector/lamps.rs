@@ -165,6 +165,7 @@ fn colors_ui(ui: &mut Ui, several: &mut Several<ParallelogramLamp>) {
             .enumerate()
         {
             several.field(
+                &format!("colors.{i}"),
                 |lamp| &mut lamp.colors[i],
                 |value, mixed| color_ui(ui, &format!("Colour at: {corner}"), value, mixed),
             );

@@ -97,8 +97,7 @@ fn assign_ui(ui: &mut Ui, world: &mut World, entities: &[Entity], owner: Entity)
         .copied()
         .filter(|&entity| is_object(world, entity))
         .collect();
-    let mut users = world.query::<&UsesMaterial>();
-    let count = users.iter(world).filter(|uses| uses.0 == owner).count();
+    let count = world.resource::<Outline>().users_of(owner).len();
     if objects.is_empty() {
         ui.weak(match count {
             0 => {
@@ -113,16 +112,9 @@ fn assign_ui(ui: &mut Ui, world: &mut World, entities: &[Entity], owner: Entity)
         .get::<UsesMaterial>(objects[0])
         .is_some_and(|uses| uses.0 == owner);
     let outline = world.resource::<Outline>();
-    let shared: Vec<(Entity, String)> = outline
-        .items
-        .iter()
-        .filter(|item| item.kind == Kind::Material)
-        .map(|item| (item.entity, item.name.clone()))
-        .collect();
-    let current = shared
-        .iter()
-        .find(|(entity, _)| is_shared && *entity == owner)
-        .map_or("Its own", |(_, name)| name.as_str());
+    let its = world.get::<SceneId>(owner).filter(|_| is_shared);
+    let its = its.and_then(|&id| outline.find(id));
+    let current = its.map_or("Its own", |item| item.name.as_str());
     let says = "Its own, or a shared one: a change of a shared material reaches all its objects";
     let mut chosen: Option<Option<Entity>> = None;
     row(ui, "Uses", says, |ui| {
@@ -135,11 +127,13 @@ fn assign_ui(ui: &mut Ui, world: &mut World, entities: &[Entity], owner: Entity)
                 if own.says("A material that no other object has").clicked() {
                     chosen = Some(None);
                 }
-                for (entity, name) in &shared {
-                    let on = is_shared && *entity == owner;
+                // Gone through while the list is open, and not in every frame.
+                let materials = outline.items.iter();
+                for item in materials.filter(|item| item.kind == Kind::Material) {
+                    let on = is_shared && item.entity == owner;
                     let says = "A shared material: a change of it reaches all its objects";
-                    if ui.selectable_label(on, name).says(says).clicked() {
-                        chosen = Some(Some(*entity));
+                    if ui.selectable_label(on, &item.name).says(says).clicked() {
+                        chosen = Some(Some(item.entity));
                     }
                 }
             })

@@ -32,6 +32,7 @@ pub(super) fn maps_ui(
             owner: Owner::Materials(numbers.clone(), map),
         };
         several.field(
+            &property.path,
             |phong| map.source_mut(phong),
             |value, mixed| map_ui(ui, world, thumbnails, &field, value, mixed),
         );

@@ -13,19 +13,13 @@ use bevy::reflect::enums::Enum;
 use bevy_egui::egui::{Label, Ui};
 
 pub(super) fn shape_ui(ui: &mut Ui, world: &mut World, entities: &[Entity]) {
-    let Some(first) = Several::<MeshSource>::of(world, entities) else {
+    let source = |entity: &Entity| world.get::<MeshSource>(*entity);
+    let Some(first) = entities.iter().find_map(source) else {
         return;
     };
     // A number of one shape means nothing to another.
-    let first = first.first();
-    let alike: Vec<Entity> = entities
-        .iter()
-        .copied()
-        .filter(|&entity| {
-            let source = world.get::<MeshSource>(entity);
-            source.is_some_and(|source| are_alike(source, first))
-        })
-        .collect();
+    let is_alike = |entity: &&Entity| source(entity).is_some_and(|one| are_alike(one, first));
+    let alike: Vec<Entity> = entities.iter().filter(is_alike).copied().collect();
     let Some(mut several) = Several::<MeshSource>::of(world, &alike) else {
         return;
     };

@@ -106,6 +106,7 @@ fn visible_ui(ui: &mut Ui, world: &mut World, entities: &[Entity]) {
     let says = "What is hidden is not traced, nor is what is below it in the list";
     row(ui, "Visible", says, |ui| {
         several.field(
+            "visibility",
             |visibility| visibility,
             |visibility, mixed| {
                 let mut visible = *visibility != Visibility::Hidden;
