@@ -3,6 +3,8 @@
 //!
 //! Each entity's lines are made again when it changed, and only then.
 
+mod bounds;
+
 use super::lines::{DrawnLines, OVERLAY_LAYER};
 use super::sketch::{Sketch, colors};
 use crate::scene::{
@@ -14,7 +16,7 @@ use bevy::camera::Camera;
 use bevy::camera::primitives::Aabb;
 use bevy::camera::visibility::{InheritedVisibility, RenderLayers};
 use bevy::ecs::entity_disabling::Disabled;
-use bevy::math::{Affine3A, Vec2, Vec3, Vec3A};
+use bevy::math::{Affine3A, Vec2, Vec3};
 use bevy::platform::collections::{HashMap, HashSet};
 use bevy::prelude::{
     Added, App, Changed, ChildOf, Children, Commands, Component, DetectChanges, DetectChangesMut,
@@ -23,6 +25,7 @@ use bevy::prelude::{
 };
 use bevy::transform::TransformSystems;
 use bevy::transform::components::GlobalTransform;
+use bounds::{Below, Bounds, Measured, bounds_below};
 use std::iter;
 
 /// Draws symbols, for cameras of [`OVERLAY_LAYER`]. Needs [`LinesPlugin`](super::LinesPlugin).
@@ -207,61 +210,7 @@ type Lost<'w, 's> = (
 
 type Groups<'w, 's> = Query<'w, 's, &'static SceneId, Without<Aabb>>;
 type Above<'w, 's> = Query<'w, 's, &'static ChildOf>;
-type Below<'w, 's> = Query<'w, 's, &'static Children>;
-type Measured<'w, 's> = Query<'w, 's, (&'static GlobalTransform, &'static Aabb)>;
 type Moved = (With<Aabb>, Or<(Changed<GlobalTransform>, Changed<Aabb>)>);
-
-/// Least and most corner of a box in the world; `None` where nothing has a size.
-type Bounds = Option<[Vec3A; 2]>;
-
-fn union(a: Bounds, b: Bounds) -> Bounds {
-    match (a, b) {
-        (Some([least, most]), Some([lesser, greater])) => {
-            Some([least.min(lesser), most.max(greater)])
-        }
-        (a, b) => a.or(b),
-    }
-}
-
-fn world_bounds(place: &GlobalTransform, aabb: &Aabb) -> [Vec3A; 2] {
-    let place = place.affine();
-    let center = place.transform_point3a(aabb.center);
-    let axes = place.matrix3;
-    let [x, y, z] = aabb.half_extents.to_array();
-    let half = axes.x_axis.abs() * x + axes.y_axis.abs() * y + axes.z_axis.abs() * z;
-    [center - half, center + half]
-}
-
-/// The box in the world around what hangs below an entity; `None` where that has no size. Of groups within groups, all may
-/// be asked for: each is looked into once, and `known` remembers it.
-fn bounds_below(
-    entity: Entity,
-    below: &Below,
-    measured: &Measured,
-    known: &mut HashMap<Entity, Bounds>,
-) -> Option<Aabb> {
-    let own = |entity: Entity| {
-        let (place, aabb) = measured.get(entity).ok()?;
-        Some(world_bounds(place, aabb))
-    };
-    let mut waiting = vec![(entity, false)];
-    while let Some((entity, are_children_known)) = waiting.pop() {
-        if known.contains_key(&entity) {
-            continue;
-        }
-        let children = below.get(entity).map_or(&[][..], |children| children);
-        if !are_children_known && !children.is_empty() {
-            waiting.push((entity, true));
-            waiting.extend(children.iter().map(|&child| (child, false)));
-            continue;
-        }
-        let with_below = |&child: &Entity| union(own(child), known.get(&child).copied().flatten());
-        let bounds = children.iter().map(with_below).fold(None, union);
-        known.insert(entity, bounds);
-    }
-    let [least, most] = known.get(&entity).copied().flatten()?;
-    Some(Aabb::from_min_max(least.into(), most.into()))
-}
 
 fn draw_symbols(
     mut commands: Commands,
@@ -420,137 +369,4 @@ fn draw_symbols(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_place_is_as_far_from_a_line_as_from_its_nearest_point() {
-        let line = [Vec2::new(1.0, 1.0), Vec2::new(5.0, 1.0)];
-        for (place, distance) in [
-            (Vec2::new(3.0, 4.0), 3.0),
-            (Vec2::new(-2.0, 5.0), 5.0),
-            (Vec2::new(8.0, -3.0), 5.0),
-        ] {
-            assert_eq!(distance_to_segment(place, line), distance);
-        }
-        let point = [Vec2::ONE; 2];
-        assert_eq!(distance_to_segment(Vec2::new(1.0, 3.0), point), 2.0);
-    }
-
-    #[test]
-    fn a_group_has_an_outline_around_all_that_hangs_below_it() {
-        use bevy::ecs::system::RunSystemOnce;
-        use bevy::prelude::{Transform, World};
-        let mut world = World::new();
-        let root = world.spawn(GlobalTransform::IDENTITY).id();
-        let unit = Aabb::from_min_max(Vec3::splat(-1.0), Vec3::splat(1.0));
-        let place = Transform::from_xyz(3.0, 0.0, 0.0).with_scale(Vec3::splat(2.0));
-        let inner = world.spawn((ChildOf(root), GlobalTransform::IDENTITY)).id();
-        world.spawn((ChildOf(inner), GlobalTransform::from(place), unit));
-        world.spawn((ChildOf(root), GlobalTransform::IDENTITY, unit));
-        let of = |entity: Entity| {
-            move |below: Below, measured: Measured| {
-                bounds_below(entity, &below, &measured, &mut HashMap::default())
-            }
-        };
-        let bounds = world.run_system_once(of(root)).unwrap().unwrap();
-        let found = [bounds.min(), bounds.max()].map(Vec3::from);
-        assert_eq!(
-            found,
-            [Vec3::new(-1.0, -2.0, -2.0), Vec3::new(5.0, 2.0, 2.0)]
-        );
-        assert!(world.run_system_once(of(inner)).unwrap().is_some());
-        world.despawn(inner);
-        let none = world.spawn_empty().id();
-        assert!(world.run_system_once(of(none)).unwrap().is_none());
-    }
-
-    /// What draws symbols, alone.
-    fn drawing() -> App {
-        let mut app = App::new();
-        app.init_resource::<Traced>()
-            .init_resource::<Symbols>()
-            .init_resource::<Outlined>()
-            .init_resource::<SymbolsOf>()
-            .add_systems(PostUpdate, draw_symbols);
-        app
-    }
-
-    /// How many lines each symbol has, and whether it is picked by them.
-    fn drawn(app: &mut App) -> Vec<(usize, bool)> {
-        app.update();
-        let mut all = app.world_mut().query::<(&SymbolOf, &DrawnLines)>();
-        let all = all.iter(app.world());
-        all.map(|(symbol, drawn)| (drawn.lines.len(), symbol.is_picked))
-            .collect()
-    }
-
-    #[test]
-    fn what_is_a_light_no_more_has_no_symbol_and_is_picked_by_none() {
-        let mut app = drawing();
-        let place = GlobalTransform::IDENTITY;
-        let id = SceneId(7);
-        let lamp = (PointLamp::default(), InheritedVisibility::VISIBLE);
-        let entity = app.world_mut().spawn((id, place, lamp)).id();
-        let [(lines, true)] = drawn(&mut app)[..] else {
-            panic!("a light has a symbol");
-        };
-        assert!(lines > 0);
-        app.world_mut().entity_mut(entity).remove::<PointLamp>();
-        assert_eq!(drawn(&mut app), [(0, false)]);
-        // What is selected has its axes then.
-        app.world_mut().resource_mut::<Outlined>().0 = vec![id];
-        let axes = drawn(&mut app);
-        assert!(matches!(axes[..], [(1.., false)]), "{axes:?}");
-        app.world_mut()
-            .entity_mut(entity)
-            .insert(PointLamp::default());
-        let lamp = drawn(&mut app);
-        assert!(matches!(lamp[..], [(_, true)]) && lamp != axes, "{lamp:?}");
-        app.world_mut().entity_mut(entity).remove::<PointLamp>();
-        assert_eq!(drawn(&mut app), axes);
-        let unit = Aabb::from_min_max(Vec3::splat(-1.0), Vec3::splat(1.0));
-        app.world_mut().entity_mut(entity).insert(unit);
-        assert_eq!(drawn(&mut app), [(12, false)], "the box of an object");
-        app.world_mut().entity_mut(entity).remove::<Aabb>();
-        assert_eq!(drawn(&mut app), axes);
-    }
-
-    #[test]
-    fn of_thousands_of_outlined_groups_those_around_what_changed_are_made_again() {
-        let mut app = drawing();
-        let world = app.world_mut();
-        let unit = Aabb::from_min_max(Vec3::splat(-1.0), Vec3::splat(1.0));
-        let mut parts = Vec::new();
-        let mut ids = Vec::new();
-        for number in 1..=2000 {
-            let id = SceneId(number);
-            let outer = world.spawn((id, GlobalTransform::IDENTITY)).id();
-            let below = (GlobalTransform::IDENTITY, ChildOf(outer));
-            let inner = world.spawn((SceneId(10_000 + number), below)).id();
-            ids.extend([id, SceneId(10_000 + number)]);
-            // Not of the scene: a part of a model that an app has put there.
-            let part = (GlobalTransform::IDENTITY, unit, ChildOf(inner));
-            parts.push(world.spawn(part).id());
-        }
-        world.resource_mut::<Outlined>().0 = ids;
-        let redone = |app: &mut App| {
-            app.update();
-            app.world().resource::<SymbolsOf>().redone
-        };
-        assert_eq!(redone(&mut app), 4000);
-        assert_eq!(redone(&mut app), 0);
-        let place = GlobalTransform::from_xyz(5.0, 0.0, 0.0);
-        app.world_mut().entity_mut(parts[3]).insert(place);
-        assert_eq!(redone(&mut app), 2, "the two groups around it");
-        app.world_mut().despawn(parts[4]);
-        assert_eq!(redone(&mut app), 2);
-        let mut all = app.world_mut().query::<(&SymbolOf, &DrawnLines)>();
-        let mut least: Vec<f32> = (all.iter(app.world()))
-            .filter(|(symbol, _)| [4, 10_004].contains(&symbol.id.0))
-            .flat_map(|(_, drawn)| drawn.lines.iter().map(|line| line.ends[0].x))
-            .collect();
-        least.sort_by(f32::total_cmp);
-        assert_eq!(least[0], 4.0);
-    }
-}
+mod tests;

@@ -1,0 +1,41 @@
+use super::*;
+use crate::editor::embed::Editing;
+use crate::editor::schedule;
+
+#[test]
+fn a_drag_ends_where_the_editor_is_switched_off_and_the_pointer_is_where_it_is_then() {
+    let mut app = App::new();
+    app.add_message::<WindowEvent>()
+        .insert_resource(Editing(true))
+        .init_resource::<Selection>()
+        .init_resource::<Viewport>();
+    schedule::add_to(&mut app);
+    app.init_resource::<PointerUse>()
+        .init_resource::<Pointer>()
+        .add_observer(take_over)
+        .add_systems(EditorUpdate, use_pointer);
+    let mut window = Window::default();
+    window.resolution.set(800.0, 600.0);
+    let window = app.world_mut().spawn((window, PrimaryWindow)).id();
+    app.update();
+    let world = app.world_mut();
+    let mut pointer = world.resource_mut::<Pointer>();
+    pointer.at = Some(Vec2::ZERO);
+    pointer.held = Some(MouseButton::Left);
+    pointer.inbox.modifiers.ctrl = true;
+    world.insert_resource(PointerUse::Click { at: Vec2::ZERO });
+    world.insert_resource(Editing(false));
+    app.update();
+    let world = app.world_mut();
+    let used = world.resource::<PointerUse>();
+    assert!(matches!(used, PointerUse::Free), "{used:?}");
+    let pointer = world.resource::<Pointer>();
+    assert_eq!(pointer.held, None);
+    assert!(!pointer.inbox.modifiers.ctrl);
+    let at = Vec2::new(40.0, 30.0);
+    let mut window = world.get_mut::<Window>(window).unwrap();
+    window.set_cursor_position(Some(at));
+    world.insert_resource(Editing(true));
+    app.update();
+    assert_eq!(app.world().resource::<Pointer>().at, Some(at));
+}
