@@ -6,8 +6,10 @@ use bevy::app::{App, AppExit};
 use glassbox::editor::action::Addition;
 use glassbox::editor::document::{Answer, Document, Question, RecoveryFolder, adopt, answer};
 use glassbox::editor::notice::Notices;
-use glassbox::editor::{Action, headless_editor_with_recovery};
+use glassbox::editor::render_job::{RenderFrom, RenderRequest, start_render};
+use glassbox::editor::{Action, headless_editor, headless_editor_with_recovery};
 use glassbox::io::{OpenOptions, SceneSource, open};
+use glassbox::scene::RenderSettings;
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -118,6 +120,56 @@ fn an_exit_alone_is_no_consent_and_the_last_edit_is_in_the_copy_that_stays() {
         next.update();
         named(&mut next, "Sphere");
         named(&mut next, "Cuboid");
+    }
+}
+
+#[test]
+fn work_that_stays_open_is_kept_although_somebody_agreed_to_lose_it() {
+    let files = tempfile::tempdir().unwrap();
+    let broken = files.path().join("broken.scn.ron");
+    fs::write(&broken, "no scene").unwrap();
+    // A scene that refers to another folder.
+    let model = files.path().join("model.obj");
+    fs::write(&model, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let elsewhere = tempfile::tempdir().unwrap();
+    let outside = elsewhere.path().join("outside.scn.ron");
+    let mut app = headless_editor();
+    app.update();
+    for action in [Action::Import(model), Action::SaveAs(outside.clone())] {
+        act(&mut app, action);
+    }
+    for (way, asks) in [
+        (Action::Open(broken), false),
+        (Action::Open(outside), true),
+        (Action::run("file.quit"), true),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut app = editor(folder.path());
+        act(&mut app, Action::Add(Addition::Shape("Sphere".into())));
+        app.update();
+        wait_for_copy(&mut app, folder.path());
+        if way == Action::run("file.quit") {
+            let request = RenderRequest {
+                file: files.path().join("never.png"),
+                camera: RenderFrom::FirstCamera,
+                settings: RenderSettings {
+                    spp: 1 << 20,
+                    ..RenderSettings::default()
+                },
+            };
+            start_render(app.world_mut(), request).unwrap();
+        }
+        act(&mut app, way.clone());
+        answer(app.world_mut(), Answer::No);
+        // May it refer to other folders, may the render be lost: no.
+        let asked = app.world().resource::<Document>().question.clone();
+        assert_eq!(asked.is_some(), asks, "{way:?}: {asked:?}");
+        answer(app.world_mut(), Answer::Cancel);
+        app.update();
+        named(&mut app, "Sphere");
+        exit(app, AppExit::from_code(143));
+        let offered = offered(folder.path());
+        assert_eq!(offered.as_deref(), Some("cornell-box"), "{way:?}");
     }
 }
 

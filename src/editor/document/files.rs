@@ -1,7 +1,7 @@
 //! New, open, save, quit.
 
 use super::question::{FileTask, Purpose, Question};
-use super::{Document, adopt, dialog, note_state_now};
+use super::{Document, adopt, dialog, note_state_now, recovery};
 use crate::editor::edits;
 use crate::editor::history::{Gesture, History};
 use crate::editor::notice::Notices;
@@ -68,8 +68,10 @@ pub(super) fn save_here(world: &mut World) {
     }
 }
 
-/// Ends the app, and a render to a file with it.
+/// Ends the app, and a render to a file with it. Whoever gets here has said what becomes of the work: it is saved, or
+/// need not be kept.
 pub(super) fn quit(world: &mut World) {
+    recovery::give_up_work(world);
     if let Some(mut job) = world.get_resource_mut::<RenderJob>() {
         job.cancel();
     }

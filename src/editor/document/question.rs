@@ -109,10 +109,7 @@ pub fn answer(world: &mut World, answer: Answer) {
             world.resource_mut::<Document>().then = Some(then);
             files::save_here(world);
         }
-        (Question::Unsaved { then }, Answer::No) => {
-            recovery::give_up_work(world);
-            perform_now(world, then);
-        }
+        (Question::Unsaved { then }, Answer::No) => perform_now(world, then),
         (Question::Path { .. }, Answer::Path(path)) if path.as_os_str().is_empty() => {
             world.resource_mut::<Document>().then = None;
         }

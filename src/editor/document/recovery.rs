@@ -241,7 +241,8 @@ fn complain(world: &mut World, why: &str) {
     world.resource_mut::<Notices>().fault(text);
 }
 
-/// The work as it is now need not be kept: somebody said so, or a script ends the program.
+/// The program ends, and the work as it is now need not be kept: somebody said so, or a script ends it. Nobody says so of
+/// work that stays open: where another scene was to be opened instead and could not be, the copy is still wanted.
 pub(in crate::editor) fn give_up_work(world: &mut World) {
     note_state_now(world);
     let state = Some(world.resource::<History>().state());
