@@ -235,7 +235,11 @@ fn panels_ui(context: &egui::Context, world: &mut World) {
     panel_focus::step(context, world);
     theme::ring_ui(context);
     gesture::note_gesture(context, world);
-    let letters_taken = world.resource::<hierarchy::Hierarchy>().list_keys.focused;
+    let mut list = world.resource_mut::<hierarchy::Hierarchy>();
+    if only_picture || !preferences.show_hierarchy {
+        list.list_keys.let_go();
+    }
+    let letters_taken = list.list_keys.focused;
     let twin = views.map(|[_, right]| right);
     note_viewport(
         context,

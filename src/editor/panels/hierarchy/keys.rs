@@ -29,6 +29,11 @@ pub(in super::super) struct ListKeys {
 }
 
 impl ListKeys {
+    /// The list is not to be seen: arrows and letters are those of others again.
+    pub fn let_go(&mut self) {
+        (self.active, self.focused) = (false, false);
+    }
+
     /// How far to scroll, so that what has to come into sight does.
     pub fn scroll_to(&mut self, outline: &Outline, rows: &[Row]) -> Option<f32> {
         let place = outline.place(self.reveal.take()?)?;

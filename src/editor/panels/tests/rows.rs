@@ -128,6 +128,28 @@ fn arrows_go_through_the_rows_and_fold_them_and_letters_find_names() {
 }
 
 #[test]
+fn a_list_that_is_not_drawn_gives_the_letters_back_and_takes_them_no_more_when_it_is_drawn_again() {
+    let takes_letters = |desk: &mut Desk| {
+        desk.settle();
+        desk.world().resource::<Viewport>().takes_letters
+    };
+    for id in ["view.only-picture", "view.hierarchy"] {
+        let mut desk = Desk::open("cornell-box");
+        let names = first_names(&mut desk);
+        desk.click_on(&names[0]);
+        desk.key(Key::ArrowDown);
+        assert!(!takes_letters(&mut desk));
+        for _ in ["away", "back"] {
+            desk.world().write_message(Action::run(id));
+            assert!(takes_letters(&mut desk), "{id}");
+        }
+        let selected = desk.world().resource::<Selection>().clone();
+        desk.key(Key::ArrowDown);
+        assert_eq!(*desk.world().resource::<Selection>(), selected, "{id}");
+    }
+}
+
+#[test]
 fn an_object_dropped_onto_a_material_or_a_material_onto_an_object_gets_it_in_one_step() {
     let mut desk = Desk::open("cornell-box");
     let material = SceneId(500);
