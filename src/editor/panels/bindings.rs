@@ -5,7 +5,7 @@ use crate::editor::command::{Command, CommandTable};
 use crate::editor::keys::{Keys, Recording};
 use crate::editor::preferences::Preferences;
 use bevy::ecs::world::{Mut, World};
-use bevy_egui::egui::{self, Button, Grid, Label, Modifiers, RichText, TextEdit, Ui};
+use bevy_egui::egui::{Button, Grid, Label, RichText, TextEdit, Ui};
 use std::sync::Arc;
 
 /// How much room names get, in points: the longest of them.
@@ -23,10 +23,6 @@ enum Wish {
 pub(super) fn bindings_ui(ui: &mut Ui, world: &mut World, search: &mut String) {
     let recorded = world.get_resource::<Recording>();
     let recorded = recorded.and_then(|recording| recording.0.clone());
-    if recorded.is_some() {
-        // Escape ends the recording, and the dialog stays.
-        ui.input_mut(|input| input.consume_key(Modifiers::NONE, egui::Key::Escape));
-    }
     let mut resets = false;
     ui.horizontal(|ui| {
         ui.label(RichText::new("Keys").strong());
@@ -109,8 +105,24 @@ pub(super) fn bindings_ui(ui: &mut Ui, world: &mut World, search: &mut String) {
             world.resource_mut::<Preferences>().keys.reset(&table, &row);
         }),
         None if resets => world.resource_mut::<Preferences>().keys.reset_all(),
-        None => {}
+        None => {
+            // Who turns to something else, as to the field above, does not mean the command any more.
+            if ui.input(|input| input.pointer.any_pressed()) {
+                note_recording(world, false);
+            }
+        }
     }
+}
+
+/// Whether a command waits for keys; none does where their list is not in front.
+pub(super) fn note_recording(world: &mut World, is_in_front: bool) -> bool {
+    let Some(mut recording) = world.get_resource_mut::<Recording>() else {
+        return false;
+    };
+    if !is_in_front && recording.0.is_some() {
+        recording.0 = None;
+    }
+    recording.0.is_some()
 }
 
 fn clash_text(keys: Keys, rows: &[Arc<Command>]) -> String {

@@ -9,10 +9,11 @@ mod question;
 mod render;
 mod scenes;
 
+use super::bindings::note_recording;
 use super::says::Says;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
-use bevy_egui::egui::{self, Id, Modal, RichText, ScrollArea, Ui};
+use bevy_egui::egui::{self, Event, Id, Modal, RichText, ScrollArea, Ui};
 
 use path::PathForm;
 use render::RenderForm;
@@ -42,6 +43,8 @@ pub(super) struct Dialogs {
     gallery: Gallery,
     /// What is searched for among the keys.
     pub bindings_search: String,
+    /// A command waited for keys when the frame before was drawn.
+    records: bool,
 }
 
 /// A dialog's title, and its width in points.
@@ -57,10 +60,26 @@ pub(super) fn frame_of(dialog: Dialog) -> (&'static str, f32) {
 }
 
 pub(super) fn dialogs_ui(context: &egui::Context, world: &mut World, dialogs: &mut Dialogs) {
-    // What the document asks comes first: something waits for it.
-    if question::question_ui(context, world, dialogs) {
-        return;
+    if dialogs.records {
+        // The command that waited for keys has had them: Escape and F1 close nothing.
+        context.input_mut(|input| input.events.retain(|event| !is_of_keys(event)));
     }
+    // What the document asks comes first: something waits for it.
+    let asks = question::question_ui(context, world, dialogs);
+    if !asks {
+        open_ui(context, world, dialogs);
+    }
+    let lists_keys = !asks && dialogs.open == Some(Dialog::Keys);
+    dialogs.records = note_recording(world, lists_keys);
+}
+
+fn is_of_keys(event: &Event) -> bool {
+    use Event::{Copy, Cut, Key, Paste, Text};
+    matches!(event, Key { .. } | Text(_) | Copy | Cut | Paste(_))
+}
+
+/// The dialog that is open, if one is.
+fn open_ui(context: &egui::Context, world: &mut World, dialogs: &mut Dialogs) {
     let Some(dialog) = dialogs.open else {
         dialogs.before = None;
         return;

@@ -4,7 +4,8 @@ use super::super::dialogs::{Dialog, Dialogs};
 use super::super::palette::OpenPalette;
 use super::{Desk, SMALL, USUAL, texts};
 use crate::editor::command::{AddCommands, Command, CommandTable, Over, State};
-use crate::editor::keys::Keys;
+use crate::editor::document::{Document, FileTask, Question};
+use crate::editor::keys::{Keys, Recording};
 use crate::editor::notice::Notices;
 use crate::editor::pointer::RightClicked;
 use crate::editor::preferences::Preferences;
@@ -15,7 +16,7 @@ use crate::inspect::{InspectPreset, InspectSettings};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy::math::Vec2;
-use bevy_egui::egui::{Event, Key, PointerButton};
+use bevy_egui::egui::{Event, Key, PointerButton, pos2};
 use std::collections::HashSet;
 
 /// How often the command of an app was run.
@@ -246,6 +247,60 @@ fn keys_that_were_chosen_are_shown_and_kept() {
     desk.settle();
     let keys = &desk.world().resource::<Preferences>().keys;
     assert!(!keys.is_chosen(&row));
+}
+
+/// An editor in which a command waits for the keys that shall send it.
+fn recording() -> Desk {
+    let mut desk = Desk::open("triangle");
+    desk.app.init_resource::<Recording>();
+    desk.world().write_message(Action::run("help.keys"));
+    desk.settle();
+    desk.world().resource_mut::<Dialogs>().bindings_search = "duplicate".into();
+    desk.settle();
+    desk.click_on("Ctrl+D");
+    assert!(records(&mut desk));
+    desk
+}
+
+fn records(desk: &mut Desk) -> bool {
+    desk.world().resource::<Recording>().0.as_deref() == Some("edit.duplicate")
+}
+
+#[test]
+fn who_closes_the_list_of_keys_or_turns_to_something_else_gives_a_command_no_keys() {
+    let ways: [fn(&mut Desk); 4] = [
+        |desk| desk.click(pos2(4.0, 700.0)),
+        |desk| {
+            desk.world().write_message(Action::run("help.keys"));
+        },
+        |desk| {
+            let then = FileTask::New;
+            desk.world().resource_mut::<Document>().question = Some(Question::Unsaved { then });
+        },
+        |desk| desk.click_on("duplicate"),
+    ];
+    for (i, way) in ways.into_iter().enumerate() {
+        let mut desk = recording();
+        way(&mut desk);
+        desk.settle();
+        assert!(!records(&mut desk), "way {i}");
+    }
+}
+
+#[test]
+fn keys_that_a_command_waited_for_close_no_dialog() {
+    for key in [Key::Escape, Key::F1] {
+        let mut desk = recording();
+        // The command gets them before the frame is drawn.
+        desk.world().resource_mut::<Recording>().0 = None;
+        desk.key(key);
+        desk.settle();
+        let open = desk.world().resource::<Dialogs>().open;
+        assert_eq!(open, Some(Dialog::Keys), "{key:?}");
+        desk.key(key);
+        desk.settle();
+        assert_eq!(desk.world().resource::<Dialogs>().open, None, "{key:?}");
+    }
 }
 
 #[test]
