@@ -58,7 +58,8 @@ use bevy::app::{App, Plugin, PluginGroup, PluginGroupBuilder};
 /// components; an edit of a material or a light reaches the traced picture alone, until the app
 /// changes its own. New and Open do remove the scene's entities, those of the app too. Saving keeps
 /// what Glassbox knows: meshes that the app made itself are named as left out. For a question before
-/// unsaved changes are lost set `WindowPlugin::close_when_requested` to false.
+/// unsaved changes are lost set `WindowPlugin::close_when_requested` to false: the window's button then ends the app, or
+/// asks, which switches the editor on.
 pub struct EditorPlugins;
 
 impl PluginGroup for EditorPlugins {

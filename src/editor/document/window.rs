@@ -2,8 +2,10 @@
 
 use super::Document;
 use crate::editor::action::Action;
+use crate::editor::command;
 use crate::editor::edits::{DroppedAt, scene_entity};
-use crate::editor::history::History;
+use crate::editor::embed::Editing;
+use crate::editor::history::{History, within};
 use crate::editor::notice::Notices;
 use crate::editor::pick;
 use crate::editor::schedule::EditorUpdate;
@@ -12,6 +14,7 @@ use crate::editor::texts::file_name;
 use crate::io::{MODEL_EXTENSIONS, PICTURE_EXTENSIONS, SceneFiles, extension};
 use crate::scene::{Environment, Phong, TextureSource, UsesMaterial};
 use bevy::app::{App, PreUpdate};
+use bevy::ecs::change_detection::DetectChangesMut;
 use bevy::ecs::message::{MessageCursor, Messages};
 use bevy::ecs::query::With;
 use bevy::ecs::system::{Local, Query, Res};
@@ -36,14 +39,19 @@ fn show_title(document: Res<Document>, mut windows: Query<&mut Window, With<Prim
     }
 }
 
-/// The window's own button asks as the menu's item does. `WindowPlugin::close_when_requested` has
-/// to be off.
-fn take_closing(
-    mut requests: bevy::ecs::message::MessageReader<WindowCloseRequested>,
-    mut actions: bevy::ecs::message::MessageWriter<Action>,
-) {
-    if requests.read().next().is_some() {
-        actions.write(Action::run("file.quit"));
+/// The window's own button asks as the menu's item does, and where an app has switched the editor off too: a question
+/// switches it on. `WindowPlugin::close_when_requested` has to be off.
+fn take_closing(world: &mut World, mut cursor: Local<MessageCursor<WindowCloseRequested>>) {
+    let messages = world.resource::<Messages<WindowCloseRequested>>();
+    let mut requests = cursor.read(messages).map(|request| request.window);
+    // An app closes windows of its own as it likes.
+    if !requests.any(|window| world.get::<PrimaryWindow>(window).is_some()) {
+        return;
+    }
+    within(world, |world| command::run(world, "file.quit"));
+    let asks = world.resource::<Document>().question.is_some();
+    if asks && let Some(mut editing) = world.get_resource_mut::<Editing>() {
+        editing.set_if_neq(Editing(true));
     }
 }
 
@@ -138,6 +146,71 @@ fn drop_picture(world: &mut World, file: &Path, on_objects: bool) {
     for material in materials {
         if let Some(mut phong) = world.get_mut::<Phong>(material) {
             phong.diffuse_map = Some(source.clone());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::document::{FileTask, Question, adopt};
+    use crate::editor::edits::rename;
+    use crate::editor::headless_editor;
+    use crate::editor::history::OnlyWithin;
+    use crate::io::{OpenOptions, SceneSource, builtin, open};
+    use crate::scene::SceneId;
+    use bevy::app::AppExit;
+    use bevy::ecs::entity::Entity;
+
+    /// The editor over an app's scene, switched on or off, with the app's window and another one.
+    fn embedded(is_on: bool) -> (App, [Entity; 2]) {
+        let mut app = headless_editor();
+        app.init_resource::<OnlyWithin>()
+            .insert_resource(Editing(is_on));
+        let world = app.world_mut();
+        let windows = [
+            world.spawn((Window::default(), PrimaryWindow)).id(),
+            world.spawn(Window::default()).id(),
+        ];
+        let source = SceneSource::Builtin(builtin::find("cornell-box").unwrap());
+        open(world, &source, OpenOptions::default()).unwrap();
+        adopt(world, "cornell-box", None);
+        for _ in 0..2 {
+            app.update();
+        }
+        (app, windows)
+    }
+
+    fn close(app: &mut App, window: Entity) {
+        app.world_mut()
+            .write_message(WindowCloseRequested { window });
+        app.update();
+    }
+
+    fn quits(app: &App) -> bool {
+        !app.world().resource::<Messages<AppExit>>().is_empty()
+    }
+
+    #[test]
+    fn the_windows_button_ends_the_app_or_asks_whether_the_editor_is_on_or_off() {
+        for is_on in [true, false] {
+            let (mut app, [window, other]) = embedded(is_on);
+            close(&mut app, other);
+            assert!(!quits(&app), "another window is the app's own");
+            close(&mut app, window);
+            assert!(quits(&app));
+
+            let (mut app, [window, _]) = embedded(is_on);
+            within(app.world_mut(), |world| {
+                let id = *world.query::<&SceneId>().iter(world).next().unwrap();
+                rename(world, id, "Another");
+            });
+            close(&mut app, window);
+            assert!(!quits(&app));
+            let then = FileTask::Quit;
+            let asked = &app.world().resource::<Document>().question;
+            assert_eq!(*asked, Some(Question::Unsaved { then }));
+            assert_eq!(*app.world().resource::<Editing>(), Editing(true));
         }
     }
 }
