@@ -8,7 +8,7 @@ use crate::editor::embed::Editing;
 use crate::editor::history::{History, within};
 use crate::editor::notice::Notices;
 use crate::editor::pick;
-use crate::editor::schedule::EditorUpdate;
+use crate::editor::schedule::{Dispatch, EditorUpdate};
 use crate::editor::selection::Selection;
 use crate::editor::texts::file_name;
 use crate::io::{MODEL_EXTENSIONS, PICTURE_EXTENSIONS, SceneFiles, extension};
@@ -26,8 +26,14 @@ use std::path::Path;
 pub(super) fn add_to(app: &mut App, keeps_title: bool) {
     app.add_message::<FileDragAndDrop>()
         .add_message::<WindowCloseRequested>()
-        .add_systems(PreUpdate, (take_dropped, take_closing))
-        .add_systems(EditorUpdate, show_title.run_if(move || !keeps_title));
+        .add_systems(PreUpdate, take_closing)
+        .add_systems(
+            EditorUpdate,
+            (
+                take_dropped.before(Dispatch),
+                show_title.run_if(move || !keeps_title),
+            ),
+        );
 }
 
 fn show_title(document: Res<Document>, mut windows: Query<&mut Window, With<PrimaryWindow>>) {
@@ -156,7 +162,7 @@ mod tests {
     use crate::editor::document::{FileTask, Question, adopt};
     use crate::editor::edits::rename;
     use crate::editor::headless_editor;
-    use crate::editor::history::OnlyWithin;
+    use crate::editor::history::{OnlyWithin, undo};
     use crate::io::{OpenOptions, SceneSource, builtin, open};
     use crate::scene::SceneId;
     use bevy::app::AppExit;
@@ -185,6 +191,36 @@ mod tests {
         app.world_mut()
             .write_message(WindowCloseRequested { window });
         app.update();
+    }
+
+    fn drop_on(app: &mut App, window: Entity, file: &str) {
+        app.world_mut().write_message(FileDragAndDrop::DroppedFile {
+            window,
+            path_buf: file.into(),
+        });
+        app.update();
+    }
+
+    #[test]
+    fn what_is_dropped_on_an_apps_window_is_a_step_of_the_editor_and_nothing_while_that_is_off() {
+        for is_on in [true, false] {
+            let (mut app, [window, _]) = embedded(is_on);
+            let map = |app: &App| app.world().resource::<Environment>().map.clone();
+            let before = map(&app);
+            drop_on(&mut app, window, "/no/sky.exr");
+            drop_on(&mut app, window, "triangle.scn.ron");
+            assert_eq!(map(&app) != before, is_on);
+            let history = app.world().resource::<History>();
+            let steps: Vec<&str> = history.steps().collect();
+            assert_eq!(steps, ["Environment sky.exr"][..usize::from(is_on)]);
+            // The scene is asked for only where there is an editor to ask.
+            let asked = app.world().resource::<Document>().question.is_some();
+            assert_eq!(asked, is_on);
+            if is_on {
+                assert!(within(app.world_mut(), undo));
+                assert_eq!(map(&app), before);
+            }
+        }
     }
 
     fn quits(app: &App) -> bool {
