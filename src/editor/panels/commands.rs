@@ -1,6 +1,6 @@
 //! The commands that open, close and move panels and dialogs.
 
-use super::dialogs::{Dialog, Dialogs};
+use super::dialogs::{Dialog, Dialogs, RenderForm};
 use super::hierarchy::Hierarchy;
 use super::palette::{OpenPalette, Palette};
 use super::state::{OnlyPicture, Renaming};
@@ -10,7 +10,6 @@ use crate::editor::edits::name_of;
 use crate::editor::preferences::Preferences;
 use crate::editor::selection::{Escaped, Selection};
 use crate::inspect::Question;
-use crate::scene::RenderSettings;
 use bevy::ecs::observer::On;
 use bevy::ecs::system::ResMut;
 use bevy::ecs::world::World;
@@ -57,10 +56,8 @@ fn toggle(world: &mut World, dialog: Dialog) {
 }
 
 fn open_render(world: &mut World) {
-    let settings = world.resource::<RenderSettings>().clone();
-    let mut dialogs = world.resource_mut::<Dialogs>();
-    dialogs.render_form.open(settings);
-    dialogs.open = Some(Dialog::Render);
+    world.resource_mut::<RenderForm>().open();
+    world.resource_mut::<Dialogs>().open = Some(Dialog::Render);
 }
 
 fn is_one_selected(world: &World) -> State {

@@ -1,7 +1,7 @@
 //! The line below: what the traced view has, how fast it gets on, and what is under the pointer.
 
-use super::dialogs::{Dialog, Dialogs};
 use super::says::{Says, take_hint};
+use crate::editor::action::Action;
 use crate::editor::edits::name_of;
 use crate::editor::navigation::LookThrough;
 use crate::editor::notice::Notices;
@@ -115,7 +115,7 @@ pub(super) fn status_ui(ui: &mut Ui, world: &mut World, bar: &mut StatusBar) {
         world.resource_mut::<Notices>().forget_kept();
     }
     if opens {
-        world.resource_mut::<Dialogs>().open = Some(Dialog::Render);
+        world.write_message(Action::run("file.render"));
     }
 }
 

@@ -11,12 +11,13 @@ mod scenes;
 
 use super::bindings::note_recording;
 use super::says::Says;
+use super::state::with;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{self, Event, Id, Modal, RichText, ScrollArea, Ui};
 
 use path::PathForm;
-use render::RenderForm;
+pub(super) use render::{RenderForm, forget_scene};
 use scenes::Gallery;
 
 /// What is in front of everything else.
@@ -39,7 +40,6 @@ pub(super) struct Dialogs {
     before: Option<Dialog>,
     /// A path that is being typed for the document.
     typed_path: Option<PathForm>,
-    pub render_form: RenderForm,
     gallery: Gallery,
     /// What is searched for among the keys.
     pub bindings_search: String,
@@ -91,7 +91,7 @@ fn open_ui(context: &egui::Context, world: &mut World, dialogs: &mut Dialogs) {
         Dialog::Preferences => preferences::preferences_ui(ui, world),
         Dialog::Scenes => scenes::scenes_ui(ui, world, dialogs),
         Dialog::History => history::history_ui(ui, world),
-        Dialog::Render => render::render_ui(ui, world, dialogs),
+        Dialog::Render => with(world, |world, form| render::render_ui(ui, world, form)),
     });
     // The press that opened it does not close it again.
     let f1 = context.input(|input| input.key_pressed(egui::Key::F1));

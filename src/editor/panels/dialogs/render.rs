@@ -4,8 +4,8 @@ use super::super::fields::{properties_ui, row};
 use super::super::menu_bar::cameras;
 use super::super::says::Says;
 use super::super::status::error_text;
-use super::Dialogs;
 use super::question::whole_path_ui;
+use crate::editor::document::SceneOpened;
 use crate::editor::render_job::{
     RenderFrom, RenderJob, RenderProgress, RenderRequest, start_render,
 };
@@ -13,18 +13,46 @@ use crate::editor::texts::path_text;
 use crate::editor::viewport::traced_render;
 use crate::film::duration_text;
 use crate::scene::{RenderSettings, SceneId};
+use bevy::ecs::observer::On;
+use bevy::ecs::resource::Resource;
+use bevy::ecs::system::ResMut;
 use bevy::ecs::world::World;
+use bevy::math::UVec2;
 use bevy_egui::egui::{self, Color32, ComboBox, Label, ProgressBar, RichText, TextEdit, Ui};
 use std::path::Path;
 
+/// What of the settings is entered here. All others are the scene's as it is when the render begins.
+const ENTERED: [&str; 4] = ["size", "spp", "sampling.error", "sampling.time"];
+
 /// What is entered, kept while the dialog is closed.
+#[derive(Resource)]
 pub(in super::super) struct RenderForm {
     file: String,
     /// From which camera; `None`: from where the view stands.
     from: Option<SceneId>,
-    /// Size, samples and rules, from the scene's when the dialog is opened.
-    settings: Option<RenderSettings>,
+    /// As the scene has it until the dialog was drawn.
+    entered: Option<Entered>,
     refused: Option<String>,
+}
+
+/// The values of [`ENTERED`].
+#[derive(Clone, Copy)]
+struct Entered {
+    size: UVec2,
+    spp: u32,
+    error: f32,
+    time: f32,
+}
+
+impl Entered {
+    fn of(settings: &RenderSettings) -> Self {
+        Self {
+            size: settings.size,
+            spp: settings.spp,
+            error: settings.sampling.error,
+            time: settings.sampling.time,
+        }
+    }
 }
 
 impl Default for RenderForm {
@@ -32,27 +60,39 @@ impl Default for RenderForm {
         Self {
             file: "picture.png".into(),
             from: None,
-            settings: None,
+            entered: None,
             refused: None,
         }
     }
 }
 
 impl RenderForm {
-    /// Takes the scene's settings over when it is opened.
-    pub fn open(&mut self, settings: RenderSettings) {
-        self.settings = Some(settings);
+    /// Begins with what the scene has, when the dialog is opened.
+    pub fn open(&mut self) {
+        self.entered = None;
         self.refused = None;
     }
 
-    /// What is entered, while the dialog is open.
-    #[cfg(test)]
-    pub fn settings(&self) -> Option<&RenderSettings> {
-        self.settings.as_ref()
+    /// The scene's settings with what is entered.
+    pub fn settings(&self, scene: &RenderSettings) -> RenderSettings {
+        let mut settings = scene.clone();
+        if let Some(entered) = self.entered {
+            settings.size = entered.size;
+            settings.spp = entered.spp;
+            settings.sampling.error = entered.error;
+            settings.sampling.time = entered.time;
+        }
+        settings
     }
 }
 
-pub(super) fn render_ui(ui: &mut Ui, world: &mut World, dialogs: &mut Dialogs) {
+/// Another scene was opened: its cameras and its settings are others.
+pub(in super::super) fn forget_scene(_: On<SceneOpened>, mut form: ResMut<RenderForm>) {
+    form.from = None;
+    form.open();
+}
+
+pub(super) fn render_ui(ui: &mut Ui, world: &mut World, form: &mut RenderForm) {
     let progress = world.resource::<RenderJob>().progress();
     if let Some(progress) = progress {
         progress_ui(ui, world, &progress);
@@ -61,9 +101,7 @@ pub(super) fn render_ui(ui: &mut Ui, world: &mut World, dialogs: &mut Dialogs) {
         );
         return;
     }
-    let scene = world.resource::<RenderSettings>().clone();
-    let form = &mut dialogs.render_form;
-    let mut settings = form.settings.take().unwrap_or(scene);
+    let mut settings = form.settings(world.resource::<RenderSettings>());
     let says = "PNG and JPEG as on the screen; EXR and HDR keep the linear light";
     row(ui, "File", says, |ui| {
         let width = ui.available_width();
@@ -72,8 +110,8 @@ pub(super) fn render_ui(ui: &mut Ui, world: &mut World, dialogs: &mut Dialogs) {
     });
     whole_path_ui(ui, Path::new(form.file.trim()));
     from_ui(ui, world, form);
-    let paths = ["size", "spp", "sampling.error", "sampling.time"];
-    properties_ui(ui, &mut settings, &paths);
+    properties_ui(ui, &mut settings, &ENTERED);
+    form.entered = Some(Entered::of(&settings));
     if let Some(refused) = &form.refused {
         let color: Color32 = ui.visuals().error_fg_color;
         ui.label(RichText::new(refused).color(color));
@@ -94,7 +132,7 @@ pub(super) fn render_ui(ui: &mut Ui, world: &mut World, dialogs: &mut Dialogs) {
                 let request = RenderRequest {
                     file: form.file.trim().into(),
                     camera,
-                    settings: settings.clone(),
+                    settings,
                 };
                 start_render(world, request)
                     .err()
@@ -102,7 +140,6 @@ pub(super) fn render_ui(ui: &mut Ui, world: &mut World, dialogs: &mut Dialogs) {
             }
         };
     }
-    form.settings = Some(settings);
 }
 
 fn from_ui(ui: &mut Ui, world: &mut World, form: &mut RenderForm) {
@@ -155,5 +192,68 @@ fn progress_ui(ui: &mut Ui, world: &mut World, progress: &RenderProgress) {
     let cancel = ui.add_enabled(!progress.writing, egui::Button::new("Cancel render"));
     if cancel.says("Stops it; nothing is written").clicked() {
         world.resource_mut::<RenderJob>().cancel();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::action::Action;
+    use crate::editor::document::adopt;
+    use crate::editor::panels::dialogs::{Dialog, Dialogs};
+    use crate::editor::panels::tests::Desk;
+    use bevy_egui::egui::Key;
+
+    fn open(desk: &mut Desk) {
+        desk.world().write_message(Action::run("file.render"));
+        desk.settle();
+    }
+
+    #[test]
+    fn the_dialog_shows_and_renders_the_scene_as_it_is_however_it_was_opened() {
+        let mut desk = Desk::open("triangle");
+        open(&mut desk);
+        desk.key(Key::Escape);
+        desk.settle();
+        let mut scene = desk.world().resource_mut::<RenderSettings>();
+        (scene.spp, scene.sampling.time, scene.max_depth) = (77, 2.5, 3);
+        let folder = tempfile::tempdir().unwrap();
+        let request = RenderRequest {
+            file: folder.path().join("a.png"),
+            camera: RenderFrom::FirstCamera,
+            settings: RenderSettings {
+                spp: 1 << 20,
+                ..RenderSettings::default()
+            },
+        };
+        start_render(desk.world(), request).unwrap();
+        desk.settle();
+        desk.click_on("rendering 0 %");
+        desk.world().resource_mut::<RenderJob>().cancel();
+        desk.settle();
+        let open = desk.world().resource::<Dialogs>().open;
+        assert_eq!(open, Some(Dialog::Render));
+        // What the dialog does not show may be another meanwhile, as by an app of its own.
+        let mut scene = desk.world().resource_mut::<RenderSettings>();
+        scene.max_depth = 5;
+        let scene = scene.clone();
+        assert_eq!(
+            desk.world().resource::<RenderForm>().settings(&scene),
+            scene
+        );
+    }
+
+    #[test]
+    fn another_scene_is_rendered_with_its_own_settings_and_from_none_of_the_old_cameras() {
+        let mut desk = Desk::open("triangle");
+        open(&mut desk);
+        let mut form = desk.world().resource_mut::<RenderForm>();
+        form.from = Some(SceneId(1));
+        form.entered.as_mut().unwrap().spp = 12_345;
+        adopt(desk.world(), "another", None);
+        desk.settle();
+        let scene = desk.world().resource::<RenderSettings>().clone();
+        let form = desk.world().resource::<RenderForm>();
+        assert_eq!((form.from, form.settings(&scene)), (None, scene));
     }
 }

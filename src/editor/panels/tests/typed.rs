@@ -1,6 +1,6 @@
 //! What is typed into number fields.
 
-use super::super::dialogs::{Dialog, Dialogs};
+use super::super::dialogs::{Dialog, Dialogs, RenderForm};
 use super::super::inspector::{Inspector, Tab};
 use super::desk::{Desk, bounds};
 use crate::editor::action::Action;
@@ -284,10 +284,9 @@ fn problems_of_panels(desk: &mut Desk) -> Vec<String> {
     if !(0.5..=3.0).contains(&preferences.zoom) || !(1..=8).contains(&preferences.pixel_size) {
         all.push(format!("{preferences:?}"));
     }
-    let form = &world.resource::<Dialogs>().render_form;
-    if let Some(settings) = form.settings() {
-        all.extend(range_problems(settings).iter().map(ToString::to_string));
-    }
+    let form = world.resource::<RenderForm>();
+    let settings = form.settings(world.resource::<RenderSettings>());
+    all.extend(range_problems(&settings).iter().map(ToString::to_string));
     let speed = world.resource::<Inspected>().stepper.speed;
     if !(speed > 0.0 && speed.is_finite()) {
         all.push(format!("{speed} steps a second"));
