@@ -10,7 +10,7 @@ use crate::editor::notice::Notices;
 use crate::editor::pick;
 use crate::editor::schedule::{Dispatch, EditorUpdate};
 use crate::editor::selection::Selection;
-use crate::editor::texts::file_name;
+use crate::editor::texts::{file_name, path_of};
 use crate::io::{MODEL_EXTENSIONS, PICTURE_EXTENSIONS, SceneFiles, extension};
 use crate::scene::{Environment, Phong, TextureSource, UsesMaterial};
 use bevy::app::{App, PreUpdate};
@@ -106,12 +106,25 @@ fn drop_file(world: &mut World, file: &Path) {
 
 /// A picture that a person chose, as the scene names it, wherever it lies.
 pub(in crate::editor) fn picture_at(world: &mut World, file: &Path) -> Option<TextureSource> {
-    let path = world.get_resource::<SceneFiles>()?.folder.name_of(file);
-    Some(typed_picture(world, path))
+    let name = name_in_scene(world, file)?;
+    Some(allowed_picture(world, name))
 }
 
-/// A picture that a person named: who does so means that file, and allows it.
+/// A picture that a person named, from the scene's folder or from home: who does so means that file, and allows it.
 pub(in crate::editor) fn typed_picture(world: &mut World, path: String) -> TextureSource {
+    let from_home = path.starts_with("~/").then(|| path_of(&path));
+    match from_home.and_then(|file| name_in_scene(world, &file)) {
+        Some(name) => allowed_picture(world, name),
+        None => allowed_picture(world, path),
+    }
+}
+
+/// What the scene calls a file, wherever that lies.
+fn name_in_scene(world: &World, file: &Path) -> Option<String> {
+    Some(world.get_resource::<SceneFiles>()?.folder.name_of(file))
+}
+
+fn allowed_picture(world: &mut World, path: String) -> TextureSource {
     if let Some(mut files) = world.get_resource_mut::<SceneFiles>()
         && files.folder.resolve(&path).is_err()
     {
@@ -191,6 +204,17 @@ mod tests {
         app.world_mut()
             .write_message(WindowCloseRequested { window });
         app.update();
+    }
+
+    #[test]
+    fn a_picture_typed_from_home_is_named_as_one_chosen_there() {
+        let (mut app, _) = embedded(true);
+        let world = app.world_mut();
+        let typed = typed_picture(world, "~/a.png".into());
+        let chosen = picture_at(world, &path_of("~/a.png"));
+        assert_eq!(Some(typed), chosen);
+        let beside = typed_picture(world, "b/~/a.png".into());
+        assert_eq!(beside.path, "b/~/a.png");
     }
 
     fn drop_on(app: &mut App, window: Entity, file: &str) {

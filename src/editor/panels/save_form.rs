@@ -2,7 +2,7 @@
 
 use super::says::Says;
 use crate::editor::notice::Notices;
-use crate::editor::texts::path_text;
+use crate::editor::texts::{path_of, path_text};
 use crate::io::{check_not_read, replace_file};
 use bevy::ecs::world::World;
 use bevy_egui::egui::{Button, Key, TextEdit, Ui};
@@ -45,14 +45,15 @@ pub(super) fn save_ui(
     let path = form.path.get_or_insert_with(|| suggestion.to_owned());
     ui.add_space(4.0);
     let mut wanted = false;
-    let file = PathBuf::from(path.trim());
+    let file = path_of(path);
     let replaces = form.known.as_deref() != Some(&file) && file.is_file();
     ui.horizontal(|ui| {
         let name = if replaces { "Replace" } else { "Save" };
         let width = (ui.available_width() - 76.0).max(60.0);
         let field = ui.add(TextEdit::singleline(path).desired_width(width));
-        let says =
-            format!("Where this is written: {kinds}; relative paths begin in the working folder");
+        let says = format!(
+            "Where this is written: {kinds}; relative paths begin in the working folder, ~ is home"
+        );
         let field = field.says(&says);
         wanted = field.lost_focus() && !replaces && ui.input(|input| input.key_pressed(Key::Enter));
         let says = match replaces {
@@ -84,6 +85,77 @@ pub(super) fn save_ui(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::editor::panels::tests::bounds;
+    use bevy_egui::egui::accesskit::Role;
+    use bevy_egui::egui::{
+        self, Event, FullOutput, Modifiers, PointerButton, Pos2, RawInput, Rect, vec2,
+    };
+
+    /// A form in an egui of its own.
+    struct Sheet {
+        form: SaveForm,
+        world: World,
+        context: egui::Context,
+    }
+
+    impl Sheet {
+        fn new(path: &str) -> Self {
+            let mut world = World::new();
+            world.init_resource::<Notices>();
+            let form = SaveForm {
+                path: Some(path.to_owned()),
+                ..SaveForm::default()
+            };
+            let context = egui::Context::default();
+            context.enable_accesskit();
+            Self {
+                form,
+                world,
+                context,
+            }
+        }
+
+        fn frame(&mut self, events: Vec<Event>) -> FullOutput {
+            let screen = Rect::from_min_size(Pos2::ZERO, vec2(400.0, 300.0));
+            let input = RawInput {
+                screen_rect: Some(screen),
+                events,
+                ..RawInput::default()
+            };
+            let (form, world) = (&mut self.form, &mut self.world);
+            self.context.run_ui(input, |ui| {
+                save_ui(ui, world, form, ("a.md", TABLES), |_| Ok(b"new".to_vec()));
+            })
+        }
+
+        fn press(&mut self) {
+            let output = self.frame(Vec::new());
+            let pos = bounds(&output, Role::Button)[0].center();
+            self.frame(vec![Event::PointerMoved(pos)]);
+            for pressed in [true, false] {
+                let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+                self.frame(vec![Event::PointerButton {
+                    pos,
+                    button,
+                    pressed,
+                    modifiers,
+                }]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_path_from_home_is_one() {
+        let text = "~/no/such/folder/of/glassbox/a.md";
+        let mut sheet = Sheet::new(text);
+        sheet.press();
+        let there = path_of(text).display().to_string();
+        let refused = &sheet.form.refused;
+        assert!(
+            refused.as_ref().is_some_and(|why| why.contains(&there)),
+            "{refused:?}"
+        );
+    }
 
     #[test]
     fn the_name_says_what_is_written_and_any_other_is_refused() {

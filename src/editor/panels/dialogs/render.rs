@@ -9,7 +9,7 @@ use crate::editor::document::SceneOpened;
 use crate::editor::render_job::{
     RenderFrom, RenderJob, RenderProgress, RenderRequest, start_render,
 };
-use crate::editor::texts::path_text;
+use crate::editor::texts::{path_of, path_text};
 use crate::editor::viewport::traced_render;
 use crate::film::duration_text;
 use crate::scene::{RenderSettings, SceneId};
@@ -19,7 +19,6 @@ use bevy::ecs::system::ResMut;
 use bevy::ecs::world::World;
 use bevy::math::UVec2;
 use bevy_egui::egui::{self, Color32, ComboBox, Label, ProgressBar, RichText, TextEdit, Ui};
-use std::path::Path;
 
 /// What of the settings is entered here. All others are the scene's as it is when the render begins.
 const ENTERED: [&str; 4] = ["size", "spp", "sampling.error", "sampling.time"];
@@ -102,13 +101,14 @@ pub(super) fn render_ui(ui: &mut Ui, world: &mut World, form: &mut RenderForm) {
         return;
     }
     let mut settings = form.settings(world.resource::<RenderSettings>());
-    let says = "PNG and JPEG as on the screen; EXR and HDR keep the linear light";
+    let says = "PNG and JPEG as on the screen; EXR and HDR keep the linear light. Relative paths begin in the working folder, ~ is home";
     row(ui, "File", says, |ui| {
         let width = ui.available_width();
         ui.add(TextEdit::singleline(&mut form.file).desired_width(width))
             .says(says);
     });
-    whole_path_ui(ui, Path::new(form.file.trim()));
+    let file = path_of(&form.file);
+    whole_path_ui(ui, &file);
     from_ui(ui, world, form);
     properties_ui(ui, &mut settings, &ENTERED);
     form.entered = Some(Entered::of(&settings));
@@ -130,7 +130,7 @@ pub(super) fn render_ui(ui: &mut Ui, world: &mut World, form: &mut RenderForm) {
             None => Some("the view traces nothing; choose a camera, or the traced view".into()),
             Some(camera) => {
                 let request = RenderRequest {
-                    file: form.file.trim().into(),
+                    file,
                     camera,
                     settings,
                 };
@@ -202,11 +202,18 @@ mod tests {
     use crate::editor::document::adopt;
     use crate::editor::panels::dialogs::{Dialog, Dialogs};
     use crate::editor::panels::tests::Desk;
+    use crate::sync::TracedCameras;
     use bevy_egui::egui::Key;
 
     fn open(desk: &mut Desk) {
         desk.world().write_message(Action::run("file.render"));
         desk.settle();
+    }
+
+    /// The dialog's own button: a tab of the inspector is called like it.
+    fn press(desk: &mut Desk, name: &str) {
+        let at = desk.places(name).last().unwrap();
+        desk.click(at);
     }
 
     #[test]
@@ -240,6 +247,25 @@ mod tests {
         assert_eq!(
             desk.world().resource::<RenderForm>().settings(&scene),
             scene
+        );
+    }
+
+    #[test]
+    fn a_path_from_home_is_one() {
+        let mut desk = Desk::open("triangle");
+        open(&mut desk);
+        let text = "~/no/such/folder/of/glassbox/a.png";
+        let camera = desk.world().resource::<TracedCameras>().0[0].id;
+        let mut form = desk.world().resource_mut::<RenderForm>();
+        text.clone_into(&mut form.file);
+        form.from = Some(camera);
+        desk.settle();
+        press(&mut desk, "Render");
+        let refused = desk.world().resource::<RenderForm>().refused.clone();
+        let there = path_of(text).display().to_string();
+        assert!(
+            refused.as_ref().is_some_and(|why| why.contains(&there)),
+            "{refused:?}"
         );
     }
 

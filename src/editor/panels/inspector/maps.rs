@@ -235,7 +235,7 @@ impl Thumbnails {
             .desired_width(ui.available_width().max(40.0));
         let response = ui
             .add(edit)
-            .says("Relative to the scene file's folder, with / between its parts");
+            .says("Relative to the scene file's folder, with / between its parts; ~ is home");
         if response.changed() {
             self.typed = Some(Typed {
                 field,

@@ -130,7 +130,7 @@ impl Desk {
     }
 
     /// The same of all texts that are equal.
-    fn places<'a>(&'a self, text: &'a str) -> impl Iterator<Item = Pos2> + 'a {
+    pub fn places<'a>(&'a self, text: &'a str) -> impl Iterator<Item = Pos2> + 'a {
         fn search(shape: &Shape, text: &str) -> Option<Pos2> {
             match shape {
                 Shape::Text(shape) if shape.galley.text() == text => {

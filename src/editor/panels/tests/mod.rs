@@ -13,6 +13,6 @@ mod rows;
 mod trees;
 mod typed;
 
-pub(super) use desk::{Desk, SMALL, USUAL};
+pub(super) use desk::{Desk, SMALL, USUAL, bounds};
 pub(super) use drawn::texts;
 pub(super) use typed::type_nonsense;
