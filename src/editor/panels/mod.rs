@@ -58,6 +58,7 @@ mod pattern;
 mod rays;
 mod readout;
 mod reflected;
+mod replaces;
 mod save_form;
 mod says;
 mod screen_reader;

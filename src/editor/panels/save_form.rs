@@ -1,5 +1,6 @@
 //! Saving what a panel shows, by a path and a button: a table as Markdown or as comma-separated values, a picture.
 
+use super::replaces::Replaces;
 use super::says::Says;
 use crate::editor::notice::Notices;
 use crate::editor::texts::{path_of, path_text};
@@ -7,7 +8,7 @@ use crate::io::{check_not_read, replace_file};
 use bevy::ecs::world::World;
 use bevy_egui::egui::{Button, Key, TextEdit, Ui};
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The kinds of a table's file.
 pub(super) const TABLES: &str = ".md for Markdown, .csv for a spreadsheet";
@@ -16,8 +17,7 @@ pub(super) const TABLES: &str = ".md for Markdown, .csv for a spreadsheet";
 #[derive(Default)]
 pub(super) struct SaveForm {
     path: Option<String>,
-    /// Written by this panel, or meant to be replaced.
-    known: Option<PathBuf>,
+    replaces: Replaces,
     refused: Option<String>,
 }
 
@@ -46,7 +46,7 @@ pub(super) fn save_ui(
     ui.add_space(4.0);
     let mut wanted = false;
     let file = path_of(path);
-    let replaces = form.known.as_deref() != Some(&file) && file.is_file();
+    let replaces = form.replaces.look(ui.ctx(), &file);
     ui.horizontal(|ui| {
         let name = if replaces { "Replace" } else { "Save" };
         let width = (ui.available_width() - 76.0).max(60.0);
@@ -66,7 +66,7 @@ pub(super) fn save_ui(
     if let Some(refused) = &form.refused {
         ui.colored_label(ui.visuals().error_fg_color, refused);
     }
-    if !wanted || file.as_os_str().is_empty() {
+    if !wanted || file.as_os_str().is_empty() || !form.replaces.allows(replaces) {
         return;
     }
     let written = bytes(&file).and_then(|bytes| {
@@ -78,7 +78,7 @@ pub(super) fn save_ui(
     if written.is_ok() {
         let text = format!("Wrote {}", path_text(&file));
         world.resource_mut::<Notices>().tell(text);
-        form.known = Some(file);
+        form.replaces.note_written();
     }
 }
 
@@ -90,6 +90,7 @@ mod tests {
     use bevy_egui::egui::{
         self, Event, FullOutput, Modifiers, PointerButton, Pos2, RawInput, Rect, vec2,
     };
+    use std::fs;
 
     /// A form in an egui of its own.
     struct Sheet {
@@ -128,19 +129,20 @@ mod tests {
             })
         }
 
-        fn press(&mut self) {
+        /// Presses the button; something else happens before it is let go.
+        fn press(&mut self, meanwhile: impl FnOnce()) {
             let output = self.frame(Vec::new());
             let pos = bounds(&output, Role::Button)[0].center();
+            let button = |pressed| Event::PointerButton {
+                pos,
+                button: PointerButton::Primary,
+                pressed,
+                modifiers: Modifiers::NONE,
+            };
             self.frame(vec![Event::PointerMoved(pos)]);
-            for pressed in [true, false] {
-                let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
-                self.frame(vec![Event::PointerButton {
-                    pos,
-                    button,
-                    pressed,
-                    modifiers,
-                }]);
-            }
+            self.frame(vec![button(true)]);
+            meanwhile();
+            self.frame(vec![button(false)]);
         }
     }
 
@@ -148,13 +150,25 @@ mod tests {
     fn a_path_from_home_is_one() {
         let text = "~/no/such/folder/of/glassbox/a.md";
         let mut sheet = Sheet::new(text);
-        sheet.press();
+        sheet.press(|| {});
         let there = path_of(text).display().to_string();
         let refused = &sheet.form.refused;
         assert!(
             refused.as_ref().is_some_and(|why| why.contains(&there)),
             "{refused:?}"
         );
+    }
+
+    #[test]
+    fn a_file_that_has_come_since_the_button_was_drawn_is_replaced_by_a_second_press() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.md");
+        let mut sheet = Sheet::new(&file.display().to_string());
+        let written = || fs::read_to_string(&file).unwrap();
+        sheet.press(|| fs::write(&file, "old").unwrap());
+        assert_eq!(written(), "old");
+        sheet.press(|| {});
+        assert_eq!(written(), "new");
     }
 
     #[test]
