@@ -2,6 +2,7 @@
 
 use super::super::fields::{properties_ui, row};
 use super::super::menu_bar::cameras;
+use super::super::replaces::Replaces;
 use super::super::says::Says;
 use super::super::status::error_text;
 use super::question::whole_path_ui;
@@ -27,6 +28,7 @@ const ENTERED: [&str; 4] = ["size", "spp", "sampling.error", "sampling.time"];
 #[derive(Resource)]
 pub(in super::super) struct RenderForm {
     file: String,
+    replaces: Replaces,
     /// From which camera; `None`: from where the view stands.
     from: Option<SceneId>,
     /// As the scene has it until the dialog was drawn.
@@ -58,6 +60,7 @@ impl Default for RenderForm {
     fn default() -> Self {
         Self {
             file: "picture.png".into(),
+            replaces: Replaces::default(),
             from: None,
             entered: None,
             refused: None,
@@ -88,6 +91,8 @@ impl RenderForm {
 /// Another scene was opened: its cameras and its settings are others.
 pub(in super::super) fn forget_scene(_: On<SceneOpened>, mut form: ResMut<RenderForm>) {
     form.from = None;
+    // A picture of the old one is replaced as any other file.
+    form.replaces = Replaces::default();
     form.open();
 }
 
@@ -120,8 +125,15 @@ pub(super) fn render_ui(ui: &mut Ui, world: &mut World, form: &mut RenderForm) {
         ui.add(Label::new(RichText::new(done).weak()).wrap());
     }
     ui.add_space(8.0);
-    let says = "Begins; the editing goes on meanwhile";
-    if ui.button("Render").says(says).clicked() {
+    let replaces = form.replaces.look(ui.ctx(), &file);
+    let (name, says) = match replaces {
+        true => (
+            "Replace",
+            "The file is there already: it is replaced when the picture is done",
+        ),
+        false => ("Render", "Begins; the editing goes on meanwhile"),
+    };
+    if ui.button(name).says(says).clicked() && form.replaces.allows(replaces) {
         let camera = match form.from {
             Some(id) => Some(RenderFrom::Camera(id)),
             None => view_camera(world),
@@ -139,6 +151,9 @@ pub(super) fn render_ui(ui: &mut Ui, world: &mut World, form: &mut RenderForm) {
                     .map(|why| why.to_string())
             }
         };
+        if form.refused.is_none() {
+            form.replaces.note_written();
+        }
     }
 }
 
@@ -204,6 +219,7 @@ mod tests {
     use crate::editor::panels::tests::Desk;
     use crate::sync::TracedCameras;
     use bevy_egui::egui::Key;
+    use std::time::Instant;
 
     fn open(desk: &mut Desk) {
         desk.world().write_message(Action::run("file.render"));
@@ -248,6 +264,45 @@ mod tests {
             desk.world().resource::<RenderForm>().settings(&scene),
             scene
         );
+    }
+
+    #[test]
+    fn a_picture_that_is_there_is_replaced_only_by_who_was_told_so() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.png");
+        std::fs::write(&file, "old").unwrap();
+        let mut desk = Desk::open("triangle");
+        open(&mut desk);
+        let camera = desk.world().resource::<TracedCameras>().0[0].id;
+        let mut form = desk.world().resource_mut::<RenderForm>();
+        form.file = file.display().to_string();
+        form.from = Some(camera);
+        (
+            form.entered.as_mut().unwrap().size,
+            form.entered.as_mut().unwrap().spp,
+        ) = (UVec2::splat(8), 1);
+        desk.settle();
+        let start = Instant::now();
+        while desk.find("Replace").is_none() {
+            assert!(start.elapsed().as_secs() < 60, "it is not told");
+            desk.settle();
+        }
+        // The tab of the inspector alone is called so.
+        assert_eq!(desk.places("Render").count(), 1);
+        press(&mut desk, "Replace");
+        while desk.world().resource::<RenderJob>().done().is_none() {
+            assert!(start.elapsed().as_secs() < 60, "it is not rendered");
+            desk.settle();
+        }
+        assert_ne!(std::fs::read(&file).unwrap(), b"old");
+        // Its own picture is rendered again without a question, that of another scene is not.
+        desk.settle();
+        assert_eq!(desk.places("Render").count(), 2);
+        adopt(desk.world(), "another", None);
+        while desk.find("Replace").is_none() {
+            assert!(start.elapsed().as_secs() < 60, "it is not told");
+            desk.settle();
+        }
     }
 
     #[test]
