@@ -3,7 +3,8 @@
 use super::dialogs::{Dialog, Dialogs, RenderForm};
 use super::hierarchy::Hierarchy;
 use super::palette::{OpenPalette, Palette};
-use super::state::{OnlyPicture, Renaming};
+use super::renaming::Renaming;
+use super::state::OnlyPicture;
 use super::{answer, first_steps};
 use crate::editor::command::{Command, Over, State, commands, flip};
 use crate::editor::edits::name_of;
@@ -69,7 +70,16 @@ fn rename(world: &mut World) {
     let Some(id) = world.resource::<Selection>().active() else {
         return;
     };
-    let text = name_of(world, id);
+    // A name that is being typed is not lost by asking again.
+    let before = world.resource_mut::<Hierarchy>().renaming.take();
+    let text = match before {
+        Some(before) if before.id == id => before.text,
+        Some(before) => {
+            before.give(world);
+            name_of(world, id)
+        }
+        None => name_of(world, id),
+    };
     world.resource_mut::<Preferences>().show_hierarchy = true;
     world.resource_mut::<OnlyPicture>().0 = false;
     let mut hierarchy = world.resource_mut::<Hierarchy>();

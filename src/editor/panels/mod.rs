@@ -58,6 +58,7 @@ mod pattern;
 mod rays;
 mod readout;
 mod reflected;
+mod renaming;
 mod replaces;
 mod save_form;
 mod says;
@@ -205,6 +206,9 @@ fn panels_ui(context: &egui::Context, world: &mut World) {
     let only_picture = world.resource::<OnlyPicture>().0;
     with(world, |world, panel| {
         inspector::settle(context, world, panel)
+    });
+    with(world, |world, panel| {
+        hierarchy::settle(context, world, panel)
     });
     let free = match only_picture {
         true => ui.available_rect_before_wrap(),

@@ -15,8 +15,8 @@ use keys::ListKeys;
 use super::kind_icons::{SIDE, draw_kind};
 use super::outline::{Kind, Outline, Shown};
 use super::outline_rows::{Filter, Folded, Row, Rows};
+use super::renaming::{Renaming, settle_name};
 use super::says::{Says, name_control};
-use super::state::Renaming;
 use super::theme::accent;
 use crate::editor::action::Action;
 use crate::editor::command::Over;
@@ -75,11 +75,15 @@ enum Deed {
     Hide(usize),
     /// A name is to be typed.
     StartName(usize),
-    Rename(usize),
     Drop(Vec<SceneId>, Option<SceneId>),
     /// Objects get a material.
     Assign(Vec<SceneId>, SceneId),
     Nothing,
+}
+
+/// A name whose field has lost the keys is given, be its row scrolled away or the list hidden.
+pub(super) fn settle(context: &egui::Context, world: &mut World, panel: &mut Hierarchy) {
+    settle_name(context, world, &mut panel.renaming, row::name_field);
 }
 
 pub(super) fn hierarchy_ui(ui: &mut Ui, world: &mut World, panel: &mut Hierarchy) {
@@ -146,7 +150,7 @@ pub(super) fn hierarchy_ui(ui: &mut Ui, world: &mut World, panel: &mut Hierarchy
     }
     deeds.extend(landing::over_picture_ui(ui, world));
     // A click on another row ends a renaming: both count, the name first.
-    deeds.sort_by_key(|deed| !matches!(deed, Deed::Rename(_)));
+    settle(ui.ctx(), world, panel);
     for deed in deeds {
         perform(ui, world, panel, &rows, deed);
     }
@@ -233,17 +237,6 @@ fn perform(ui: &Ui, world: &mut World, panel: &mut Hierarchy, rows: &[Row], deed
                 text: item.name.clone(),
                 focused: false,
             });
-        }
-        Deed::Rename(at) => {
-            let item = &world.resource::<Outline>().items[at];
-            let (id, old) = (item.id, item.name.clone());
-            let cancelled = ui.input(|input| input.key_pressed(egui::Key::Escape));
-            if let Some(renaming) = panel.renaming.take() {
-                let name = renaming.text.trim();
-                if !cancelled && !name.is_empty() && name != old {
-                    world.write_message(Action::Rename(id, name.to_owned()));
-                }
-            }
         }
         Deed::Nothing => world.resource_mut::<Selection>().set([]),
         Deed::Drop(ids, parent) => {

@@ -4,13 +4,14 @@ use super::super::kind_icons::{draw_eye, draw_fold, draw_kind};
 use super::super::number_field::select_letters;
 use super::super::outline::{Item, Kind, Outline};
 use super::super::outline_rows::{Row, is_in_folder};
+use super::super::renaming::Renaming;
 use super::super::says::Says;
-use super::super::state::Renaming;
 use super::{Deed, EYE, Hierarchy, INDENT, ROW, landing};
 use crate::editor::selection::Selection;
+use crate::scene::SceneId;
 use bevy_egui::egui::{
-    self, Color32, Pos2, Rect, Response, Sense, TextEdit, TextStyle, TextWrapMode, Ui, WidgetInfo,
-    WidgetText, WidgetType, pos2, vec2,
+    self, Color32, Id, Pos2, Rect, Response, Sense, TextEdit, TextStyle, TextWrapMode, Ui,
+    WidgetInfo, WidgetText, WidgetType, pos2, vec2,
 };
 
 /// What the rows are drawn of.
@@ -89,9 +90,7 @@ impl List<'_> {
         draw_kind(ui.painter(), pos2(x + INDENT + 8.0, y), item.kind, icon_ink);
         let field = Rect::from_min_max(pos2(x + INDENT + 19.0, rect.min.y), body.max);
         if let Some(renaming) = panel.renaming.as_mut().filter(|r| r.id == item.id) {
-            if rename_ui(ui, field, renaming) {
-                deeds.push(Deed::Rename(at));
-            }
+            rename_ui(ui, field, renaming);
         } else {
             name_ui(ui, field, &item.name, ink);
         }
@@ -220,9 +219,16 @@ fn eye_ui(ui: &Ui, item: &Item, row: Rect, selected: bool) -> bool {
     response.clicked()
 }
 
-/// The field for a name; true when it is finished.
-fn rename_ui(ui: &mut Ui, rect: Rect, renaming: &mut Renaming) -> bool {
+/// Where the name of an entity is typed.
+pub(super) fn name_field(id: SceneId) -> Id {
+    Id::new(("name in the list", id.0))
+}
+
+/// The field for a name.
+fn rename_ui(ui: &mut Ui, rect: Rect, renaming: &mut Renaming) {
+    let id = name_field(renaming.id);
     let field = TextEdit::singleline(&mut renaming.text)
+        .id(id)
         .margin(egui::Margin::symmetric(3, 1))
         .char_limit(200);
     let response = ui
@@ -230,12 +236,10 @@ fn rename_ui(ui: &mut Ui, rect: Rect, renaming: &mut Renaming) -> bool {
             ui.add(field.desired_width(rect.width() - 8.0))
         })
         .inner;
-    if renaming.focused {
-        return response.lost_focus();
+    if !renaming.focused {
+        response.request_focus();
+        renaming.focused = true;
+        // What is typed replaces the name.
+        select_letters(ui, id, 0..renaming.text.chars().count());
     }
-    response.request_focus();
-    renaming.focused = true;
-    // What is typed replaces the name.
-    select_letters(ui, response.id, 0..renaming.text.chars().count());
-    false
 }

@@ -27,8 +27,8 @@ mod switches;
 mod transform;
 
 use super::number_field::set_owner;
+use super::renaming::{Renaming, settle_name};
 use super::says::Says;
-use super::state::Renaming;
 use crate::editor::action::Action;
 use crate::editor::command::{find, tooltip};
 use crate::editor::document::SceneOpened;
@@ -81,7 +81,7 @@ pub(super) fn forget_scene(
 /// What was typed into a field that is drawn no more, and what was chosen in a file dialog, reaches
 /// those for whom it was meant: another object may be selected by now.
 pub(super) fn settle(context: &egui::Context, world: &mut World, panel: &mut Inspector) {
-    object::settle_name(context, world, &mut panel.naming);
+    settle_name(context, world, &mut panel.naming, object::name_field);
     maps::settle_pictures(context, world, &mut panel.thumbnails);
 }
 

@@ -3,15 +3,14 @@
 use super::super::fields::row;
 use super::super::kind_icons::kind_ui;
 use super::super::outline::{Kind, Outline};
+use super::super::renaming::{Renaming, settle_name};
 use super::super::says::Says;
-use super::super::state::Renaming;
 use super::{Inspector, camera, foreign, lamps, material, motion, shape, transform};
-use crate::editor::action::Action;
 use crate::editor::selection::Selection;
 use crate::scene::SceneId;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::world::World;
-use bevy_egui::egui::{self, Id, Key, TextEdit, Ui};
+use bevy_egui::egui::{Id, TextEdit, Ui};
 
 pub(super) fn object_ui(ui: &mut Ui, world: &mut World, panel: &mut Inspector) {
     let outline = world.resource::<Outline>();
@@ -65,7 +64,7 @@ pub(super) fn object_ui(ui: &mut Ui, world: &mut World, panel: &mut Inspector) {
                 });
             }
             if response.lost_focus() {
-                settle_name(ui.ctx(), world, &mut panel.naming);
+                settle_name(ui.ctx(), world, &mut panel.naming, name_field);
             }
         },
     );
@@ -88,26 +87,6 @@ pub(super) fn object_ui(ui: &mut Ui, world: &mut World, panel: &mut Inspector) {
 }
 
 /// The field for an entity's name.
-fn name_field(id: SceneId) -> Id {
+pub(super) fn name_field(id: SceneId) -> Id {
     Id::new(("name in the inspector", id.0))
-}
-
-/// Gives the name that was typed, once its field has lost the keys, to whose field it was. Escape
-/// leaves the old one.
-pub(super) fn settle_name(
-    context: &egui::Context,
-    world: &mut World,
-    typed: &mut Option<Renaming>,
-) {
-    let has_keys = |id| context.memory(|memory| memory.has_focus(name_field(id)));
-    let Some(naming) = typed.take_if(|naming| !has_keys(naming.id)) else {
-        return;
-    };
-    let name = naming.text.trim();
-    let item = world.resource::<Outline>().find(naming.id);
-    let is_other = item.is_some_and(|item| item.name != name);
-    let cancelled = context.input(|input| input.key_pressed(Key::Escape));
-    if is_other && !name.is_empty() && !cancelled {
-        world.write_message(Action::Rename(naming.id, name.to_owned()));
-    }
 }

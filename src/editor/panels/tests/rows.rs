@@ -2,7 +2,7 @@
 
 use super::super::hierarchy::Hierarchy;
 use super::super::outline::Outline;
-use super::super::state::Renaming;
+use super::super::renaming::Renaming;
 use super::desk::Desk;
 use crate::editor::action::Action;
 use crate::editor::edits::name_of;
@@ -13,7 +13,7 @@ use crate::scene::{Phong, PointLamp, SceneId, UsesMaterial};
 use bevy::camera::visibility::Visibility;
 use bevy::ecs::name::Name;
 use bevy_egui::egui::accesskit::Role;
-use bevy_egui::egui::{Event, Key, Modifiers, vec2};
+use bevy_egui::egui::{Event, Key, Modifiers, MouseWheelUnit, TouchPhase, vec2};
 use std::time::Instant;
 
 #[test]
@@ -83,6 +83,60 @@ fn a_click_on_a_row_below_the_one_that_is_renamed_keeps_the_name_and_selects() {
     let name = desk.world().get::<Name>(entity).unwrap();
     assert_eq!(name.as_str(), "Renamed");
     assert_eq!(desk.world().resource::<Selection>().ids(), [below]);
+}
+
+#[test]
+fn a_name_that_is_typed_stays_when_its_row_is_seen_no_more_or_another_is_to_be_named() {
+    let ways: [fn(&mut Desk); 4] = [
+        |desk| {
+            let over = desk.place_of("Thing 3");
+            desk.point(over);
+            let (unit, phase) = (MouseWheelUnit::Line, TouchPhase::Move);
+            desk.frame(vec![Event::MouseWheel {
+                unit,
+                delta: vec2(0.0, -40.0),
+                phase,
+                modifiers: Modifiers::NONE,
+            }]);
+            // The list glides.
+            for _ in 0..60 {
+                desk.frame(Vec::new());
+            }
+            assert_eq!(desk.find("Thing 3"), None);
+        },
+        |desk| {
+            desk.world().write_message(Action::run("view.hierarchy"));
+        },
+        |desk| {
+            desk.world().write_message(Action::run("view.only-picture"));
+        },
+        |desk| {
+            let other = SceneId(1003);
+            desk.world().resource_mut::<Selection>().set([other]);
+            desk.world().write_message(Action::run("edit.rename"));
+        },
+    ];
+    for (i, way) in ways.into_iter().enumerate() {
+        let mut desk = Desk::open("triangle");
+        for i in 0..300 {
+            let name = Name::new(format!("Thing {i}"));
+            desk.world().spawn((SceneId(1000 + i), name));
+        }
+        let named = SceneId(1002);
+        desk.select([named]);
+        for letters in ["Mo", "on"] {
+            // Asked for again in the middle.
+            desk.world().write_message(Action::run("edit.rename"));
+            desk.settle();
+            if letters == "on" {
+                desk.key(Key::End);
+            }
+            desk.frame(vec![Event::Text(letters.into())]);
+        }
+        way(&mut desk);
+        desk.settle();
+        assert_eq!(name_of(desk.world(), named), "Moon", "way {i}");
+    }
 }
 
 #[test]
