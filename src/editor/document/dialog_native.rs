@@ -1,7 +1,7 @@
 //! The desktop's own file dialogs.
 
 use super::question::Purpose;
-use crate::io::MODEL_EXTENSIONS;
+use crate::io::{MODEL_EXTENSIONS, PICTURE_EXTENSIONS};
 use rfd::FileDialog;
 use std::env::{split_paths, var_os};
 use std::path::{Path, PathBuf};
@@ -41,6 +41,11 @@ pub(super) fn choose(purpose: Purpose, start: &Path) -> Option<PathBuf> {
         Purpose::Import => dialog
             .set_title("Import")
             .add_filter("Models", &MODEL_EXTENSIONS)
+            .pick_file(),
+        Purpose::Picture => dialog
+            .set_title("Picture")
+            .add_filter("Pictures", &PICTURE_EXTENSIONS)
+            .add_filter("All files", &["*"])
             .pick_file(),
         Purpose::SaveAs => {
             let name = start.file_name().unwrap_or_default().to_string_lossy();

@@ -10,7 +10,8 @@ use crate::editor::render_job::RenderJob;
 use crate::editor::selection::Selection;
 use crate::editor::texts::{file_name, path_text};
 use crate::io::{
-    OpenOptions, Problem, SceneFiles, SceneSource, extension, has_changed, open, open_empty, save,
+    FileError, OpenOptions, Problem, SceneFiles, SceneSource, extension, has_changed, open,
+    open_empty, save,
 };
 use bevy::app::AppExit;
 use bevy::ecs::world::World;
@@ -58,6 +59,17 @@ pub(super) fn perform_now(world: &mut World, task: FileTask) {
             }
         }
     }
+}
+
+/// Keeps a picture that was chosen for who asked for one, where there is a file.
+pub(super) fn note_picture(world: &mut World, path: &Path) {
+    if !path.is_file() {
+        return dialog::refuse(world, FileError::new(path, Problem::NotFound).to_string());
+    }
+    remember_folder_of(world, path);
+    let mut document = world.resource_mut::<Document>();
+    document.give_up();
+    document.picture = Some(path.to_path_buf());
 }
 
 /// Writes the scene to its file; where it has none, asks for one.

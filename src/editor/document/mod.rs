@@ -61,6 +61,8 @@ pub struct Document {
     then: Option<FileTask>,
     /// The path that was given last, while nothing has come of it.
     given: Option<(Purpose, PathBuf)>,
+    /// A picture that was chosen, until who asked for it takes it.
+    picture: Option<PathBuf>,
 }
 
 impl Default for Document {
@@ -73,6 +75,7 @@ impl Default for Document {
             unsaved: false,
             then: None,
             given: None,
+            picture: None,
         }
     }
 }
@@ -101,7 +104,12 @@ impl Document {
 
     /// Nothing is waited for any more.
     fn give_up(&mut self) {
-        (self.then, self.given) = (None, None);
+        (self.then, self.given, self.picture) = (None, None, None);
+    }
+
+    /// The picture that was chosen since it was [asked for](ask_for_picture), once.
+    pub(super) fn take_picture(&mut self) -> Option<PathBuf> {
+        self.picture.take()
     }
 }
 
@@ -149,6 +157,12 @@ fn commands() -> Vec<Command> {
         "file.quit" "Quit" ["Ctrl+Q"] "Closes the editor; asks where changes would be lost"
             => |world| request(world, FileTask::Quit); menu("File", 5),
     }
+}
+
+/// Asks for a picture, which [`Document::take_picture`] has when it was chosen.
+pub(super) fn ask_for_picture(world: &mut World) {
+    world.resource_mut::<Document>().give_up();
+    dialog::ask(world, Purpose::Picture);
 }
 
 /// Says that the scene came from somewhere: for who opened it with [`io::open`](crate::io::open()).

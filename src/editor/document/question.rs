@@ -82,6 +82,8 @@ pub enum Purpose {
     SaveAs,
     /// A model to add to the scene.
     Import,
+    /// A picture for a material or the environment.
+    Picture,
 }
 
 /// What a person decided.
@@ -139,8 +141,10 @@ pub fn answer(world: &mut World, answer: Answer) {
 /// Goes on with a path that was chosen or typed; where that fails it is asked for again. The desktop's own dialog has
 /// asked whether `asked` may be replaced.
 pub(super) fn take(world: &mut World, purpose: Purpose, path: &Path, asked: Option<&Path>) {
-    let task = chosen(purpose, path);
     world.resource_mut::<Document>().given = Some((purpose, path.to_path_buf()));
+    let Some(task) = chosen(purpose, path) else {
+        return files::note_picture(world, path);
+    };
     let FileTask::SaveAs(file) = &task else {
         return files::request(world, task);
     };
@@ -161,9 +165,9 @@ pub(super) fn take(world: &mut World, purpose: Purpose, path: &Path, asked: Opti
     }
 }
 
-/// What a chosen path asks for. A scene without an extension gets ours.
-fn chosen(purpose: Purpose, path: &Path) -> FileTask {
-    match purpose {
+/// What a chosen path asks for; `None` for a picture, which somebody waits for. A scene without an extension gets ours.
+fn chosen(purpose: Purpose, path: &Path) -> Option<FileTask> {
+    Some(match purpose {
         Purpose::Open => FileTask::Open(path.to_path_buf()),
         Purpose::Import => FileTask::Import(path.to_path_buf()),
         Purpose::SaveAs if path.extension().is_none() => {
@@ -172,7 +176,8 @@ fn chosen(purpose: Purpose, path: &Path) -> FileTask {
             FileTask::SaveAs(name.into())
         }
         Purpose::SaveAs => FileTask::SaveAs(path.to_path_buf()),
-    }
+        Purpose::Picture => return None,
+    })
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use super::super::says::Says;
 use super::question::whole_path_ui;
 use crate::editor::document::{Answer, Purpose};
 use crate::editor::texts::{path_of, path_text};
-use crate::io::{MODEL_EXTENSIONS, extension};
+use crate::io::{MODEL_EXTENSIONS, PICTURE_EXTENSIONS, extension};
 use bevy_egui::egui::{
     Button, EventFilter, Id, Key, Modifiers, RichText, ScrollArea, TextEdit, Ui,
 };
@@ -152,8 +152,14 @@ fn names_in(folder: &Path, purpose: Purpose) -> Vec<String> {
 
 fn is_meant(name: &str, purpose: Purpose) -> bool {
     let extension = extension(Path::new(name));
-    let is_model = MODEL_EXTENSIONS.contains(&extension.as_str());
-    is_model || purpose != Purpose::Import && extension == "scn.ron"
+    let extension = extension.as_str();
+    match purpose {
+        Purpose::Picture => PICTURE_EXTENSIONS.contains(&extension),
+        Purpose::Import => MODEL_EXTENSIONS.contains(&extension),
+        Purpose::Open | Purpose::SaveAs => {
+            extension == "scn.ron" || MODEL_EXTENSIONS.contains(&extension)
+        }
+    }
 }
 
 /// The question for a path; `refused` says why the one before did not do.
@@ -163,12 +169,14 @@ pub(super) fn path_ui(
     purpose: Purpose,
     refused: Option<&str>,
 ) -> Option<Answer> {
+    let pictures = format!("A picture: .{}", PICTURE_EXTENSIONS.join(", ."));
     ui.label(match purpose {
         Purpose::Open => {
             "A scene or a model: .scn.ron, .obj, .gltf, .glb, .stl, .ply, or a built-in scene's name"
         }
         Purpose::SaveAs => "Where to: .scn.ron keeps everything; .obj and .glb are models",
         Purpose::Import => "A model: .obj, .gltf, .glb, .stl or .ply",
+        Purpose::Picture => &pictures,
     });
     let id = Id::new("path that is asked for");
     let fitting = form.fitting(purpose);
@@ -205,12 +213,12 @@ pub(super) fn path_ui(
     let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     let path = path_of(match purpose {
         Purpose::SaveAs => without_suggested(&form.text),
-        Purpose::Open | Purpose::Import => &form.text,
+        Purpose::Open | Purpose::Import | Purpose::Picture => &form.text,
     });
     whole_path_ui(ui, &path);
     if let Some(given) = &form.given {
         let verb = match purpose {
-            Purpose::Open | Purpose::Import => "Reading",
+            Purpose::Open | Purpose::Import | Purpose::Picture => "Reading",
             Purpose::SaveAs => "Writing",
         };
         ui.label(format!("{verb} {}…", path_text(&given.path)));
@@ -324,7 +332,13 @@ mod tests {
         for name in ["Scenes", "scans"] {
             fs::create_dir(folder.path().join(name)).unwrap();
         }
-        for name in ["scene.scn.ron", "b.obj", "notes.txt", ".hidden.obj"] {
+        for name in [
+            "scene.scn.ron",
+            "b.obj",
+            "c.webp",
+            "notes.txt",
+            ".hidden.obj",
+        ] {
             fs::write(folder.path().join(name), "").unwrap();
         }
         let mut form = PathForm::new(&folder.path().join(""), &[]);
@@ -333,6 +347,10 @@ mod tests {
         assert_eq!(
             form.fitting(Purpose::Import),
             ["Scenes/", "scans/", "b.obj"]
+        );
+        assert_eq!(
+            form.fitting(Purpose::Picture),
+            ["Scenes/", "scans/", "c.webp"]
         );
         form.text += "sc";
         let fitting = form.fitting(Purpose::Open);

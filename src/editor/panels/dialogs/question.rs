@@ -29,6 +29,7 @@ pub(super) fn question_ui(
             Purpose::Open => "Open",
             Purpose::SaveAs => "Save as",
             Purpose::Import => "Import",
+            Purpose::Picture => "Picture",
         },
         Question::Waiting { .. } => "A file dialog is open",
         Question::Replace { .. } => "The file exists",

@@ -3,8 +3,7 @@
 use super::super::fields::row;
 use super::super::says::Says;
 use super::Inspector;
-use crate::editor::background::{Background, Outcome};
-use crate::editor::document::{picture_at, typed_picture};
+use crate::editor::document::{Document, ask_for_picture, picture_at, typed_picture};
 use crate::editor::edits::scene_entity;
 use crate::io::PICTURE_EXTENSIONS;
 use crate::io::shapes::PICTURES;
@@ -19,7 +18,6 @@ use bevy::platform::collections::HashMap;
 use bevy_egui::egui::{
     self, Color32, ColorImage, Key, Sense, TextEdit, TextureHandle, TextureOptions, Ui, vec2,
 };
-use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Pixels along a thumbnail's longer side.
@@ -86,13 +84,19 @@ impl Owner {
     }
 }
 
-/// Small copies of pictures, made once each, and the file dialog that may be open.
+/// Small copies of pictures, made once each, and what is being typed or chosen.
 #[derive(Default)]
 pub(in super::super) struct Thumbnails {
     made: HashMap<AssetId<Image>, TextureHandle>,
-    /// A file dialog that is open, and for whom.
-    asking: Option<(Owner, Background<Option<PathBuf>>)>,
+    asking: Option<Asking>,
     typed: Option<Typed>,
+}
+
+/// A file that somebody wants to choose.
+struct Asking {
+    owner: Owner,
+    /// The question is open, or was.
+    is_asked: bool,
 }
 
 /// A path that is being typed.
@@ -111,7 +115,14 @@ pub(super) fn settle_pictures(
     world: &mut World,
     thumbnails: &mut Thumbnails,
 ) {
-    if let Some((owner, file)) = thumbnails.answer() {
+    if let Some(asking) = thumbnails.asking.as_mut().filter(|asking| !asking.is_asked) {
+        asking.is_asked = true;
+        ask_for_picture(world);
+    }
+    if thumbnails.asking.is_some()
+        && let Some(file) = world.resource_mut::<Document>().take_picture()
+        && let Some(Asking { owner, .. }) = thumbnails.asking.take()
+    {
         let picture = picture_at(world, &file);
         owner.give(world, picture.as_ref());
     }
@@ -165,8 +176,12 @@ pub(super) fn map_ui(
                             ui.close();
                         }
                     }
-                    if ui.button("A file…").says("PNG, JPEG, HDR or EXR").clicked() {
-                        thumbnails.ask(map.owner.clone());
+                    let says = format!("A picture: .{}", PICTURE_EXTENSIONS.join(", ."));
+                    if ui.button("A file…").says(&says).clicked() {
+                        thumbnails.asking = Some(Asking {
+                            owner: map.owner.clone(),
+                            is_asked: false,
+                        });
                         ui.close();
                     }
                 })
@@ -256,31 +271,6 @@ impl Thumbnails {
         (!cancelled && path != typed.shown).then(|| (typed.owner, path.to_owned()))
     }
 
-    /// Opens the system's file dialog beside the editor, which goes on.
-    fn ask(&mut self, owner: Owner) {
-        let dialog = Background::start("file dialog", |_| {
-            rfd::FileDialog::new()
-                .add_filter("Pictures", &PICTURE_EXTENSIONS)
-                .add_filter("All files", &["*"])
-                .pick_file()
-        });
-        if let Ok(dialog) = dialog {
-            self.asking = Some((owner, dialog));
-        }
-    }
-
-    /// The file that was chosen, and for whom.
-    fn answer(&mut self) -> Option<(Owner, PathBuf)> {
-        let (_, dialog) = self.asking.as_ref()?;
-        let file = match dialog.take() {
-            Outcome::Pending => return None,
-            Outcome::Done(file) => file,
-            Outcome::Lost => None,
-        };
-        let (owner, _) = self.asking.take()?;
-        Some((owner, file?))
-    }
-
     /// Another scene is open: what is still typed or chosen belongs to nobody.
     pub fn forget_fields(&mut self) {
         self.asking = None;
@@ -316,10 +306,12 @@ fn smaller(image: &Image) -> Option<ColorImage> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::editor::document::{Answer, Purpose, Question, answer};
     use crate::editor::headless_editor;
     use crate::editor::panels::state::with;
     use crate::io::shapes::texture;
     use bevy::app::{App, Last};
+    use std::fs;
 
     #[test]
     fn a_path_that_was_typed_reaches_those_for_whom_it_was_typed_whatever_is_selected_now() {
@@ -354,19 +346,43 @@ mod tests {
         let world = app.world_mut();
         let mut thumbnails = Thumbnails::default();
         let context = egui::Context::default();
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("sky.exr");
+        let path = || Answer::Path(file.clone());
         for is_forgotten in [true, false] {
-            let (sender, dialog) = Background::sent();
-            thumbnails.asking = Some((Owner::Environment, dialog));
+            thumbnails.asking = Some(Asking {
+                owner: Owner::Environment,
+                is_asked: false,
+            });
+            settle_pictures(&context, world, &mut thumbnails);
+            let asked = world.resource::<Document>().question.clone();
+            if matches!(asked, Some(Question::Waiting { .. })) {
+                // Where the desktop has a dialog: the path is typed all the same.
+                answer(world, Answer::No);
+            }
+            answer(world, path());
+            let asked = world.resource::<Document>().question.clone();
+            let again = matches!(
+                &asked,
+                Some(Question::Path {
+                    purpose: Purpose::Picture,
+                    refused: Some(_),
+                    ..
+                })
+            );
+            assert!(again, "there is no such file: {asked:?}");
             settle_pictures(&context, world, &mut thumbnails);
             assert!(thumbnails.asking.is_some(), "it waits");
+            fs::write(&file, "").unwrap();
             if is_forgotten {
                 thumbnails.forget_fields();
             }
-            let sent = sender.send(Some(PathBuf::from("sky.exr")));
-            assert_eq!(sent.is_err(), is_forgotten);
+            answer(world, path());
+            assert_eq!(world.resource::<Document>().question, None);
             settle_pictures(&context, world, &mut thumbnails);
             let map = world.resource::<Environment>().map.clone();
             assert_eq!(map.is_some(), !is_forgotten);
+            fs::remove_file(&file).unwrap();
         }
     }
 
