@@ -16,7 +16,7 @@ use super::pointer::PointerPlugin;
 use super::render_job::RenderJobPlugin;
 use super::selection::Selection;
 use super::trees::TreesPlugin;
-use super::viewport::{self, Viewport};
+use super::viewport::{self, RegionDrag, Viewport};
 use crate::view::{GlassboxPlugins, RasterPlugin, SymbolsPlugin};
 use bevy::app::{App, Plugin, PluginGroup, PluginGroupBuilder};
 
@@ -101,6 +101,7 @@ impl Plugin for StatePlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<Selection>()
             .init_resource::<Viewport>()
+            .init_resource::<RegionDrag>()
             .init_resource::<Notices>()
             .add_observer(viewport::forget_scene);
     }

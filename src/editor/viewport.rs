@@ -33,6 +33,22 @@ pub(super) fn traced_view_mut(world: &mut World) -> Option<Mut<'_, TracedView>> 
     views.single_mut(world).ok()
 }
 
+/// Dragging a frame over the picture: the region that the traced view is limited to.
+#[derive(Resource, Default)]
+pub(super) struct RegionDrag {
+    /// The next drag over the picture is one.
+    pub is_armed: bool,
+    /// Where it began: (0, 0) is the picture's top left, (1, 1) opposite.
+    pub start: Option<Vec2>,
+}
+
+impl RegionDrag {
+    /// No frame is waited for any more. `false` where none was.
+    pub fn cancel(&mut self) -> bool {
+        std::mem::take(self).is_armed
+    }
+}
+
 /// The part of the picture, and the numbers, that one scene was looked at for say nothing about another, which is not
 /// kept waiting either.
 pub(super) fn forget_scene(

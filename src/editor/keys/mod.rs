@@ -247,7 +247,9 @@ fn meant_key(input: &KeyboardInput) -> KeyCode {
 mod tests {
     use super::*;
     use crate::editor::command::{AddCommands, Command};
+    use crate::editor::pointer::Armed;
     use crate::editor::schedule;
+    use crate::editor::viewport::RegionDrag;
     use bevy::ecs::entity::Entity;
 
     fn input(key_code: KeyCode, logical: &str) -> KeyboardInput {
@@ -313,6 +315,30 @@ mod tests {
         world.insert_resource(Editing(true));
         press(&mut world, "Ctrl+E".parse().unwrap(), false);
         assert_eq!(told(&mut world), [""; 0]);
+    }
+
+    #[test]
+    fn escape_ends_what_waits_for_the_pointer_and_only_then_is_a_command() {
+        let mut world = World::new();
+        world.init_resource::<Notices>();
+        world.init_resource::<Preferences>();
+        world.init_resource::<PointerUse>();
+        world.init_resource::<Messages<Action>>();
+        world.insert_resource(Armed::Aim);
+        world.insert_resource(RegionDrag {
+            is_armed: true,
+            start: None,
+        });
+        let mut table = CommandTable::default();
+        table.add(Command::new("none", "Select nothing", "", |_| {}).keys(&["Escape"]));
+        world.insert_resource(table);
+        for asked in [0, 0, 1] {
+            press(&mut world, "Escape".parse().unwrap(), false);
+            let mut actions = world.resource_mut::<Messages<Action>>();
+            assert_eq!(actions.drain().count(), asked);
+        }
+        assert!(!world.resource::<RegionDrag>().is_armed);
+        assert_eq!(*world.resource::<Armed>(), Armed::No);
     }
 
     #[test]

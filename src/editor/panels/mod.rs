@@ -153,7 +153,6 @@ fn add_panels(app: &mut App) {
         .init_resource::<inspector::Trees>()
         .init_resource::<line_legend::LineLegend>()
         .init_resource::<mixer::Mixer>()
-        .init_resource::<overlays::RegionDrag>()
         .init_resource::<overlays::UnderPointer>()
         .init_resource::<palette::OpenPalette>()
         .init_resource::<panel_focus::PanelStep>()

@@ -13,7 +13,9 @@ use super::state::with;
 use super::theme::{accent, gradient};
 use super::tree_pair;
 use crate::editor::document::SceneOpened;
-use crate::editor::viewport::{Show, Viewport, traced_render, traced_view, traced_view_mut};
+use crate::editor::viewport::{
+    RegionDrag, Show, Viewport, traced_render, traced_view, traced_view_mut,
+};
 use crate::film::views::{Scale, View};
 use crate::scene::{Quantity, RenderSettings};
 use crate::trace::{self, Camera, FirstHit, central_hits};
@@ -38,15 +40,6 @@ const STEPS: u32 = 64;
 
 /// An end of a palette; between any two of them the distance is a number.
 const END: Quantity = Quantity::within(-1e30, 1e30, "");
-
-/// Dragging a frame that limits the traced view to a region.
-#[derive(Resource, Default)]
-pub(super) struct RegionDrag {
-    /// The next drag over the picture is one.
-    pub is_armed: bool,
-    /// Where it began.
-    pub start: Option<egui::Pos2>,
-}
 
 /// What the pixel under the pointer shows, and of which world, pixel and camera that is. The world is let go of, but none
 /// takes its place in memory.
@@ -180,13 +173,9 @@ fn region_ui(ui: &Ui, free: Rect, world: &mut World, drag: &mut RegionDrag) -> b
     let response = ui
         .interact(free, Id::new("region"), Sense::drag())
         .on_hover_and_drag_cursor(CursorIcon::Crosshair);
-    if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
-        drag.is_armed = false;
-        drag.start = None;
-        return true;
-    }
     if response.drag_started() {
-        drag.start = ui.input(|input| input.pointer.press_origin());
+        let pressed = ui.input(|input| input.pointer.press_origin());
+        drag.start = pressed.map(place);
     }
     let Some(start) = drag.start else {
         return true;
@@ -194,14 +183,13 @@ fn region_ui(ui: &Ui, free: Rect, world: &mut World, drag: &mut RegionDrag) -> b
     let Some(end) = response.interact_pointer_pos() else {
         return true;
     };
-    let rect = Rect::from_two_pos(start, end).intersect(free);
+    let rect = Rect::from_two_pos(point(start), end).intersect(free);
     let stroke = Stroke::new(1.0, accent(ui));
     ui.painter()
         .rect_stroke(rect, 0.0, stroke, StrokeKind::Inside);
     if response.drag_stopped() {
-        drag.is_armed = false;
-        drag.start = None;
-        let region = math::Rect::from_corners(place(start), place(end));
+        drag.cancel();
+        let region = math::Rect::from_corners(start, place(end));
         if region.size().min_element() > LEAST_REGION
             && let Some(mut view) = traced_view_mut(world)
         {

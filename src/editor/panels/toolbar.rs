@@ -3,13 +3,12 @@
 use super::fields::number_row;
 use super::menu_bar::menu_ui;
 use super::number_field::NumberField;
-use super::overlays::RegionDrag;
 use super::says::Says;
 use crate::editor::action::Action;
 use crate::editor::command::{CommandTable, tooltip};
 use crate::editor::handles::{SnapTo, Tools};
 use crate::editor::preferences::Preferences;
-use crate::editor::viewport::{traced_view, traced_view_mut};
+use crate::editor::viewport::{RegionDrag, traced_view, traced_view_mut};
 use crate::film::views::View;
 use crate::scene::schema::quantity_of;
 use crate::scene::{Quantity, RenderSettings};

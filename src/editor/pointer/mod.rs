@@ -17,7 +17,7 @@ use super::navigation::{self, LookThrough, ViewDrag};
 use super::pick;
 use super::schedule::{Dispatch, EditorUpdate};
 use super::selection::Selection;
-use super::viewport::Viewport;
+use super::viewport::{RegionDrag, Viewport};
 use crate::inspect::Question;
 use crate::view::{Outlined, Symbols};
 use bevy::app::{App, Plugin};
@@ -318,6 +318,9 @@ fn let_go(world: &mut World) {
 
 /// Takes back what is being dragged. `false` where nothing is.
 pub(super) fn cancel(world: &mut World) -> bool {
+    if world.resource_mut::<RegionDrag>().cancel() {
+        return true;
+    }
     if std::mem::take(&mut *world.resource_mut::<Armed>()) != Armed::No {
         take_use(world);
         return true;
