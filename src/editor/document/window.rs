@@ -241,7 +241,7 @@ mod tests {
             let asked = app.world().resource::<Document>().question.is_some();
             assert_eq!(asked, is_on);
             if is_on {
-                assert!(within(app.world_mut(), undo));
+                assert!(within(app.world_mut(), undo).is_some());
                 assert_eq!(map(&app), before);
             }
         }

@@ -142,16 +142,14 @@ fn about_step(world: &World, text: Option<&str>, why_not: &'static str) -> State
 }
 
 fn step_back(world: &mut World) {
-    let text = world.resource::<History>().undo_text().map(str::to_owned);
-    if undo(world) {
-        tell(world, "Undone", text);
+    if let Some(name) = undo(world) {
+        tell(world, "Undone", &name);
     }
 }
 
 fn step_forth(world: &mut World) {
-    let text = world.resource::<History>().redo_text().map(str::to_owned);
-    if redo(world) {
-        tell(world, "Done again", text);
+    if let Some(name) = redo(world) {
+        tell(world, "Done again", &name);
     }
 }
 
@@ -206,12 +204,15 @@ pub(in crate::editor) fn step_add(world: &mut World, what: &Addition) {
     });
 }
 
-/// Gives an entity a name.
+/// Gives an entity a name, or takes it away.
 pub(in crate::editor) fn step_rename(world: &mut World, id: SceneId, name: &str) {
     step(world, |world| {
         let old = name_of(world, id);
         rename(world, id, name);
-        Some(format!("Rename {old} to {name}"))
+        Some(match name.trim() {
+            "" => format!("Take the name from {old}"),
+            name => format!("Rename {old} to {name}"),
+        })
     });
 }
 
@@ -352,8 +353,8 @@ fn call(world: &World, ids: &[SceneId]) -> String {
     }
 }
 
-fn tell(world: &mut World, verb: &str, text: Option<String>) {
-    let text = text.map_or_else(|| verb.to_owned(), |text| format!("{verb}: {text}"));
+fn tell(world: &mut World, verb: &str, name: &str) {
+    let text = format!("{verb}: {name}");
     world.resource_mut::<Notices>().tell_in_place(verb, text);
 }
 
@@ -374,5 +375,36 @@ mod tests {
         app.world_mut().write_message(Action::Add(cuboid));
         app.update();
         assert_eq!(traced(&app), 1);
+    }
+
+    #[test]
+    fn undo_and_redo_tell_the_step_that_they_are_of() {
+        let mut app = headless_editor();
+        let act = |app: &mut App, action: Action| {
+            app.world_mut().write_message(action);
+            app.update();
+        };
+        let told = |app: &mut App| {
+            let mut notices = app.world_mut().resource_mut::<Notices>();
+            notices.shown().last().map(|notice| notice.text.clone())
+        };
+        act(&mut app, Action::Add(Addition::Group));
+        let id = app.world().resource::<Selection>().active().unwrap();
+        let group = scene_entity(app.world(), id).unwrap();
+        // A drag that is under way is the step.
+        let world = app.world_mut();
+        world.resource_mut::<Gesture>().begin("Drag it");
+        world.get_mut::<Transform>(group).unwrap().translation.x = 1.0;
+        act(&mut app, Action::run("edit.undo"));
+        assert_eq!(told(&mut app).as_deref(), Some("Undone: Drag it"));
+        act(&mut app, Action::run("edit.redo"));
+        assert_eq!(told(&mut app).as_deref(), Some("Done again: Drag it"));
+        act(&mut app, Action::Rename(id, " Crane ".into()));
+        act(&mut app, Action::Rename(id, " ".into()));
+        let steps: Vec<&str> = app.world().resource::<History>().steps().collect();
+        assert_eq!(
+            steps[2..],
+            ["Rename Group to Crane", "Take the name from Crane"]
+        );
     }
 }

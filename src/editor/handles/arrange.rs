@@ -249,7 +249,7 @@ mod tests {
         align(app.world_mut(), "y", Vec3::Y);
         let expected = [Vec3::new(1.0, 5.0, 3.0), before[1]];
         assert_eq!(places(&app, 2), expected);
-        assert!(undo(app.world_mut()));
+        assert!(undo(app.world_mut()).is_some());
         assert_eq!(places(&app, 2), before);
     }
 

@@ -12,15 +12,15 @@ use bevy::ecs::hierarchy::ChildOf;
 use bevy::ecs::world::{Mut, World};
 use std::collections::BTreeSet;
 
-/// Takes the last step back. A gesture that is under way is ended first, and is that step. False
-/// where there is none.
-pub fn undo(world: &mut World) -> bool {
+/// Takes the last step back. A gesture that is under way is ended first, and is that step. Returns what the step is
+/// called; `None` where there is none.
+pub fn undo(world: &mut World) -> Option<String> {
     settle(world);
     travel(world, Side::Before)
 }
 
-/// Does the step again that was undone last. False where there is none.
-pub fn redo(world: &mut World) -> bool {
+/// Does the step again that was undone last. Returns what it is called; `None` where there is none.
+pub fn redo(world: &mut World) -> Option<String> {
     settle(world);
     travel(world, Side::After)
 }
@@ -33,9 +33,9 @@ pub fn go_to(world: &mut World, position: usize) {
         let moved = match now.cmp(&position) {
             std::cmp::Ordering::Less => travel(world, Side::After),
             std::cmp::Ordering::Greater => travel(world, Side::Before),
-            std::cmp::Ordering::Equal => false,
+            std::cmp::Ordering::Equal => None,
         };
-        if !moved {
+        if moved.is_none() {
             return;
         }
     }
@@ -47,21 +47,20 @@ fn settle(world: &mut World) {
     commit(world);
 }
 
-fn travel(world: &mut World, side: Side) -> bool {
+/// What the step is called that was undone or done again.
+fn travel(world: &mut World, side: Side) -> Option<String> {
     world.resource_scope(|world, mut history: Mut<History>| {
         let index = match side {
             Side::Before => history.done.checked_sub(1),
             Side::After => Some(history.done),
         };
-        let Some(step) = index.and_then(|index| history.steps.get(index).cloned()) else {
-            return false;
-        };
+        let step = history.steps.get(index?).cloned()?;
         match side {
             Side::Before => history.done -= 1,
             Side::After => history.done += 1,
         }
         apply(world, &mut history, &step, side);
-        true
+        Some(step.name.clone())
     })
 }
 

@@ -184,7 +184,7 @@ mod tests {
                 0,
                 "nobody finds it meanwhile"
             );
-            assert!(within(app.world_mut(), undo));
+            assert!(within(app.world_mut(), undo).is_some());
             assert_eq!(lights(&mut app), 2);
             for (entity, own) in all.into_iter().zip(1..) {
                 let entity = app.world().entity(entity);
@@ -193,12 +193,12 @@ mod tests {
             }
             let child = scene_entity(app.world(), SceneId(2));
             assert_eq!(child, Some(all[1]));
-            assert!(within(app.world_mut(), redo));
+            assert!(within(app.world_mut(), redo).is_some());
             assert_eq!(scene_entity(app.world(), SceneId(2)), None);
-            assert!(within(app.world_mut(), undo));
+            assert!(within(app.world_mut(), undo).is_some());
             app.update();
         }
-        assert!(within(app.world_mut(), redo));
+        assert!(within(app.world_mut(), redo).is_some());
         super::super::reset(app.world_mut());
         assert!(app.world().resource::<Aside>().0.is_empty());
         assert!(
@@ -218,7 +218,7 @@ mod tests {
         poke(&mut app);
         within(app.world_mut(), |world| delete(world, &[SceneId(1)]));
         app.update();
-        assert!(within(app.world_mut(), undo));
+        assert!(within(app.world_mut(), undo).is_some());
         app.update();
         poke(&mut app);
         let expected = Heard {
@@ -236,13 +236,13 @@ mod tests {
         assert_eq!(lights(&mut app), 1);
         within(app.world_mut(), |world| delete(world, &[SceneId(1)]));
         assert_eq!(lights(&mut app), 0);
-        assert!(within(app.world_mut(), undo));
+        assert!(within(app.world_mut(), undo).is_some());
         assert_eq!(lights(&mut app), 1);
         // It moves while what hangs on it is not there.
         let mut place = app.world_mut().get_mut::<Transform>(parent).unwrap();
         place.translation.x = 5.0;
         assert_eq!(lights(&mut app), 1);
-        assert!(within(app.world_mut(), undo));
+        assert!(within(app.world_mut(), undo).is_some());
         assert_eq!(lights(&mut app), 2);
         let place = app.world().get::<GlobalTransform>(child).unwrap();
         assert_eq!(place.translation().x, 5.0);
@@ -253,7 +253,7 @@ mod tests {
         let (mut app, [parent, ..]) = app();
         within(app.world_mut(), |world| delete(world, &[SceneId(1)]));
         app.world_mut().despawn(parent);
-        assert!(within(app.world_mut(), undo));
+        assert!(within(app.world_mut(), undo).is_some());
         assert_eq!(lights(&mut app), 2);
     }
 }

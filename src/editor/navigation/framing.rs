@@ -132,7 +132,7 @@ mod tests {
                 world.resource_mut::<Eye>().yaw += 1.0;
             }
             let left = world.resource::<Eye>().clone();
-            assert!(undo(world));
+            assert!(undo(world).is_some());
             world.run_system_once(unframe).unwrap();
             let now = world.resource::<Eye>();
             assert_eq!(*now, if moved { left } else { before.clone() }, "{place}");
