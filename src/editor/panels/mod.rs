@@ -30,6 +30,7 @@
 
 mod answer;
 mod any_number;
+mod asked;
 mod bindings;
 mod commands;
 mod compare;

@@ -1,6 +1,7 @@
 //! A path is typed, where the system has no dialog for it: with what lies in the folder, recent folders, and Tab to
 //! complete.
 
+use super::super::asked::Asked;
 use super::super::number_field::select_letters;
 use super::super::says::Says;
 use super::question::whole_path_ui;
@@ -8,12 +9,11 @@ use crate::editor::document::{Answer, Purpose};
 use crate::editor::texts::{path_of, path_text};
 use crate::io::{MODEL_EXTENSIONS, PICTURE_EXTENSIONS, extension};
 use bevy_egui::egui::{
-    Button, EventFilter, Id, Key, Modifiers, RichText, ScrollArea, TextEdit, Ui,
+    Button, Context, EventFilter, Id, Key, Modifiers, RichText, ScrollArea, TextEdit, Ui,
 };
 use std::fs;
 use std::ops::Range;
 use std::path::{MAIN_SEPARATOR, Path, PathBuf};
-use std::time::{Duration, Instant};
 
 /// Recent folders that are offered.
 const OFFERED: usize = 6;
@@ -23,9 +23,6 @@ const MOST: usize = 2000;
 const SUGGESTED: &str = ".scn.ron";
 /// What names end with of what is saved.
 const EXTENSIONS: [&str; 3] = [SUGGESTED, ".obj", ".glb"];
-/// How often a folder is looked at again.
-const AGAIN: Duration = Duration::from_secs(1);
-
 /// What is typed, and what lies in the folder that it names.
 pub(in super::super) struct PathForm {
     text: String,
@@ -33,21 +30,15 @@ pub(in super::super) struct PathForm {
     given: Option<Given>,
     /// Folders that were used before and are there.
     recent: Vec<PathBuf>,
-    listing: Option<Listing>,
+    names: Asked<(PathBuf, Purpose), Vec<String>>,
+    /// Tab was pressed, and what lies in the folder is not known yet.
+    completes: bool,
 }
 
 /// A path that was given. What is being done with it is shown in a frame of its own, since all others wait for it.
 struct Given {
     path: PathBuf,
     is_shown: bool,
-}
-
-struct Listing {
-    folder: PathBuf,
-    purpose: Purpose,
-    when: Instant,
-    /// Names, folders first and with a separator at their end.
-    names: Vec<String>,
 }
 
 impl PathForm {
@@ -61,31 +52,22 @@ impl PathForm {
             is_new: true,
             given: None,
             recent: there.take(OFFERED).cloned().collect(),
-            listing: None,
+            names: Asked::default(),
+            completes: false,
         }
     }
 
-    /// The names that fit what was typed behind the last separator.
-    fn fitting(&mut self, purpose: Purpose) -> Vec<String> {
+    /// The names that fit what was typed behind the last separator; `None` until the folder was read.
+    fn fitting(&mut self, context: &Context, purpose: Purpose) -> Option<Vec<String>> {
         let (folder, begun) = split(&self.text);
-        let folder = path_of(folder);
-        let is_known = |listing: &Listing| {
-            listing.folder == folder && listing.purpose == purpose && listing.when.elapsed() < AGAIN
-        };
-        if !self.listing.as_ref().is_some_and(is_known) {
-            self.listing = Some(Listing {
-                names: names_in(&folder, purpose),
-                folder,
-                purpose,
-                when: Instant::now(),
-            });
-        }
-        let names = self.listing.iter().flat_map(|listing| &listing.names);
+        let names = self
+            .names
+            .look(context, (path_of(folder), purpose), names_in)?;
         let fits = |name: &&String| {
             let is_hidden = name.starts_with('.') && !begun.starts_with('.');
             !is_hidden && begins_with(name, begun)
         };
-        names.filter(fits).cloned().collect()
+        Some(names.iter().filter(fits).cloned().collect())
     }
 
     /// Puts a name in the place of what was begun.
@@ -125,10 +107,10 @@ fn shared(names: &[String]) -> String {
 }
 
 /// Folders, and those files that the purpose is about. Empty where it cannot be read: then typing goes on alone.
-fn names_in(folder: &Path, purpose: Purpose) -> Vec<String> {
+fn names_in((folder, purpose): (PathBuf, Purpose)) -> Vec<String> {
     let folder = match folder.as_os_str().is_empty() {
         true => Path::new("."),
-        false => folder,
+        false => &folder,
     };
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let (mut folders, mut files) = (Vec::new(), Vec::new());
@@ -179,13 +161,18 @@ pub(super) fn path_ui(
         Purpose::Picture => &pictures,
     });
     let id = Id::new("path that is asked for");
-    let fitting = form.fitting(purpose);
+    let fitting = form.fitting(ui.ctx(), purpose);
     let has_keys = ui.memory(|memory| memory.has_focus(id));
     let tab = has_keys && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Tab));
+    form.completes |= tab;
     let mut chosen = None;
-    if tab && !fitting.is_empty() {
-        chosen = Some(shared(&fitting));
+    if let Some(fitting) = &fitting
+        && std::mem::take(&mut form.completes)
+        && !fitting.is_empty()
+    {
+        chosen = Some(shared(fitting));
     }
+    let fitting = fitting.unwrap_or_default();
     let field = TextEdit::singleline(&mut form.text)
         .id(id)
         .desired_width(ui.available_width());
@@ -325,6 +312,7 @@ fn stem(text: &str) -> Range<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bevy_egui::egui::{Event, RawInput};
 
     #[test]
     fn a_path_is_completed_from_what_lies_in_its_folder() {
@@ -342,27 +330,63 @@ mod tests {
             fs::write(folder.path().join(name), "").unwrap();
         }
         let mut form = PathForm::new(&folder.path().join(""), &[]);
-        let all = form.fitting(Purpose::Open);
-        assert_eq!(all, ["Scenes/", "scans/", "b.obj", "scene.scn.ron"]);
-        assert_eq!(
-            form.fitting(Purpose::Import),
-            ["Scenes/", "scans/", "b.obj"]
-        );
-        assert_eq!(
-            form.fitting(Purpose::Picture),
-            ["Scenes/", "scans/", "c.webp"]
-        );
+        let fitting = |form: &mut PathForm, purpose| {
+            let context = Context::default();
+            let (folder, _) = split(&form.text);
+            form.names.wait((path_of(folder), purpose), names_in);
+            form.fitting(&context, purpose).unwrap()
+        };
+        let of = |form: &mut PathForm, purpose| fitting(form, purpose).join(" ");
+        let all = of(&mut form, Purpose::Open);
+        assert_eq!(all, "Scenes/ scans/ b.obj scene.scn.ron");
+        let models = of(&mut form, Purpose::Import);
+        assert_eq!(models, "Scenes/ scans/ b.obj");
+        let pictures = of(&mut form, Purpose::Picture);
+        assert_eq!(pictures, "Scenes/ scans/ c.webp");
         form.text += "sc";
-        let fitting = form.fitting(Purpose::Open);
-        assert_eq!(fitting, ["Scenes/", "scans/", "scene.scn.ron"]);
-        assert_eq!(shared(&fitting), "Sc");
+        let begun = fitting(&mut form, Purpose::Open);
+        assert_eq!(begun, ["Scenes/", "scans/", "scene.scn.ron"]);
+        assert_eq!(shared(&begun), "Sc");
         form.text += "ene";
-        let fitting = form.fitting(Purpose::Open);
-        assert_eq!(shared(&fitting), "Scene");
-        form.complete(&fitting[0]);
+        let begun = fitting(&mut form, Purpose::Open);
+        assert_eq!(shared(&begun), "Scene");
+        form.complete(&begun[0]);
         assert!(form.text.ends_with("/Scenes/"), "{}", form.text);
         form.text = "/no/such/folder/x".into();
-        assert!(form.fitting(Purpose::Open).is_empty());
+        assert!(fitting(&mut form, Purpose::Open).is_empty());
+    }
+
+    #[test]
+    fn tab_completes_a_path_as_soon_as_its_folder_was_read() {
+        let (sender, names) = Asked::sent((PathBuf::from("/far/"), Purpose::Open));
+        let mut form = PathForm {
+            names,
+            ..PathForm::new(Path::new("/far/sc"), &[])
+        };
+        let context = Context::default();
+        let mut frame = |events| {
+            let input = RawInput {
+                events,
+                ..RawInput::default()
+            };
+            let _ = context.run_ui(input, |ui| {
+                path_ui(ui, &mut form, Purpose::Open, None);
+            });
+            form.text.clone()
+        };
+        for _ in 0..2 {
+            frame(Vec::new());
+        }
+        let tab = Event::Key {
+            key: Key::Tab,
+            physical_key: None,
+            pressed: true,
+            repeat: false,
+            modifiers: Modifiers::NONE,
+        };
+        assert_eq!(frame(vec![tab]), "/far/sc", "nobody knows yet");
+        sender.send(vec!["scenes/".to_owned()]).unwrap();
+        assert_eq!(frame(Vec::new()), "/far/scenes/");
     }
 
     #[test]
