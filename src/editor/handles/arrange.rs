@@ -333,7 +333,7 @@ mod tests {
                     let text = format!("{heights:?} from {above}, {selected:?}");
                     assert!((height - expected).abs() < 1e-4, "{text}");
                 }
-                assert!(undo(world));
+                assert!(undo(world).is_some());
                 app.update();
                 app.update();
             }
