@@ -106,7 +106,7 @@ impl fmt::Display for Place {
 }
 
 /// What can be wrong with a file, and what to do about it.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug, Clone, thiserror::Error)]
 #[expect(missing_docs, reason = "the messages say it")]
 pub enum Problem {
     #[error("no such file; check the name and the folder")]

@@ -7,8 +7,9 @@ use glassbox::io::{
     Budget, FileError, Limits, LoadProblems, OpenOptions, SceneSource, check_film, import, open,
 };
 use glassbox::scene::{MeshSource, SceneId, Shape};
+use serde_json::json;
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 fn within(megabytes: u64) -> OpenOptions {
     OpenOptions {
@@ -58,6 +59,95 @@ fn pictures_that_are_allowed_one_by_one_are_refused_together() {
         &["3.png", "11 MB", "--memory"],
     );
     needs_between(&file, 50, 70);
+}
+
+/// As many triangles, each with a material of its own, that say all the same.
+fn obj_of_materials(folder: &Path, count: usize, says: &str) -> PathBuf {
+    let mut mtl = String::new();
+    let mut obj = String::from("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    for i in 0..count {
+        writeln!(mtl, "newmtl m{i}\n{says}").unwrap();
+        writeln!(obj, "usemtl m{i}\nf 1 2 3").unwrap();
+    }
+    write(folder, "a.mtl", mtl);
+    write(folder, "a.obj", obj)
+}
+
+/// The same with metalness and roughness in the one picture, `a.png`.
+fn gltf_of_materials(folder: &Path, count: usize) -> PathBuf {
+    let corners = [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let bytes = corners.as_flattened().iter().flat_map(|n| n.to_le_bytes());
+    write(folder, "a.bin", bytes.collect::<Vec<u8>>());
+    let of_each = |each: &dyn Fn(usize) -> serde_json::Value| (0..count).map(each).collect();
+    let textures: Vec<_> = of_each(&|_| json!({ "source": 0 }));
+    let materials: Vec<_> = of_each(
+        &|i| json!({ "pbrMetallicRoughness": { "metallicRoughnessTexture": { "index": i } } }),
+    );
+    let primitives: Vec<_> =
+        of_each(&|i| json!({ "attributes": { "POSITION": 0 }, "material": i }));
+    let document = json!({
+        "asset": { "version": "2.0" },
+        "buffers": [{ "uri": "a.bin", "byteLength": 36 }],
+        "bufferViews": [{ "buffer": 0, "byteLength": 36 }],
+        "accessors": [{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+            "min": [0, 0, 0], "max": [1, 1, 0] }],
+        "nodes": [{ "mesh": 0 }],
+        "meshes": [{ "primitives": primitives }],
+        "images": [{ "uri": "a.png" }],
+        "textures": textures,
+        "materials": materials,
+    });
+    write(folder, "a.gltf", document.to_string())
+}
+
+/// Pixels that are normals on the whole, not all of them opaque: 12 MB of them.
+fn megapixel(file: &Path) {
+    let picture = image::RgbaImage::from_pixel(1000, 1000, image::Rgba([128, 128, 255, 200]));
+    picture.save(file).unwrap();
+}
+
+#[test]
+fn a_picture_that_many_materials_share_counts_once_however_often_it_is_looked_at() {
+    let folder = tempfile::tempdir().unwrap();
+    megapixel(&folder.path().join("a.png"));
+    let obj = obj_of_materials(folder.path(), 60, "map_d a.png\nmap_Bump a.png");
+    // Its alpha, and its normals.
+    needs_between(&obj, 20, 30);
+    let gltf = gltf_of_materials(folder.path(), 60);
+    needs_between(&gltf, 10, 20);
+}
+
+#[test]
+fn a_picture_that_does_not_fit_is_not_taken_for_one_that_says_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    megapixel(&folder.path().join("a.png"));
+    for says_of in ["map_Bump a.png", "map_d a.png"] {
+        let obj = obj_of_materials(folder.path(), 1, says_of);
+        let error = refused_with(&obj, within(10));
+        says(&error, &["a.png", "11 MB", "--memory"]);
+    }
+    let gltf = gltf_of_materials(folder.path(), 1);
+    says(&refused_with(&gltf, within(10)), &["a.png", "--memory"]);
+}
+
+#[test]
+fn what_a_gltf_can_do_without_is_not_left_out_for_want_of_memory() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "a.bin", vec![0; 36]);
+    write(folder.path(), "normals.bin", vec![0; 4 << 20]);
+    let document = json!({
+        "asset": { "version": "2.0" },
+        "buffers": [{ "uri": "a.bin", "byteLength": 36 },
+            { "uri": "normals.bin", "byteLength": 4 << 20 }],
+        "bufferViews": [{ "buffer": 0, "byteLength": 36 }, { "buffer": 1, "byteLength": 36 }],
+        "accessors": [{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+            "min": [0, 0, 0], "max": [0, 0, 0] },
+            { "bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC3" }],
+        "nodes": [{ "mesh": 0 }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0, "NORMAL": 1 } }] }],
+    });
+    let file = write(folder.path(), "a.gltf", document.to_string());
+    needs_between(&file, 3, 6);
 }
 
 #[test]

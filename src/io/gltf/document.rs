@@ -51,7 +51,7 @@ pub(crate) struct Document {
     pub(super) limits: Limits,
     root: Value,
     marks: Marks,
-    buffers: Vec<OnceCell<Result<Bytes, String>>>,
+    buffers: Vec<OnceCell<Result<Bytes, Problem>>>,
     /// The binary part of the file.
     blob: Option<Vec<u8>>,
     /// What there is to say about it.
@@ -151,6 +151,24 @@ impl Document {
         notes.add_named(&self.file, place, what, name, instead);
     }
 
+    /// Says that something which can be done without could not be read.
+    ///
+    /// # Errors
+    /// The problem itself, where it is one of memory: nothing is opened in part for that.
+    pub(super) fn do_without(
+        &self,
+        part: &str,
+        what: &str,
+        problem: Problem,
+        instead: &'static str,
+    ) -> Result<(), Problem> {
+        if problem.is_of_memory() {
+            return Err(problem);
+        }
+        self.note(part, format!("{what}: {problem}"), instead);
+        Ok(())
+    }
+
     /// Notes what stands in the parts that were read and was not read itself, whatever it is.
     pub(super) fn note_unread(&self) {
         let mut reported = Vec::new();
@@ -243,13 +261,17 @@ impl Document {
         let missing = || Problem::Malformed(format!("there is no buffer {index}"));
         let place = self.buffers.get(index).ok_or_else(missing)?;
         let read = place.get_or_init(|| {
-            let read = self.read_buffer(index);
-            read.map_err(|problem| format!("buffer {index}: {problem}"))
+            self.read_buffer(index).map_err(|problem| {
+                if problem.is_of_memory() {
+                    return problem;
+                }
+                Problem::Malformed(format!("buffer {index}: {problem}"))
+            })
         });
         match read {
             Ok(Bytes::Own(bytes)) => Ok(bytes),
             Ok(Bytes::OfTheFile) => Ok(self.blob.as_deref().unwrap_or_default()),
-            Err(text) => Err(Problem::Malformed(text.clone())),
+            Err(problem) => Err(problem.clone()),
         }
     }
 
@@ -328,13 +350,7 @@ impl Document {
         let Some(texture) = self.json().element("textures", index) else {
             return malformed(format!("texture {index}"), "there is none of that number");
         };
-        // What several programs fall back on stands without an extension, and is preferred.
-        let of_extension = |name| texture.extension(name)?.index("source");
-        let source = texture
-            .index("source")
-            .or_else(|| of_extension("EXT_texture_webp"))
-            .or_else(|| of_extension("MSFT_texture_dds"))
-            .or_else(|| of_extension("KHR_texture_basisu"));
+        let source = image_of(texture);
         let Some((source, image)) =
             source.and_then(|source| Some((source, self.json().element("images", source)?)))
         else {
@@ -364,6 +380,16 @@ impl Document {
             None => malformed(part, "it has neither a file nor data"),
         }
     }
+}
+
+/// The image that a texture shows. What several programs fall back on stands without an extension, and is preferred.
+pub(super) fn image_of(texture: Json) -> Option<usize> {
+    let of_extension = |name| texture.extension(name)?.index("source");
+    texture
+        .index("source")
+        .or_else(|| of_extension("EXT_texture_webp"))
+        .or_else(|| of_extension("MSFT_texture_dds"))
+        .or_else(|| of_extension("KHR_texture_basisu"))
 }
 
 /// The bytes of a buffer.

@@ -22,10 +22,11 @@
 //! Out: `b = diffuse`, `m = 0`, `r` from `shininess`, and the exact Phong numbers in the material's
 //! `extras` as `glassbox_phong`, which are preferred on the way in.
 
+use super::super::error::FileError;
 use super::document::Document;
 use super::json::Json;
 use super::pictures::Pictures;
-use super::texture::{TextureInfo, alpha_of, mean, texture_source};
+use super::texture::{MeasuredImages, TextureInfo, alpha_of, mean, texture_source};
 use crate::scene::{Alpha, Phong};
 use bevy::color::LinearRgba;
 use serde::{Deserialize, Serialize};
@@ -64,7 +65,16 @@ pub(super) fn default_phong() -> Phong {
 }
 
 /// A material with its pictures. What cannot be taken over is noted.
-pub(super) fn phong_of(document: &Document, index: usize, material: Json, name: &str) -> Phong {
+///
+/// # Errors
+/// A picture whose mean is taken needs more memory than is left.
+pub(super) fn phong_of(
+    document: &Document,
+    measured: &mut MeasuredImages,
+    index: usize,
+    material: Json,
+    name: &str,
+) -> Result<Phong, FileError> {
     let part = format!("materials[{index}]");
     let note = |what: &str, instead| document.note_named(&part, what, name, instead);
     let extras = material.get("extras").and_then(|extras| extras.get(EXTRAS));
@@ -85,8 +95,11 @@ pub(super) fn phong_of(document: &Document, index: usize, material: Json, name: 
     let base = [red, green, blue];
     // Read in any case: what stands beside the exact numbers is not passed over.
     let (mapped, metal) = match glossy {
-        Some(glossy) => (specular_glossiness(document, glossy, base, &note), 0.0),
-        None => metallic_roughness(document, material, base, &note),
+        Some(glossy) => {
+            let phong = specular_glossiness(document, measured, glossy, base, &note)?;
+            (phong, 0.0)
+        }
+        None => metallic_roughness(document, measured, material, base, &note)?,
     };
     let mut phong = exact.unwrap_or(mapped);
     let pictures = Pictures::of(material);
@@ -97,8 +110,7 @@ pub(super) fn phong_of(document: &Document, index: usize, material: Json, name: 
         let what = "pictures with different texture coordinates of";
         note(what, "all are placed as the first");
     }
-    let source = |picture: Option<TextureInfo>| texture_source(document, picture?.texture);
-    let base_picture = source(pictures.base);
+    let base_picture = texture_source(document, pictures.base)?;
     let has_alpha = opacity(
         material,
         alpha,
@@ -120,11 +132,11 @@ pub(super) fn phong_of(document: &Document, index: usize, material: Json, name: 
         let strength = strength.unwrap_or(1.0);
         phong.emission = color(emissive.map(|e| at_least_0(e * strength)));
     }
-    phong.emission_map = source(pictures.emissive);
+    phong.emission_map = texture_source(document, pictures.emissive)?;
     if pictures.emissive.is_some() && phong.emission_map.is_none() {
         phong.emission = LinearRgba::BLACK;
     }
-    phong.normal_map = source(pictures.normal);
+    phong.normal_map = texture_source(document, pictures.normal)?;
     let scale = material
         .get("normalTexture")
         .and_then(|json| json.number("scale"));
@@ -135,7 +147,7 @@ pub(super) fn phong_of(document: &Document, index: usize, material: Json, name: 
         phong.diffuse = LinearRgba::BLACK;
         phong.specular = LinearRgba::BLACK;
         phong.mirror = LinearRgba::BLACK;
-        return phong;
+        return Ok(phong);
     }
     if metal > 0.5 && pictures.have_reflections() {
         note("pictures of reflections, on a metal, of", "left out");
@@ -144,7 +156,7 @@ pub(super) fn phong_of(document: &Document, index: usize, material: Json, name: 
         let map = match metal > 0.5 {
             // A metal reflects in its colour.
             true => base_picture.clone(),
-            false => pictures.of_reflections(document, &note),
+            false => pictures.of_reflections(document, &note)?,
         };
         phong.specular_map.clone_from(&map);
         phong.mirror_map = map;
@@ -157,7 +169,7 @@ pub(super) fn phong_of(document: &Document, index: usize, material: Json, name: 
         phong.diffuse = LinearRgba::WHITE;
     }
     phong.diffuse_map = base_picture;
-    phong
+    Ok(phong)
 }
 
 /// Whether a number of a material is clamped.
@@ -184,10 +196,11 @@ fn has_numbers_outside(material: Json) -> bool {
 /// The material, and how much of it is metal.
 fn metallic_roughness(
     document: &Document,
+    measured: &mut MeasuredImages,
     material: Json,
     base: [f32; 3],
     note: &impl Fn(&str, &'static str),
-) -> (Phong, f32) {
+) -> Result<(Phong, f32), FileError> {
     let pbr = material.get("pbrMetallicRoughness");
     let factor = |key| {
         let number = pbr.and_then(|pbr| pbr.number(key));
@@ -196,7 +209,7 @@ fn metallic_roughness(
     let (mut metal, mut rough) = (factor("metallicFactor"), factor("roughnessFactor"));
     let picture = pbr.and_then(|pbr| TextureInfo::of(pbr.get("metallicRoughnessTexture")?));
     if let Some(picture) = picture {
-        match mean(document, picture.texture) {
+        match mean(document, measured, picture.texture)? {
             Some([_, green, blue, _]) => {
                 note(
                     "a picture of metalness and roughness, of",
@@ -231,21 +244,23 @@ fn metallic_roughness(
         shininess: shininess(rough),
         ..Phong::default()
     };
-    (phong, metal)
+    Ok((phong, metal))
 }
 
 fn specular_glossiness(
     document: &Document,
+    measured: &mut MeasuredImages,
     json: Json,
     base: [f32; 3],
     note: &impl Fn(&str, &'static str),
-) -> Phong {
+) -> Result<Phong, FileError> {
     let mut glossiness = unit(json.number("glossinessFactor").unwrap_or(1.0));
     let picture = json
         .get("specularGlossinessTexture")
         .and_then(TextureInfo::of);
+    let mean = picture.map(|picture| mean(document, measured, picture.texture));
     // One that cannot be read is noted where reflections take its colour.
-    if let Some([.., alpha]) = picture.and_then(|picture| mean(document, picture.texture)) {
+    if let Some([.., alpha]) = mean.transpose()?.flatten() {
         if glossiness > 0.0 && alpha < 1.0 {
             note("a picture of glossiness, of", "its mean is taken");
         }
@@ -255,13 +270,13 @@ fn specular_glossiness(
     let gloss = (1.0 - rough) * (1.0 - rough);
     let specular = json.numbers("specularFactor").unwrap_or([1.0; 3]);
     let specular = color(specular.map(|s| unit(s) * gloss));
-    Phong {
+    Ok(Phong {
         diffuse: color(base),
         specular,
         mirror: specular,
         shininess: shininess(rough),
         ..Phong::default()
-    }
+    })
 }
 
 fn shininess(rough: f32) -> f32 {

@@ -138,7 +138,7 @@ impl Reader<'_> {
         let part = format!("node {index}");
         let note = |what: &str, instead| document.note_named(&part, what, name, instead);
         let mut contents = Vec::new();
-        let meshes = self.meshes(index, json, &part);
+        let meshes = self.meshes(index, json, &part)?;
         let is_skinned = json.index("skin").is_some() && !meshes.is_empty();
         if is_skinned {
             // Where its joints are says where it is; the node itself does not.
@@ -208,14 +208,14 @@ impl Reader<'_> {
     }
 
     /// A node for each primitive of the mesh that a node shows.
-    fn meshes(&mut self, index: usize, node: Json, part: &str) -> Vec<Node> {
+    fn meshes(&mut self, index: usize, node: Json, part: &str) -> Result<Vec<Node>, FileError> {
         let document = self.document;
         let Some(number) = node.index("mesh") else {
-            return Vec::new();
+            return Ok(Vec::new());
         };
         let Some(mesh) = document.json().element("meshes", number) else {
             document.note(part, "a mesh that there is not", "left out");
-            return Vec::new();
+            return Ok(Vec::new());
         };
         let own_weights = node.all_numbers("weights");
         let skin = node.index("skin");
@@ -224,11 +224,11 @@ impl Reader<'_> {
             (Some(skin), None) => format!("/Skin{skin}"),
             (None, None) => String::new(),
         };
-        let pose = skin.map(|skin| self.pose(skin, part)).unwrap_or_default();
+        let pose = skin.map(|skin| self.pose(skin, part)).transpose()?;
         let weights = own_weights.or_else(|| mesh.all_numbers("weights"));
         let pose = Pose {
             weights: weights.unwrap_or_default(),
-            ..pose
+            ..pose.unwrap_or_default()
         };
         let mut out = Vec::new();
         for (primitive, json) in mesh.list("primitives").enumerate() {
@@ -237,13 +237,13 @@ impl Reader<'_> {
                 match read_primitive(document, json.mark(), &name, &pose) {
                     Ok(Some(mesh)) => drop(self.model.meshes.insert(name.clone(), mesh)),
                     Ok(None) => continue,
+                    Err(problem) if problem.is_of_memory() => {
+                        return Err(document.error(name, problem));
+                    }
                     Err(problem) => {
                         document.note(&name, problem.to_string(), "left out");
-                        let is_of_memory = problem.is_of_memory();
-                        let error = document.error(name, problem);
-                        if is_of_memory || self.fault.is_none() {
-                            self.fault = Some(error);
-                        }
+                        let error = || document.error(name, problem);
+                        self.fault.get_or_insert_with(error);
                         continue;
                     }
                 }
@@ -255,24 +255,24 @@ impl Reader<'_> {
                 ..Node::default()
             });
         }
-        out
+        Ok(out)
     }
 
-    fn pose(&mut self, skin: usize, part: &str) -> Pose {
-        let known = self.poses.get(&skin).cloned();
-        known.unwrap_or_else(|| {
-            let joints = self.nodes.joints(skin).unwrap_or_else(|problem| {
-                let what = format!("its skin: {problem}");
-                self.document.note(part, what, "shown without");
-                Vec::new()
-            });
-            let pose = Pose {
-                joints,
-                ..Pose::default()
-            };
-            self.poses.insert(skin, pose.clone());
-            pose
-        })
+    fn pose(&mut self, skin: usize, part: &str) -> Result<Pose, FileError> {
+        if let Some(known) = self.poses.get(&skin) {
+            return Ok(known.clone());
+        }
+        let document = self.document;
+        let joints = self.nodes.joints(skin).or_else(|problem| {
+            document.do_without(part, "its skin", problem, "shown without")?;
+            Ok(Vec::new())
+        });
+        let pose = Pose {
+            joints: joints.map_err(|problem| document.error(part, problem))?,
+            ..Pose::default()
+        };
+        self.poses.insert(skin, pose.clone());
+        Ok(pose)
     }
 
     /// The material of a primitive; white and rough where it has none.
@@ -317,6 +317,9 @@ impl Reader<'_> {
         let (places, turns, scales) = match read() {
             Ok((None, None, None)) => return Ok(Vec::new()),
             Ok(read) => read,
+            Err(problem) if problem.is_of_memory() => {
+                return Err(FileError::new(&document.file, problem));
+            }
             Err(problem) => {
                 note(&format!("copies ({problem}) of"), "one is shown");
                 return Ok(Vec::new());

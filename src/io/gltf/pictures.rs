@@ -1,5 +1,6 @@
 //! Which pictures a material has, and which of them says where its meshes take them.
 
+use super::super::error::FileError;
 use super::document::Document;
 use super::json::Json;
 use super::material::SPECULAR_GLOSSINESS;
@@ -63,15 +64,15 @@ impl Pictures {
         &self,
         document: &Document,
         note: &impl Fn(&str, &'static str),
-    ) -> Option<TextureSource> {
-        let source = |picture: Option<TextureInfo>| texture_source(document, picture?.texture);
-        let tint = source(self.tint);
-        let strength = source(self.strength).map(|picture| alpha_of(&picture));
+    ) -> Result<Option<TextureSource>, FileError> {
+        let tint = texture_source(document, self.tint)?;
+        let strength = texture_source(document, self.strength)?;
+        let strength = strength.map(|picture| alpha_of(&picture));
         if tint.is_some() && strength.is_some() {
             let what = "two pictures of reflections, their colour and their strength, of";
             note(what, "the colour's is taken");
         }
-        tint.or(strength)
+        Ok(tint.or(strength))
     }
 }
 

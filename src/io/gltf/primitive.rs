@@ -65,9 +65,9 @@ fn triangles(
     let positions = attributes.index("POSITION").ok_or_else(missing)?;
     let mut positions = floats::<3>(document, positions)?;
     let count = positions.len();
-    let mut normals: Vec<[f32; 3]> = attribute(document, attributes, "NORMAL", name, count, floats);
+    let mut normals: Vec<[f32; 3]> = attribute(document, attributes, "NORMAL", name, count, floats)?;
     let mut tangents: Vec<[f32; 4]> =
-        attribute(document, attributes, "TANGENT", name, count, floats);
+        attribute(document, attributes, "TANGENT", name, count, floats)?;
     if normals.is_empty() && !tangents.is_empty() {
         // Without them there is nothing to be perpendicular to (glTF 2.0, 3.7.2.1).
         document.note(name, "tangents without normals", "left out");
@@ -78,7 +78,7 @@ fn triangles(
         normals: &mut normals,
         tangents: &mut tangents,
     };
-    pose.apply(document, primitive, name, &mut vertices);
+    pose.apply(document, primitive, name, &mut vertices)?;
     let material = primitive.index("material");
     let texture = placing_texture(document, material);
     let set = texture.map_or(0, |texture| texture.set);
@@ -88,7 +88,7 @@ fn triangles(
         true => floats::<2>,
         false => fractions::<2>,
     };
-    let mut uvs: Vec<[f32; 2]> = attribute(document, attributes, &set, name, count, read_uvs);
+    let mut uvs: Vec<[f32; 2]> = attribute(document, attributes, &set, name, count, read_uvs)?;
     if texture.is_some() && uvs.is_empty() {
         let what = format!("no {set} for the pictures of its material");
         document.note(name, what, "shown without them");
@@ -102,7 +102,7 @@ fn triangles(
             *uv = transform.transform_point2(Vec2::from(*uv)).into();
         }
     }
-    let mut colors: Vec<[f32; 4]> = attribute(document, attributes, "COLOR_0", name, count, colors);
+    let mut colors: Vec<[f32; 4]> = attribute(document, attributes, "COLOR_0", name, count, colors)?;
     if let Some((what, instead)) = to_unit(&mut colors) {
         document.note(name, what, instead);
     }
@@ -153,7 +153,7 @@ fn triangles(
     Ok(Some(mesh))
 }
 
-/// An attribute that the triangles can do without: what cannot be used is noted.
+/// An attribute that the triangles can do without: what cannot be used is noted, unless memory is what lacks.
 fn attribute<T>(
     document: &Document,
     attributes: Json,
@@ -161,19 +161,19 @@ fn attribute<T>(
     name: &str,
     count: usize,
     read: impl Fn(&Document, usize) -> Result<Vec<T>, Problem>,
-) -> Vec<T> {
+) -> Result<Vec<T>, Problem> {
     let Some(accessor) = attributes.index(key) else {
-        return Vec::new();
+        return Ok(Vec::new());
     };
     match read(document, accessor) {
-        Ok(values) if values.len() == count => return values,
+        Ok(values) if values.len() == count => return Ok(values),
         Ok(values) => {
             let what = format!("{} values of {key} for {count} vertices", values.len());
             document.note(name, what, "left out");
         }
-        Err(problem) => document.note(name, format!("{key}: {problem}"), "left out"),
+        Err(problem) => document.do_without(name, key, problem, "left out")?,
     }
-    Vec::new()
+    Ok(Vec::new())
 }
 
 /// Takes out the triangles that have no place; why the first has none.

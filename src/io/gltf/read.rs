@@ -1,7 +1,9 @@
 use super::super::error::{FileError, Problem};
 use super::super::folder::Folder;
 use super::super::model::Model;
-use super::super::picture::{PictureUse, ReadPicture, decode_picture, read_picture};
+use super::super::picture::{
+    MeasuredPictures, PictureUse, ReadPicture, decode_picture, read_picture,
+};
 use super::document::{Document, Picture};
 use super::environment::environment_of;
 use super::json::Json;
@@ -25,20 +27,18 @@ pub(crate) fn read_gltf(file: &Path, folder: &Folder, limits: &Limits) -> Result
         ..Model::default()
     };
     let used = used_materials(&document);
+    let mut measured = MeasuredPictures::of(limits);
     for (index, material) in document.json().list("materials").enumerate() {
         let name = material.text("name").map(str::to_owned);
         let name = name.unwrap_or_else(|| format!("material {index}"));
         let phong = match used.get(index) {
-            Some(true) => phong_of(&document, index, material.mark(), &name),
+            Some(true) => phong_of(&document, &mut measured, index, material.mark(), &name)?,
             // Its pictures may be missing, and nobody would miss them.
             _ => crate::scene::Phong::default(),
         };
         model.materials.push((name, phong));
     }
-    let mut fault = read_nodes(&document, &mut model)?;
-    if let Some(fault) = fault.take_if(|fault| fault.problem.is_of_memory()) {
-        return Err(fault);
-    }
+    let fault = read_nodes(&document, &mut model)?;
     if model.meshes.is_empty() {
         let nothing = || FileError::new(file, Problem::NoTriangles);
         return Err(fault.unwrap_or_else(nothing));
@@ -70,25 +70,35 @@ pub(crate) fn read_texture(
     usage: PictureUse,
     notes: &mut Vec<FileError>,
 ) -> Result<Image, FileError> {
-    let (file, limits) = (&document.file, &document.limits);
+    let file = &document.file;
     let count = document.json().list("textures").len();
     let index = part.strip_prefix("texture").and_then(|n| n.parse().ok());
     let Some(index) = index.filter(|&index: &usize| index < count) else {
         let name = part.to_owned();
         return Err(FileError::new(file, Problem::NoSuchTexture { name, count }));
     };
-    let ReadPicture { image, doubt } = match document.texture(index)? {
-        Picture::Beside(path) => {
-            let path = document.folder.resolve(&path)?;
-            read_picture(&path, usage, limits)?
-        }
-        Picture::Inside(bytes) => {
-            let name = format!("{}#{part}", file.display());
-            decode_picture(Path::new(&name), &bytes, usage, limits)?
-        }
-    };
+    let ReadPicture { image, doubt } = decode_texture(document, index, usage, &document.limits)?;
     notes.extend(doubt);
     Ok(image)
+}
+
+/// Decodes the picture of a texture by its index.
+pub(super) fn decode_texture(
+    document: &Document,
+    texture: usize,
+    usage: PictureUse,
+    limits: &Limits,
+) -> Result<ReadPicture, FileError> {
+    match document.texture(texture)? {
+        Picture::Beside(path) => {
+            let path = document.folder.resolve(&path)?;
+            read_picture(&path, usage, limits)
+        }
+        Picture::Inside(bytes) => {
+            let name = format!("{}#texture{texture}", document.file.display());
+            decode_picture(Path::new(&name), &bytes, usage, limits)
+        }
+    }
 }
 
 /// A name that the file gives, or what stands for it.

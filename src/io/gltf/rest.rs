@@ -26,7 +26,16 @@ pub(super) struct Vertices<'a> {
 
 impl Pose {
     /// Moves vertices to where they are at rest. What cannot be used is noted.
-    pub fn apply(&self, document: &Document, primitive: Json, name: &str, vertices: &mut Vertices) {
+    ///
+    /// # Errors
+    /// There is not memory enough.
+    pub fn apply(
+        &self,
+        document: &Document,
+        primitive: Json,
+        name: &str,
+        vertices: &mut Vertices,
+    ) -> Result<(), Problem> {
         let targets = primitive.list("targets");
         if self.weights.len() > targets.len() {
             let what = "more weights than morph targets";
@@ -44,15 +53,16 @@ impl Pose {
                 name,
                 weight,
                 vertices.positions,
-            );
-            morph(document, target, "NORMAL", name, weight, vertices.normals);
-            morph(document, target, "TANGENT", name, weight, vertices.tangents);
+            )?;
+            morph(document, target, "NORMAL", name, weight, vertices.normals)?;
+            morph(document, target, "TANGENT", name, weight, vertices.tangents)?;
         }
         if !self.joints.is_empty()
             && let Err(problem) = self.skin(document, primitive, name, vertices)
         {
-            document.note(name, format!("its skin: {problem}"), "shown without");
+            document.do_without(name, "its skin", problem, "shown without")?;
         }
+        Ok(())
     }
 
     fn skin(
@@ -154,9 +164,9 @@ fn morph<const N: usize>(
     name: &str,
     weight: f32,
     values: &mut [[f32; N]],
-) {
+) -> Result<(), Problem> {
     let Some(accessor) = target.index(key).filter(|_| !values.is_empty()) else {
-        return;
+        return Ok(());
     };
     match floats::<3>(document, accessor) {
         Ok(moves) if moves.len() == values.len() => {
@@ -171,8 +181,9 @@ fn morph<const N: usize>(
             format!("a morph target's {key} of another length"),
             "left out",
         ),
-        Err(problem) => document.note(name, format!("a morph target: {problem}"), "left out"),
+        Err(problem) => document.do_without(name, "a morph target", problem, "left out")?,
     }
+    Ok(())
 }
 
 /// The nodes of a file and which stands below which.

@@ -1,10 +1,11 @@
 //! How materials use pictures: which, where they lie on a mesh, and how they are read.
 
+use super::super::error::FileError;
 use super::super::file_name::{encoded, of_file, split_fragment};
-use super::super::picture::PictureUse;
-use super::document::{Document, Picture};
+use super::super::picture::{MeasuredPictures, PictureUse};
+use super::document::{Document, Picture, image_of};
 use super::json::Json;
-use super::read::read_texture;
+use super::read::decode_texture;
 use crate::scene::{MapFilter, TextureSource, Wrap};
 use bevy::math::{Affine2, Vec2};
 
@@ -120,48 +121,50 @@ pub(super) fn sampler_json(source: &TextureSource) -> Option<serde_json::Value> 
     Some(json)
 }
 
-/// How scenes name the picture of a texture. One that is not there is noted.
-pub(super) fn texture_source(document: &Document, texture: usize) -> Option<TextureSource> {
+/// How scenes name the picture of a texture, if there is one. One that is not there is noted.
+///
+/// # Errors
+/// What it lies in needs more memory than is left.
+pub(super) fn texture_source(
+    document: &Document,
+    texture: Option<TextureInfo>,
+) -> Result<Option<TextureSource>, FileError> {
+    let Some(TextureInfo { texture, .. }) = texture else {
+        return Ok(None);
+    };
     let path = match document.texture(texture) {
         Ok(Picture::Beside(path)) => of_file(path),
         Ok(Picture::Inside(_)) => {
             let file = document.file.file_name().unwrap_or_default();
             format!("{}#texture{texture}", encoded(file))
         }
+        Err(error) if error.problem.is_of_memory() => return Err(error),
         Err(error) => {
             let what = error.problem.to_string();
             let instead = "its materials have no picture there";
             let mut notes = document.notes.borrow_mut();
             notes.add(&error.file, error.place, what, instead);
-            return None;
+            return Ok(None);
         }
     };
-    Some(sampled(document, texture, path))
+    Ok(Some(sampled(document, texture, path)))
 }
 
-/// The mean of a picture's red, green, blue and alpha as numbers.
-pub(super) fn mean(document: &Document, texture: usize) -> Option<[f32; 4]> {
-    let image = read_texture(
-        document,
-        &format!("texture{texture}"),
-        PictureUse::Data,
-        &mut Vec::new(),
-    )
-    .ok()?;
-    let pixels = image.width() as usize * image.height() as usize;
-    let data = image.data?;
-    let mut sums = [0_u64; 4];
-    let pixel_bytes = data.len().checked_div(pixels)?;
-    // The upper bytes of 16 bits are near enough.
-    let step = match pixel_bytes {
-        4 => 1,
-        8 => 2,
-        _ => return None,
-    };
-    for pixel in data.chunks_exact(pixel_bytes) {
-        for (channel, sum) in sums.iter_mut().enumerate() {
-            *sum += u64::from(pixel[channel * step + step - 1]);
-        }
-    }
-    Some(sums.map(|sum| (sum as f64 / pixels as f64 / 255.0) as f32))
+/// Pictures that were measured, by their places among the images.
+pub(super) type MeasuredImages<'a> = MeasuredPictures<'a, Option<usize>>;
+
+/// The mean of a picture's red, green, blue and alpha as numbers; `None` where it cannot be read.
+///
+/// # Errors
+/// It needs more memory than is left.
+pub(super) fn mean(
+    document: &Document,
+    measured: &mut MeasuredImages,
+    texture: usize,
+) -> Result<Option<[f32; 4]>, FileError> {
+    let json = document.json().element("textures", texture);
+    let measured = measured.measure(json.and_then(image_of), |limits| {
+        decode_texture(document, texture, PictureUse::Data, limits)
+    })?;
+    Ok(measured.map(|picture| picture.mean.map(|channel| channel as f32)))
 }

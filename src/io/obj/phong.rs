@@ -13,26 +13,31 @@
 //!
 //! A colour that is not given is 1 1 1 where its picture is, and 0 0 0 where that cannot be found. `-clamp on` clamps.
 
-use super::super::error::Place;
+use super::super::error::{FileError, Place};
 use super::super::file_name::of_file;
 use super::super::folder::Folder;
 use super::super::notes::Notes;
-use super::super::picture::{PictureUse, ReadPicture, read_picture};
+use super::super::picture::{Measured, MeasuredPictures, PictureUse, read_picture};
 use super::mtl::{Map, MtlMaterial, NamedMap};
 use super::parts::{Pictured, Placement};
-use crate::io::Limits;
 use crate::scene::{Phong, PhongMap, TextureSource, Wrap};
 use bevy::color::LinearRgba;
-use exr::prelude::f16;
-use wgpu_types::TextureFormat;
 
 /// What is missing takes Phong's default; numbers outside Phong's ranges are clamped, with a note.
+///
+/// # Errors
+/// A picture that has to be looked at needs more memory than is left.
 pub(super) fn phong_of(
     material: &MtlMaterial,
     folder: &Folder,
-    limits: &Limits,
+    measured: &mut MeasuredPictures<String>,
     notes: &mut Notes,
-) -> (Phong, Pictured) {
+) -> Result<(Phong, Pictured), FileError> {
+    let mut measure = |map: &Map| {
+        measured.measure(map.path.clone(), |limits| {
+            read_picture(&folder.resolve(&map.path)?, PictureUse::Data, limits)
+        })
+    };
     let default = Phong::default();
     let place = || Place::Line(material.line);
     let mut note = |what: &str, instead| {
@@ -98,7 +103,7 @@ pub(super) fn phong_of(
     let mut normals = named(&material.normal_map);
     if let Some(bumps) = named(&material.bump_map) {
         let is_alone = normals.is_none();
-        if is_alone && holds_normals(&bumps, folder, limits) {
+        if is_alone && measure(&bumps)?.is_some_and(holds_normals) {
             note("a map_Bump whose picture holds normals, of", "read as norm");
             normals = Some(bumps);
         } else if is_alone {
@@ -128,7 +133,10 @@ pub(super) fn phong_of(
         let Some(map) = map else { continue };
         let is_diffuse = diffuse_path.as_ref() == Some(&map.path);
         let path = match of {
-            PhongMap::Opacity => opacity_source(&map, is_diffuse, folder, limits),
+            PhongMap::Opacity => {
+                let has_alpha = measure(&map)?.is_some_and(|picture| picture.has_alpha);
+                opacity_source(&map, is_diffuse, has_alpha)
+            }
             _ => Some(of_file(map.path)),
         };
         let Some(path) = path else {
@@ -162,7 +170,7 @@ pub(super) fn phong_of(
         placement: placements.first().copied().unwrap_or_default(),
         has_pictures: PhongMap::ALL.iter().any(|map| map.source(&phong).is_some()),
     };
-    (phong, pictured)
+    Ok((phong, pictured))
 }
 
 /// Some programs write `Kd 0 0 0` where they mean that all colour comes from the picture; and where that is missing,
@@ -173,39 +181,7 @@ fn is_black_under_a_map(material: &MtlMaterial) -> bool {
 
 /// What of a picture means opacity: its alpha where it has any, else its brightness; nothing where it is `is_diffuse`
 /// and has none.
-fn opacity_source(map: &Map, is_diffuse: bool, folder: &Folder, limits: &Limits) -> Option<String> {
-    let file = folder.resolve(&map.path).ok();
-    // One that cannot be read is noted where it is loaded.
-    let picture = file.and_then(|file| read_picture(&file, PictureUse::Data, limits).ok());
-    let has_alpha = picture.is_some_and(|read| {
-        let picture = read.image;
-        let is_half = picture.texture_descriptor.format == TextureFormat::Rgba16Float;
-        let pixels = picture.width() as usize * picture.height() as usize;
-        let data = picture.data.unwrap_or_default();
-        match data.len().checked_div(pixels) {
-            Some(4) => data
-                .as_chunks::<4>()
-                .0
-                .iter()
-                .any(|pixel| pixel[3] < u8::MAX),
-            Some(8) if is_half => data
-                .as_chunks::<8>()
-                .0
-                .iter()
-                .any(|&[.., low, high]| f16::from_ne_bytes([low, high]) < f16::ONE),
-            Some(8) => data
-                .as_chunks::<8>()
-                .0
-                .iter()
-                .any(|pixel| pixel[6..] != [u8::MAX; 2]),
-            Some(16) => data
-                .as_chunks::<16>()
-                .0
-                .iter()
-                .any(|&[.., a, b, c, d]| f32::from_ne_bytes([a, b, c, d]) < 1.0),
-            _ => false,
-        }
-    });
+fn opacity_source(map: &Map, is_diffuse: bool, has_alpha: bool) -> Option<String> {
     match (has_alpha, is_diffuse) {
         (true, _) => Some(format!("{}#alpha", of_file(map.path.clone()))),
         (false, false) => Some(of_file(map.path.clone())),
@@ -214,29 +190,11 @@ fn opacity_source(map: &Map, is_diffuse: bool, folder: &Folder, limits: &Limits)
 }
 
 /// Whether a picture holds normals in tangent space, not heights: in the mean they point out of the surface, and heights
-/// are grey.
-fn holds_normals(map: &Map, folder: &Folder, limits: &Limits) -> bool {
-    let file = folder.resolve(&map.path).ok();
-    let picture = file.and_then(|file| read_picture(&file, PictureUse::Data, limits).ok());
-    let Some(ReadPicture { image: picture, .. }) = picture else {
-        return false;
-    };
-    let data = picture.data.as_deref().unwrap_or_default();
-    let mut sums = [0_u64; 3];
-    // Such pictures have 8 bits.
-    if picture.texture_descriptor.format != TextureFormat::Rgba8Unorm {
-        return false;
-    }
-    let (pixels, _) = data.as_chunks::<4>();
-    for pixel in pixels {
-        for (sum, &value) in sums.iter_mut().zip(pixel) {
-            *sum += u64::from(value);
-        }
-    }
-    let count = pixels.len().max(1) as u64;
-    let [red, green, blue] = sums.map(|sum| sum / count);
-    let is_middle = |mean: u64| (96..160).contains(&mean);
-    is_middle(red) && is_middle(green) && blue > 192
+/// are grey. Such pictures have 8 bits.
+fn holds_normals(picture: Measured) -> bool {
+    let [red, green, blue, _] = picture.mean;
+    let is_middle = |mean: f64| (96.0 / 255.0..160.0 / 255.0).contains(&mean);
+    picture.has_8_bits && is_middle(red) && is_middle(green) && blue >= 193.0 / 255.0
 }
 
 fn clamp(phong: Phong) -> Phong {

@@ -3,6 +3,7 @@ use super::super::folder::Folder;
 use super::super::model::{ColoredMaterial, FreeNames, Model, Node};
 use super::super::names::Names;
 use super::super::notes::Notes;
+use super::super::picture::MeasuredPictures;
 use super::content::{Content, Part};
 use super::mtl::{MtlMaterial, read_mtl};
 use super::parts::{Builder, Pictured};
@@ -43,8 +44,9 @@ pub(crate) fn read_obj(file: &Path, folder: &Folder, limits: &Limits) -> Result<
         .extend(libraries.iter().map(|material| material.file.clone()));
     model.files.dedup();
     let mut pictured = Vec::new();
+    let mut measured = MeasuredPictures::of(limits);
     for material in &libraries {
-        let (phong, pictures) = phong_of(material, folder, limits, &mut model.notes);
+        let (phong, pictures) = phong_of(material, folder, &mut measured, &mut model.notes)?;
         model.materials.push((material.name.clone(), phong));
         pictured.push(pictures);
     }

@@ -9,6 +9,7 @@ mod exr_blocks;
 mod exr_subsampled;
 mod jpeg;
 mod light_layers;
+mod measured;
 mod open_exr;
 mod radiance;
 mod read;
@@ -18,6 +19,7 @@ mod write;
 
 pub(crate) use exr_blocks::block_bytes;
 pub use light_layers::{LightLayers, layer_name};
+pub(crate) use measured::{Measured, MeasuredPictures};
 pub(crate) use read::{PictureUse, ReadPicture, decode_picture, read_picture};
 pub use rendered::{Note, picture_notes, write_lights, write_rendered};
 pub use room::check_room;
