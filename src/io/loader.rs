@@ -9,7 +9,7 @@ use crate::scene::{MeshSource, TextureSource};
 use bevy::image::Image;
 use bevy::mesh::Mesh;
 use std::collections::hash_map::Entry;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -18,7 +18,8 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Loader<'a> {
     folder: &'a Folder,
     limits: &'a Limits,
-    models: HashMap<String, Model>,
+    /// The meshes of models by their names; those that were handed out are gone.
+    models: HashMap<String, BTreeMap<String, Option<Mesh>>>,
     /// Those that hold pictures.
     documents: HashMap<PathBuf, gltf::Document>,
     /// Every file that was read.
@@ -39,7 +40,8 @@ impl<'a> Loader<'a> {
         }
     }
 
-    /// The mesh that a source names. A mesh of a file is handed out once.
+    /// The mesh that a source names. A file is read again for a mesh that was handed out, as that of a file with one is
+    /// where sources name it both by its name and as the only one.
     pub fn mesh(&mut self, source: &MeshSource) -> Result<Mesh, FileError> {
         let (path, name) = match source {
             MeshSource::Shape(shape) => {
@@ -52,34 +54,34 @@ impl<'a> Loader<'a> {
             }
             MeshSource::File { path, name } => (path, name),
         };
-        let model = match self.models.entry(path.clone()) {
+        let meshes = match self.models.entry(path.clone()) {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(free) => {
                 let file = self.folder.resolve(path)?;
                 let folder = Folder::of(&file, self.folder.allow_outside);
                 let model = read_model(&file, &folder, self.limits)?;
-                self.read.extend(model.files.iter().cloned());
-                free.insert(model)
+                self.read.extend(model.files);
+                let meshes = model.meshes.into_iter();
+                free.insert(meshes.map(|(name, mesh)| (name, Some(mesh))).collect())
             }
         };
-        let key = match model.meshes.keys().next() {
-            Some(only) if name.is_empty() && model.meshes.len() == 1 => only.clone(),
-            _ => name.clone(),
+        let is_only = name.is_empty() && meshes.len() == 1;
+        let named = match is_only {
+            true => meshes.values_mut().next(),
+            false => meshes.get_mut(name),
         };
-        model.meshes.remove(&key).ok_or_else(|| {
-            let mut known: Vec<_> = model.meshes.keys().take(8).cloned().collect();
-            if model.meshes.len() > known.len() {
-                known.push(format!("{} more", model.meshes.len() - known.len()));
+        match named.map(Option::take) {
+            Some(Some(mesh)) => Ok(mesh),
+            Some(None) => {
+                self.models.remove(path);
+                self.mesh(source)
             }
-            let known = known.join(", ");
-            FileError::new(
-                path,
-                Problem::NoSuchMesh {
-                    name: name.clone(),
-                    known,
-                },
-            )
-        })
+            None => {
+                let known = listed(meshes.keys());
+                let name = name.clone();
+                Err(FileError::new(path, Problem::NoSuchMesh { name, known }))
+            }
+        }
     }
 
     /// The picture that a source names.
@@ -116,6 +118,17 @@ impl<'a> Loader<'a> {
         };
         gltf::read_texture(document, part, usage, &mut self.notes)
     }
+}
+
+/// Names for a message: the first, and how many more there are.
+fn listed<'a>(names: impl ExactSizeIterator<Item = &'a String>) -> String {
+    const SHOWN: usize = 8;
+    let more = names.len().saturating_sub(SHOWN);
+    let mut shown: Vec<String> = names.take(SHOWN).cloned().collect();
+    if more > 0 {
+        shown.push(format!("{more} more"));
+    }
+    shown.join(", ")
 }
 
 fn shape_error(error: shapes::ShapeError) -> FileError {
@@ -169,4 +182,45 @@ fn held_kind(file: &Path, extension: &str) -> Option<&'static str> {
         kind.2.contains(&extension) && start[..length].starts_with(kind.0)
     };
     KINDS.iter().find(begins).map(|&(_, kind, _)| kind)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    fn named(path: &str, name: &str) -> MeshSource {
+        MeshSource::File {
+            path: path.to_owned(),
+            name: name.to_owned(),
+        }
+    }
+
+    #[test]
+    fn the_only_mesh_is_that_of_a_file_with_one_and_not_the_last_that_is_left() {
+        let folder = tempfile::tempdir().unwrap();
+        let two = "v 0 0 0\nv 1 0 0\nv 0 1 0\no A\nf 1 2 3\no B\nf 1 2 3\n";
+        fs::write(folder.path().join("two.obj"), two).unwrap();
+        let one = two.split("o B").next().unwrap();
+        fs::write(folder.path().join("one.obj"), one).unwrap();
+        let folder = Folder {
+            path: folder.path().into(),
+            allow_outside: false,
+        };
+        let limits = Limits::default();
+        let mut loader = Loader::new(&folder, &limits);
+        assert!(loader.mesh(&named("two.obj", "A")).is_ok());
+        let error = loader.mesh(&named("two.obj", "")).unwrap_err().to_string();
+        assert!(error.ends_with("no mesh named ``; it has A, B"), "{error}");
+        assert!(loader.mesh(&named("two.obj", "B")).is_ok());
+        for names in [["A", ""], ["", "A"]] {
+            let mut loader = Loader::new(&folder, &limits);
+            let [first, second] = names.map(|name| {
+                let mesh = loader.mesh(&named("one.obj", name));
+                mesh.unwrap_or_else(|error| panic!("{names:?}: {error}"))
+                    .count_vertices()
+            });
+            assert_eq!((first, second), (3, 3));
+        }
+    }
 }
