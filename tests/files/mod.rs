@@ -13,6 +13,7 @@ pub mod models;
 mod names;
 mod obj;
 mod obj_unusual;
+mod opacity;
 mod pictures;
 mod ply;
 mod round_trip;

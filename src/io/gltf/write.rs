@@ -10,7 +10,9 @@ use super::glb::Bytes;
 use super::lamps::{camera_json, directional_json, point_json};
 use super::material::material_json;
 use super::texture::sampler_json;
-use crate::scene::{DirectionalLamp, MapFilter, PhongMap, PointLamp, SceneCamera, Wrap};
+use crate::scene::{
+    DirectionalLamp, MapFilter, PhongMap, PointLamp, SceneCamera, TextureSource, Wrap,
+};
 use bevy::asset::{AssetId, Assets};
 use bevy::ecs::hierarchy::ChildOf;
 use bevy::ecs::name::Name;
@@ -65,7 +67,8 @@ struct Glb<'a> {
     lists: Map<String, Value>,
     /// Primitives that are written: their attributes and indices, without a material.
     meshes: HashMap<AssetId<Mesh>, Value>,
-    images: HashMap<AssetId<Image>, usize>,
+    /// By the picture, and whether it has its alpha.
+    images: HashMap<(AssetId<Image>, bool), usize>,
     /// By image and how it is read.
     textures: HashMap<(usize, (Wrap, Wrap, MapFilter)), usize>,
     notes: Notes,
@@ -93,32 +96,35 @@ impl Glb<'_> {
     fn material(&mut self, material: &Material) -> Value {
         let phong = &material.phong;
         let mut json = material_json(&material.name, phong);
+        let opacity = phong.opacity_map.as_ref();
+        let is_in_base = opacity.is_some_and(|map| is_alpha_of(map, phong.diffuse_map.as_ref()));
+        if opacity.is_some() && !is_in_base && phong.opacity >= 1.0 {
+            json["alphaMode"] = json!("OPAQUE");
+        }
+        // In what fades or is cut out, the alpha of its colours' picture counts too.
+        let is_opaque = json.get("alphaMode").is_none_or(|mode| mode == "OPAQUE");
+        let keeps_alpha = is_in_base || is_opaque;
         let mut left_out = Vec::new();
         for map in PhongMap::ALL {
-            let Some(source) = map.source(phong) else {
+            if map.source(phong).is_none() {
                 continue;
-            };
+            }
             let is_said = match map {
                 PhongMap::Diffuse => {
                     let place = &mut json["pbrMetallicRoughness"];
-                    self.texture(material, map, place, "baseColorTexture")
+                    self.texture(material, map, keeps_alpha, place, "baseColorTexture")
                 }
-                PhongMap::Emission => self.texture(material, map, &mut json, "emissiveTexture"),
+                PhongMap::Emission => {
+                    self.texture(material, map, true, &mut json, "emissiveTexture")
+                }
                 PhongMap::Normal => {
-                    let is_said = self.texture(material, map, &mut json, "normalTexture");
+                    let is_said = self.texture(material, map, true, &mut json, "normalTexture");
                     if is_said {
                         json["normalTexture"]["scale"] = json!(phong.normal_scale);
                     }
                     is_said
                 }
-                PhongMap::Opacity => {
-                    let diffuse = phong.diffuse_map.as_ref();
-                    let is_said = is_alpha_of(&source.path, diffuse.map(|map| map.path.as_str()));
-                    if !is_said && phong.opacity >= 1.0 {
-                        json["alphaMode"] = json!("OPAQUE");
-                    }
-                    is_said
-                }
+                PhongMap::Opacity => is_in_base,
                 PhongMap::Specular | PhongMap::Mirror => false,
             };
             if !is_said {
@@ -131,11 +137,12 @@ impl Glb<'_> {
         json
     }
 
-    /// Says under a key which texture a map is; false where it cannot be said.
+    /// Says under a key which texture a map is, with its alpha or without; false where it cannot be said.
     fn texture(
         &mut self,
         material: &Material,
         map: PhongMap,
+        keeps_alpha: bool,
         place: &mut Value,
         key: &str,
     ) -> bool {
@@ -143,7 +150,7 @@ impl Glb<'_> {
         let Some((source, loaded)) = source.zip(map.loaded(&material.maps)) else {
             return false;
         };
-        let Some(image) = self.image(loaded.id()) else {
+        let Some(image) = self.image(loaded.id(), keeps_alpha) else {
             self.note("a picture that cannot be embedded:", &source.path);
             return false;
         };
@@ -165,19 +172,22 @@ impl Glb<'_> {
     }
 
     /// Embeds a loaded picture as a PNG; `None` where it does not hold colours in 8 or 16 bits.
-    fn image(&mut self, image: AssetId<Image>) -> Option<usize> {
-        if let Some(&image) = self.images.get(&image) {
+    fn image(&mut self, image: AssetId<Image>, keeps_alpha: bool) -> Option<usize> {
+        let key = (image, keeps_alpha);
+        if let Some(&image) = self.images.get(&key) {
             return Some(image);
         }
-        let pixels = pixels_of(self.world, image)?;
         use DynamicImage as D;
-        if !matches!(pixels, D::ImageRgba8(_) | D::ImageRgba16(_)) {
-            return None;
-        }
+        let pixels = match pixels_of(self.world, image)? {
+            pixels @ (D::ImageRgba8(_) | D::ImageRgba16(_)) if keeps_alpha => pixels,
+            pixels @ D::ImageRgba8(_) => pixels.into_rgb8().into(),
+            pixels @ D::ImageRgba16(_) => pixels.into_rgb16().into(),
+            _ => return None,
+        };
         let view = self.bytes.push(&encode_png(&pixels).ok()?);
         let image_json = json!({ "bufferView": view, "mimeType": "image/png" });
         let index = self.push("images", image_json);
-        self.images.insert(image, index);
+        self.images.insert(key, index);
         Some(index)
     }
 
@@ -319,11 +329,12 @@ impl Glb<'_> {
 }
 
 /// Whether a source is the alpha channel of another: then the base colour's picture carries it.
-fn is_alpha_of(source: &str, other: Option<&str>) -> bool {
+fn is_alpha_of(source: &TextureSource, other: Option<&TextureSource>) -> bool {
     let Some(other) = other else {
         return false;
     };
-    let ((file, part), (other_file, other_part)) = (split_fragment(source), split_fragment(other));
+    let (file, part) = split_fragment(&source.path);
+    let (other_file, other_part) = split_fragment(&other.path);
     let part = part
         .strip_suffix("alpha")
         .map(|part| part.trim_end_matches('.'));
