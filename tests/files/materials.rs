@@ -161,3 +161,34 @@ fn an_obj_keeps_its_pictures_their_clamping_and_the_colours_of_vertices() {
         assert!(off.fold(0.0, f32::max) < 1e-6, "{before:?}, {after:?}");
     }
 }
+
+#[test]
+fn a_picture_under_black_does_not_shine_through_an_obj() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut first = app();
+    let object = |id, red| {
+        (
+            SceneId(id),
+            Name::new(format!("{id}")),
+            Transform::default(),
+            MeshSource::default(),
+            Phong {
+                diffuse: LinearRgba::rgb(red, 0.0, 0.0),
+                diffuse_map: Some(TextureSource::new("builtin:uv")),
+                ..Phong::default()
+            },
+        )
+    };
+    first.world_mut().spawn(object(1, 0.0));
+    first.world_mut().spawn(object(2, 0.5));
+    first.update();
+    let file = folder.path().join("a.obj");
+    let notes = save(first.world_mut(), &file).unwrap_or_else(|error| panic!("{error}"));
+    let notes = notes.lines();
+    let is_told = |line: &&String| line.contains("black colour hides") && line.contains("`1`;");
+    assert_eq!(notes.iter().filter(is_told).count(), 1, "{notes:?}");
+    let (mut second, _) = opened(&file);
+    let read = objects(second.world_mut());
+    let of = |i: usize| (read[i].1.diffuse.red, read[i].1.diffuse_map.is_some());
+    assert_eq!([of(0), of(1)], [(0.0, false), (0.5, true)]);
+}

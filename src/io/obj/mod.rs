@@ -10,6 +10,7 @@ mod read;
 mod statements;
 mod write;
 mod write_mtl;
+mod written_pictures;
 
 use super::text;
 use std::path::Path;
