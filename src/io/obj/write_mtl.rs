@@ -3,7 +3,7 @@
 use super::super::error::{FileError, Place};
 use super::super::exported::Exported;
 use super::super::notes::Notes;
-use super::written_pictures::{Created, Pictures, text_of};
+use super::written_pictures::{Created, Kept, Pictures, text_of};
 use crate::scene::{Alpha, MapFilter, Phong, PhongMap, Wrap};
 use bevy::color::LinearRgba;
 use bevy::prelude::World;
@@ -60,11 +60,12 @@ pub(super) fn library(
             Alpha::Mask { .. } => cannot_say(notes, "its cutoff has no place in"),
             Alpha::Opaque => cannot_say(notes, "that it is opaque in any case has no place in"),
         }
+        let mut has_colors = false;
         for (map, word) in map_words(phong) {
             let Some(source) = map.source(phong) else {
                 continue;
             };
-            // Readers, ours too, take that for a whole colour: see there.
+            // Readers, ours too, take Kd 0 0 0 for the picture as it is.
             if map == PhongMap::Diffuse && is_black(phong.diffuse) {
                 cannot_say(notes, "a diffuse map that its black colour hides has no place in");
                 continue;
@@ -77,9 +78,16 @@ pub(super) fn library(
                 );
                 cannot_say(notes, &what);
             }
-            let Some(picture) = pictures.name(source, map.loaded(loaded), notes)? else {
-                continue;
+            let loaded = map.loaded(loaded);
+            let picture = match map {
+                PhongMap::Opacity => {
+                    let colors = phong.diffuse_map.as_ref().filter(|_| has_colors);
+                    pictures.name_of_opacity(source, loaded, colors, notes)
+                }
+                _ => pictures.name(source, loaded, Kept::All, notes),
             };
+            let Some(picture) = picture? else { continue };
+            has_colors |= map == PhongMap::Diffuse;
             let clamp = if !is_odd && source.wrap_u == Wrap::Clamp {
                 CLAMPED
             } else {

@@ -53,13 +53,39 @@ pub(super) fn text_of(file: &Path) -> Option<Vec<u8>> {
     })
 }
 
+/// What is written of a picture.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kept {
+    All,
+    /// Without alpha.
+    Brightness,
+}
+
+fn has_alpha(pixels: &DynamicImage) -> bool {
+    match pixels {
+        DynamicImage::ImageRgba8(pixels) => pixels.pixels().any(|pixel| pixel.0[3] < u8::MAX),
+        DynamicImage::ImageRgba16(pixels) => pixels.pixels().any(|pixel| pixel.0[3] < u16::MAX),
+        DynamicImage::ImageRgba32F(pixels) => pixels.pixels().any(|pixel| pixel.0[3] < 1.0),
+        _ => false,
+    }
+}
+
+fn without_alpha(pixels: DynamicImage) -> DynamicImage {
+    match pixels {
+        DynamicImage::ImageRgba8(_) => pixels.into_rgb8().into(),
+        DynamicImage::ImageRgba16(_) => pixels.into_rgb16().into(),
+        DynamicImage::ImageRgba32F(_) => pixels.into_rgb32f().into(),
+        other => other,
+    }
+}
+
 /// The pictures of one MTL while it is written.
 pub(super) struct Pictures<'a> {
     world: &'a World,
     file: &'a Path,
     rebase: Rebase,
-    /// Sources that become files beside the MTL, and their names.
-    beside: Vec<(String, String)>,
+    /// Sources that become files beside the MTL, what is kept of them, and their names.
+    beside: Vec<(String, Kept, String)>,
     created: Created,
     /// Files that materials name, which stay as they are.
     taken: HashSet<String>,
@@ -110,7 +136,7 @@ impl<'a> Pictures<'a> {
         loop {
             let name = format!("{stem}-texture{number}.{extension}");
             number += 1;
-            let given = self.beside.iter().any(|(_, other)| *other == name);
+            let given = self.beside.iter().any(|(.., other)| *other == name);
             if given || self.taken.contains(&name) {
                 continue;
             }
@@ -127,17 +153,39 @@ impl<'a> Pictures<'a> {
         }
     }
 
+    /// The same of a picture whose brightness is opacity, of a material whose colours' picture is `colors`. Readers, ours
+    /// too, take a `map_d` for alpha where it has any, or where it is the colours' picture: such a one is written without
+    /// its alpha, under a name of its own.
+    pub fn name_of_opacity(
+        &mut self,
+        source: &TextureSource,
+        loaded: Option<&Handle<Image>>,
+        colors: Option<&TextureSource>,
+        notes: &mut Notes,
+    ) -> Result<Option<String>, FileError> {
+        let file_of = |path: &str| self.named(path).unwrap_or_else(|| path.to_owned());
+        let is_of_colors = colors.is_some_and(|map| file_of(&map.path) == file_of(&source.path));
+        let pixels = loaded.and_then(|handle| pixels_of(self.world, handle.id()));
+        let kept = match is_of_colors || pixels.is_some_and(|pixels| has_alpha(&pixels)) {
+            true => Kept::Brightness,
+            false => Kept::All,
+        };
+        self.name(source, loaded, kept, notes)
+    }
+
     /// What the MTL calls a picture; `None` where it cannot be written.
     pub fn name(
         &mut self,
         TextureSource { path, .. }: &TextureSource,
         loaded: Option<&Handle<Image>>,
+        kept: Kept,
         notes: &mut Notes,
     ) -> Result<Option<String>, FileError> {
-        if let Some(named) = self.named(path) {
+        if let Some(named) = self.named(path).filter(|_| kept == Kept::All) {
             return Ok(Some(named));
         }
-        if let Some((_, name)) = self.beside.iter().find(|(source, _)| source == path) {
+        let is_it = |(source, how, _): &&(String, Kept, String)| source == path && *how == kept;
+        if let Some((.., name)) = self.beside.iter().find(is_it) {
             return Ok(Some(name.clone()));
         }
         let pixels = loaded.and_then(|handle| pixels_of(self.world, handle.id()));
@@ -146,8 +194,14 @@ impl<'a> Pictures<'a> {
             notes.add_named(self.file, Place::Whole, what, path, "left out");
             return Ok(None);
         };
+        let pixels = match kept {
+            Kept::All => pixels,
+            Kept::Brightness => without_alpha(pixels),
+        };
         let (extension, format) = match pixels {
-            DynamicImage::ImageRgba32F(_) => ("exr", image::ImageFormat::OpenExr),
+            DynamicImage::ImageRgba32F(_) | DynamicImage::ImageRgb32F(_) => {
+                ("exr", image::ImageFormat::OpenExr)
+            }
             _ => ("png", image::ImageFormat::Png),
         };
         let mut bytes = Cursor::new(Vec::new());
@@ -160,9 +214,18 @@ impl<'a> Pictures<'a> {
             replace_file(&place, |out| out.write_all(&bytes))?;
             self.created.0.push(place);
         }
-        let what = format!("an MTL cannot name the picture `{path}`, written as");
-        notes.add_named(self.file, Place::Whole, what, &name, "named so");
-        self.beside.push((path.clone(), name.clone()));
+        let (what, instead) = match kept {
+            Kept::All => (
+                format!("an MTL cannot name the picture `{path}`, written as"),
+                "named so",
+            ),
+            Kept::Brightness => (
+                format!("an MTL would take the alpha of `{path}` for opacity, written as"),
+                "its brightness alone is there",
+            ),
+        };
+        notes.add_named(self.file, Place::Whole, what, &name, instead);
+        self.beside.push((path.clone(), kept, name.clone()));
         Ok(Some(name))
     }
 
@@ -191,7 +254,7 @@ impl<'a> Pictures<'a> {
         let is_used = |name: &&str| {
             let place = folder_of(self.file).join(name);
             self.taken.contains(*name)
-                || self.beside.iter().any(|(_, other)| other == name)
+                || self.beside.iter().any(|(.., other)| other == name)
                 || files.is_some_and(|files| {
                     super::super::check_outputs([&*place], files.inputs()).is_err()
                 })
