@@ -16,12 +16,20 @@ fn an_obj_says_whether_a_material_mirrors_and_has_one_colour_for_it() {
     let color = LinearRgba::rgb(0.25, 0.5, 0.75);
     let other = LinearRgba::rgb(0.5, 0.5, 0.5);
     let none = LinearRgba::BLACK;
-    for (written, read, is_noted) in [
-        ((none, none), (none, none), false),
-        ((color, none), (color, none), false),
-        ((color, color), (color, color), false),
-        ((none, color), (color, color), true),
-        ((color, other), (color, color), true),
+    for (written, read, noted) in [
+        ((none, none), (none, none), ""),
+        ((color, none), (color, none), ""),
+        ((color, color), (color, color), ""),
+        (
+            (none, color),
+            (color, color),
+            "it has a highlight of the mirror's colour",
+        ),
+        (
+            (color, other),
+            (color, color),
+            "its mirror has that of its highlight",
+        ),
     ] {
         let folder = tempfile::tempdir().unwrap();
         let mut first = app();
@@ -38,11 +46,78 @@ fn an_obj_says_whether_a_material_mirrors_and_has_one_colour_for_it() {
         first.update();
         let file = folder.path().join("a.obj");
         let notes = save(first.world_mut(), &file).unwrap_or_else(|error| panic!("{error}"));
-        let noted = notes.iter().any(|note| note.what.contains("mirror"));
-        assert_eq!(noted, is_noted, "{written:?}: {notes:?}");
+        let told = notes.lines();
+        let is_told = match noted {
+            "" => told.is_empty(),
+            noted => told.len() == 1 && told[0].contains(noted),
+        };
+        assert!(is_told, "{written:?}: {told:?}");
         let (mut second, _) = opened(&file);
         let phong = &objects(second.world_mut())[0].1;
         assert_eq!((phong.specular, phong.mirror), read, "{written:?}");
+    }
+}
+
+#[test]
+fn an_obj_says_of_which_reflection_its_one_picture_is() {
+    let white = LinearRgba::WHITE;
+    let map = |path: &str| Some(TextureSource::new(path));
+    for (specular, specular_map, mirror_map, read, noted) in [
+        // What is black has no use for a picture.
+        (
+            LinearRgba::BLACK,
+            map("builtin:uv"),
+            None,
+            None,
+            "highlight of the mirror's",
+        ),
+        (
+            LinearRgba::BLACK,
+            None,
+            map("builtin:uv"),
+            map("a-texture0.png"),
+            "highlight of the mirror's",
+        ),
+        (
+            white,
+            map("builtin:uv"),
+            None,
+            map("a-texture0.png"),
+            "one picture",
+        ),
+        (white, None, map("builtin:uv"), None, "one picture"),
+        (
+            white,
+            map("builtin:uv"),
+            map("builtin:uv"),
+            map("a-texture0.png"),
+            "named so",
+        ),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let mut first = app();
+        let phong = Phong {
+            specular,
+            mirror: white,
+            specular_map,
+            mirror_map,
+            ..Phong::default()
+        };
+        first.world_mut().spawn((
+            SceneId(1),
+            Transform::default(),
+            MeshSource::default(),
+            phong.clone(),
+        ));
+        first.update();
+        let file = folder.path().join("a.obj");
+        let notes = save(first.world_mut(), &file).unwrap_or_else(|error| panic!("{error}"));
+        let told = notes.lines();
+        assert!(told[0].contains(noted), "{phong:?}: {told:?}");
+        let (mut second, _) = opened(&file);
+        let found = &objects(second.world_mut())[0].1;
+        let maps = (found.specular_map.clone(), found.mirror_map.clone());
+        assert_eq!(maps, (read.clone(), read), "{phong:?}");
     }
 }
 

@@ -40,13 +40,11 @@ pub(super) fn library(
         // Writing to a string cannot fail.
         let _ = writeln!(text, "newmtl {}", material.name);
         let _ = writeln!(text, "Kd {}", rgb(phong.diffuse));
-        let (highlight, illum) = highlight(phong);
-        if phong.mirror != LinearRgba::BLACK && phong.mirror != phong.specular {
-            let what =
-                "highlight and mirror have one colour in an MTL, that of the material's highlight:";
-            notes.add_named(file, Place::Whole, what, &material.name, "written so");
+        let (reflected, illum) = reflected(phong);
+        for (what, instead) in unlike_reflections(phong) {
+            notes.add_named(file, Place::Whole, what, &material.name, instead);
         }
-        let _ = writeln!(text, "Ks {}", rgb(highlight));
+        let _ = writeln!(text, "Ks {}", rgb(reflected));
         let _ = writeln!(text, "illum {illum}");
         let _ = writeln!(text, "Ns {}", phong.shininess);
         let _ = writeln!(text, "d {}", phong.opacity);
@@ -67,7 +65,10 @@ pub(super) fn library(
             };
             // Readers, ours too, take Kd 0 0 0 for the picture as it is.
             if map == PhongMap::Diffuse && is_black(phong.diffuse) {
-                cannot_say(notes, "a diffuse map that its black colour hides has no place in");
+                cannot_say(
+                    notes,
+                    "a diffuse map that its black colour hides has no place in",
+                );
                 continue;
             }
             let is_odd = source.wrap_u != source.wrap_v || source.wrap_u == Wrap::Mirror;
@@ -101,9 +102,6 @@ pub(super) fn library(
             };
             let _ = writeln!(text, "{word} {clamp}{scale}{picture}");
         }
-        if phong.mirror_map.is_some() && phong.mirror_map != phong.specular_map {
-            cannot_say(notes, "a mirror map of its own has no place in");
-        }
         text.push('\n');
     }
     let (pictures, replaced) = pictures.finish(&old);
@@ -119,13 +117,13 @@ pub(super) const CLAMPED: &str = "-clamp on ";
 
 /// The maps that an MTL has, and what it calls them.
 fn map_words(phong: &Phong) -> impl Iterator<Item = (PhongMap, &'static str)> {
-    let highlight = match phong.specular {
-        LinearRgba::BLACK if phong.specular_map.is_none() => PhongMap::Mirror,
-        _ => PhongMap::Specular,
+    let reflected = match is_black(phong.specular) && !is_black(phong.mirror) {
+        true => PhongMap::Mirror,
+        false => PhongMap::Specular,
     };
     [
         (PhongMap::Diffuse, "map_Kd"),
-        (highlight, "map_Ks"),
+        (reflected, "map_Ks"),
         (PhongMap::Emission, "map_Ke"),
         (PhongMap::Opacity, "map_d"),
         (PhongMap::Normal, "norm"),
@@ -138,12 +136,32 @@ fn is_black(color: LinearRgba) -> bool {
 }
 
 /// The one colour that an MTL has for highlight and mirror, and the model that says which of them there are.
-fn highlight(phong: &Phong) -> (LinearRgba, u8) {
-    const NONE: LinearRgba = LinearRgba::BLACK;
-    match (phong.specular, phong.mirror) {
-        (NONE, NONE) => (NONE, 1),
-        (specular, NONE) => (specular, 2),
-        (NONE, mirror) => (mirror, 3),
-        (specular, _) => (specular, 3),
+fn reflected(phong: &Phong) -> (LinearRgba, u8) {
+    match (is_black(phong.specular), is_black(phong.mirror)) {
+        (true, true) => (LinearRgba::BLACK, 1),
+        (false, true) => (phong.specular, 2),
+        (true, false) => (phong.mirror, 3),
+        (false, false) => (phong.specular, 3),
     }
+}
+
+/// What an MTL says otherwise of reflections, which have one colour and one picture in it, and how.
+fn unlike_reflections(phong: &Phong) -> Vec<(&'static str, &'static str)> {
+    let mut found = Vec::new();
+    if is_black(phong.mirror) {
+        return found;
+    }
+    if is_black(phong.specular) {
+        let what = "a mirror without a highlight, which an MTL cannot say, of the material";
+        return vec![(what, "it has a highlight of the mirror's colour there")];
+    }
+    if phong.mirror != phong.specular {
+        let what = "highlight and mirror have one colour in an MTL, as has the material";
+        found.push((what, "its mirror has that of its highlight there"));
+    }
+    if phong.mirror_map != phong.specular_map {
+        let what = "highlight and mirror have one picture in an MTL, as has the material";
+        found.push((what, "its mirror has that of its highlight there"));
+    }
+    found
 }
