@@ -266,6 +266,37 @@ fn what_a_skin_cannot_mean_is_told_and_the_rest_of_it_moves_the_mesh() {
 }
 
 #[test]
+fn a_mesh_whose_skin_cannot_be_used_stands_where_its_node_is() {
+    type Change = fn(&mut serde_json::Value);
+    let half = [[0.5, 0.5, 0.0, 0.0]; 5];
+    let cases: [Change; 3] = [
+        |d| d["nodes"][0]["skin"] = json!(99),
+        |d| {
+            let attributes = &mut d["meshes"][0]["primitives"][0]["attributes"];
+            attributes.as_object_mut().unwrap().remove("JOINTS_0");
+        },
+        |d| d["accessors"][4]["count"] = json!(4),
+    ];
+    for (number, change) in cases.into_iter().enumerate() {
+        let (mut app, notes) = skinned([0, 1, 0, 0], half, |d| {
+            d["nodes"][0]["translation"] = json!([50.0, 0.0, 0.0]);
+            d["nodes"][0]["children"] = json!([1]);
+            d["scenes"] = json!([{ "nodes": [0, 2] }]);
+            change(d);
+        });
+        let told = notes.iter().filter(|note| note.contains("its skin:"));
+        assert_eq!(told.count(), 1, "{number}: {notes:#?}");
+        let at = place(app.world_mut(), "node 0").translation;
+        assert_eq!(at, Vec3::new(50.0, 0.0, 0.0).into(), "{number}");
+        assert_eq!(corners(&mut app)[0][1], POSITIONS[1].into(), "{number}");
+        let world = app.world_mut();
+        let mut shown = world.query::<(&Mesh3d, &bevy::prelude::Transform)>();
+        let places: Vec<_> = shown.iter(world).map(|(_, at)| at.translation.x).collect();
+        assert_eq!(places, [50.0], "{number}");
+    }
+}
+
+#[test]
 fn what_a_morph_target_moves_besides_is_told() {
     let primitive = json!({ "attributes": { "POSITION": 0 }, "indices": 2,
         "targets": [{ "POSITION": 0, "COLOR_0": 0, "TEXCOORD_0": 1 }] });

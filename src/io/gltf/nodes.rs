@@ -8,12 +8,12 @@ use super::json::Json;
 use super::lamps::{Lamp, camera_of, has_no_cone, lamp_of};
 use super::material::default_phong;
 use super::placement::{Placement, placement_of, turn_of};
-use super::primitive::read_primitive;
+use super::primitive::{Triangles, read_primitive};
 use super::read::name_of;
 use super::rest::{Nodes, Pose};
 use bevy::math::{Quat, Vec3};
 use bevy::transform::components::Transform;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Adds the nodes of the file's scene, and what they hold. Returns the first reason why something could not be shown.
 pub(super) fn read_nodes(
@@ -25,6 +25,7 @@ pub(super) fn read_nodes(
         model,
         nodes: Nodes::new(document),
         poses: HashMap::new(),
+        skinned: HashSet::new(),
         white: None,
         fault: None,
     };
@@ -38,6 +39,8 @@ struct Reader<'a> {
     nodes: Nodes<'a>,
     /// Skins at rest.
     poses: HashMap<usize, Pose>,
+    /// Names of meshes that a skin's joints place.
+    skinned: HashSet<String>,
     /// The material of primitives without one.
     white: Option<usize>,
     fault: Option<FileError>,
@@ -139,20 +142,19 @@ impl Reader<'_> {
         let note = |what: &str, instead| document.note_named(&part, what, name, instead);
         let mut contents = Vec::new();
         let meshes = self.meshes(index, json, &part)?;
-        let is_skinned = json.index("skin").is_some() && !meshes.is_empty();
-        if is_skinned {
-            // Where its joints are says where it is; the node itself does not.
-            for (number, mesh) in meshes.iter().cloned().enumerate() {
-                self.model.nodes.push(Node {
-                    name: format!("{name}/skin {number}"),
-                    ..mesh
-                });
-            }
-        } else {
-            contents.extend(self.instances(json, &meshes, &note)?);
-            if contents.is_empty() {
-                contents.extend(meshes);
-            }
+        let is_skinned =
+            |node: &Node| matches!(&node.mesh, Some(mesh) if self.skinned.contains(mesh));
+        let (skinned, meshes): (Vec<Node>, Vec<Node>) = meshes.into_iter().partition(is_skinned);
+        // Where its joints are says where it is; the node itself does not.
+        for (number, mesh) in skinned.into_iter().enumerate() {
+            self.model.nodes.push(Node {
+                name: format!("{name}/skin {number}"),
+                ..mesh
+            });
+        }
+        contents.extend(self.instances(json, &meshes, &note)?);
+        if contents.is_empty() {
+            contents.extend(meshes);
         }
         if let Some(light) = json.extension("KHR_lights_punctual") {
             contents.extend(light_of(document, light, &note));
@@ -235,7 +237,12 @@ impl Reader<'_> {
             let name = format!("Mesh{number}/Primitive{primitive}{ending}");
             if !self.model.meshes.contains_key(&name) {
                 match read_primitive(document, json.mark(), &name, &pose) {
-                    Ok(Some(mesh)) => drop(self.model.meshes.insert(name.clone(), mesh)),
+                    Ok(Some(Triangles { mesh, is_skinned })) => {
+                        self.model.meshes.insert(name.clone(), mesh);
+                        if is_skinned {
+                            self.skinned.insert(name.clone());
+                        }
+                    }
                     Ok(None) => continue,
                     Err(problem) if problem.is_of_memory() => {
                         return Err(document.error(name, problem));

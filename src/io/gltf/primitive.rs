@@ -20,13 +20,20 @@ const TRIANGLES: usize = 4;
 const TRIANGLE_STRIP: usize = 5;
 const TRIANGLE_FAN: usize = 6;
 
+/// The triangles of a primitive at rest.
+pub(super) struct Triangles {
+    pub mesh: Mesh,
+    /// Its skin's joints say where it is, and no node does.
+    pub is_skinned: bool,
+}
+
 /// A primitive's triangles at rest; `None` where it has none, which is noted.
 pub(super) fn read_primitive(
     document: &Document,
     primitive: Json,
     name: &str,
     pose: &Pose,
-) -> Result<Option<Mesh>, Problem> {
+) -> Result<Option<Triangles>, Problem> {
     let mode = primitive.index("mode").unwrap_or(TRIANGLES);
     if mode <= LINE_STRIP {
         document.note(name, "points and lines", "left out");
@@ -60,12 +67,13 @@ fn triangles(
     mode: usize,
     name: &str,
     pose: &Pose,
-) -> Result<Option<Mesh>, Problem> {
+) -> Result<Option<Triangles>, Problem> {
     let missing = || Problem::Malformed("it has no positions".into());
     let positions = attributes.index("POSITION").ok_or_else(missing)?;
     let mut positions = floats::<3>(document, positions)?;
     let count = positions.len();
-    let mut normals: Vec<[f32; 3]> = attribute(document, attributes, "NORMAL", name, count, floats)?;
+    let mut normals: Vec<[f32; 3]> =
+        attribute(document, attributes, "NORMAL", name, count, floats)?;
     let mut tangents: Vec<[f32; 4]> =
         attribute(document, attributes, "TANGENT", name, count, floats)?;
     if normals.is_empty() && !tangents.is_empty() {
@@ -78,7 +86,7 @@ fn triangles(
         normals: &mut normals,
         tangents: &mut tangents,
     };
-    pose.apply(document, primitive, name, &mut vertices)?;
+    let is_skinned = pose.apply(document, primitive, name, &mut vertices)?;
     let material = primitive.index("material");
     let texture = placing_texture(document, material);
     let set = texture.map_or(0, |texture| texture.set);
@@ -102,7 +110,8 @@ fn triangles(
             *uv = transform.transform_point2(Vec2::from(*uv)).into();
         }
     }
-    let mut colors: Vec<[f32; 4]> = attribute(document, attributes, "COLOR_0", name, count, colors)?;
+    let mut colors: Vec<[f32; 4]> =
+        attribute(document, attributes, "COLOR_0", name, count, colors)?;
     if let Some((what, instead)) = to_unit(&mut colors) {
         document.note(name, what, instead);
     }
@@ -150,7 +159,7 @@ fn triangles(
     if colors.iter().any(|&color| color != [1.0; 4]) {
         mesh.insert_attribute(Mesh::ATTRIBUTE_COLOR, colors);
     }
-    Ok(Some(mesh))
+    Ok(Some(Triangles { mesh, is_skinned }))
 }
 
 /// An attribute that the triangles can do without: what cannot be used is noted, unless memory is what lacks.

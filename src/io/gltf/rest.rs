@@ -25,7 +25,8 @@ pub(super) struct Vertices<'a> {
 }
 
 impl Pose {
-    /// Moves vertices to where they are at rest. What cannot be used is noted.
+    /// Moves vertices to where they are at rest; true where a skin does it, and they are in the world's space then. What
+    /// cannot be used is noted.
     ///
     /// # Errors
     /// There is not memory enough.
@@ -35,7 +36,7 @@ impl Pose {
         primitive: Json,
         name: &str,
         vertices: &mut Vertices,
-    ) -> Result<(), Problem> {
+    ) -> Result<bool, Problem> {
         let targets = primitive.list("targets");
         if self.weights.len() > targets.len() {
             let what = "more weights than morph targets";
@@ -57,12 +58,16 @@ impl Pose {
             morph(document, target, "NORMAL", name, weight, vertices.normals)?;
             morph(document, target, "TANGENT", name, weight, vertices.tangents)?;
         }
-        if !self.joints.is_empty()
-            && let Err(problem) = self.skin(document, primitive, name, vertices)
-        {
-            document.do_without(name, "its skin", problem, "shown without")?;
+        if self.joints.is_empty() {
+            return Ok(false);
         }
-        Ok(())
+        match self.skin(document, primitive, name, vertices) {
+            Ok(()) => Ok(true),
+            Err(problem) => {
+                document.do_without(name, "its skin", problem, "shown without")?;
+                Ok(false)
+            }
+        }
     }
 
     fn skin(
