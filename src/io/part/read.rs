@@ -3,10 +3,9 @@ use super::{Part, channel_name};
 use crate::film::{Film, Sum};
 use crate::io::error::{FileError, Problem};
 use crate::io::limits::Limits;
-use crate::io::picture::block_bytes;
+use crate::io::picture::{block_bytes, exr_head, exr_problem};
 use crate::io::{check_size, open_to_read};
 use exr::block::reader::ChunksReader;
-use exr::meta::MetaData;
 use exr::meta::attribute::SampleType;
 use exr::prelude::{AttributeValue, Text, Vec2};
 use glam::UVec2;
@@ -16,10 +15,10 @@ use std::path::Path;
 
 /// Reads a part. Whether it is one, and how large, is found out before anything is decoded.
 pub fn read_part(path: &Path, limits: &Limits) -> Result<Part, FileError> {
-    let malformed = |text: &str| FileError::new(path, Problem::Malformed(text.to_owned()));
-    let no_part = || malformed(NO_PART);
-    let meta = MetaData::read_from_buffered(open_to_read(path, limits.file_bytes)?, false)
-        .map_err(|_| no_part())?;
+    let fails = |problem| FileError::new(path, problem);
+    let is_none = || Problem::Malformed(NO_PART.to_owned());
+    let no_part = || fails(is_none());
+    let meta = exr_head(path, limits, is_none)?;
     let header = meta.headers.first().ok_or_else(no_part)?;
     let Some(AttributeValue::Text(text)) = header
         .own_attributes
@@ -34,29 +33,25 @@ pub fn read_part(path: &Path, limits: &Limits) -> Result<Part, FileError> {
         samples,
         uniform,
         output,
-    } = Header::parse(&text.to_string()).map_err(|text| malformed(&text))?;
+    } = Header::parse(&text.to_string()).map_err(|text| fails(Problem::Malformed(text)))?;
     let (width, height) = (header.layer_size.x() as u64, header.layer_size.y() as u64);
     check_size(path, width, height, limits)?;
-    let incomplete = || {
-        let text = "the part is incomplete".to_owned();
-        FileError::new(path, Problem::Truncated(text))
-    };
     let length = fs::metadata(path)
         .map_err(|error| FileError::reading(path, &error))?
         .len();
     if length.saturating_mul(BEST_RATIO) < width * height * BYTES {
-        return Err(incomplete());
+        return Err(fails(incomplete()));
     }
     // A block of all channels, compressed and not.
     let block = block_bytes(header).saturating_mul(3);
     (limits.memory)
         .claim((width * height * PIXEL).saturating_add(block))
-        .map_err(|problem| FileError::new(path, problem))?;
+        .map_err(fails)?;
     let file = open_to_read(path, limits.file_bytes)?;
-    let sums = read_sums(file, header).ok_or_else(incomplete)?;
+    let sums = read_sums(file, header).map_err(fails)?;
     let count: u64 = samples.iter().map(|range| range.end - range.start).sum();
     let film = Film::of_sums(UVec2::new(width as u32, height as u32), &sums, count as u32)
-        .ok_or_else(incomplete)?;
+        .ok_or_else(|| fails(incomplete()))?;
     Ok(Part {
         digest,
         samples,
@@ -75,8 +70,15 @@ const BYTES: u64 = 60;
 /// Run-length encoding makes 2 bytes of at most 128.
 const BEST_RATIO: u64 = 64;
 
+fn incomplete() -> Problem {
+    Problem::Truncated("the part is incomplete".to_owned())
+}
+
 /// The sums of all pixels, row by row. Of other channels nothing is kept.
-fn read_sums(file: BufReader<File>, header: &exr::meta::header::Header) -> Option<Vec<Sum>> {
+fn read_sums(
+    file: BufReader<File>,
+    header: &exr::meta::header::Header,
+) -> Result<Vec<Sum>, Problem> {
     let channels = &header.channels;
     let mut places = vec![None; channels.list.len()];
     for component in 0..3 {
@@ -85,14 +87,16 @@ fn read_sums(file: BufReader<File>, header: &exr::meta::header::Header) -> Optio
             let mut names = channels.list.iter();
             let place = names.position(|channel| {
                 channel.name.to_string() == name && channel.sample_type == SampleType::U32
-            })?;
-            places[place] = Some((component, word));
+            });
+            let missing = || Problem::Malformed(format!("has no channel {name} of whole numbers"));
+            places[place.ok_or_else(missing)?] = Some((component, word));
         }
     }
     let (width, height) = (header.layer_size.x(), header.layer_size.y());
     let mut words = vec![[[0_u32; 4]; 3]; width * height];
     let mut found = 0;
-    let chunks = exr::block::read(file, false).ok()?.all_chunks(false).ok()?;
+    let reader = exr::block::read(file, false).map_err(exr_problem)?;
+    let chunks = reader.all_chunks(false).map_err(exr_problem)?;
     let taken = chunks.decompress_sequential(false, |_, block| {
         if block.index.layer != 0 || block.index.level != Vec2(0, 0) {
             return Ok(());
@@ -114,6 +118,9 @@ fn read_sums(file: BufReader<File>, header: &exr::meta::header::Header) -> Optio
         }
         Ok(())
     });
-    (taken.is_ok() && found == 12 * words.len())
-        .then(|| words.into_iter().map(Sum::from_words).collect())
+    taken.map_err(exr_problem)?;
+    match found == 12 * words.len() {
+        true => Ok(words.into_iter().map(Sum::from_words).collect()),
+        false => Err(incomplete()),
+    }
 }

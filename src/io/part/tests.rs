@@ -115,7 +115,15 @@ fn what_is_no_part_or_damaged_is_refused_with_its_name() {
             text.contains("cut.exr") && text.lines().count() == 1,
             "{length} bytes: {text}"
         );
+        let is_cut = text.contains("ends too early");
+        assert_eq!(is_cut, length >= 8, "{length} bytes: {text}");
     }
+    let mut damaged = bytes.clone();
+    let end = damaged.len();
+    damaged[end - 24..].fill(0x80);
+    fs::write(folder.path().join("damaged.exr"), damaged).unwrap();
+    let text = read("damaged.exr");
+    assert!(text.contains("not a picture that can be decoded"), "{text}");
     // A header that promises more than the file can hold asks for no memory.
     let small = Limits {
         pixels: 100,

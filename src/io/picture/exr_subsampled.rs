@@ -5,7 +5,8 @@
 //! "Scan Line Blocks").
 
 use super::super::error::{FileError, Problem};
-use super::open_exr::{Layer, Pixels, check_memory, problem};
+use super::exr_problem;
+use super::open_exr::{Layer, Pixels, check_memory};
 use super::read::Decoded;
 use crate::io::Limits;
 use exr::block::chunk::CompressedBlock;
@@ -41,7 +42,7 @@ pub(super) fn decode(
     let Some(steps) = take_steps(&mut bytes) else {
         return Ok(None);
     };
-    let fails = |error| FileError::new(name, problem(error));
+    let fails = |error| FileError::new(name, exr_problem(error));
     let reader = exr::block::read(Cursor::new(bytes), false).map_err(fails)?;
     let layer = Layer::chosen(reader.headers()).map_err(|problem| FileError::new(name, problem))?;
     let header = reader.headers()[0].clone();

@@ -4,10 +4,9 @@
 use super::super::error::{FileError, Problem};
 use super::super::open_to_read;
 use super::write::{latin_text, write_exr_layers};
-use super::{block_bytes, check_size};
+use super::{block_bytes, check_size, exr_head, exr_problem};
 use crate::film::Picture;
 use crate::io::Limits;
-use exr::meta::MetaData;
 use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, read};
 use glam::{DVec3, UVec2, Vec3};
 use std::collections::BTreeMap;
@@ -38,13 +37,12 @@ pub fn layer_name(light: &str) -> String {
 impl LightLayers {
     /// Reads such a picture. Whether it is one, and how large, is found out before anything is decoded.
     pub fn read(path: &Path, limits: &Limits) -> Result<Self, FileError> {
-        let malformed = |text: &str| FileError::new(path, Problem::Malformed(text.to_owned()));
-        let meta = MetaData::read_from_buffered(open_to_read(path, limits.file_bytes)?, false);
-        let meta = meta.map_err(|_| malformed(NO_LAYERS))?;
-        let header = meta.headers.first().ok_or_else(|| malformed(NO_LAYERS))?;
+        let no_layers = || Problem::Malformed(NO_LAYERS.to_owned());
+        let meta = exr_head(path, limits, no_layers)?;
+        let header = meta.headers.first().ok_or_else(|| FileError::new(path, no_layers()))?;
         let names = header.channels.list.iter().map(|channel| &channel.name);
         if header.deep || !names.clone().any(|name| *name == *OWN_RED) {
-            return Err(malformed(NO_LAYERS));
+            return Err(FileError::new(path, no_layers()));
         }
         let (width, height) = (header.layer_size.x() as u64, header.layer_size.y() as u64);
         check_size(path, width, height, limits)?;
@@ -63,10 +61,7 @@ impl LightLayers {
             .all_attributes()
             .non_parallel()
             .from_buffered(open_to_read(path, limits.file_bytes)?)
-            .map_err(|_| {
-                let text = "the picture is incomplete".to_owned();
-                FileError::new(path, Problem::Truncated(text))
-            })?;
+            .map_err(|error| FileError::new(path, exr_problem(error)))?;
         let layer = image.layer_data;
         let text = |text: &exr::prelude::Text| text.to_string();
         let comments = layer.attributes.comments.as_ref().map(text);
@@ -227,5 +222,25 @@ mod tests {
         std::fs::write(&path, &bytes[..bytes.len() - 9]).unwrap();
         let error = LightLayers::read(&path, &Limits::default()).unwrap_err();
         assert!(matches!(error.problem, Problem::Truncated(_)), "{error}");
+        std::fs::write(&path, &bytes[..60]).unwrap();
+        let error = LightLayers::read(&path, &Limits::default()).unwrap_err();
+        assert!(matches!(error.problem, Problem::Truncated(_)), "{error}");
+        // All is there, and what is packed in its last block is not what was packed.
+        let black = Picture::black(UVec2::splat(64));
+        let large = LightLayers {
+            layers: std::iter::once(("Own".to_owned(), black.clone())).collect(),
+            picture: black,
+            ..layers()
+        };
+        large.write(&path, "Mix: Own=1").unwrap();
+        let mut damaged = std::fs::read(&path).unwrap();
+        let end = damaged.len();
+        damaged[end - 24..].fill(0xff);
+        std::fs::write(&path, damaged).unwrap();
+        let error = LightLayers::read(&path, &Limits::default()).unwrap_err();
+        assert!(matches!(error.problem, Problem::Malformed(_)), "{error}");
+        std::fs::write(&path, "no picture").unwrap();
+        let error = LightLayers::read(&path, &Limits::default()).unwrap_err();
+        assert!(error.to_string().contains("no light apart"), "{error}");
     }
 }

@@ -6,6 +6,7 @@ mod as_far;
 mod content;
 mod dds;
 mod exr_blocks;
+mod exr_head;
 mod exr_subsampled;
 mod jpeg;
 mod light_layers;
@@ -18,6 +19,7 @@ mod room;
 mod write;
 
 pub(crate) use exr_blocks::block_bytes;
+pub(crate) use exr_head::{exr_head, exr_problem};
 pub use light_layers::{LightLayers, layer_name};
 pub(crate) use measured::{Measured, MeasuredPictures};
 pub(crate) use read::{PictureUse, ReadPicture, decode_picture, read_picture};

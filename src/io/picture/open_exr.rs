@@ -12,8 +12,8 @@
 //! `beauty`, then what comes first in the file. No other channel is kept.
 
 use super::super::error::{FileError, Problem};
-use super::read::{Decoded, one_line};
-use super::{block_bytes, check_size, claim_picture, decoder_bytes, exr_subsampled};
+use super::read::Decoded;
+use super::{block_bytes, check_size, claim_picture, decoder_bytes, exr_problem, exr_subsampled};
 use crate::io::Limits;
 use exr::block::UncompressedBlock;
 use exr::block::lines::LineIndex;
@@ -33,7 +33,7 @@ pub(super) fn decode(
     mut reader: impl BufRead + Seek,
     limits: &Limits,
 ) -> Result<Decoded, FileError> {
-    let fails = |error| FileError::new(name, problem(error));
+    let fails = |error| FileError::new(name, exr_problem(error));
     let opened = exr::block::read(&mut reader, false);
     let reader = match opened {
         Err(error @ Error::NotSupported(_)) => {
@@ -341,19 +341,6 @@ impl Pixels {
         let x = at.x() as i64 + i64::from(self.offset.x());
         let y = usize::try_from(at.y() as i64 + i64::from(self.offset.y())).ok()?;
         (y < self.size.1).then(|| (x, y * self.size.0))
-    }
-}
-
-pub(super) fn problem(error: Error) -> Problem {
-    match error {
-        Error::Io(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
-            Problem::Truncated("the picture is incomplete".into())
-        }
-        Error::Io(error) => Problem::Unreadable(one_line(&error.to_string())),
-        other => Problem::Malformed(format!(
-            "is not a picture that can be decoded: {}",
-            one_line(&other.to_string())
-        )),
     }
 }
 
