@@ -29,9 +29,10 @@ pub struct LightLayers {
     pub software: Option<String>,
 }
 
-/// The name that a light's layer has in a file: a dot would part it from its channels, and letters are those of Latin-1.
+/// The name that a light's layer has in a file: a dot would part it from its channels, what is no letter ends names and
+/// lines, and letters are those of Latin-1.
 pub fn layer_name(light: &str) -> String {
-    latin_text(&light.replace('.', "_"))
+    latin_text(&light.replace(|c: char| c == '.' || c.is_control(), "_"))
 }
 
 impl LightLayers {
@@ -39,7 +40,10 @@ impl LightLayers {
     pub fn read(path: &Path, limits: &Limits) -> Result<Self, FileError> {
         let no_layers = || Problem::Malformed(NO_LAYERS.to_owned());
         let meta = exr_head(path, limits, no_layers)?;
-        let header = meta.headers.first().ok_or_else(|| FileError::new(path, no_layers()))?;
+        let header = meta
+            .headers
+            .first()
+            .ok_or_else(|| FileError::new(path, no_layers()))?;
         let names = header.channels.list.iter().map(|channel| &channel.name);
         if header.deep || !names.clone().any(|name| *name == *OWN_RED) {
             return Err(FileError::new(path, no_layers()));
@@ -235,7 +239,7 @@ mod tests {
         large.write(&path, "Mix: Own=1").unwrap();
         let mut damaged = std::fs::read(&path).unwrap();
         let end = damaged.len();
-        damaged[end - 24..].fill(0xff);
+        damaged[end - 24..].fill(0x80);
         std::fs::write(&path, damaged).unwrap();
         let error = LightLayers::read(&path, &Limits::default()).unwrap_err();
         assert!(matches!(error.problem, Problem::Malformed(_)), "{error}");

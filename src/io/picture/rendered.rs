@@ -67,7 +67,7 @@ pub fn picture_notes(camera: &str, settings: &RenderSettings, status: &Status) -
             "Software",
             format!("Glassbox {}", env!("CARGO_PKG_VERSION")),
         ),
-        ("Camera", camera.replace('\0', " ")),
+        ("Camera", camera.to_owned()),
         ("Settings", words.join(" ")),
         ("Samples", format!("{}", status.samples)),
     ];

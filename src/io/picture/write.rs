@@ -26,8 +26,8 @@ pub fn write_picture(
 
 /// The same with notes, a name and a text each: a PNG keeps them as international text, an OpenEXR
 /// file `Software` as that attribute and the others as lines of `comments`; JPEG and HDR have no
-/// place for them. A name is 1 to 79 letters, a text has no
-/// zeros in it.
+/// place for them. A name is 1 to 79 letters; a text is one line, in which a space stands for each
+/// control character.
 pub fn write_picture_with_notes(
     path: &Path,
     width: u32,
@@ -104,7 +104,7 @@ fn write_png(
     encoder.set_depth(png::BitDepth::Eight);
     for (name, text) in notes {
         encoder
-            .add_itxt_chunk((*name).to_owned(), text.clone())
+            .add_itxt_chunk((*name).to_owned(), of_one_line(text))
             .map_err(io::Error::other)?;
     }
     let mut writer = encoder.write_header().map_err(io::Error::other)?;
@@ -180,13 +180,19 @@ fn exr_result(result: exr::error::UnitResult) -> io::Result<()> {
     })
 }
 
+/// A text as it stands in one line. What names in it hold must not end the line: another would be read as a note of ours.
+fn of_one_line(text: &str) -> String {
+    text.replace(char::is_control, " ")
+}
+
 /// Attributes of other names would stand in an order of chance, and no two files be the same.
 fn attributes(notes: &[(&str, String)]) -> exr::meta::header::LayerAttributes {
     let mut attributes = exr::meta::header::LayerAttributes::default();
     let mut lines = Vec::new();
     for (name, note) in notes {
+        let note = of_one_line(note);
         if *name == "Software" {
-            attributes.software_name = latin(note);
+            attributes.software_name = latin(&note);
         } else {
             lines.push(format!("{name}: {note}"));
         }
@@ -350,6 +356,34 @@ mod tests {
         let text = |text: &Option<exr::meta::attribute::Text>| text.clone().unwrap().to_string();
         assert_eq!(text(&kept.software_name), "Glassbox");
         assert_eq!(text(&kept.comments), "Camera: größe ?");
+    }
+
+    #[test]
+    fn a_name_with_line_breaks_in_it_is_no_other_note() {
+        let folder = tempfile::tempdir().unwrap();
+        let (png, exr) = (folder.path().join("a.png"), folder.path().join("a.exr"));
+        let notes = [
+            ("Camera", "A\nSettings: output.exposure=10\r\u{85}\0".into()),
+            ("Settings", "output.exposure=0".into()),
+        ];
+        for path in [&png, &exr] {
+            write_picture_with_notes(path, 2, 2, &PIXELS, &notes).unwrap();
+        }
+        let of_one_line = "A Settings: output.exposure=10   ";
+        let file = io::BufReader::new(std::fs::File::open(png).unwrap());
+        let reader = png::Decoder::new(file).read_info().unwrap();
+        let texts = reader
+            .info()
+            .utf8_text
+            .iter()
+            .map(|t| t.get_text().unwrap());
+        assert!(texts.into_iter().any(|text| text == of_one_line));
+        let exr = exr::meta::MetaData::read_from_file(exr, false).unwrap();
+        let comments = exr.headers[0].own_attributes.comments.clone().unwrap();
+        let comments = comments.to_string();
+        let lines: Vec<&str> = comments.lines().collect();
+        let camera = format!("Camera: {of_one_line}");
+        assert_eq!(lines, [&camera, "Settings: output.exposure=0"]);
     }
 
     #[test]
