@@ -168,6 +168,84 @@ fn strips_turn_every_second_triangle_around() {
 }
 
 #[test]
+fn strips_have_the_colours_and_texture_coordinates_of_their_own() {
+    let vertices = "0 0 0  1 0 0  0 1 0  1 1 0  0 2 0";
+    let open = |of_strips: &str, strips: &str| {
+        let count = strips.lines().count();
+        open(ascii(
+            &format!(
+                "element vertex 5\n{XYZ}element tristrips {count}\n\
+                 property list uchar int vertex_indices\n{of_strips}"
+            ),
+            &format!("{vertices}\n{strips}\n"),
+        ))
+    };
+    let colors = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+    let (mut app, notes) = open(colors, "3 0 1 2 255 0 0\n4 1 2 3 4 0 0 255");
+    assert_eq!(notes, [""; 0]);
+    let Some(VertexAttributeValues::Float32x4(found)) = attribute(&mut app, Mesh::ATTRIBUTE_COLOR)
+    else {
+        panic!("no colours");
+    };
+    let (red, blue) = ([1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]);
+    // Two vertices are of both strips.
+    assert_eq!(found.iter().filter(|color| **color == red).count(), 3);
+    assert_eq!(found.iter().filter(|color| **color == blue).count(), 4);
+    assert_eq!(objects(app.world_mut())[0].2.len(), 3);
+    let uvs = "property list uchar float texcoord\n";
+    let (mut app, notes) = open(uvs, "3 0 1 2 6 0 0 1 0 0.5 0.25");
+    assert_eq!(notes, [""; 0]);
+    let Some(VertexAttributeValues::Float32x2(found)) = attribute(&mut app, Mesh::ATTRIBUTE_UV_0)
+    else {
+        panic!("no texture coordinates");
+    };
+    assert_eq!(found, [[0.0, 1.0], [1.0, 1.0], [0.5, 0.75]]);
+}
+
+#[test]
+fn faces_and_strips_of_one_file_keep_their_colours_apart() {
+    let colors = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+    let elements = format!(
+        "element vertex 4\n{XYZ}element face 1\n{FACES}{colors}\
+         element tristrips 1\nproperty list uchar int vertex_indices\n{colors}"
+    );
+    let numbers = "0 0 0 1 0 0 0 1 0 1 1 0\n3 0 1 2 255 0 0\n3 1 2 3 0 0 255\n";
+    let (mut app, notes) = open(ascii(&elements, numbers));
+    assert_eq!(notes, [""; 0]);
+    let Some(VertexAttributeValues::Float32x4(found)) = attribute(&mut app, Mesh::ATTRIBUTE_COLOR)
+    else {
+        panic!("no colours");
+    };
+    let of = |channel: usize| found.iter().filter(|color| color[channel] == 1.0).count();
+    assert_eq!([of(0), of(2)], [3, 3]);
+}
+
+#[test]
+fn what_there_is_of_a_strip_that_is_cut_short_is_shown() {
+    let elements = format!(
+        "element vertex 4\n{XYZ}element tristrips 1\nproperty list uchar int vertex_indices\n"
+    );
+    let (mut app, notes) = open(ascii(&elements, "0 0 0 1 0 0 0 1 0 1 1 0\n9 0 1 2 3"));
+    assert_eq!(objects(app.world_mut())[0].2.len(), 2);
+    assert!(notes[0].contains("ends too early"), "{notes:?}");
+}
+
+#[test]
+fn lines_are_counted_whatever_ends_them() {
+    let vertices = "0 0 0\n1 0 0\n0 1 0\n1 1 0";
+    let good = ascii(
+        &format!("element vertex 4\n{XYZ}element face 3\n{FACES}"),
+        &format!("{vertices}\n3 0 1 2\n\n3 0 1 9\n3 1 2 3\n"),
+    );
+    let line = good.lines().position(|line| line == "3 0 1 9").unwrap() + 1;
+    for end in ["\n", "\r", "\r\n"] {
+        let (_, notes) = open(good.replace('\n', end));
+        let place = format!("scan.ply:{line}: ");
+        assert!(notes.iter().any(|note| note.contains(&place)), "{end:?}: {notes:?}");
+    }
+}
+
+#[test]
 fn a_picture_is_the_material_and_its_coordinates_count_from_the_bottom() {
     let folder = tempfile::tempdir().unwrap();
     let picture = folder.path().join("Wall.png");

@@ -20,6 +20,8 @@ pub(super) struct Body<R> {
     reader: R,
     format: Format,
     line: u64,
+    /// The last byte between words; 0 behind one.
+    before: u8,
     word: Vec<u8>,
 }
 
@@ -30,6 +32,7 @@ impl<R: BufRead> Body<R> {
             reader,
             format,
             line: lines + 1,
+            before: 0,
             word: Vec::new(),
         }
     }
@@ -102,8 +105,12 @@ impl<R: BufRead> Body<R> {
             if self.word.is_empty() {
                 let start = piece.iter().position(|byte| !is_space(byte));
                 let start = start.unwrap_or(piece.len());
-                let lines = piece[..start].iter().filter(|&&byte| byte == b'\n');
-                self.line += lines.count() as u64;
+                for &byte in &piece[..start] {
+                    // Lines end in one of them, or in both.
+                    let is_end = byte == b'\r' || (byte == b'\n' && self.before != b'\r');
+                    self.line += u64::from(is_end);
+                    self.before = byte;
+                }
                 if start > 0 {
                     self.reader.consume(start);
                     continue;
@@ -116,6 +123,7 @@ impl<R: BufRead> Body<R> {
                 return Err(Fault::Of(Problem::Malformed(text)));
             }
             self.word.extend_from_slice(&piece[..length]);
+            self.before = 0;
             self.reader.consume(length);
             if end.is_some() {
                 return Ok(());

@@ -8,9 +8,13 @@ use super::super::model::triangle_mesh;
 use super::super::notes::Notes;
 use super::super::vertex_values::{clear, to_unit};
 use super::body::Fault;
+use super::own_corners::OwnCorners;
 use bevy::color::Srgba;
 use bevy::mesh::Mesh;
 use std::path::Path;
+
+/// Bytes of corners that are spoken for at a time; those of the first need not be.
+const CORNERS: u64 = 10 << 20;
 
 /// What there is to say, and what reading may take.
 pub(super) struct Work<'a> {
@@ -22,8 +26,8 @@ pub(super) struct Work<'a> {
     memory: Growing<'a>,
     /// What vertices lose.
     pub far_off: FarOff,
-    /// Corners of one face that were spoken for.
-    corners: usize,
+    /// Bytes that were spoken for corners of one face.
+    corner_bytes: u64,
 }
 
 impl<'a> Work<'a> {
@@ -35,7 +39,7 @@ impl<'a> Work<'a> {
             fault: None,
             memory: Growing::of(&limits.memory),
             far_off: FarOff::default(),
-            corners: 1 << 16,
+            corner_bytes: CORNERS,
         }
     }
 
@@ -47,15 +51,11 @@ impl<'a> Work<'a> {
             .get_or_insert_with(|| FileError::at(file, place, problem));
     }
 
-    /// Speaks for the memory of a face's corners, before it is known how many are there.
-    pub fn claim_corners(&mut self, count: usize) -> Result<(), Fault> {
-        const STEP: usize = 1 << 16;
-        /// As numbers, as places, as triangles, and what finding those takes; vectors grow to twice their length.
-        const CORNER: u64 = 2 * (2 * 8 + 12 + 12 + 40);
-        if count > self.corners {
-            let bytes = STEP as u64 * CORNER;
-            self.limits.memory.claim(bytes).map_err(Fault::Final)?;
-            self.corners += STEP;
+    /// Speaks for the memory of a face's corners, of so many bytes each, before it is known how many are there.
+    pub fn claim_corners(&mut self, count: usize, each: u64) -> Result<(), Fault> {
+        if count as u64 * each > self.corner_bytes {
+            self.limits.memory.claim(CORNERS).map_err(Fault::Final)?;
+            self.corner_bytes += CORNERS;
         }
         Ok(())
     }
@@ -94,6 +94,8 @@ pub(super) struct Content {
     /// What a channel of 1 is, by the numbers' type.
     pub whole: [f64; 4],
     pub indices: Vec<u32>,
+    /// What faces said of vertices so far.
+    pub own: OwnCorners,
 }
 
 impl Content {

@@ -5,10 +5,9 @@ use super::super::polygon::Triangulator;
 use super::body::{Body, Fault};
 use super::content::{Content, Work};
 use super::header::{Element, Property};
+use super::own_corners::OwnCorners;
 use super::vertices::whole_of;
 use bevy::math::Vec3;
-use bevy::platform::hash::RandomState;
-use std::collections::HashMap;
 use std::io::BufRead;
 
 const LEFT_OUT: &str = "left out";
@@ -41,8 +40,14 @@ impl Slot {
     }
 }
 
-/// The slots of an element, of which one has to be its corners; what goes nowhere is noted.
-fn slots(element: &Element, content: &Content, work: &mut Work) -> Result<Vec<Slot>, Fault> {
+/// The slots of an element, of which one has to be its corners; what goes nowhere is noted. `own` learns what there is
+/// for it.
+fn slots(
+    element: &Element,
+    own: &mut OwnCorners,
+    content: &mut Content,
+    work: &mut Work,
+) -> Result<Vec<Slot>, Fault> {
     let mut slots: Vec<Slot> = element.properties.iter().map(Slot::of).collect();
     if !slots.contains(&Slot::Corners) {
         let text = "its faces have no list `vertex_indices`".to_owned();
@@ -52,7 +57,8 @@ fn slots(element: &Element, content: &Content, work: &mut Work) -> Result<Vec<Sl
         .iter()
         .filter(|slot| matches!(slot, Slot::Color(0..3, _)));
     // Where both have some, those of vertices are what was measured.
-    let has_colors = channels.count() == 3 && content.colors.is_empty();
+    let are_free = own.has_colors || content.colors.is_empty();
+    let has_colors = channels.count() == 3 && are_free;
     for (property, slot) in element.properties.iter().zip(&mut slots) {
         if !has_colors && matches!(slot, Slot::Color(..)) {
             *slot = Slot::Nowhere;
@@ -62,7 +68,79 @@ fn slots(element: &Element, content: &Content, work: &mut Work) -> Result<Vec<Sl
             (work.notes).add_named(work.file, Place::Whole, what, &property.name, LEFT_OUT);
         }
     }
+    if has_colors {
+        content.whole = whole_of(slots.iter().filter_map(|slot| match *slot {
+            Slot::Color(channel, whole) => Some((channel, whole)),
+            _ => None,
+        }));
+    }
+    own.expect(slots.contains(&Slot::Uvs), has_colors, content);
     Ok(slots)
+}
+
+/// What one face says, polygon or strip.
+struct Face {
+    corners: Vec<f64>,
+    uvs: Vec<f64>,
+    color: [f32; 4],
+    /// Bytes that each corner takes.
+    corner_bytes: u64,
+}
+
+impl Face {
+    /// Before any was read.
+    fn of(corner_bytes: u64) -> Self {
+        Self {
+            corners: Vec::new(),
+            uvs: Vec::new(),
+            color: [1.0; 4],
+            corner_bytes,
+        }
+    }
+
+    /// Reads the next; where that fails, what there is of it is kept.
+    fn read(
+        &mut self,
+        element: &Element,
+        slots: &[Slot],
+        body: &mut Body<impl BufRead>,
+        work: &mut Work,
+    ) -> Result<(), Fault> {
+        self.corners.clear();
+        self.uvs.clear();
+        self.color = [1.0; 4];
+        for (property, slot) in element.properties.iter().zip(slots) {
+            let list = match *slot {
+                Slot::Corners => &mut self.corners,
+                Slot::Uvs => &mut self.uvs,
+                Slot::Color(channel, whole) => {
+                    self.color[channel] = (body.number(property.scalar)? / whole) as f32;
+                    continue;
+                }
+                Slot::Nowhere => {
+                    body.skip(property)?;
+                    continue;
+                }
+            };
+            let Some(length) = property.length else {
+                continue;
+            };
+            for _ in 0..body.length(length)? {
+                work.claim_corners(list.len(), self.corner_bytes)?;
+                list.push(body.number(property.scalar)?);
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds a triangle of three of its corners, which are vertices that there are.
+    fn push(&self, corners: [usize; 3], own: &mut OwnCorners, content: &mut Content) {
+        for at in corners {
+            let uv = self.uvs.as_chunks::<2>().0.get(at);
+            let index = own.vertex(self.corners[at] as u32, uv, self.color, content);
+            content.indices.push(index);
+        }
+    }
 }
 
 /// Reads polygons.
@@ -72,119 +150,89 @@ pub(super) fn read_faces(
     content: &mut Content,
     work: &mut Work,
 ) -> Result<(), Fault> {
-    let slots = slots(element, content, work)?;
-    let mut own = OwnCorners::of(&slots, content);
-    if own.has_colors {
-        content.whole = whole_of(slots.iter().filter_map(|slot| match *slot {
-            Slot::Color(channel, whole) => Some((channel, whole)),
-            _ => None,
-        }));
-    }
-    let mut faces = Faces {
-        count: content.positions.len(),
+    /// As numbers, as places, as triangles, and what finding those takes; vectors grow to twice their length.
+    const CORNER: u64 = 2 * (2 * 8 + 12 + 12 + 40);
+    let mut own = std::mem::take(&mut content.own);
+    let slots = slots(element, &mut own, content, work)?;
+    let mut polygons = Polygons {
+        count: own.count,
         polygon: Vec::new(),
         triangles: Vec::new(),
         triangulator: Triangulator::default(),
     };
-    let (mut corners, mut uvs) = (Vec::new(), Vec::new());
+    let mut face = Face::of(CORNER);
     for _ in 0..element.count {
-        let mut color = [1.0; 4];
-        corners.clear();
-        uvs.clear();
-        for (property, slot) in element.properties.iter().zip(&slots) {
-            match *slot {
-                Slot::Corners => read_list(property, body, work, &mut corners)?,
-                Slot::Uvs => read_list(property, body, work, &mut uvs)?,
-                Slot::Color(channel, whole) => {
-                    color[channel] = (body.number(property.scalar)? / whole) as f32;
-                }
-                Slot::Nowhere => body.skip(property)?,
-            }
-        }
+        face.read(element, &slots, body, work)?;
         let place = || body.place(&element.name);
-        if faces.triangulate(&corners, content, work, place) {
-            for triangle in &faces.triangles {
-                for &at in triangle {
-                    let index = corners[at as usize] as u32;
-                    let uv = uvs.as_chunks::<2>().0.get(at as usize);
-                    let index = own.vertex(index, uv, color, content);
-                    content.indices.push(index);
-                }
+        if polygons.triangulate(&face.corners, content, work, place) {
+            for triangle in &polygons.triangles {
+                face.push(triangle.map(|at| at as usize), &mut own, content);
             }
         }
         work.claim(content)?;
     }
-    if own.uvs_lack {
-        let what = "faces without texture coordinates beside others with";
-        work.notes
-            .add(work.file, Place::Whole, what, "theirs are 0 0");
-    }
+    own.note(work);
+    content.own = own;
     Ok(())
 }
 
-/// Reads strips of triangles; -1 begins another. Every second triangle is turned around.
+/// Reads strips of triangles; -1 begins another. Every second triangle is turned around. What there is of one that is
+/// cut short is shown: there are files of a single one.
 pub(super) fn read_strips(
     element: &Element,
     body: &mut Body<impl BufRead>,
     content: &mut Content,
     work: &mut Work,
 ) -> Result<(), Fault> {
-    let slots = slots(element, content, work)?;
-    let count = content.positions.len();
+    /// As numbers, and those of a texture coordinate; vectors grow to twice their length.
+    const CORNER: u64 = 2 * 3 * 8;
+    let mut own = std::mem::take(&mut content.own);
+    let slots = slots(element, &mut own, content, work)?;
+    let mut face = Face::of(CORNER);
     for _ in 0..element.count {
-        for (property, slot) in element.properties.iter().zip(&slots) {
-            let (Slot::Corners, Some(length)) = (*slot, property.length) else {
-                body.skip(property)?;
-                continue;
-            };
-            let mut last: [Option<u32>; 2] = [None; 2];
-            let mut is_turned = false;
-            for _ in 0..body.length(length)? {
-                let number = body.number(property.scalar)?;
-                if number == -1.0 {
-                    last = [None; 2];
-                    is_turned = false;
-                    continue;
-                }
-                let c = match vertex(number, count, content) {
-                    Ok(index) => index,
-                    Err(problem) => {
-                        let place = body.place(&element.name);
-                        let what = "a strip with a corner that cannot be used";
-                        work.fault(place, problem, what, "begun anew behind it");
-                        last = [None; 2];
-                        is_turned = false;
-                        continue;
-                    }
-                };
-                if let [Some(a), Some(b)] = last {
-                    let triangle = if is_turned { [b, a, c] } else { [a, b, c] };
-                    // Strips turn corners by repeating a vertex.
-                    if a != b && b != c && c != a {
-                        content.indices.extend(triangle);
-                    }
-                    is_turned = !is_turned;
-                }
-                last = [last[1], Some(c)];
-                work.claim(content)?;
-            }
-        }
+        let read = face.read(element, &slots, body, work);
+        add_strip(&face, &body.place(&element.name), &mut own, content, work)?;
+        read?;
     }
+    own.note(work);
+    content.own = own;
     Ok(())
 }
 
-fn read_list(
-    property: &Property,
-    body: &mut Body<impl BufRead>,
+fn add_strip(
+    face: &Face,
+    place: &Place,
+    own: &mut OwnCorners,
+    content: &mut Content,
     work: &mut Work,
-    out: &mut Vec<f64>,
 ) -> Result<(), Fault> {
-    let Some(length) = property.length else {
-        return Ok(());
-    };
-    for _ in 0..body.length(length)? {
-        work.claim_corners(out.len())?;
-        out.push(body.number(property.scalar)?);
+    let corners = &face.corners;
+    let mut last: [Option<usize>; 2] = [None; 2];
+    let mut is_turned = false;
+    for (c, &number) in corners.iter().enumerate() {
+        if number == -1.0 {
+            last = [None; 2];
+            is_turned = false;
+            continue;
+        }
+        if let Err(problem) = vertex(number, own.count, content) {
+            let what = "a strip with a corner that cannot be used";
+            work.fault(place.clone(), problem, what, "begun anew behind it");
+            last = [None; 2];
+            is_turned = false;
+            continue;
+        }
+        if let [Some(a), Some(b)] = last {
+            let triangle = if is_turned { [b, a, c] } else { [a, b, c] };
+            // Strips turn corners by repeating a vertex.
+            let [p, q, r] = triangle.map(|at| corners[at]);
+            if p != q && q != r && r != p {
+                face.push(triangle, own, content);
+            }
+            is_turned = !is_turned;
+        }
+        last = [last[1], Some(c)];
+        work.claim(content)?;
     }
     Ok(())
 }
@@ -211,7 +259,7 @@ fn vertex(number: f64, count: usize, content: &Content) -> Result<u32, Problem> 
 }
 
 /// Makes triangles of polygons.
-struct Faces {
+struct Polygons {
     /// Vertices of the file.
     count: usize,
     polygon: Vec<Vec3>,
@@ -219,7 +267,7 @@ struct Faces {
     triangulator: Triangulator,
 }
 
-impl Faces {
+impl Polygons {
     /// False where the polygon cannot be used, which is noted.
     fn triangulate(
         &mut self,
@@ -253,79 +301,5 @@ impl Faces {
             work.notes.add(work.file, place(), what, instead);
         }
         true
-    }
-}
-
-/// Gives vertices what their faces say of them: colours, texture coordinates. Where faces that share one disagree, each
-/// has its own.
-struct OwnCorners {
-    numbers: HashMap<(u32, [u32; 2], [u32; 4]), u32, RandomState>,
-    /// Which of the file's vertices have something of a face.
-    is_taken: Vec<bool>,
-    has_uvs: bool,
-    has_colors: bool,
-    uvs_lack: bool,
-}
-
-impl OwnCorners {
-    fn of(slots: &[Slot], content: &mut Content) -> Self {
-        let mut own = Self {
-            numbers: HashMap::default(),
-            is_taken: Vec::new(),
-            has_uvs: slots.contains(&Slot::Uvs),
-            has_colors: slots.iter().any(|slot| matches!(slot, Slot::Color(..))),
-            uvs_lack: false,
-        };
-        let count = content.positions.len();
-        if own.has_uvs {
-            content.uvs.resize(count, [0.0; 2]);
-        }
-        if own.has_colors {
-            content.colors.resize(count, [1.0; 4]);
-        }
-        if own.has_uvs || own.has_colors {
-            own.is_taken.resize(count, false);
-        }
-        own
-    }
-
-    /// The vertex of a corner.
-    fn vertex(
-        &mut self,
-        index: u32,
-        uv: Option<&[f64; 2]>,
-        color: [f32; 4],
-        content: &mut Content,
-    ) -> u32 {
-        let at = index as usize;
-        let Some(is_taken) = self.is_taken.get_mut(at) else {
-            return index;
-        };
-        self.uvs_lack |= self.has_uvs && uv.is_none();
-        let uv = uv.map_or([0.0; 2], |&[u, v]| [u as f32, 1.0 - v as f32]);
-        let key = (index, uv.map(f32::to_bits), color.map(f32::to_bits));
-        let next = match *is_taken {
-            true => content.positions.len() as u32,
-            false => index,
-        };
-        let known = *self.numbers.entry(key).or_insert(next);
-        if known != next {
-            return known;
-        }
-        if *is_taken {
-            content.positions.push(content.positions[at]);
-            content.normals.extend(content.normals.get(at).copied());
-            content.uvs.extend(content.uvs.get(at).copied());
-            content.colors.extend(content.colors.get(at).copied());
-        }
-        *is_taken = true;
-        let at = known as usize;
-        if self.has_uvs {
-            content.uvs[at] = uv;
-        }
-        if self.has_colors {
-            content.colors[at] = color;
-        }
-        known
     }
 }

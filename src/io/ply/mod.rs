@@ -8,6 +8,7 @@ mod body;
 mod content;
 mod faces;
 mod header;
+mod own_corners;
 mod vertices;
 
 use super::error::{FileError, Place, Problem};
