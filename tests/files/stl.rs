@@ -192,3 +192,53 @@ fn a_count_of_0_facets_that_are_there_is_told_and_they_are_shown() {
     let told = opened.notes.lines().join("\n");
     assert!(told.contains("a count of 0 facets"), "{told}");
 }
+
+#[test]
+fn a_text_that_lies_far_off_keeps_its_digits_near_the_origin() {
+    // Corners that 32 bits cannot tell apart, and a polygon of which they could not tell how it bends.
+    let corner = |(x, y): &(f64, f64)| format!("vertex {:?} {:?} 7\n", 500_000.0 + x, 4e6 + y);
+    let facet = |corners: &[(f64, f64)]| {
+        let corners: String = corners.iter().map(corner).collect();
+        format!("facet normal 0 0 1\nouter loop\n{corners}endloop\nendfacet\n")
+    };
+    let (a, b, c, d) = ((0.0, 0.0), (0.01, 0.0), (0.01, 0.0625), (0.0, 0.0625));
+    let arrow = [(0.0, 0.0), (0.04, 0.0), (0.01, 0.01), (0.0, 0.04)];
+    let text = format!(
+        "solid one\n{}{}endsolid\nsolid two\n{}endsolid\n",
+        facet(&[a, b, c]),
+        facet(&[a, c, d]),
+        facet(&arrow)
+    );
+    let (mut app, told) = open(text);
+    let is_told = |part: &str| told.iter().filter(|note| note.contains(part)).count();
+    assert_eq!(
+        (is_told("far off"), is_told("contradicts")),
+        (1, 0),
+        "{told:?}"
+    );
+    let objects = objects(app.world_mut());
+    let close = |found: &Triangle, corners: [(f64, f64); 3]| {
+        let pairs = found.iter().zip(corners);
+        pairs.into_iter().all(|(&[x, y, z], (u, v))| {
+            let near = |a: f32, b: f64| (f64::from(a) - b).abs() < 1e-6;
+            near(x, u) && near(y, v) && z == 0.0
+        })
+    };
+    let one = &objects[0].2;
+    assert!(
+        close(&one[0], [a, b, c]) && close(&one[1], [a, c, d]),
+        "{one:?}"
+    );
+    let two = &objects[1].2;
+    let area = |t: &Triangle| {
+        let [u, v] = [1, 2].map(|i| [t[i][0] - t[0][0], t[i][1] - t[0][1]]);
+        0.5 * (u[0] * v[1] - u[1] * v[0])
+    };
+    let areas: Vec<f32> = two.iter().map(area).collect();
+    let whole: f32 = areas.iter().sum();
+    assert!(areas.iter().all(|&area| area > 0.0), "{areas:?}");
+    assert!((whole - 0.0004).abs() < 1e-6, "{areas:?}");
+    // Near the origin nothing is moved.
+    let (_, told) = open(format!("solid a\n{}endsolid\n", ascii(&TETRAHEDRON)));
+    assert_eq!(told, [""; 0]);
+}

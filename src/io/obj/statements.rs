@@ -49,7 +49,7 @@ pub(super) fn read_content(
         reader.claim()?;
     }
     let mut content = reader.content;
-    (reader.far_off).settle(&mut content.positions, file, reader.notes);
+    (reader.far_off).settle(&mut [&mut content.positions], file, reader.notes);
     content.finish(file, notes);
     Ok(content)
 }

@@ -72,6 +72,15 @@ impl<R: BufRead> Body<R> {
         Ok(bytes)
     }
 
+    /// The number that was read last with all digits that are written out, also where the head says that it is a float.
+    pub fn exact(&self, number: f64) -> f64 {
+        if self.format != Format::Ascii {
+            return number;
+        }
+        let word = std::str::from_utf8(&self.word).ok();
+        word.and_then(|word| word.parse().ok()).unwrap_or(number)
+    }
+
     fn written(&mut self, scalar: Scalar) -> Result<f64, Fault> {
         self.read_word()?;
         let word = std::str::from_utf8(&self.word).ok();

@@ -77,7 +77,8 @@ pub(super) fn read_vertices(
         }));
     }
     for _ in 0..element.count {
-        let (mut exact, mut normal, mut uv) = ([0.0; 3], [0.0; 3], [0.0; 2]);
+        let (mut position, mut exact) = ([0.0; 3], [0.0; 3]);
+        let (mut normal, mut uv) = ([0.0; 3], [0.0; 2]);
         let mut color = [1.0_f32; 4];
         for (property, slot) in element.properties.iter().zip(&slots) {
             if let Slot::Nowhere = slot {
@@ -86,14 +87,18 @@ pub(super) fn read_vertices(
             }
             let number = body.number(property.scalar)?;
             match *slot {
-                Slot::Position(axis) => exact[axis] = number,
+                Slot::Position(axis) => {
+                    position[axis] = number as f32;
+                    if work.far_off.may_want() {
+                        exact[axis] = body.exact(number);
+                    }
+                }
                 Slot::Normal(axis) => normal[axis] = number as f32,
                 Slot::Uv(axis) => uv[axis] = number as f32,
                 Slot::Color(channel, whole) => color[channel] = (number / whole) as f32,
                 Slot::Nowhere => {}
             }
         }
-        let position = exact.map(|number| number as f32);
         if work.far_off.wants(position) {
             (work.far_off).tell(content.positions.len(), exact, position);
         }
@@ -110,7 +115,7 @@ pub(super) fn read_vertices(
         work.claim(content)?;
     }
     let far_off = std::mem::take(&mut work.far_off);
-    far_off.settle(&mut content.positions, work.file, &mut work.notes);
+    far_off.settle(&mut [&mut content.positions], work.file, &mut work.notes);
     Ok(())
 }
 

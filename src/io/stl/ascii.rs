@@ -4,9 +4,9 @@ use super::super::Limits;
 use super::super::error::{FileError, Place, Problem};
 use super::super::polygon::Triangulator;
 use super::super::text::{Lines, keyword, number, shown, text};
-use super::facets::{Facet, Facets};
+use super::facets::{Facet, Facets, More};
 use super::neither;
-use bevy::math::Vec3;
+use bevy::math::{DVec3, Vec3};
 
 const LEFT_OUT: &str = "left out";
 /// Corners of one loop. More are no facet but noise.
@@ -20,6 +20,7 @@ pub(super) fn read_ascii(facets: &mut Facets, limits: &Limits) -> Result<(), Fil
         line: 0,
         normal: Vec::new(),
         corners: Vec::new(),
+        exact: Vec::new(),
         is_broken: false,
         triangulator: Triangulator::default(),
         triangles: Vec::new(),
@@ -36,6 +37,8 @@ struct Reader<'a, 'b> {
     line: u64,
     normal: Vec<f32>,
     corners: Vec<[f32; 3]>,
+    /// The same with all their digits, where the model is far off.
+    exact: Vec<[f64; 3]>,
     /// Something of the loop could not be read.
     is_broken: bool,
     triangulator: Triangulator,
@@ -112,8 +115,10 @@ impl Reader<'_, '_> {
 
     fn vertex<'a>(&mut self, mut rest: &'a [u8]) -> &'a [u8] {
         let mut corner = [0.0; 3];
-        for value in &mut corner {
+        let mut words: [&[u8]; 3] = [&[]; 3];
+        for (value, of_value) in corner.iter_mut().zip(&mut words) {
             let (word, after) = keyword(rest);
+            *of_value = word;
             match number(word) {
                 Ok(number) => *value = number,
                 Err(problem) => {
@@ -126,6 +131,11 @@ impl Reader<'_, '_> {
         }
         if self.corners.len() < MOST_CORNERS {
             self.corners.push(corner);
+            if self.facets.far_off.wants(corner) {
+                let exact = |word| std::str::from_utf8(word).ok()?.parse().ok();
+                self.exact
+                    .push(words.map(|word| exact(word).unwrap_or(0.0)));
+            }
         }
         rest
     }
@@ -138,14 +148,26 @@ impl Reader<'_, '_> {
             let what = "a facet without three corners that are numbers";
             self.note(what, LEFT_OUT);
             self.corners.clear();
+            self.exact.clear();
             return Ok(());
         }
         if count == 0 {
             return Ok(());
         }
-        let corners: Vec<Vec3> = self.corners.drain(..).map(Vec3::from).collect();
+        let (corners, exact) = (
+            std::mem::take(&mut self.corners),
+            std::mem::take(&mut self.exact),
+        );
+        let polygon: Vec<Vec3> = match exact.first() {
+            // Which way it bends is seen near it.
+            Some(&first) => {
+                let near = exact.iter().map(|&at| DVec3::from(at) - DVec3::from(first));
+                near.map(|at| at.as_vec3()).collect()
+            }
+            None => corners.iter().copied().map(Vec3::from).collect(),
+        };
         self.triangles.clear();
-        (self.triangulator).triangulate(&corners, &mut self.triangles);
+        (self.triangulator).triangulate(&polygon, &mut self.triangles);
         if count > 3 {
             self.note("a facet of more than 3 corners", "read as a polygon");
         }
@@ -157,8 +179,11 @@ impl Reader<'_, '_> {
         for triangle in &self.triangles {
             let facet = Facet {
                 normal,
-                corners: triangle.map(|i| corners[i as usize].to_array()),
-                color: None,
+                corners: triangle.map(|i| corners[i as usize]),
+                more: match exact.is_empty() {
+                    true => More::Nothing,
+                    false => More::Digits(triangle.map(|i| exact[i as usize])),
+                },
             };
             self.facets.push(facet, || Place::Line(line))?;
         }

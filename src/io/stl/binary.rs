@@ -1,7 +1,7 @@
 //! A binary STL: 80 bytes of anything, a count, and as many facets of 50 bytes.
 
 use super::super::error::{FileError, Place, Problem};
-use super::facets::{Facet, Facets};
+use super::facets::{Facet, Facets, More};
 use super::{FACET, HEAD};
 use bevy::color::Srgba;
 use std::io::BufRead;
@@ -68,7 +68,7 @@ pub(super) fn read_binary(
         let facet = Facet {
             normal,
             corners: [a, b, c],
-            color,
+            more: color.map_or(More::Nothing, More::Color),
         };
         facets.push(facet, || Place::Part(format!("facet {index}")))?;
     }

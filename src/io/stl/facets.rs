@@ -3,9 +3,10 @@
 use super::super::Limits;
 use super::super::budget::Growing;
 use super::super::error::{FileError, Place, Problem};
+use super::super::far_off::FarOff;
 use super::super::model::{ColoredMaterial, FreeNames, Model, Node, triangle_mesh};
 use super::super::notes::Notes;
-use bevy::math::Vec3;
+use bevy::math::{DVec3, Vec3};
 use bevy::mesh::Mesh;
 use bevy::platform::hash::RandomState;
 use std::collections::HashMap;
@@ -17,14 +18,24 @@ pub(super) struct Facet {
     /// Any length; 0 where the file leaves it to the reader.
     pub normal: [f32; 3],
     pub corners: [[f32; 3]; 3],
-    /// Linear.
-    pub color: Option<[f32; 3]>,
+    pub more: More,
+}
+
+/// What else a file says of a facet.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum More {
+    Nothing,
+    /// Linear. Only binary files have some.
+    Color([f32; 3]),
+    /// Its corners with all their digits, where those are needed. Only texts have more than 32 bits hold.
+    Digits([[f64; 3]; 3]),
 }
 
 /// A solid while it grows.
 #[derive(Default)]
 struct Solid {
     name: String,
+    /// By where a vertex is, and its colour or what 32 bits do not hold of its place.
     numbers: HashMap<([u32; 3], [u32; 3]), u32, RandomState>,
     positions: Vec<[f32; 3]>,
     colors: Vec<[f32; 3]>,
@@ -38,6 +49,7 @@ pub(super) struct Facets<'a> {
     pub notes: Notes,
     /// The first thing that could not be read: the reason, should nothing be left to show.
     pub fault: Option<FileError>,
+    pub far_off: FarOff,
     limits: &'a Limits,
     memory: Growing<'a>,
     solids: Vec<Solid>,
@@ -51,6 +63,7 @@ impl<'a> Facets<'a> {
             file,
             notes: Notes::default(),
             fault: None,
+            far_off: FarOff::default(),
             limits,
             memory: Growing::of(&limits.memory),
             solids: Vec::new(),
@@ -96,8 +109,17 @@ impl<'a> Facets<'a> {
                 .get_or_insert_with(|| FileError::at(self.file, place(), problem));
             return Ok(());
         }
-        let [a, b, c] = facet.corners.map(Vec3::from);
-        if (b - a).cross(c - a).dot(facet.normal.into()) < 0.0 {
+        let edges = match facet.more {
+            More::Digits(corners) => {
+                let [a, b, c] = corners.map(DVec3::from);
+                [b - a, c - a].map(|edge| edge.as_vec3())
+            }
+            _ => {
+                let [a, b, c] = facet.corners.map(Vec3::from);
+                [b - a, c - a]
+            }
+        };
+        if edges[0].cross(edges[1]).dot(facet.normal.into()) < 0.0 {
             let what = "a facet whose normal contradicts the order of its corners";
             let instead = "it faces as they turn";
             self.notes.add(self.file, place(), what, instead);
@@ -113,12 +135,14 @@ impl<'a> Facets<'a> {
         let Some(solid) = self.solids.last_mut() else {
             return Ok(());
         };
-        let before = solid.positions.len() as u64;
-        for corner in facet.corners {
-            solid.corner(corner, facet.color);
+        for (i, corner) in facet.corners.into_iter().enumerate() {
+            let is_new = solid.corner(corner, facet.more, i);
+            if let (true, More::Digits(exact)) = (is_new, facet.more) {
+                (self.far_off).tell(self.vertices as usize, exact[i], corner);
+            }
+            self.vertices += u64::from(is_new);
         }
         let count = solid.positions.len() as u64;
-        self.vertices += count - before;
         if count > self.limits.vertices {
             return Err(self.too_many("vertices", count, self.limits.vertices));
         }
@@ -131,7 +155,10 @@ impl<'a> Facets<'a> {
         FileError::new(self.file, Problem::TooMany { what, count, limit })
     }
 
-    pub fn into_model(self) -> Result<Model, FileError> {
+    pub fn into_model(mut self) -> Result<Model, FileError> {
+        let solids = self.solids.iter_mut();
+        let mut parts: Vec<&mut [[f32; 3]]> = solids.map(|solid| &mut *solid.positions).collect();
+        (self.far_off).settle(&mut parts, self.file, &mut self.notes);
         let mut model = Model {
             files: vec![self.file.to_path_buf()],
             notes: self.notes,
@@ -176,14 +203,17 @@ impl<'a> Facets<'a> {
 }
 
 impl Solid {
-    fn corner(&mut self, position: [f32; 3], color: Option<[f32; 3]>) {
-        self.is_colored |= color.is_some();
-        let color = color.unwrap_or([1.0; 3]);
+    /// Adds a corner, the one of that number of its facet; true where it is a vertex that was not there.
+    fn corner(&mut self, position: [f32; 3], more: More, number: usize) -> bool {
+        let (color, rest) = match more {
+            More::Nothing => ([1.0; 3], [0.0; 3]),
+            More::Color(color) => (color, color),
+            More::Digits(exact) => ([1.0; 3], FarOff::rest(exact[number], position)),
+        };
+        self.is_colored |= matches!(more, More::Color(_));
         // -0 and 0 are one place.
-        let key = (
-            position.map(|value| (value + 0.0).to_bits()),
-            color.map(f32::to_bits),
-        );
+        let key = [position, rest].map(|three| three.map(|value| (value + 0.0).to_bits()));
+        let key = (key[0], key[1]);
         let next = self.positions.len() as u32;
         let index = *self.numbers.entry(key).or_insert(next);
         self.indices.push(index);
@@ -191,5 +221,6 @@ impl Solid {
             self.positions.push(position);
             self.colors.push(color);
         }
+        index == next
     }
 }
