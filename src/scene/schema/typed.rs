@@ -5,14 +5,17 @@ use super::Unit;
 /// How deep parentheses and signs may nest. Nobody types more, and each level takes room on the stack.
 const DEEPEST: u32 = 32;
 
+/// What stands for more than any number.
+const INFINITE: [&str; 2] = ["inf", "∞"];
+
 /// What a text means as a number of this unit, in the unit that the scene keeps: metres, radians, seconds.
 ///
-/// Understood are `+ - * / ^`, parentheses, a comma or a point before decimals, `inf`, `pi`, and the unit's names behind
+/// Understood are `+ - * / ^`, parentheses, a comma or a point before decimals, `inf` or `∞`, `pi` or `π`, and the unit's names behind
 /// a number. A number without a name counts `plain`: π/180 where degrees are typed and radians are kept. `+=`, `-=`,
 /// `*=` and `/=` begin a change of `before`.
 ///
 /// # Errors
-/// Says what is wrong with the text. No result is NaN; it is infinite only where the text says `inf`.
+/// Says what is wrong with the text. No result is NaN; it is infinite only where the text says so.
 pub fn typed_number(text: &str, unit: Unit, plain: f64, before: f64) -> Result<f64, String> {
     let text = text.trim();
     let change = ["+=", "-=", "*=", "/="]
@@ -27,7 +30,7 @@ pub fn typed_number(text: &str, unit: Unit, plain: f64, before: f64) -> Result<f
     };
     match number {
         number if number.is_nan() => Err("this is no number".into()),
-        number if number.is_infinite() && !text.contains("inf") => {
+        number if number.is_infinite() && !INFINITE.iter().any(|name| text.contains(name)) => {
             Err("this is larger than any number".into())
         }
         number => Ok(number),
@@ -244,12 +247,9 @@ impl Reader<'_> {
     }
 
     fn number(&mut self) -> Result<f64, String> {
-        for (name, value) in [
-            ("inf", f64::INFINITY),
-            ("∞", f64::INFINITY),
-            ("pi", std::f64::consts::PI),
-            ("π", std::f64::consts::PI),
-        ] {
+        let infinite = INFINITE.map(|name| (name, f64::INFINITY));
+        let pi = ["pi", "π"].map(|name| (name, std::f64::consts::PI));
+        for (name, value) in infinite.into_iter().chain(pi) {
             if let Some(rest) = self.rest.strip_prefix(name)
                 && !rest.starts_with(char::is_alphabetic)
             {
@@ -322,6 +322,9 @@ mod tests {
             ("/=8", 0.5),
             ("+=10cm", 4.1),
             ("inf", f64::INFINITY),
+            ("∞", f64::INFINITY),
+            ("-∞ m", f64::NEG_INFINITY),
+            ("*=∞", f64::INFINITY),
         ] {
             let found = metres(text);
             let is_close = |found: &f64| *found == meant || (found - meant).abs() < 1e-12;
@@ -352,6 +355,7 @@ mod tests {
             ("1e999", "larger than any number"),
             ("10^400", "larger than any number"),
             ("inf-inf", "no number"),
+            ("∞-∞", "no number"),
             ("(-1)^.5", "no number"),
             ("2m*3m", "not both"),
             ("1/2m", "needs one itself"),
