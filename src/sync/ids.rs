@@ -136,13 +136,9 @@ pub(super) fn assign_scene_ids(
 }
 
 fn next(known: &mut IdOwners) -> SceneId {
-    // A file may say u64::MAX: then what comes next is whatever is free from 1 on.
-    loop {
-        known.largest = known.largest.wrapping_add(1).max(1);
-        if !known.owners.contains_key(&known.largest) {
-            return SceneId(known.largest);
-        }
-    }
+    let next = SceneId(known.largest).next_free(|id| known.owners.contains_key(&id.0));
+    known.largest = next.0;
+    next
 }
 
 #[cfg(test)]
@@ -216,6 +212,16 @@ mod tests {
         let second = app.world_mut().spawn(SceneId(0)).id();
         app.update();
         assert_eq!(id(&app, second), 6);
+    }
+
+    #[test]
+    fn a_number_that_scene_files_cannot_name_is_given_to_none() {
+        let mut app = app();
+        app.world_mut().spawn(SceneId(u32::MAX.into()));
+        app.update();
+        let new = app.world_mut().spawn(SceneId(0)).id();
+        app.update();
+        assert_eq!(id(&app, new), (1 << 32) + 1);
     }
 
     #[test]

@@ -9,7 +9,7 @@ use bevy::ecs::observer::On;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::system::{Query, ResMut};
 use bevy::ecs::world::World;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Entities by their numbers.
 #[derive(Resource, Default)]
@@ -70,29 +70,23 @@ pub fn scene_entity(world: &World, id: SceneId) -> Option<Entity> {
 
 /// Numbers that no entity has or had.
 pub(super) struct FreeIds {
-    taken: std::collections::HashSet<u64>,
-    last: u64,
+    taken: HashSet<SceneId>,
+    last: SceneId,
 }
 
 impl FreeIds {
     pub fn new(world: &mut World) -> Self {
         let mut all = world.query::<&SceneId>();
-        let taken: std::collections::HashSet<u64> = all.iter(world).map(|id| id.0).collect();
-        let largest = world.resource::<SceneIndex>().largest;
+        let taken: HashSet<SceneId> = all.iter(world).copied().collect();
+        let largest = SceneId(world.resource::<SceneIndex>().largest);
         Self {
-            last: taken.iter().copied().max().unwrap_or(0).max(largest),
+            last: taken.iter().copied().fold(largest, SceneId::max),
             taken,
         }
     }
 
     pub fn next(&mut self) -> SceneId {
-        // A file may say u64::MAX: then what comes next is whatever is free from 1 on. Scene files
-        // cannot name multiples of 2^32.
-        loop {
-            self.last = self.last.wrapping_add(1).max(1);
-            if !self.taken.contains(&self.last) && self.last.trailing_zeros() < 32 {
-                return SceneId(self.last);
-            }
-        }
+        self.last = self.last.next_free(|id| self.taken.contains(&id));
+        self.last
     }
 }

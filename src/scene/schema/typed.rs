@@ -10,9 +10,9 @@ const INFINITE: [&str; 2] = ["inf", "∞"];
 
 /// What a text means as a number of this unit, in the unit that the scene keeps: metres, radians, seconds.
 ///
-/// Understood are `+ - * / ^`, parentheses, a comma or a point before decimals, `inf` or `∞`, `pi` or `π`, and the unit's names behind
-/// a number. A number without a name counts `plain`: π/180 where degrees are typed and radians are kept. `+=`, `-=`,
-/// `*=` and `/=` begin a change of `before`.
+/// Understood are `+ - * / ^`, parentheses, a comma or a point before decimals, `inf` or `∞`, `pi` or `π`, and the
+/// unit's names behind a number. A number without a name counts `plain`: π/180 where degrees are typed and radians are
+/// kept. `+=`, `-=`, `*=` and `/=` begin a change of `before`.
 ///
 /// # Errors
 /// Says what is wrong with the text. No result is NaN; it is infinite only where the text says so.
