@@ -188,8 +188,6 @@ pub enum Problem {
     },
     #[error("RenderSettings: {0}")]
     Setting(Box<crate::scene::RangeProblem>),
-    #[error("material `{name}` is in none of the MTL files named above this line")]
-    UnknownMaterial { name: String },
     #[error("holds no triangles")]
     NoTriangles,
     #[error("holds {count} points and no triangles; have the program that made it build a surface")]

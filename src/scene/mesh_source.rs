@@ -15,7 +15,7 @@ documented! {
     pub enum MeshSource {
         /// A shape with its numbers, generated.
         Shape(Shape),
-        /// One mesh of an OBJ, glTF or GLB file.
+        /// One mesh of a model file: OBJ, glTF, GLB, STL or PLY.
         File {
             /// Relative to the scene file's folder, with `/` between its parts and escapes as in
             /// [`TextureSource::path`](super::TextureSource::path).
