@@ -9,8 +9,8 @@ use super::settings::{BuilderArg, SettingArgs, check_scene};
 use super::stage::{SceneArgs, Stage, with_threads};
 use crate::film::{FirstHits, develop, render};
 use crate::inspect::{
-    Document, InspectSettings, LineSet, Overlay, Pattern, RayLine, StepKind, Subject, Traversal,
-    aligned, counted, draw_over, draw_pattern, explanation, lines, pattern, sources,
+    Document, InspectSettings, LineSet, MOST_POINTS, Overlay, Pattern, RayLine, StepKind, Subject,
+    Traversal, aligned, counted, draw_over, draw_pattern, explanation, lines, pattern, sources,
 };
 use crate::io::{PictureFormat, check_picture, check_writable, write_picture};
 use crate::scene::RenderSettings;
@@ -201,6 +201,9 @@ fn inspect(args: &Inspect, gizmos: &InspectSettings) -> Result<(), Failure> {
     }
     if !args.quiet {
         tell_of_lines(&sets);
+        if let Some(thinned) = pattern.as_ref().and_then(|pattern| pattern.thinned) {
+            tell("note", thinned);
+        }
     }
     match traversal {
         Some(traversal) => say(steps_text(&traversal).trim_end()),
@@ -244,6 +247,7 @@ impl Picked<'_> {
             choice,
             pixel,
             count.into(),
+            MOST_POINTS,
         ))
     }
 

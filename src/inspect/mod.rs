@@ -75,7 +75,7 @@ pub use legend::{Meaning, legend};
 pub use line_set::{CIRCLE_SEGMENTS, Dot, Label, LineSet, Panel, Segment, Stands, Thinned};
 pub use names::Names;
 pub use overlay::{FAINT, Overlay, draw_over};
-pub use pattern::{Pattern, pattern};
+pub use pattern::{MOST_POINTS, Pattern, pattern};
 pub use pattern_inset::draw_pattern;
 pub use presets::InspectPreset;
 pub use rays::is_shown;

@@ -1,6 +1,7 @@
 //! Normals at the vertices of meshes, and between them.
 
 use super::color::{BETWEEN, VERTEX};
+use super::count::counted;
 use super::line_set::{LineSet, Stands, Thinned};
 use super::{Subject, System};
 use crate::trace::Cone;
@@ -35,14 +36,14 @@ pub(super) fn normals(subject: &Subject) -> LineSet {
     let n = 1 << settings.between.min(MOST_BETWEEN);
     let mut cells: HashMap<IVec2, Placed> = HashMap::default();
     let mut of = 0;
+    let mut without: Vec<u64> = Vec::new();
     let spacing = settings.spacing.max(1.0);
     for (number, object) in (0..).zip(world.objects.iter()) {
         if !chosen(object.id) {
             continue;
         }
         if object.mesh.normals.is_empty() {
-            set.notes
-                .push(format!("object {} has no vertex normals", object.id));
+            without.push(object.id);
             continue;
         }
         let triangles = object.mesh.tree.triangles().len() as u32;
@@ -72,6 +73,7 @@ pub(super) fn normals(subject: &Subject) -> LineSet {
             }
         }
     }
+    set.notes.extend(without_text(&without));
     let mut kept: Vec<_> = cells.into_iter().collect();
     kept.sort_unstable_by_key(|(cell, _)| (cell.y, cell.x));
     kept.truncate(subject.inspect.max_lines as usize);
@@ -91,6 +93,22 @@ pub(super) fn normals(subject: &Subject) -> LineSet {
         });
     }
     set
+}
+
+/// What has nothing to draw: the first few, and how many there are.
+fn without_text(objects: &[u64]) -> Option<String> {
+    const SHOWN: usize = 8;
+    if let [] | [_] = objects {
+        let only = objects.first();
+        return only.map(|id| format!("object {id} has no vertex normals"));
+    }
+    let shown = objects.iter().take(SHOWN).map(u64::to_string);
+    let mut shown = shown.collect::<Vec<_>>().join(", ");
+    if objects.len() > SHOWN {
+        shown.push_str(&format!(" and {} more", objects.len() - SHOWN));
+    }
+    let all = counted(objects.len() as u64, "object");
+    Some(format!("{all} have no vertex normals: {shown}"))
 }
 
 /// The interpolated normals at a triangle's places with barycentric weights i/n.
@@ -122,4 +140,24 @@ fn on_triangle(
                 between: !weights.contains(&n),
             })
         })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn objects_without_normals_are_one_note_however_many_there_are() {
+        assert_eq!(without_text(&[]), None);
+        let text = |count| {
+            let objects: Vec<u64> = (1..=count).collect();
+            without_text(&objects).unwrap()
+        };
+        assert_eq!(text(1), "object 1 has no vertex normals");
+        assert_eq!(text(3), "3 objects have no vertex normals: 1, 2, 3");
+        assert_eq!(
+            text(10_000),
+            "10000 objects have no vertex normals: 1, 2, 3, 4, 5, 6, 7, 8 and 9992 more"
+        );
+    }
 }

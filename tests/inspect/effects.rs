@@ -4,7 +4,7 @@ use super::{Scene, expect, is_near, segment};
 use crate::analytic::{object, quad, world};
 use glam::{UVec2, Vec3};
 use glassbox::inspect::{
-    Dimension, InspectSettings, NormalSettings, PatternSettings, System, pattern,
+    Dimension, InspectSettings, MOST_POINTS, NormalSettings, PatternSettings, System, pattern,
 };
 use glassbox::scene::{PixelSampling, Projection};
 use glassbox::trace::{
@@ -170,7 +170,14 @@ fn the_pattern_of_a_pixel_is_where_its_rays_are() {
     scene.settings.pixel = PixelSampling::Area;
     let pixel = UVec2::new(5, 2);
     let choice = PatternSettings::default();
-    let found = pattern(&scene.world, &scene.settings, &choice, pixel, 16);
+    let found = pattern(
+        &scene.world,
+        &scene.settings,
+        &choice,
+        pixel,
+        16,
+        MOST_POINTS,
+    );
     let rays = glassbox::trace::probe(
         &scene.world,
         &scene.camera,
@@ -215,6 +222,7 @@ fn any_two_numbers_of_the_sequence_can_be_shown_and_each_pair_of_a_block_is_stra
             &choice,
             UVec2::new(3, 4),
             256,
+            MOST_POINTS,
         )
         .points;
         assert_eq!(points.len() % 256, 0, "{x:?} {y:?}");

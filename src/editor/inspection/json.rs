@@ -36,7 +36,14 @@ pub(in crate::editor) fn json(world: &World) -> Result<String, String> {
     let choice = &world.resource::<InspectSettings>().pattern;
     let pattern = choice.on.then(|| {
         let count = samples_per_pixel(traced, &shot.camera, &settings);
-        pattern(traced, &settings, choice, rays.pixel, count.into())
+        pattern(
+            traced,
+            &settings,
+            choice,
+            rays.pixel,
+            count.into(),
+            inspect::MOST_POINTS,
+        )
     });
     let inspected = world.resource::<Inspected>();
     let traversal: Option<&Traversal> = inspected.ray().map(|_| inspected.stepper.traversal());

@@ -2,7 +2,9 @@
 
 use crate::editor::inspection::DebugRay;
 use crate::editor::selection::Selection;
-use crate::inspect::{Dimension, InspectSettings, Pattern, PatternSettings, counted, pattern};
+use crate::inspect::{
+    Dimension, InspectSettings, Pattern, PatternSettings, Thinned, counted, pattern,
+};
 use crate::scene::RenderSettings;
 use crate::trace::{DOME, Lights, World, samples_per_pixel};
 use bevy::ecs::resource::Resource;
@@ -15,7 +17,7 @@ use std::sync::Arc;
 const PART: f32 = 0.34;
 /// Points of a side at most.
 const LARGEST: f32 = 260.0;
-/// Samples that are drawn at most: more would fill the square.
+/// Points that are drawn at most: more would fill the square.
 const MOST: u64 = 4096;
 /// Room for the two lines of text above, in points.
 const TEXT: f32 = 32.0;
@@ -34,12 +36,14 @@ struct PatternOf {
     pattern: Pattern,
 }
 
-/// What the points are: those of all of the pixel's samples, or of as many as are drawn.
-fn heading(points: usize, [drawn, all]: [u64; 2], pixel: UVec2) -> String {
+/// What the points are: those of all of the pixel's samples, or the first.
+fn heading(points: usize, thinned: Option<&Thinned>, pixel: UVec2) -> String {
     let UVec2 { x, y } = pixel;
-    match drawn < all {
-        true => format!("the first {drawn} of {all} samples of pixel {x}, {y}"),
-        false => format!("{} of pixel {x}, {y}", counted(points as u64, "sample")),
+    match thinned {
+        Some(Thinned { drawn, of, .. }) => {
+            format!("the first {drawn} of {of} samples of pixel {x}, {y}")
+        }
+        None => format!("{} of pixel {x}, {y}", counted(points as u64, "sample")),
     }
 }
 
@@ -64,21 +68,20 @@ pub(super) fn pattern_ui(ui: &Ui, free: Rect, scene: &Scene, shown: &mut ShownPa
         light: light_of(&world.lights, choice, &selected),
         ..choice.clone()
     };
-    let all = u64::from(samples_per_pixel(world, &shot.camera, settings));
-    let count = all.min(MOST);
+    let count = u64::from(samples_per_pixel(world, &shot.camera, settings));
     let of = (world.clone(), settings.clone(), choice, pixel, count);
     let same = shown.0.as_ref().is_some_and(|known| {
         Arc::ptr_eq(&known.of.0, &of.0)
             && (&known.of.1, &known.of.2, known.of.3, known.of.4) == (&of.1, &of.2, of.3, of.4)
     });
     if !same {
-        let pattern = pattern(world, settings, &of.2, pixel, count);
+        let pattern = pattern(world, settings, &of.2, pixel, count, MOST);
         shown.0 = Some(PatternOf { of, pattern });
     }
     let Some(PatternOf { pattern, .. }) = &shown.0 else {
         return;
     };
-    let heading = heading(pattern.points.len(), [count, all], pixel);
+    let heading = heading(pattern.points.len(), pattern.thinned.as_ref(), pixel);
     inset_ui(ui, free, pattern, heading);
 }
 
@@ -174,10 +177,16 @@ mod tests {
     fn the_heading_says_how_many_samples_there_are_and_how_many_of_them_are_shown() {
         let pixel = UVec2::new(3, 7);
         // Of a light's points each sample may have several.
-        assert_eq!(heading(64, [16, 16], pixel), "64 samples of pixel 3, 7");
-        assert_eq!(heading(1, [1, 1], pixel), "1 sample of pixel 3, 7");
+        assert_eq!(heading(64, None, pixel), "64 samples of pixel 3, 7");
+        assert_eq!(heading(1, None, pixel), "1 sample of pixel 3, 7");
+        let thinned = Thinned {
+            what: "points",
+            drawn: 4096,
+            of: 9000,
+            rule: "the first",
+        };
         assert_eq!(
-            heading(4096, [4096, 9000], pixel),
+            heading(4096, Some(&thinned), pixel),
             "the first 4096 of 9000 samples of pixel 3, 7"
         );
     }
