@@ -58,7 +58,7 @@ pub fn pattern(
         x: choice.x,
         y: choice.y,
         points: (0..drawn).map(point).collect(),
-        thinned: (drawn < all).then(|| Thinned {
+        thinned: (drawn < all).then_some(Thinned {
             what: "points of samples",
             drawn: drawn as usize,
             of: all as usize,
