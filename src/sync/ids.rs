@@ -12,7 +12,7 @@ use bevy::transform::components::Transform;
 
 /// Which entity has which number.
 #[derive(Resource, Default)]
-pub(crate) struct IdOwners {
+pub struct IdOwners {
     owners: HashMap<u64, Entity>,
     /// The other way round.
     numbers: EntityHashMap<u64>,

@@ -66,7 +66,7 @@ mod uses;
 mod tests;
 
 pub use cameras::{TracedCamera, TracedCameras};
-pub(crate) use ids::IdOwners;
+pub use ids::IdOwners;
 pub use left_out::LeftOut;
 pub use mesh_data::MeshFault;
 pub use motions::{WorldMotion, WorldMotions};
