@@ -55,6 +55,28 @@ fn files_are_told_apart_by_what_cannot_be_shown_of_them() {
 }
 
 #[test]
+fn what_one_file_holds_is_no_weight_on_the_next() {
+    let folder = tempfile::tempdir().unwrap();
+    // One takes 12 MB while it is read, and 2 MB afterwards.
+    const SIDE: usize = 120;
+    let mut model = String::new();
+    for at in 0..SIDE * SIDE {
+        model += &format!("v {} {} 0\n", at / SIDE, at % SIDE);
+    }
+    for (i, j) in (0..SIDE - 1).flat_map(|i| (0..SIDE - 1).map(move |j| (i, j))) {
+        let at = i * SIDE + j + 1;
+        model += &format!("f {at} {} {} {}\n", at + 1, at + SIDE + 1, at + SIDE);
+    }
+    fs::write(folder.path().join("grid.obj"), model).unwrap();
+    let files = ["grid.obj"; 12];
+    let out = succeeds(
+        folder.path(),
+        &[&["check", "--memory", "16M"], &files[..]].concat(),
+    );
+    assert_eq!(out.lines().count(), files.len(), "{out}");
+}
+
+#[test]
 fn json_says_the_same_of_every_file() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
