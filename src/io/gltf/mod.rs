@@ -10,6 +10,7 @@ mod document;
 mod environment;
 mod glb;
 mod json;
+mod json_text;
 mod lamps;
 mod material;
 mod nodes;
