@@ -241,15 +241,7 @@ mod tests {
         let mut scene = desk.world().resource_mut::<RenderSettings>();
         (scene.spp, scene.sampling.time, scene.max_depth) = (77, 2.5, 3);
         let folder = tempfile::tempdir().unwrap();
-        let request = RenderRequest {
-            file: folder.path().join("a.png"),
-            camera: RenderFrom::FirstCamera,
-            settings: RenderSettings {
-                spp: 1 << 20,
-                ..RenderSettings::default()
-            },
-        };
-        start_render(desk.world(), request).unwrap();
+        desk.begin_endless_render(folder.path().join("a.png"));
         desk.settle();
         desk.click_on("rendering 0 %");
         desk.world().resource_mut::<RenderJob>().cancel();

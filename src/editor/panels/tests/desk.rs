@@ -6,6 +6,7 @@ use crate::editor::headless_editor;
 use crate::editor::inspection::RaysPlugin;
 use crate::editor::plugins::StatePlugin;
 use crate::editor::preferences::Preferences;
+use crate::editor::render_job::{RenderFrom, RenderRequest, start_render};
 use crate::editor::selection::Selection;
 use crate::editor::trees::TreeStudyPlugin;
 use crate::editor::viewport::EditorCamera;
@@ -21,6 +22,7 @@ use bevy::ecs::query::With;
 use bevy::ecs::world::World;
 use bevy_egui::egui::accesskit::{self, Role};
 use bevy_egui::egui::{self, Event, FullOutput, Key, Modifiers, PointerButton, Pos2, Shape, vec2};
+use std::path::PathBuf;
 
 /// Windows that must do: the smallest, the usual one, and 4K at twice the scale.
 pub const SMALL: [f32; 3] = [1024.0, 640.0, 1.0];
@@ -262,6 +264,19 @@ impl Desk {
                 modifiers: Modifiers::NONE,
             }]);
         }
+    }
+
+    /// To a file, with more samples than any test waits for.
+    pub fn begin_endless_render(&mut self, file: PathBuf) {
+        let request = RenderRequest {
+            file,
+            camera: RenderFrom::FirstCamera,
+            settings: RenderSettings {
+                spp: 1 << 20,
+                ..RenderSettings::default()
+            },
+        };
+        start_render(self.world(), request).unwrap();
     }
 
     pub fn named(&mut self, name: &str) -> (Entity, SceneId) {

@@ -223,15 +223,7 @@ fn a_dialog_that_had_less_to_show_grows_again() {
         area.map_or(0.0, |area| area.height())
     };
     let form = height(&desk);
-    let request = RenderRequest {
-        file: folder.path().join("a.png"),
-        camera: RenderFrom::FirstCamera,
-        settings: RenderSettings {
-            spp: 1 << 20,
-            ..RenderSettings::default()
-        },
-    };
-    start_render(desk.world(), request).unwrap();
+    desk.begin_endless_render(folder.path().join("a.png"));
     desk.settle();
     let progress = height(&desk);
     assert!(progress < form, "{progress} {form}");
