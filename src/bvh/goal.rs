@@ -17,6 +17,8 @@ pub(crate) trait Goal {
     const NEAREST_FIRST: bool;
     /// Whether it matters only that something is hit, and not where.
     const ANY: bool;
+    /// Whether a ray may end before its way does.
+    const MAY_STOP: bool;
 
     /// Takes a hit that lies on the ray, no farther than the limit. Returns whether it is wanted, and the new limit: the
     /// `t` beyond which nothing matters any more, or [`STOP`].
@@ -46,6 +48,7 @@ impl Nearest {
 impl Goal for Nearest {
     const NEAREST_FIRST: bool = true;
     const ANY: bool = false;
+    const MAY_STOP: bool = false;
 
     #[inline(always)]
     fn meet(&mut self, hit: Hit, limit: f32) -> (bool, f32) {
@@ -67,6 +70,7 @@ pub(crate) struct Behind {
 impl Goal for Behind {
     const NEAREST_FIRST: bool = true;
     const ANY: bool = false;
+    const MAY_STOP: bool = false;
 
     #[inline(always)]
     fn meet(&mut self, hit: Hit, limit: f32) -> (bool, f32) {
@@ -87,6 +91,7 @@ pub(crate) struct Any {
 impl Goal for Any {
     const NEAREST_FIRST: bool = false;
     const ANY: bool = true;
+    const MAY_STOP: bool = true;
 
     #[inline(always)]
     fn meet(&mut self, _: Hit, _: f32) -> (bool, f32) {
@@ -101,6 +106,7 @@ pub(crate) struct All<'a>(pub(crate) &'a mut Vec<Hit>);
 impl Goal for All<'_> {
     const NEAREST_FIRST: bool = false;
     const ANY: bool = false;
+    const MAY_STOP: bool = false;
 
     #[inline(always)]
     fn meet(&mut self, hit: Hit, limit: f32) -> (bool, f32) {
@@ -116,6 +122,12 @@ pub(crate) struct Question<'a, G, V> {
     pub(crate) starts_on: TriangleId,
     pub(crate) goal: &'a mut G,
     pub(crate) visitor: &'a mut V,
+}
+
+/// Whether a limit ends a ray.
+#[inline(always)]
+pub(crate) fn is_end<G: Goal>(limit: f32) -> bool {
+    G::MAY_STOP && limit == STOP
 }
 
 impl<G: Goal, V: Visitor> Question<'_, G, V> {

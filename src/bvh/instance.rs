@@ -28,7 +28,8 @@ use obvhs::aabb::Aabb;
 use thiserror::Error;
 
 use super::{
-    mesh_tree::{MeshTree, ObjectRay},
+    mesh_tree::MeshTree,
+    object_ray::ObjectRay,
     slab::{PAD, SMALLEST_DIRECTION},
     triangles::REACH,
     wide::{Lanes, PacketRays, by_axis, largest_size},

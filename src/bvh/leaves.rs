@@ -2,42 +2,30 @@
 
 use super::{
     aggregate::Aggregate,
-    goal::{Goal, Question, STOP},
-    mesh_tree::{MeshTree, ObjectRay},
-    safe_ray::SafeRay,
-    slab::SlabRay,
+    goal::{Goal, Question, is_end},
+    mesh_tree::MeshTree,
+    object_ray::ObjectRay,
+    tree_ray::{LoneRay, TreeRay, WorldRay},
     triangle::Shear,
     visitor::{TreeRef, Visitor},
-    wide::{Eight, Leaves, Sight, WideRay, walk},
+    wide::{Eight, Leaves, Owner, Sheared, walk},
 };
 
-impl Aggregate {
-    /// The ray as the boxes of the top tree need it.
-    #[inline(always)]
-    pub(crate) fn top_slab(&self, world: &ObjectRay) -> SlabRay {
-        let pad = world.origin.abs().max_element() * self.ray_pad;
-        world.slab.with_pad(world.origin, pad)
-    }
-}
-
 /// A mesh's leaf is blocks of triangles, and each a leaf of the wide tree.
-pub(super) struct MeshLeaves<'a> {
-    pub(super) mesh: &'a MeshTree,
-    pub(super) instance: u32,
+pub(super) struct MeshLeaves<'a, R> {
+    mesh: &'a MeshTree,
+    instance: u32,
     /// In the mesh's space.
-    pub(super) ray: &'a ObjectRay,
-    /// Made at the first leaf: many rays meet none.
-    shear: Option<Shear>,
+    ray: R,
 }
 
-impl<'a> MeshLeaves<'a> {
+impl<'a, R: TreeRay> MeshLeaves<'a, R> {
     #[inline(always)]
-    pub(super) fn new(mesh: &'a MeshTree, instance: u32, ray: &'a ObjectRay) -> Self {
+    pub(super) fn new(mesh: &'a MeshTree, instance: u32, ray: R) -> Self {
         Self {
             mesh,
             instance,
             ray,
-            shear: None,
         }
     }
 
@@ -50,12 +38,12 @@ impl<'a> MeshLeaves<'a> {
         question: &mut Question<G, V>,
     ) -> f32 {
         let tree = &self.mesh.wide;
-        let ray = WideRay::<E>::new(&self.ray.slab, start);
+        let ray = self.ray.wide::<E>(start);
         walk(tree, stack, &ray, limit, &mut self, question)
     }
 }
 
-impl<E: Eight, G: Goal, V: Visitor> Leaves<E, G, V> for MeshLeaves<'_> {
+impl<E: Eight, G: Goal, V: Visitor, R: TreeRay> Leaves<E, G, V> for MeshLeaves<'_, R> {
     #[inline(always)]
     fn tree(&self) -> TreeRef {
         TreeRef::Mesh(self.instance)
@@ -69,18 +57,12 @@ impl<E: Eight, G: Goal, V: Visitor> Leaves<E, G, V> for MeshLeaves<'_> {
         _: &mut [u64],
         question: &mut Question<G, V>,
     ) -> f32 {
-        let ray = self.ray;
-        let shear = match &mut self.shear {
-            Some(shear) => shear,
-            none => none.insert(Shear::new(ray.origin, ray.direction)),
-        };
-        let sight = Sight {
+        let owner = Owner {
             instance: self.instance,
-            shear,
-            slab: &ray.slab,
             reach: self.mesh.reach(),
         };
-        self.mesh.blocks[block as usize].cross::<E, G, V>(&sight, limit, question)
+        let sight = self.ray.sight();
+        self.mesh.blocks[block as usize].cross::<E, G, V>(&sight, owner, limit, question)
     }
 
     #[inline(always)]
@@ -99,9 +81,24 @@ impl<E: Eight, G: Goal, V: Visitor> Leaves<E, G, V> for MeshLeaves<'_> {
 
 /// Two levels: a leaf of the top tree is an instance, or several where they could not be told apart.
 pub(super) struct InstanceLeaves<'a> {
-    pub(super) scene: &'a Aggregate,
-    pub(super) places: &'a [u32],
-    pub(super) ray: &'a SafeRay,
+    scene: &'a Aggregate,
+    places: &'a [u32],
+    world: ObjectRay,
+    start: f32,
+    time: f32,
+}
+
+impl<'a> InstanceLeaves<'a> {
+    #[inline(always)]
+    pub(super) fn new(scene: &'a Aggregate, places: &'a [u32], ray: &impl WorldRay) -> Self {
+        Self {
+            scene,
+            places,
+            world: ray.world(),
+            start: ray.start(),
+            time: ray.time(),
+        }
+    }
 }
 
 impl<E: Eight, G: Goal, V: Visitor> Leaves<E, G, V> for InstanceLeaves<'_> {
@@ -129,15 +126,14 @@ impl<E: Eight, G: Goal, V: Visitor> Leaves<E, G, V> for InstanceLeaves<'_> {
         stack: &mut [u64],
         question: &mut Question<G, V>,
     ) -> f32 {
-        let ray = self.ray;
         for &number in &self.places[self.scene.wide_leaves[leaf as usize].clone()] {
             let instance = &self.scene.instances()[number as usize];
-            let Some(object) = instance.to_object_ray(&ray.world, ray.time) else {
+            let Some(object) = instance.to_object_ray(&self.world, self.time) else {
                 continue;
             };
-            let leaves = MeshLeaves::new(&instance.mesh, number, &object);
-            limit = leaves.walk::<E, G, V>(stack, (ray.start, limit), question);
-            if limit == STOP {
+            let leaves = MeshLeaves::new(&instance.mesh, number, LoneRay::new(&object));
+            limit = leaves.walk::<E, G, V>(stack, (self.start, limit), question);
+            if is_end::<G>(limit) {
                 break;
             }
         }
@@ -147,20 +143,31 @@ impl<E: Eight, G: Goal, V: Visitor> Leaves<E, G, V> for InstanceLeaves<'_> {
 
 /// One level: a leaf of the tree is blocks of triangles, each of one instance.
 pub(super) struct FlatLeaves<'a> {
-    pub(super) scene: &'a Aggregate,
-    pub(super) ray: &'a SafeRay,
+    scene: &'a Aggregate,
+    world: ObjectRay,
+    time: f32,
     /// The instance met last, with the ray in its space and its frame there; `None` where it cannot be met.
-    pub(super) last: Option<(u32, Option<(ObjectRay, Shear)>)>,
+    last: Option<(u32, Option<(ObjectRay, Shear)>)>,
 }
 
-impl FlatLeaves<'_> {
+impl<'a> FlatLeaves<'a> {
+    #[inline(always)]
+    pub(super) fn new(scene: &'a Aggregate, ray: &impl WorldRay) -> Self {
+        Self {
+            scene,
+            world: ray.world(),
+            time: ray.time(),
+            last: None,
+        }
+    }
+
     /// The ray in an instance's space and its frame there, made anew when the instance is not the last one; `None`
     /// where the instance cannot be met.
     #[inline(always)]
     fn object_ray(&mut self, number: u32) -> Option<&(ObjectRay, Shear)> {
         if self.last.as_ref().is_none_or(|(of, _)| *of != number) {
             let instance = &self.scene.instances()[number as usize];
-            let object = instance.to_object_ray(&self.ray.world, self.ray.time);
+            let object = instance.to_object_ray(&self.world, self.time);
             let with_frame = |object: ObjectRay| {
                 let shear = Shear::new(object.origin, object.direction);
                 (object, shear)
@@ -188,17 +195,16 @@ impl<E: Eight, G: Goal, V: Visitor> Leaves<E, G, V> for FlatLeaves<'_> {
         let scene = self.scene;
         for block in scene.wide_leaves[leaf as usize].clone() {
             let number = scene.block_instances[block];
-            let Some((object, shear)) = self.object_ray(number) else {
+            let Some((ray, shear)) = self.object_ray(number) else {
                 continue;
             };
-            let sight = Sight {
+            let sight = Sheared { ray, shear };
+            let owner = Owner {
                 instance: number,
-                shear,
-                slab: &object.slab,
                 reach: scene.instances()[number as usize].mesh.reach(),
             };
-            limit = scene.blocks[block].cross::<E, G, V>(&sight, limit, question);
-            if limit == STOP {
+            limit = scene.blocks[block].cross::<E, G, V>(&sight, owner, limit, question);
+            if is_end::<G>(limit) {
                 break;
             }
         }

@@ -7,6 +7,7 @@ use glam::Vec3;
 
 use super::{
     aggregate::{Aggregate, Places},
+    batch::Batch,
     goal::{Any, Goal, Nearest, Question},
     leaves::{FlatLeaves, InstanceLeaves, MeshLeaves},
     mesh_tree::MeshTree,
@@ -14,11 +15,13 @@ use super::{
     packets::{Packet, PacketOfInstances, PacketOfMesh, trace_packet},
     ray::{Hit, Ray},
     safe_ray::SafeRay,
+    slab::PAD,
     transmit::{Transmit, Transmittances},
+    tree_ray::WorldRay,
     visitor::Visitor,
     wide::{
-        Answers, Eight, FEW, Found, Group, InstructionSet, Lanes, MANY, Query, View, WideRay,
-        answer, few_hold, walk, walk_packet,
+        Answers, Eight, FEW, Found, Group, InstructionSet, Lanes, MANY, Query, View, answer,
+        few_hold, walk, walk_packet,
     },
 };
 
@@ -30,10 +33,13 @@ pub(super) trait Arrangement: Copy {
     /// Entries of a stack that a walk needs.
     fn most_pending(self) -> usize;
 
+    /// The slack around their origins, relative to their size, with which rays of the world meet its boxes.
+    fn pad(self) -> f32;
+
     /// Walks along the ray until the question has its answer.
     fn walk<E: Eight, G: Goal, V: Visitor>(
         self,
-        ray: &SafeRay,
+        ray: &impl WorldRay,
         stack: &mut [u64],
         question: &mut Question<G, V>,
     );
@@ -42,14 +48,14 @@ pub(super) trait Arrangement: Copy {
     #[inline(always)]
     fn pursue<E: Eight, G: Goal, V: Visitor>(
         self,
-        ray: &SafeRay,
+        ray: &impl WorldRay,
         stack: &mut [u64],
         goal: &mut G,
         visitor: &mut V,
     ) {
         let mut question = Question {
-            measure: ray.measure,
-            starts_on: ray.starts_on,
+            measure: ray.measure(),
+            starts_on: ray.starts_on(),
             goal,
             visitor,
         };
@@ -157,11 +163,13 @@ impl<Of: Arrangement> Query for Closest<'_, Of> {
             }
             return;
         }
-        for (ray, closest) in self.rays.iter().zip(self.hits) {
-            if let Some(ray) = SafeRay::new(ray) {
+        let size = Batch::SIZE;
+        for (rays, hits) in self.rays.chunks(size).zip(self.hits.chunks_mut(size)) {
+            let batch = Batch::new::<S::Eight>(rays, self.of.pad());
+            for ray in batch.rays() {
                 let mut goal = Nearest::NONE;
                 (self.of).pursue::<S::Eight, _, _>(&ray, stack, &mut goal, &mut ());
-                *closest = goal.found(&ray.measure);
+                hits[ray.place()] = goal.found(&ray.measure());
             }
         }
     }
@@ -190,11 +198,14 @@ impl<Of: Arrangement> Query for AnyOf<'_, Of> {
             }
             return;
         }
-        for (ray, occluded) in self.rays.iter().zip(self.occluded) {
-            if let Some(ray) = SafeRay::new(ray) {
+        let size = Batch::SIZE;
+        let rays = self.rays.chunks(size);
+        for (rays, occluded) in rays.zip(self.occluded.chunks_mut(size)) {
+            let batch = Batch::new::<S::Eight>(rays, self.of.pad());
+            for ray in batch.rays() {
                 let mut goal = Any::default();
                 (self.of).pursue::<S::Eight, _, _>(&ray, stack, &mut goal, &mut ());
-                *occluded = goal.is_hit;
+                occluded[ray.place()] = goal.is_hit;
             }
         }
     }
@@ -281,14 +292,19 @@ impl Arrangement for OneMesh<'_> {
     }
 
     #[inline(always)]
+    fn pad(self) -> f32 {
+        PAD
+    }
+
+    #[inline(always)]
     fn walk<E: Eight, G: Goal, V: Visitor>(
         self,
-        ray: &SafeRay,
+        ray: &impl WorldRay,
         stack: &mut [u64],
         question: &mut Question<G, V>,
     ) {
-        let leaves = MeshLeaves::new(self.0, 0, &ray.world);
-        leaves.walk::<E, G, V>(stack, (ray.start, ray.end), question);
+        let leaves = MeshLeaves::new(self.0, 0, ray.in_tree());
+        leaves.walk::<E, G, V>(stack, (ray.start(), ray.end()), question);
     }
 
     #[inline(always)]
@@ -317,16 +333,21 @@ impl Arrangement for TwoLevels<'_> {
     }
 
     #[inline(always)]
+    fn pad(self) -> f32 {
+        self.0.ray_pad
+    }
+
+    #[inline(always)]
     fn walk<E: Eight, G: Goal, V: Visitor>(
         self,
-        ray: &SafeRay,
+        ray: &impl WorldRay,
         stack: &mut [u64],
         question: &mut Question<G, V>,
     ) {
         let Self(scene, places) = self;
-        let mut leaves = InstanceLeaves { scene, places, ray };
-        let top = WideRay::<E>::new(&scene.top_slab(&ray.world), ray.start);
-        walk(&scene.wide, stack, &top, ray.end, &mut leaves, question);
+        let mut leaves = InstanceLeaves::new(scene, places, ray);
+        let top = ray.at_top::<E>(scene);
+        walk(&scene.wide, stack, &top, ray.end(), &mut leaves, question);
     }
 
     #[inline(always)]
@@ -370,20 +391,21 @@ impl Arrangement for OneLevel<'_> {
     }
 
     #[inline(always)]
+    fn pad(self) -> f32 {
+        self.0.ray_pad
+    }
+
+    #[inline(always)]
     fn walk<E: Eight, G: Goal, V: Visitor>(
         self,
-        ray: &SafeRay,
+        ray: &impl WorldRay,
         stack: &mut [u64],
         question: &mut Question<G, V>,
     ) {
         let scene = self.0;
-        let mut leaves = FlatLeaves {
-            scene,
-            ray,
-            last: None,
-        };
-        let top = WideRay::<E>::new(&scene.top_slab(&ray.world), ray.start);
-        walk(&scene.wide, stack, &top, ray.end, &mut leaves, question);
+        let mut leaves = FlatLeaves::new(scene, ray);
+        let top = ray.at_top::<E>(scene);
+        walk(&scene.wide, stack, &top, ray.end(), &mut leaves, question);
     }
 
     #[inline(always)]

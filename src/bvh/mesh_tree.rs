@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::{
     build_tree,
     options::BuildOptions,
-    slab::{SlabRay, triangle_box},
+    slab::triangle_box,
     stats::TreeStats,
     support::{Support, reach},
     triangles::Triangles,
@@ -183,24 +183,4 @@ fn tree_over(
         TriangleBlock::append(&tree.primitive_indices[places], triangles, blocks);
     });
     (tree, wide, blocks)
-}
-
-/// A ray in a mesh's own space, with what the slab test needs.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct ObjectRay {
-    pub(crate) origin: Vec3A,
-    pub(crate) direction: Vec3A,
-    pub(crate) slab: SlabRay,
-}
-
-impl ObjectRay {
-    /// `longest` is the size of the direction's largest component, and lies within the range that [`SlabRay`] asks for.
-    #[inline(always)]
-    pub(crate) fn new(origin: Vec3A, direction: Vec3A, longest: f32) -> Self {
-        Self {
-            origin,
-            direction,
-            slab: SlabRay::new(origin, direction, longest, SlabRay::pad_of(origin)),
-        }
-    }
 }

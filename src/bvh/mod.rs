@@ -40,8 +40,10 @@
 //! hits lie strictly between 0 and `t_max`.
 
 pub(crate) mod aggregate;
+mod batch;
 mod boxes;
 mod build;
+mod columns;
 mod crossing;
 mod depth;
 mod epo;
@@ -55,6 +57,7 @@ mod levels;
 mod median;
 pub(crate) mod mesh_tree;
 mod multi_hit;
+mod object_ray;
 mod options;
 mod order;
 mod packets;
@@ -74,6 +77,7 @@ mod surface_point;
 mod tests;
 mod top_down;
 mod transmit;
+mod tree_ray;
 mod treelets;
 pub(crate) mod triangle;
 mod triangles;

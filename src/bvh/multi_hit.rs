@@ -123,6 +123,7 @@ struct Several<'a> {
 impl Goal for Several<'_> {
     const NEAREST_FIRST: bool = true;
     const ANY: bool = false;
+    const MAY_STOP: bool = false;
 
     fn meet(&mut self, hit: Hit, limit: f32) -> (bool, f32) {
         if !self.after.beats(&hit) {

@@ -4,16 +4,17 @@ use std::marker::PhantomData;
 
 use super::{
     aggregate::Aggregate,
+    columns::Columns,
     goal::{Any, Goal, Nearest},
     leaves::{InstanceLeaves, MeshLeaves},
     levels::Arrangement,
     mesh_tree::MeshTree,
     ray::{Ray, TriangleId},
-    safe_ray::{ORDINARY, SafeRay},
-    triangles::REACH,
+    safe_ray::SafeRay,
+    tree_ray::{LoneRay, TreeRay, WorldRay},
     wide::{
         Answers, Found, Group, InstructionSet, Lanes, PacketLeaves, PacketRays, View, Ways,
-        WideRay, by_axis, lanes_of, largest_size, walk_from, walk_packet,
+        lanes_of, walk_from, walk_packet,
     },
 };
 
@@ -30,51 +31,33 @@ pub(super) struct Packet<'a, S: InstructionSet> {
 }
 
 impl<'a, S: InstructionSet> Packet<'a, S> {
-    /// At most as many rays as there are lanes; what [`SafeRay::new`] does with one, where it needs no scale.
+    /// At most as many rays as there are lanes.
     #[inline(always)]
     fn new(rays: &'a [Ray]) -> Self {
-        let zero = S::Packet::splat(0.0);
-        let mut rows = [[0.0; 8]; 16];
-        let mut all = TriangleId::NONE.triangle;
-        for (row, ray) in rows.iter_mut().zip(rays) {
-            let numbers: &[f32; 10] = bytemuck::cast_ref(ray);
-            row.copy_from_slice(&numbers[..8]);
-            all &= ray.starts_on.triangle;
-        }
-        // Rays of a camera start on none.
+        let Columns {
+            world,
+            end,
+            time,
+            safe,
+            is_spawned,
+        } = Columns::of(rays);
+        // Rays of a camera start on no triangle.
         let mut starts_on = None;
-        if all != TriangleId::NONE.triangle {
-            let mut names = [zero.to_array(); 2];
+        if is_spawned {
+            let mut names = [S::Packet::splat(0.0).to_array(); 2];
             for (lane, ray) in rays.iter().enumerate() {
                 names[0].as_mut()[lane] = f32::from_bits(ray.starts_on.instance);
                 names[1].as_mut()[lane] = f32::from_bits(ray.starts_on.triangle);
             }
             starts_on = Some([S::Packet::load(&names[0]), S::Packet::load(&names[1])]);
         }
-        let columns = S::Packet::columns(&rows);
-        let [.., end, time] = columns;
-        // -0.0 becomes +0.0, so that both mean the same.
-        let origin = by_axis!(|i| columns[i].add(zero));
-        let direction = by_axis!(|i| columns[3 + i].add(zero));
-        let longest = largest_size(&direction);
-        let ordinary = S::Packet::splat(1.0 / ORDINARY);
-        let reach = S::Packet::splat(REACH);
-        let mut lanes = (1 << rays.len()) - 1;
-        for axis in 0..3 {
-            lanes &= S::Packet::bits(direction[axis].abs().le(ordinary));
-            lanes &= S::Packet::bits(origin[axis].abs().le(reach));
-        }
-        lanes &= S::Packet::bits(S::Packet::splat(ORDINARY).le(longest));
-        lanes &= S::Packet::bits(zero.lt(end));
-        lanes &= S::Packet::bits(zero.le(time));
-        lanes &= S::Packet::bits(time.le(S::Packet::splat(1.0)));
         Self {
             rays,
-            world: PacketRays::new(origin, direction, longest),
+            world,
             time,
             end,
             starts_on,
-            lanes,
+            lanes: safe,
         }
     }
 }
@@ -166,13 +149,13 @@ impl<S: InstructionSet, G: Goal> PacketLeaves<S> for PacketOfInstances<'_, S, G>
     fn alone(&mut self, child: u32, lanes: u32, found: &mut Found<S::Packet>, stack: &mut [u64]) {
         let (scene, places) = (self.scene, self.places);
         for lane in lanes_of(lanes) {
-            let Some(ray) = &SafeRay::new(&self.packet.rays[lane]) else {
+            let Some(ray) = SafeRay::new(&self.packet.rays[lane]) else {
                 continue;
             };
             let mut alone = found.alone::<G>(lane);
             let limit = alone.limit;
-            let mut leaves = InstanceLeaves { scene, places, ray };
-            let top = WideRay::<S::Eight>::new(&scene.top_slab(&ray.world), 0.0);
+            let mut leaves = InstanceLeaves::new(scene, places, &ray);
+            let top = ray.at_top::<S::Eight>(scene);
             let mut nobody = ();
             let question = &mut alone.question(&mut nobody);
             walk_from(
@@ -242,11 +225,12 @@ impl<S: InstructionSet, G: Goal> PacketLeaves<S> for PacketOfMesh<'_, S, G> {
             let mut alone = found.alone::<G>(lane);
             let limit = alone.limit;
             let tree = &self.mesh.wide;
-            let mut leaves = MeshLeaves::new(self.mesh, self.instance, &ray);
-            let ray = WideRay::<S::Eight>::new(&ray.slab, 0.0);
+            let ray = LoneRay::new(&ray);
+            let wide = ray.wide::<S::Eight>(0.0);
+            let mut leaves = MeshLeaves::new(self.mesh, self.instance, ray);
             let mut nobody = ();
             let question = &mut alone.question(&mut nobody);
-            walk_from(tree, child, stack, &ray, limit, &mut leaves, question);
+            walk_from(tree, child, stack, &wide, limit, &mut leaves, question);
             found.rejoin(alone);
         }
     }

@@ -1,8 +1,6 @@
 //! What a tracer asks: the nearest hit, any hit, the next hit, all hits. All are answered by one walk through the wide form
 //! of the trees ([`super::wide`]), which a [`Visitor`] may watch.
 
-use std::slice;
-
 use super::{
     Aggregate,
     goal::{All, Any, Behind, Nearest},
@@ -15,13 +13,7 @@ use super::{
 impl Aggregate {
     /// The nearest hit; equal `t` by the smaller (instance, triangle).
     pub fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
-        let mut closest = None;
-        self.ask_closest(
-            Order::None,
-            slice::from_ref(ray),
-            slice::from_mut(&mut closest),
-        );
-        closest
+        self.closest_hit_with(ray, &mut ())
     }
 
     /// The nearest hit of every ray, in their order. `hits` is cleared first. Faster than one call a ray.
@@ -39,13 +31,7 @@ impl Aggregate {
 
     /// Whether anything is hit in `0 < t < t_max`.
     pub fn occluded(&self, ray: &Ray) -> bool {
-        let mut occluded = false;
-        self.ask_any(
-            Order::None,
-            slice::from_ref(ray),
-            slice::from_mut(&mut occluded),
-        );
-        occluded
+        self.occluded_with(ray, &mut ())
     }
 
     /// Whether each ray is occluded, in their order. `occluded` is cleared first. Faster than one call a ray.

@@ -3,7 +3,7 @@
 use glam::Vec3A;
 
 use super::{
-    mesh_tree::ObjectRay,
+    object_ray::ObjectRay,
     ray::{Hit, Ray, TriangleId},
     slab::SMALLEST_DIRECTION,
     triangles::REACH,
@@ -38,7 +38,18 @@ impl Measure {
     /// Of a ray that is safe as it is.
     #[inline(always)]
     pub(crate) fn unscaled(t_max: f32) -> Self {
-        Self { scale: 1.0, t_max }
+        Self::new(1.0, t_max)
+    }
+
+    /// Of a ray in which one of its own `t` is so many of the caller's, and that ends at the caller's `t_max`.
+    #[inline(always)]
+    pub(crate) fn new(scale: f32, t_max: f32) -> Self {
+        Self { scale, t_max }
+    }
+
+    /// The caller's `t` in one of the [`SafeRay`]'s.
+    pub(crate) fn scale(&self) -> f32 {
+        self.scale
     }
 
     /// Whether a hit at the [`SafeRay`]'s `t` lies on the caller's ray.

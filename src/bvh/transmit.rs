@@ -111,6 +111,7 @@ impl<'a> Transmit<'a> {
 impl Goal for Transmit<'_> {
     const NEAREST_FIRST: bool = false;
     const ANY: bool = false;
+    const MAY_STOP: bool = true;
 
     #[inline(always)]
     fn meet(&mut self, hit: Hit, limit: f32) -> (bool, f32) {

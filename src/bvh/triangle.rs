@@ -36,29 +36,37 @@
 
 use glam::{DVec3, Vec3, Vec3A};
 
-use super::slab::{SlabRay, triangle_box};
+use super::{object_ray::ObjectRay, slab::triangle_box};
+
+/// An axis of space. Not a number, so that what has three of something is indexed by it without a check.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(usize)]
+pub(crate) enum Axis {
+    X,
+    Y,
+    Z,
+}
+
+/// Which axes are x, y and z in the frame of a ray that goes farthest along x, y or z: the last one twice, so that two bits
+/// are a number of these.
+pub(crate) const FRAMES: [[Axis; 3]; 4] = [
+    [Axis::Y, Axis::Z, Axis::X],
+    [Axis::Z, Axis::X, Axis::Y],
+    [Axis::X, Axis::Y, Axis::Z],
+    [Axis::X, Axis::Y, Axis::Z],
+];
 
 /// The ray's frame: which axis is z, and the shear that turns the direction into it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shear {
-    origin: Vec3A,
-    direction: Vec3A,
     /// Which axes are x, y and z in the frame.
-    pub(crate) axes: [usize; 3],
+    pub(crate) axes: [Axis; 3],
     /// The origin along those axes.
     pub(crate) from: [f32; 3],
     /// The shear of x and of y by z.
     pub(crate) slope: [f32; 2],
-    /// The direction along z.
-    along: f32,
-    /// The origin's largest coordinate, without its sign.
-    size: f32,
-    /// The direction's.
-    longest: f32,
+    pub(crate) depths: Depths,
 }
-
-/// The axes after each axis.
-const FRAMES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
 
 impl Shear {
     /// The frame of a ray. `direction` is finite and not zero.
@@ -71,33 +79,58 @@ impl Shear {
         let most = if size.x > size.y { size.x } else { size.y };
         let z = if most > size.z { in_plane } else { 2 };
         let axes = FRAMES[z];
-        let [x, y, z] = axes;
+        let [x, y, z] = axes.map(|axis| axis as usize);
         let (from, along) = (origin.to_array(), direction.to_array());
         Self {
-            origin,
-            direction,
             axes,
             from: [from[x], from[y], from[z]],
             slope: [along[x] / along[z], along[y] / along[z]],
-            along: along[z],
-            size: origin.abs().max_element(),
-            longest: along[z].abs(),
+            depths: Depths::new(along[z], origin.abs().max_element()),
+        }
+    }
+}
+
+/// Where along z of its frame a ray may meet something.
+///
+/// Depths are measured against z, from the origin: `origin - corner`, as the corners themselves are
+/// ([`super::wide::TriangleBlock`]).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Depths {
+    /// How much deeper the ray is for each of its `t`, and a little more.
+    pub(crate) rate: f32,
+    /// What the ray's origin adds to the slack.
+    pub(crate) slack: f32,
+}
+
+impl Depths {
+    /// 16u, u as in [`super::slab`].
+    pub(crate) const SLACK: f32 = 8.0 * f32::EPSILON;
+    /// [`Self::rate`] of a ray whose direction is 1 along z.
+    pub(crate) const RATE: f32 = -(1.0 + Self::SLACK);
+
+    /// Of a ray that goes so far `along` z, from an origin of which that is the largest coordinate, without its sign.
+    #[inline(always)]
+    pub(crate) fn new(along: f32, farthest: f32) -> Self {
+        Self {
+            rate: along * Self::RATE,
+            slack: farthest * Self::SLACK + f32::MIN_POSITIVE,
         }
     }
 
-    /// Between which depths, the z of the frame, something of a triangle lies that [`accept`] finds in
-    /// `0 < t <= limit`. `reach` is no less than any coordinate of the triangle.
+    /// Between which depths something of a triangle lies that [`accept`] finds in `0 < t <= limit`. `reach` is no less than
+    /// any coordinate of the triangle.
     ///
     /// `t` lies within the triangle's box, and so between its faces across z. Those are off by the pads, 12u of the
     /// triangle's and of the origin's coordinates ([`super::slab`]), and by five roundings, of which two are relative to
     /// the same coordinates and three to `t`: less than 16u of either. What is too small to have relative roundings is
     /// kept.
     #[inline(always)]
-    pub(crate) fn depths(&self, reach: f32, limit: f32) -> (f32, f32) {
-        const SLACK: f32 = 8.0 * f32::EPSILON;
-        let slack = (reach + self.size) * SLACK + f32::MIN_POSITIVE;
-        let end = limit * self.along * (1.0 + SLACK);
-        let (first, last) = if end < 0.0 { (end, 0.0) } else { (0.0, end) };
+    pub(crate) fn span(&self, reach: f32, limit: f32) -> (f32, f32) {
+        let slack = reach * Self::SLACK + self.slack;
+        let end = limit * self.rate;
+        // Each of these is one instruction.
+        let first = if end < 0.0 { end } else { 0.0 };
+        let last = if end > 0.0 { end } else { 0.0 };
         (first - slack, last + slack)
     }
 }
@@ -116,14 +149,13 @@ pub(crate) struct Crossing {
 /// nothing.
 #[inline(always)]
 pub(crate) fn accept(
-    shear: &Shear,
-    slab: &SlabRay,
+    ray: &ObjectRay,
     corners: [Vec3; 3],
     [u, v, w]: [f32; 3],
     limit: f32,
     any: bool,
 ) -> Option<Crossing> {
-    let span = || slab.span(&triangle_box(corners.map(Vec3A::from)));
+    let span = || ray.slab.span(&triangle_box(corners.map(Vec3A::from)));
     if any {
         let (entry, exit) = span();
         let in_range = (1.0 / IN_RANGE < entry) & (exit < IN_RANGE);
@@ -135,9 +167,9 @@ pub(crate) fn accept(
             });
         }
     }
-    let plane = Plane::of(shear, corners);
+    let plane = Plane::of(ray, corners);
     let crossed = plane.t();
-    if !((crossed > 0.0) & (crossed <= limit)) && plane.is_outside(shear, corners, limit) {
+    if !((crossed > 0.0) & (crossed <= limit)) && plane.is_outside(ray, corners, limit) {
         return None;
     }
     let (entry, exit) = span();
@@ -145,10 +177,11 @@ pub(crate) fn accept(
     let passes = (entry <= exit) & (exit > 0.0) & (entry <= limit);
     (passes & (t > 0.0) & (t <= limit)).then(|| {
         let inverse = 1.0 / (u + v + w);
+        // The zero of an edge function has the sign that the order of its differences gives it; no weight has one.
         Crossing {
             t,
-            u: v * inverse,
-            v: w * inverse,
+            u: v * inverse + 0.0,
+            v: w * inverse + 0.0,
         }
     })
 }
@@ -179,14 +212,14 @@ struct Plane {
 
 impl Plane {
     #[inline(always)]
-    fn of(shear: &Shear, corners: [Vec3; 3]) -> Self {
+    fn of(ray: &ObjectRay, corners: [Vec3; 3]) -> Self {
         let [a, b, c] = corners;
         let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
         let normal = (b - a).cross(c - a);
         Self {
             normal,
-            height: normal.dot(a - shear.origin.as_dvec3()),
-            rate: normal.dot(shear.direction.as_dvec3()),
+            height: normal.dot(a - ray.origin.as_dvec3()),
+            rate: normal.dot(ray.direction.as_dvec3()),
         }
     }
 
@@ -198,13 +231,14 @@ impl Plane {
 
     /// Whether the triangle is surely not hit in `0 < t <= limit`, whatever its box says (see the module).
     #[inline(always)]
-    fn is_outside(&self, shear: &Shear, corners: [Vec3; 3], limit: f32) -> bool {
-        let away = corners.map(|corner| (Vec3A::from(corner) - shear.origin).abs());
+    fn is_outside(&self, ray: &ObjectRay, corners: [Vec3; 3], limit: f32) -> bool {
+        let away = corners.map(|corner| (Vec3A::from(corner) - ray.origin).abs());
         let farthest = away[0].max(away[1]).max(away[2]).max_element();
         let size = self.normal.abs().element_sum();
         let off = MOVED * f64::from(farthest) * size;
         let (height, rate) = (self.height.abs(), self.rate.abs());
-        let is_sure = (height > off) & (rate > size * f64::from(shear.longest) * UNSURE);
+        let longest = ray.direction.abs().max_element();
+        let is_sure = (height > off) & (rate > size * f64::from(longest) * UNSURE);
         let is_behind = (self.height < 0.0) != (self.rate < 0.0);
         let is_beyond = height - off > rate * f64::from(limit) * BEYOND;
         is_sure & (is_behind | is_beyond)
@@ -217,16 +251,16 @@ mod tests {
     use crate::bvh::hard_cases::random::Random;
 
     /// What the box and the plane say, without a short way.
-    fn asked(shear: &Shear, slab: &SlabRay, corners: [Vec3; 3], limit: f32) -> Option<f32> {
-        let (entry, exit) = slab.span(&triangle_box(corners.map(Vec3A::from)));
-        let t = clamp(Plane::of(shear, corners).t(), entry, exit);
+    fn asked(ray: &ObjectRay, corners: [Vec3; 3], limit: f32) -> Option<f32> {
+        let (entry, exit) = ray.slab.span(&triangle_box(corners.map(Vec3A::from)));
+        let t = clamp(Plane::of(ray, corners).t(), entry, exit);
         let passes = (entry <= exit) & (exit > 0.0) & (entry <= limit);
         (passes & (t > 0.0) & (t <= limit)).then_some(t)
     }
 
     /// Whether the edge functions see a crossing.
     fn edges(shear: &Shear, corners: [Vec3; 3]) -> Option<[f32; 3]> {
-        let [x, y, z] = shear.axes;
+        let [x, y, z] = shear.axes.map(|axis| axis as usize);
         let moved = corners.map(|p| {
             let depth = p[z] - shear.from[2];
             [
@@ -267,17 +301,17 @@ mod tests {
             }
             let shear = Shear::new(origin, direction);
             let longest = direction.abs().max_element();
-            let slab = SlabRay::new(origin, direction, longest, SlabRay::pad_of(origin));
+            let ray = ObjectRay::new(origin, direction, longest);
             let Some(edges) = edges(&shear, corners) else {
                 continue;
             };
             crossed += 1;
-            let t = Plane::of(&shear, corners).t();
+            let t = Plane::of(&ray, corners).t();
             let limits = [f32::INFINITY, 1.0, 1e-3, t, t.next_down(), 0.5 * t];
             for limit in limits.into_iter().filter(|limit| *limit > 0.0) {
-                let expected = asked(&shear, &slab, corners, limit);
-                let found = accept(&shear, &slab, corners, edges, limit, false).map(|hit| hit.t);
-                let is_found = accept(&shear, &slab, corners, edges, limit, true).is_some();
+                let expected = asked(&ray, corners, limit);
+                let found = accept(&ray, corners, edges, limit, false).map(|hit| hit.t);
+                let is_found = accept(&ray, corners, edges, limit, true).is_some();
                 assert_eq!(
                     is_found,
                     found.is_some(),
@@ -288,7 +322,7 @@ mod tests {
                     "round {round}, limit {limit:e}, {corners:?}"
                 );
                 met += usize::from(found.is_some());
-                short += usize::from(Plane::of(&shear, corners).is_outside(&shear, corners, limit));
+                short += usize::from(Plane::of(&ray, corners).is_outside(&ray, corners, limit));
             }
         }
         assert!(

@@ -74,7 +74,7 @@ impl Columns {
     /// Adds those to `left` that our triangle test does not call missed by their edges.
     fn rounded(&self, shear: &Shear, left: &mut Vec<u32>) {
         self.sort_out(left, |range, misses| {
-            let corners = self.some(shear.axes, range);
+            let corners = self.some(shear.axes.map(|axis| axis as usize), range);
             rounded_misses(corners, shear.from, shear.slope, misses);
         });
     }

@@ -5,7 +5,7 @@ use glam::{Vec3, Vec3A, Vec3Swizzles};
 
 use crate::bvh::{
     Ray,
-    mesh_tree::ObjectRay,
+    object_ray::ObjectRay,
     safe_ray::SafeRay,
     triangle::{Crossing, Shear, accept},
 };
@@ -56,11 +56,11 @@ impl SingleTriangle {
     pub(crate) fn cross(&self, ready: &ReadyRay, limit: f32) -> Option<(f32, f32, f32)> {
         let ReadyRay { ray, shear } = ready;
         // A lane is a corner.
-        let [x, y, z] = shear.axes.map(|axis| Vec3A::from(self.0[axis]));
+        let [x, y, z] = (shear.axes).map(|axis| Vec3A::from(self.0[axis as usize]));
         let [right, up, depth] = shear.from.map(Vec3A::splat);
-        let depth = z - depth;
-        let right = x - right - depth * shear.slope[0];
-        let up = y - up - depth * shear.slope[1];
+        let depth = depth - z;
+        let right = right - x - depth * shear.slope[0];
+        let up = up - y - depth * shear.slope[1];
         // An edge function a lane: corner 2 x 1, 0 x 2, 1 x 0.
         let edges = right.zxy() * up.yzx() - up.zxy() * right.yzx();
         if edges.cmplt(Vec3A::ZERO).any() && edges.cmpgt(Vec3A::ZERO).any() {
@@ -72,7 +72,7 @@ impl SingleTriangle {
         if !(det != 0.0 && det.is_finite()) {
             return None;
         }
-        let crossing = accept(shear, &ray.slab, self.corners(), edges, limit, false);
+        let crossing = accept(ray, self.corners(), edges, limit, false);
         crossing.map(|Crossing { t, u, v }| (t, u, v))
     }
 }

@@ -70,6 +70,15 @@ fn bundles(count: usize, places: &[Affine3A]) -> Vec<Ray> {
             ..ray
         },
         5 => Ray { time: 2.0, ..ray },
+        6 => Ray {
+            direction: ray.direction * 1e30,
+            t_max: ray.t_max * 1e-30,
+            ..ray
+        },
+        7 => Ray {
+            t_max: 1e-40,
+            ..ray
+        },
         _ => ray,
     };
     let widths = [0.0, 1e-6, 0.02, 0.5];
@@ -177,9 +186,9 @@ fn every_instruction_set_and_every_order_finds_the_same_bits() {
             rays.extend(bundles(150_000, &places));
             let through_the_first = start_on_what_they_hit(&scene, &mut rays);
             assert!(through_the_first > 10_000, "only {through_the_first} rays");
-            let (mut hits, mut occluded) = (Vec::new(), Vec::new());
-            scene.closest_hits(&rays, &mut hits);
-            scene.occlusions(&rays, &mut occluded);
+            // Each by itself, not made ready with others.
+            let hits: Vec<_> = rays.iter().map(|ray| scene.closest_hit(ray)).collect();
+            let occluded: Vec<_> = rays.iter().map(|ray| scene.occluded(ray)).collect();
             let mut passing = Transmittances::default();
             scene.transmittances_in(Order::None, &rays, |_, hit| through(hit), &mut passing);
             let found = hits.iter().flatten().count();

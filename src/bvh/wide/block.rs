@@ -2,11 +2,11 @@
 
 use glam::Vec3;
 
-use super::Eight;
+use super::{Eight, by_axis};
 use crate::bvh::{
-    goal::{Goal, Question, STOP},
-    slab::SlabRay,
-    triangle::{Shear, accept},
+    goal::{Goal, Question, is_end},
+    object_ray::ObjectRay,
+    triangle::{Axis, Depths, Shear, accept},
     triangles::Triangles,
     visitor::Visitor,
 };
@@ -24,12 +24,57 @@ pub(crate) struct TriangleBlock {
     numbers: [u32; 8],
 }
 
-/// A ray as the triangles of an instance's mesh see it.
-pub(crate) struct Sight<'a> {
-    pub(crate) instance: u32,
+/// A ray as triangles see it.
+pub(crate) trait Sight {
+    /// Which axes are x, y and z in its frame.
+    fn axes(&self) -> [Axis; 3];
+    /// Its origin along those.
+    fn from(&self) -> [f32; 3];
+    /// The shear of x and of y by z.
+    fn slope(&self) -> [f32; 2];
+    fn depths(&self) -> Depths;
+    /// The ray, for the few triangles that get so far.
+    fn ray(&self) -> ObjectRay;
+}
+
+/// [`Sight`] of a ray and its frame.
+pub(crate) struct Sheared<'a> {
+    pub(crate) ray: &'a ObjectRay,
     pub(crate) shear: &'a Shear,
-    pub(crate) slab: &'a SlabRay,
-    /// No less than any coordinate of the mesh.
+}
+
+impl Sight for Sheared<'_> {
+    #[inline(always)]
+    fn axes(&self) -> [Axis; 3] {
+        self.shear.axes
+    }
+
+    #[inline(always)]
+    fn from(&self) -> [f32; 3] {
+        self.shear.from
+    }
+
+    #[inline(always)]
+    fn slope(&self) -> [f32; 2] {
+        self.shear.slope
+    }
+
+    #[inline(always)]
+    fn depths(&self) -> Depths {
+        self.shear.depths
+    }
+
+    #[inline(always)]
+    fn ray(&self) -> ObjectRay {
+        *self.ray
+    }
+}
+
+/// Whose triangles are tested.
+#[derive(Clone, Copy)]
+pub(crate) struct Owner {
+    pub(crate) instance: u32,
+    /// No less than any coordinate of its mesh.
     pub(crate) reach: f32,
 }
 
@@ -85,11 +130,11 @@ impl TriangleBlock {
         self.numbers[lane] & !CONTINUES
     }
 
-    /// The lane of a triangle, as a bit; none where it is not here. No triangle has a number of 32 bits.
+    /// The lane of a triangle; none where it is not here. No triangle has a number of 32 bits.
     #[inline(always)]
-    fn lane_of<E: Eight>(&self, number: u32) -> u32 {
+    fn is_triangle<E: Eight>(&self, number: u32) -> E::Mask {
         let numbers = E::load(bytemuck::cast_ref(&self.numbers)).abs();
-        E::bits(numbers.same_bits(E::splat(f32::from_bits(number))))
+        numbers.same_bits(E::splat(f32::from_bits(number)))
     }
 
     /// The lanes that hold a triangle: that are no point.
@@ -119,21 +164,22 @@ impl TriangleBlock {
     }
 
     /// Tests the ray against the triangles: [`super::super::triangle`]'s test, eight times over. Crossings go to the
-    /// question; returns the new limit, or [`STOP`].
+    /// question; returns the new limit, or [`STOP`](crate::bvh::goal::STOP).
     #[inline(always)]
     pub(crate) fn cross<E: Eight, G: Goal, V: Visitor>(
         &self,
-        sight: &Sight,
+        sight: &impl Sight,
+        owner: Owner,
         limit: f32,
         question: &mut Question<G, V>,
     ) -> f32 {
         let mut wanted = 0;
-        let limit = self.cross_all::<E, G, V>(sight, limit, question, &mut wanted);
+        let limit = self.cross_all::<E, G, V>(sight, owner, limit, question, &mut wanted);
         if V::LOOKS {
             for lane in self.lanes() {
                 let is_wanted = wanted >> lane & 1 == 1;
                 let number = self.number(lane);
-                (question.visitor).triangle(sight.instance, number, is_wanted);
+                (question.visitor).triangle(owner.instance, number, is_wanted);
             }
         }
         limit
@@ -143,53 +189,65 @@ impl TriangleBlock {
     #[inline(always)]
     fn cross_all<E: Eight, G: Goal, V: Visitor>(
         &self,
-        sight: &Sight,
+        sight: &impl Sight,
+        Owner { instance, reach }: Owner,
         mut limit: f32,
         question: &mut Question<G, V>,
         wanted: &mut u32,
     ) -> f32 {
-        let Sight {
-            instance,
-            shear,
-            slab,
-            reach,
-        } = *sight;
-        let frame = WideFrame::<E>::new(shear);
-        let corners = frame.corners(self, shear.axes);
-        let (mut passed, [u, v, w]) = edges(&corners);
-        if passed == 0 {
-            return limit;
-        }
-        passed &= within(&corners, shear.depths(reach, limit));
-        passed &= !self.lane_of::<E>(question.starts_on(instance));
+        let corners = self.moved::<E>(sight);
+        let (crossed, [u, v, w]) = edges(&corners);
+        let reached = within(&corners, sight.depths().span(reach, limit));
+        let left = self.is_triangle::<E>(question.starts_on(instance));
+        // All at once: most blocks are crossed by the line somewhere.
+        let mut passed = E::bits(E::and_not(left, E::and(crossed, reached)));
         if passed == 0 {
             return limit;
         }
         let [u, v, w] = [u.to_array(), v.to_array(), w.to_array()];
+        let ray = sight.ray();
         while passed != 0 {
             let lane = passed.trailing_zeros() as usize % 8;
             passed &= passed - 1;
             let edges = [u[lane], v[lane], w[lane]];
-            let corners = self.corners(lane);
-            if let Some(crossing) = accept(shear, slab, corners, edges, limit, G::ANY) {
+            if let Some(crossing) = accept(&ray, self.corners(lane), edges, limit, G::ANY) {
                 let (is_wanted, new) =
                     question.meet((instance, self.number(lane)), crossing, limit);
                 limit = new;
                 if V::LOOKS {
                     *wanted |= u32::from(is_wanted) << lane;
                 }
-                if limit == STOP {
+                if is_end::<G>(limit) {
                     break;
                 }
             }
         }
         limit
     }
+
+    /// The triangles' corners in the ray's frame, against its axes: the ray's origin less the corner, since what is
+    /// subtracted may come from memory. All signs are the other ones, and the edge functions' the same.
+    #[inline(always)]
+    fn moved<E: Eight>(&self, sight: &impl Sight) -> [[E; 3]; 3] {
+        let from = sight.from();
+        let from = by_axis!(|i| E::splat(from[i]));
+        let [right, up] = sight.slope();
+        let (right, up) = (E::splat(right), E::splat(up));
+        let [x, y, z] = sight.axes().map(|axis| &self.axes[axis as usize]);
+        by_axis!(|corner| {
+            let depth = from[2].sub(E::load(&z[corner]));
+            [
+                (from[0].sub(E::load(&x[corner]))).sub(depth.mul(right)),
+                (from[1].sub(E::load(&y[corner]))).sub(depth.mul(up)),
+                depth,
+            ]
+        })
+    }
 }
 
-/// The edge functions, and which triangles they say the line of the ray crosses.
+/// Which triangles the edge functions say that the line of the ray crosses, and those.
 #[inline(always)]
-fn edges<E: Eight>([a, b, c]: &[[E; 3]; 3]) -> (u32, [E; 3]) {
+fn edges<E: Eight>([a, b, c]: &[[E; 3]; 3]) -> (E::Mask, [E; 3]) {
     let [u, v, w] = [edge(c, b), edge(a, c), edge(b, a)];
     let det = u.add(v).add(w);
     let (zero, infinity) = (E::splat(0.0), E::splat(f32::INFINITY));
@@ -197,57 +255,15 @@ fn edges<E: Eight>([a, b, c]: &[[E; 3]; 3]) -> (u32, [E; 3]) {
     let outside = E::and(u.min(v).min(w).lt(zero), zero.lt(u.max(v).max(w)));
     let det = det.abs();
     let area = E::and(zero.lt(det), det.lt(infinity));
-    (E::bits(E::and_not(outside, area)), [u, v, w])
+    (E::and_not(outside, area), [u, v, w])
 }
 
 /// Which triangles are not wholly outside those depths.
 #[inline(always)]
-fn within<E: Eight>([a, b, c]: &[[E; 3]; 3], (first, last): (f32, f32)) -> u32 {
+fn within<E: Eight>([a, b, c]: &[[E; 3]; 3], (first, last): (f32, f32)) -> E::Mask {
     let nearest = a[2].min(b[2]).min(c[2]);
     let farthest = a[2].max(b[2]).max(c[2]);
-    E::bits(E::and(
-        E::splat(first).le(farthest),
-        nearest.le(E::splat(last)),
-    ))
-}
-
-/// The ray's frame, eight times over.
-struct WideFrame<E> {
-    origin: [E; 3],
-    slope: [E; 2],
-}
-
-impl<E: Eight> WideFrame<E> {
-    #[inline(always)]
-    fn new(shear: &Shear) -> Self {
-        let ([x, y, z], [right, up]) = (shear.from, shear.slope);
-        Self {
-            origin: [E::splat(x), E::splat(y), E::splat(z)],
-            slope: [E::splat(right), E::splat(up)],
-        }
-    }
-
-    /// The corners of each triangle in the frame.
-    #[inline(always)]
-    fn corners(&self, block: &TriangleBlock, axes: [usize; 3]) -> [[E; 3]; 3] {
-        let [x, y, z] = axes.map(|axis| &block.axes[axis]);
-        [
-            self.corner(&x[0], &y[0], &z[0]),
-            self.corner(&x[1], &y[1], &z[1]),
-            self.corner(&x[2], &y[2], &z[2]),
-        ]
-    }
-
-    /// A corner of each triangle in the frame.
-    #[inline(always)]
-    fn corner(&self, x: &[f32; 8], y: &[f32; 8], z: &[f32; 8]) -> [E; 3] {
-        let depth = E::load(z).sub(self.origin[2]);
-        [
-            (E::load(x).sub(self.origin[0])).sub(depth.mul(self.slope[0])),
-            (E::load(y).sub(self.origin[1])).sub(depth.mul(self.slope[1])),
-            depth,
-        ]
-    }
+    E::and(E::splat(first).le(farthest), nearest.le(E::splat(last)))
 }
 
 /// The edge function of the edge between two corners. Not fused: see [`super::super::triangle`].

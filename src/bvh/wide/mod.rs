@@ -10,6 +10,10 @@
 //! a time up to the edge functions' signs and then the same code for the few that pass. What a box above a triangle
 //! says does not matter for a hit, as long as it is a box around the triangle's own; so another tree finds the same.
 //!
+//! Faces and corners are subtracted from the ray's origin and not the other way round, since an instruction may take what it
+//! subtracts from memory. Reciprocals have the other sign too, and edge functions are products of two such differences, so
+//! the numbers are the same.
+//!
 //! # Instruction sets
 //! The kernels are written once, over [`Lanes`], several `f32`s with the few operations that they need. It has an
 //! implementation for each instruction set, in a file of its own: `avx512`, `avx2`, and `portable` for everything else.
@@ -28,15 +32,16 @@ mod portable;
 mod tree;
 mod walk;
 
-pub(crate) use block::{Sight, TriangleBlock};
+pub(crate) use block::{Owner, Sheared, Sight, TriangleBlock};
 #[cfg(test)]
 pub(crate) use lanes::answer_with_each;
 pub(crate) use lanes::{Eight, InstructionSet, Lanes, Query, answer, by_axis};
+pub(crate) use node::Sides;
 #[cfg(test)]
 pub(crate) use node::{LEAF, WIDTH};
 pub(crate) use packet::{
-    Answers, Found, Group, PacketLeaves, PacketRays, View, Ways, lanes_of, largest_size,
-    walk_packet,
+    Answers, Found, Group, PacketLeaves, PacketRays, View, Ways, farthest_along, lanes_of,
+    largest_size, walk_packet,
 };
 #[cfg(test)]
 pub(crate) use portable::Portable;

@@ -4,11 +4,11 @@ use glam::Vec3A;
 
 use super::{
     Eight, WideTree, by_axis,
-    node::{LEAF, WIDTH, WideNode},
+    node::{LEAF, Sides, WIDTH, WideNode},
 };
 use crate::bvh::{
     MAX_DEPTH,
-    goal::{Goal, Question, STOP},
+    goal::{Goal, Question, is_end},
     slab::SlabRay,
     visitor::{NodeEvent, TreeRef, Visitor},
 };
@@ -27,13 +27,14 @@ pub(crate) fn few_hold(most_pending: usize) -> bool {
 /// What the slab test needs of a ray, eight times over.
 #[derive(Clone, Copy)]
 pub(crate) struct WideRay<E> {
-    /// Which faces the ray meets first, axis by axis: the lower ones (0) or the upper.
-    near: [usize; 3],
-    /// What those are measured from: the origin, moved against the ray or along it.
-    near_origin: [E; 3],
-    far_origin: [E; 3],
-    inverse: [E; 3],
-    start: E,
+    /// Which faces the ray meets first.
+    pub(crate) sides: &'static Sides,
+    /// What those are measured from: the origin, moved along the ray or against it.
+    pub(crate) near_origin: [E; 3],
+    pub(crate) far_origin: [E; 3],
+    /// Minus one over the direction, so that a face is what is subtracted, which may come from memory.
+    pub(crate) backward: [E; 3],
+    pub(crate) start: E,
 }
 
 impl<E: Eight> WideRay<E> {
@@ -45,16 +46,12 @@ impl<E: Eight> WideRay<E> {
         let backwards = inverse.cmplt(Vec3A::ZERO);
         let near = Vec3A::select(backwards, below, above);
         let far = Vec3A::select(backwards, above, below);
-        let upper = backwards.bitmask() as usize;
+        let splat = |v: Vec3A| [E::splat(v.x), E::splat(v.y), E::splat(v.z)];
         Self {
-            near: [upper & 1, upper >> 1 & 1, upper >> 2],
-            near_origin: [E::splat(near.x), E::splat(near.y), E::splat(near.z)],
-            far_origin: [E::splat(far.x), E::splat(far.y), E::splat(far.z)],
-            inverse: [
-                E::splat(inverse.x),
-                E::splat(inverse.y),
-                E::splat(inverse.z),
-            ],
+            sides: Sides::of(backwards.bitmask()),
+            near_origin: splat(near),
+            far_origin: splat(far),
+            backward: splat(-inverse),
             // No entry shall be -0.0, so that their bits are in order.
             start: E::splat(start + 0.0),
         }
@@ -62,7 +59,8 @@ impl<E: Eight> WideRay<E> {
 
     /// Which children the ray enters, no later than at `limit`, and where. The numbers are those of
     /// [`SlabRay::span`]: which of a box's two faces is nearer follows from the direction's sign, because the
-    /// differences and products are monotone.
+    /// differences and products are monotone. (Both factors have the other sign here, which changes no product but a
+    /// zero's sign.)
     ///
     /// In halves, because registers of sixteen make some machines' clocks slower (a tenth, Sapphire Rapids). The second
     /// is left out where the tree `is_narrow`.
@@ -79,11 +77,11 @@ impl<E: Eight> WideRay<E> {
     /// [`Self::enter`], of eight children.
     #[inline(always)]
     fn enter_half(&self, node: &WideNode, half: usize, limit: f32) -> (u32, E) {
-        let near = by_axis!(|axis| node.faces(axis, self.near[axis], half));
+        let near = by_axis!(|axis| node.faces(axis, self.sides.first[axis], half));
         let [x, y, z] = self.meet(near, &self.near_origin);
         // In pairs, since the next node waits for it; the start last, so that no entry is -0.0.
         let entry = x.max(y).max(z.max(self.start));
-        let far = by_axis!(|axis| node.faces(axis, self.near[axis] ^ 1, half));
+        let far = by_axis!(|axis| node.faces(axis, self.sides.last[axis], half));
         let [x, y, z] = self.meet(far, &self.far_origin);
         let exit = x.min(y).min(z.min(E::splat(limit)));
         (E::bits(entry.le(exit)), entry)
@@ -92,7 +90,7 @@ impl<E: Eight> WideRay<E> {
     /// Where the ray meets three faces of each child.
     #[inline(always)]
     fn meet(&self, faces: [&[f32; 8]; 3], origin: &[E; 3]) -> [E; 3] {
-        by_axis!(|axis| (E::load(faces[axis]).sub(origin[axis])).mul(self.inverse[axis]))
+        by_axis!(|axis| (origin[axis].sub(E::load(faces[axis]))).mul(self.backward[axis]))
     }
 }
 
@@ -115,7 +113,7 @@ pub(crate) trait Leaves<E, G, V> {
     fn tree(&self) -> TreeRef;
 
     /// Tests the ray against a leaf, and returns the new limit: the `t` beyond which nothing matters any more, or
-    /// [`STOP`]. The rest of the walk's stack may be used.
+    /// [`STOP`](crate::bvh::goal::STOP). The rest of the walk's stack may be used.
     fn visit(
         &mut self,
         leaf: u32,
@@ -178,8 +176,8 @@ pub(crate) fn walk_from<E: Eight, G: Goal, V: Visitor>(
         if next & LEAF != 0 {
             let leaf = next & !LEAF;
             limit = leaves.visit(leaf, limit, &mut stack[pending..], question);
-            if limit == STOP {
-                return STOP;
+            if is_end::<G>(limit) {
+                return limit;
             }
             if let Some(rest) = leaves.rest(leaf) {
                 next = LEAF | rest;

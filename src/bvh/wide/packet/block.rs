@@ -93,7 +93,11 @@ impl TriangleBlock {
         frame: &Frame<S::Packet>,
     ) -> (u32, [S::Packet; 3]) {
         let [x, y, z] = frame.axes;
-        let [x, y, z] = [self.axis(x), self.axis(y), self.axis(z)];
+        let [x, y, z] = [
+            self.axis(x as usize),
+            self.axis(y as usize),
+            self.axis(z as usize),
+        ];
         let triangle = triangle % 8;
         let [a, b, c] = by_axis!(|i| frame.corner(x[i][triangle], y[i][triangle], z[i][triangle]));
         let [u, v, w] = [edge(c, b), edge(a, c), edge(b, a)];

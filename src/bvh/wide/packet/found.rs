@@ -186,8 +186,10 @@ impl<L: Lanes> Found<L> {
             }
             Answers::Closest(closest) if self.hit != 0 => {
                 let inverse = L::splat(1.0).div(self.edges[2]);
-                let u = self.edges[0].mul(inverse).to_array();
-                let v = self.edges[1].mul(inverse).to_array();
+                // As single rays do, which makes a zero positive.
+                let zero = L::splat(0.0);
+                let u = self.edges[0].mul(inverse).add(zero).to_array();
+                let v = self.edges[1].mul(inverse).add(zero).to_array();
                 let t = self.limit.to_array();
                 let (triangle, instance) = (self.triangle.to_array(), self.instance.to_array());
                 for lane in lanes_of(self.hit) {
@@ -233,6 +235,7 @@ impl<G: Goal> Alone<G> {
 impl<G: Goal> Goal for Alone<G> {
     const NEAREST_FIRST: bool = G::NEAREST_FIRST;
     const ANY: bool = G::ANY;
+    const MAY_STOP: bool = G::ANY;
 
     #[inline(always)]
     fn meet(&mut self, hit: Hit, limit: f32) -> (bool, f32) {

@@ -18,7 +18,7 @@ mod view;
 mod walk;
 
 pub(crate) use found::{Answers, Found, lanes_of};
-pub(crate) use rays::{Group, PacketRays, Ways, largest_size};
+pub(crate) use rays::{Group, PacketRays, Ways, farthest_along, largest_size};
 pub(crate) use view::View;
 pub(crate) use walk::{PacketLeaves, walk_packet};
 

@@ -3,7 +3,7 @@
 use glam::Vec3A;
 
 use crate::bvh::{
-    mesh_tree::ObjectRay,
+    object_ray::ObjectRay,
     slab::{PAD, SlabRay},
     wide::{Lanes, by_axis},
 };
@@ -16,7 +16,21 @@ pub(crate) struct PacketRays<L> {
     /// Origins moved up, by axis, and down.
     above: [L; 3],
     below: [L; 3],
-    pub(super) inverse: [L; 3],
+    pub(crate) inverse: [L; 3],
+}
+
+/// Which rays go farthest along x, and which along y, as [`Shear::new`](crate::bvh::triangle::Shear::new) chooses; the others
+/// go along z.
+#[inline(always)]
+pub(crate) fn farthest_along<L: Lanes>([x, y, z]: &[L; 3]) -> [L::Mask; 2] {
+    let (x, y, z) = (x.abs(), y.abs(), z.abs());
+    let in_plane = x.le(y);
+    let most = L::select(in_plane, y, x);
+    let not_along_z = z.lt(most);
+    [
+        L::and_not(in_plane, not_along_z),
+        L::and(in_plane, not_along_z),
+    ]
 }
 
 /// The largest of three numbers, without their signs.
@@ -62,10 +76,16 @@ impl<L: Lanes> PacketRays<L> {
         }
     }
 
+    /// Which rays go backwards along an axis.
+    #[inline(always)]
+    pub(crate) fn goes_backwards(&self, axis: usize) -> L::Mask {
+        self.inverse[axis].lt(L::splat(0.0))
+    }
+
     /// Origins as the faces of boxes are measured from them: those that a ray meets first where its direction along the
     /// axis is not negative, and those it meets last.
     #[inline(always)]
-    pub(super) fn padded(&self, axis: usize) -> [L; 2] {
+    pub(crate) fn padded(&self, axis: usize) -> [L; 2] {
         [self.above[axis], self.below[axis]]
     }
 
@@ -109,6 +129,15 @@ pub(crate) struct Group {
     pub(super) backwards: [bool; 3],
 }
 
+impl Group {
+    /// The axes along which they go backwards, as bits.
+    #[inline(always)]
+    pub(super) fn way(&self) -> u32 {
+        let [x, y, z] = self.backwards.map(u32::from);
+        x | y << 1 | z << 2
+    }
+}
+
 /// The ways that rays go, as bits of each ray.
 pub(crate) struct Ways {
     backwards: [u32; 3],
@@ -119,16 +148,10 @@ pub(crate) struct Ways {
 impl Ways {
     #[inline(always)]
     pub(crate) fn of<L: Lanes>(rays: &PacketRays<L>) -> Self {
-        let [x, y, z] = &rays.direction;
-        let (x, y, z) = (x.abs(), y.abs(), z.abs());
-        // As `Shear::new` chooses.
-        let in_plane = x.le(y);
-        let most = L::select(in_plane, y, x);
-        let in_plane = L::bits(in_plane);
-        let not_along_z = L::bits(z.lt(most));
+        let [x, y] = farthest_along(&rays.direction);
         Self {
-            backwards: by_axis!(|i| L::bits(rays.inverse[i].lt(L::splat(0.0)))),
-            along: [not_along_z & in_plane, !not_along_z],
+            backwards: by_axis!(|i| L::bits(rays.goes_backwards(i))),
+            along: [L::bits(y), !(L::bits(x) | L::bits(y))],
         }
     }
 

@@ -1,12 +1,18 @@
 //! A group of rays as the boxes and triangles of a tree see it.
 
 use super::{Group, PacketRays};
-use crate::bvh::wide::{Eight, InstructionSet, Lanes, by_axis, node::WideNode};
+use crate::bvh::{
+    triangle::{Axis, FRAMES},
+    wide::{
+        Eight, InstructionSet, Lanes, by_axis,
+        node::{Sides, WideNode},
+    },
+};
 
 /// What the tests need of a group of rays in a tree's space.
 pub(crate) struct View<S: InstructionSet> {
-    /// Which faces the rays meet first, axis by axis: the lower ones (0) or the upper.
-    near: [usize; 3],
+    /// Which faces the rays meet first.
+    sides: &'static Sides,
     /// What those are measured from, ray by ray.
     near_origin: [S::Packet; 3],
     far_origin: [S::Packet; 3],
@@ -22,7 +28,7 @@ pub(crate) struct View<S: InstructionSet> {
 /// The rays' frame, as [`Shear`](crate::bvh::triangle::Shear) has it of one.
 #[derive(Clone, Copy)]
 pub(super) struct Frame<L> {
-    pub(super) axes: [usize; 3],
+    pub(super) axes: [Axis; 3],
     pub(super) from: [L; 3],
     pub(super) slope: [L; 2],
 }
@@ -67,7 +73,7 @@ impl<S: InstructionSet> View<S> {
             bounds.most_inverse[axis] = S::Eight::splat(largest(mask, inverse));
         }
         Self {
-            near: by_axis!(|axis| usize::from(backwards[axis])),
+            sides: Sides::of(group.way()),
             near_origin,
             far_origin,
             inverse: rays.inverse,
@@ -108,8 +114,8 @@ impl<S: InstructionSet> View<S> {
     /// [`Self::span`], of eight children.
     #[inline(always)]
     fn span_half(&self, node: &WideNode, half: usize, limit: f32) -> (u32, S::Eight) {
-        let near = by_axis!(|axis| node.faces(axis, self.near[axis], half));
-        let far = by_axis!(|axis| node.faces(axis, self.near[axis] ^ 1, half));
+        let near = by_axis!(|axis| node.faces(axis, self.sides.first[axis], half));
+        let far = by_axis!(|axis| node.faces(axis, self.sides.last[axis], half));
         self.bounds.span(near, far, limit)
     }
 
@@ -133,10 +139,10 @@ impl<S: InstructionSet> View<S> {
     /// Which rays enter a child, no later than at their limits.
     #[inline(always)]
     pub(super) fn enter(&self, node: &WideNode, child: u32, limit: S::Packet) -> u32 {
-        let [x, y, z] = by_axis!(|axis| self.near(axis, node.face(axis, self.near[axis], child)));
+        let Sides { first, last } = self.sides;
+        let [x, y, z] = by_axis!(|axis| self.near(axis, node.face(axis, first[axis], child)));
         let entry = x.max(y).max(z).max(S::Packet::splat(0.0));
-        let [x, y, z] =
-            by_axis!(|axis| self.far(axis, node.face(axis, self.near[axis] ^ 1, child)));
+        let [x, y, z] = by_axis!(|axis| self.far(axis, node.face(axis, last[axis], child)));
         let exit = x.min(y).min(z).min(limit);
         S::Packet::bits(entry.le(exit))
     }
@@ -190,11 +196,11 @@ fn largest<L: Lanes>(mask: L::Mask, lanes: L) -> f32 {
 impl<L: Lanes> Frame<L> {
     #[inline(always)]
     fn new(rays: &PacketRays<L>, z: usize) -> Self {
-        let axes = [[1, 2, 0], [2, 0, 1], [0, 1, 2]][z % 3];
-        let along = by_axis!(|i| rays.direction[axes[i]]);
+        let axes = FRAMES[z % FRAMES.len()];
+        let along = by_axis!(|i| rays.direction[axes[i] as usize]);
         Self {
             axes,
-            from: by_axis!(|i| rays.origin[axes[i]]),
+            from: by_axis!(|i| rays.origin[axes[i] as usize]),
             slope: [along[0].div(along[2]), along[1].div(along[2])],
         }
     }
