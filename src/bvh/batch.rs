@@ -303,3 +303,90 @@ impl WorldRay for RayOfBatch<'_> {
         self.batch.rays[self.lane].starts_on
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bvh::{
+        hard_cases::random::Random,
+        triangle::Shear,
+        wide::{Lanes, Portable},
+    };
+
+    /// Everything that tests of boxes and triangles see of a ray, as bits.
+    fn seen(ray: &impl WorldRay, mut in_tree: impl TreeRay) -> Vec<u32> {
+        let wide = in_tree.wide::<Portable>(ray.start());
+        let sight = in_tree.sight();
+        let (world, depths) = (sight.ray(), sight.depths());
+        let columns = [wide.near_origin, wide.far_origin, wide.backward];
+        let columns = columns.as_flattened().iter();
+        let numbers = columns.map(|column| column.to_array()[3]);
+        let vectors = [
+            world.origin,
+            world.direction,
+            world.slab.above,
+            world.slab.below,
+            world.slab.inverse,
+        ];
+        let numbers = numbers
+            .chain(vectors.into_iter().flat_map(|v| v.to_array()))
+            .chain(sight.from())
+            .chain(sight.slope())
+            .chain([depths.rate, depths.slack, ray.end(), ray.time()]);
+        let sides = wide.sides.first.into_iter().chain(wide.sides.last);
+        let axes = sight.axes().map(|axis| axis as u32);
+        numbers
+            .map(f32::to_bits)
+            .chain(sides.map(|side| side as u32))
+            .chain(axes)
+            .collect()
+    }
+
+    #[test]
+    fn a_ray_of_a_batch_is_to_the_last_bit_what_it_is_by_itself() {
+        let mut random = Random::new(4);
+        let (mut alive, mut scaled) = (0, 0);
+        for round in 0..40_000 {
+            let rays: Vec<Ray> = (0..=round % Batch::SIZE)
+                .map(|_| {
+                    let mut direction = random.cube();
+                    for axis in 0..3 {
+                        direction[axis] *= random.of(&[1.0, 1.0, 1.0, 0.0, -0.0, 1e-20]);
+                    }
+                    if random.below(3) == 0 {
+                        // Two components of one size, or three.
+                        direction = direction.signum() * random.of(&[Vec3::ONE, Vec3::X + Vec3::Z]);
+                    }
+                    let size = random.of(&[1.0, 1.0, 1.0, 1.0, 1.0, 1e-30, 1e-42, 1e30, f32::NAN]);
+                    Ray {
+                        t_max: random.of(&[f32::INFINITY, 1.0, 1.0, 1e-40, 0.0, f32::NAN]),
+                        time: random.of(&[0.0, 0.5, 1.0, 1.0, 1.5]),
+                        ..Ray::new(random.cube() * 100.0, direction * size)
+                    }
+                })
+                .collect();
+            let batch = Batch::new::<Portable>(&rays, PAD);
+            let mut left = rays.len();
+            for ray in batch.rays() {
+                left -= 1;
+                let safe = SafeRay::new(&rays[ray.place()]).expect("no miss");
+                let expected = seen(&safe, safe.in_tree());
+                assert_eq!(seen(&ray, ray.in_tree()), expected, "{:?}", safe.world);
+                let Shear { axes, .. } = Shear::new(safe.world.origin, safe.world.direction);
+                assert_eq!(ray.axes(), axes);
+                assert_eq!(ray.measure().scale(), safe.measure.scale());
+                alive += 1;
+                scaled += usize::from(safe.measure.scale() != 1.0);
+            }
+            // What is left out has no hit: either is a miss at once, or so short that it ends where it starts.
+            let misses = rays
+                .iter()
+                .filter(|ray| SafeRay::new(ray).is_none_or(|safe| safe.end == 0.0));
+            assert_eq!(misses.count(), left, "{rays:?}");
+        }
+        assert!(
+            alive > 30_000 && scaled > 3_000,
+            "{alive} rays, {scaled} of them scaled"
+        );
+    }
+}

@@ -9,7 +9,7 @@ use super::{
     leaves::{InstanceLeaves, MeshLeaves},
     levels::Arrangement,
     mesh_tree::MeshTree,
-    ray::{Ray, TriangleId},
+    ray::Ray,
     safe_ray::SafeRay,
     tree_ray::{LoneRay, TreeRay, WorldRay},
     wide::{
