@@ -1,8 +1,8 @@
 //! The commands that edit and select, each a step of its own.
 
 use super::{
-    AddAt, Clipboard, SceneIndex, add, assign_material, copy, delete, duplicate, group, import,
-    is_group, name_of, paste, rename, reparent, roots_of, scene_entity, set_visible, ungroup,
+    AddAt, Clipboard, SceneIndex, add, assign_material, copy, delete, duplicate, group, hiding,
+    import, is_group, name_of, paste, rename, reparent, roots_of, scene_entity, ungroup,
 };
 use crate::editor::action::{Addition, shapes};
 use crate::editor::command::{AddCommands, Command, Over, State, commands};
@@ -11,7 +11,6 @@ use crate::editor::notice::Notices;
 use crate::editor::selection::{Escaped, Selection};
 use crate::scene::{SceneId, UsesMaterial};
 use bevy::app::{App, Plugin};
-use bevy::camera::visibility::Visibility;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::world::World;
 use bevy::transform::components::Transform;
@@ -30,6 +29,7 @@ impl Plugin for EditsPlugin {
             .init_resource::<SceneIndex>()
             .init_resource::<import::DroppedAt>()
             .add_commands(commands())
+            .add_commands(hiding::commands())
             .add_commands(import::commands())
             .add_commands(shape_commands());
     }
@@ -44,16 +44,16 @@ fn commands() -> Vec<Command> {
             => step_back; menu("Edit", 0); repeats(); state(about_undo),
         "edit.redo" "Redo" ["Ctrl+Shift+Z", "Ctrl+Y"] "Does the step again that was taken back"
             => step_forth; menu("Edit", 0); repeats(); state(about_redo),
+        "edit.cut" "Cut" ["Ctrl+X"] "Keeps the selected entities for pasting, and removes them and their children"
+            => |world| step(world, step_cut); menu("Edit", 2); over(ANY); state(is_any_selected),
         "edit.copy" "Copy" ["Ctrl+C"] "Keeps the selected entities for pasting"
-            => copy_selected; menu("Edit", 2); over(ANY); state(is_any_selected),
+            => |world| { keep_selected(world); }; menu("Edit", 2); over(ANY); state(is_any_selected),
         "edit.paste" "Paste" ["Ctrl+V"] "Adds what was copied"
             => |world| step(world, step_paste); menu("Edit", 2); over(ANYWHERE); state(is_any_copied),
         "edit.duplicate" "Duplicate" ["Ctrl+D"] "Adds a copy of the selected entities where they are"
             => |world| step(world, step_duplicate); menu("Edit", 2); over(ANY); state(is_any_selected),
         "edit.delete" "Delete" ["Delete", "X"] "Removes the selected entities and their children"
             => |world| step(world, step_delete); menu("Edit", 2); over(ANY); state(is_any_selected),
-        "edit.hide" "Hide or show" ["H"] "A hidden entity is not traced"
-            => |world| step(world, step_hide); menu("Edit", 2); over(ANY); state(is_any_selected),
         "edit.group" "Group" ["Ctrl+G"] "Puts the selected entities below a new group: what is done to it is done to all of them"
             => |world| step(world, step_group); menu("Edit", 2); over(ANY); state(can_be_grouped),
         "edit.ungroup" "Ungroup" ["Ctrl+Shift+G"] "Takes the selected groups away; what is below them stays, and stays where it is"
@@ -62,6 +62,8 @@ fn commands() -> Vec<Command> {
             => select_all; menu("Edit", 3); over(&[Over::Nothing]),
         "select.none" "Select nothing" ["Escape"] "Selects no entity, lets go of a chosen ray or box, and brings the panels back"
             => select_none; menu("Edit", 3),
+        "select.invert" "Invert the selection" ["Ctrl+Shift+I"] "Selects every entity that is not selected, and no other"
+            => select_others; menu("Edit", 3),
         "select.same-material" "Select what shares its material" [] "Selects all objects that have the material which is selected, or that of a selected object"
             => select_sharing; menu("Edit", 3); over(&[Over::Entity]); state(is_any_selected),
         "add.point-light" "Point light" [] "Shines in all directions from one point; with a cone it is a spot"
@@ -153,10 +155,17 @@ fn step_forth(world: &mut World) {
     }
 }
 
-fn copy_selected(world: &mut World) {
+/// Whether they are kept; why not is said.
+fn keep_selected(world: &mut World) -> bool {
     match copy(world, &selected(world)) {
-        Ok(clipboard) => world.insert_resource(clipboard),
-        Err(error) => world.resource_mut::<Notices>().fault(error.to_string()),
+        Ok(clipboard) => {
+            world.insert_resource(clipboard);
+            true
+        }
+        Err(error) => {
+            world.resource_mut::<Notices>().fault(error.to_string());
+            false
+        }
     }
 }
 
@@ -167,12 +176,21 @@ fn select_all(world: &mut World) {
     select(world, all);
 }
 
+fn select_others(world: &mut World) {
+    let mut all = world.query::<&SceneId>();
+    let now = world.resource::<Selection>();
+    let others = all.iter(world).filter(|id| !now.contains(**id));
+    let mut others: Vec<SceneId> = others.copied().collect();
+    others.sort_unstable();
+    select(world, others);
+}
+
 fn select_none(world: &mut World) {
     select(world, Vec::new());
     world.trigger(Escaped);
 }
 
-fn selected(world: &World) -> Vec<SceneId> {
+pub(super) fn selected(world: &World) -> Vec<SceneId> {
     world.resource::<Selection>().ids().to_vec()
 }
 
@@ -287,24 +305,20 @@ fn step_duplicate(world: &mut World) -> Option<String> {
     Some(name)
 }
 
+/// What could not be kept is not removed.
+fn step_cut(world: &mut World) -> Option<String> {
+    let ids = selected(world);
+    let name = format!("Cut {}", call(world, &ids));
+    keep_selected(world).then(|| {
+        delete(world, &ids);
+        name
+    })
+}
+
 fn step_delete(world: &mut World) -> Option<String> {
     let ids = selected(world);
     let name = format!("Delete {}", call(world, &ids));
     delete(world, &ids);
-    Some(name)
-}
-
-fn step_hide(world: &mut World) -> Option<String> {
-    let ids = selected(world);
-    let shown = |&id: &SceneId| {
-        let entity = scene_entity(world, id);
-        let now = entity.and_then(|entity| world.get::<Visibility>(entity));
-        now.is_some_and(|now| *now != Visibility::Hidden)
-    };
-    let show = !ids.iter().any(shown);
-    let verb = if show { "Show" } else { "Hide" };
-    let name = format!("{verb} {}", call(world, &ids));
-    set_visible(world, &ids, show);
     Some(name)
 }
 
@@ -346,7 +360,7 @@ pub(in crate::editor) fn select(world: &mut World, ids: Vec<SceneId>) {
 }
 
 /// One by its name, several by their number.
-fn call(world: &World, ids: &[SceneId]) -> String {
+pub(super) fn call(world: &World, ids: &[SceneId]) -> String {
     match ids {
         [one] => name_of(world, *one),
         ids => format!("{} entities", ids.len()),
@@ -375,6 +389,58 @@ mod tests {
         app.world_mut().write_message(Action::Add(cuboid));
         app.update();
         assert_eq!(traced(&app), 1);
+    }
+
+    #[test]
+    fn what_is_cut_is_gone_in_one_step_and_pasted_with_its_children() {
+        let mut app = headless_editor();
+        let act = |app: &mut App, action: Action| {
+            app.world_mut().write_message(action);
+            app.update();
+        };
+        let count = |app: &mut App| {
+            let mut all = app.world_mut().query::<&SceneId>();
+            all.iter(app.world()).count()
+        };
+        act(&mut app, Action::run("edit.cut"));
+        let none = count(&mut app);
+        act(&mut app, Action::Add(Addition::Group));
+        let group = app.world().resource::<Selection>().active().unwrap();
+        act(&mut app, Action::Add(Addition::PointLamp));
+        let lamp = app.world().resource::<Selection>().active().unwrap();
+        act(&mut app, Action::Reparent(vec![lamp], Some(group)));
+        act(&mut app, Action::Select(vec![group]));
+        let before = app.world().resource::<History>().steps().count();
+        act(&mut app, Action::run("edit.cut"));
+        assert_eq!(count(&mut app), none);
+        let history = app.world().resource::<History>();
+        assert_eq!(history.steps().count(), before + 1);
+        assert_eq!(history.undo_text(), Some("Cut Group"));
+        act(&mut app, Action::run("edit.paste"));
+        assert_eq!(count(&mut app), none + 2);
+        act(&mut app, Action::run("edit.undo"));
+        act(&mut app, Action::run("edit.undo"));
+        assert_eq!(count(&mut app), none + 2);
+        assert!(scene_entity(app.world(), group).is_some());
+    }
+
+    #[test]
+    fn what_was_not_selected_is_and_what_was_is_not() {
+        let mut app = headless_editor();
+        let act = |app: &mut App, action: Action| {
+            app.world_mut().write_message(action);
+            app.update();
+        };
+        let mut ids = Vec::new();
+        for _ in 0..3 {
+            act(&mut app, Action::Add(Addition::Group));
+            ids.extend(app.world().resource::<Selection>().active());
+        }
+        act(&mut app, Action::Select(vec![ids[1]]));
+        act(&mut app, Action::run("select.invert"));
+        assert_eq!(app.world().resource::<Selection>().ids(), [ids[0], ids[2]]);
+        act(&mut app, Action::run("select.invert"));
+        assert_eq!(app.world().resource::<Selection>().ids(), [ids[1]]);
     }
 
     #[test]
