@@ -1,6 +1,7 @@
 //! Hiding and showing: what is selected, all objects but those, and whatever is hidden.
 
-use super::plugin::{call, selected, step};
+use super::plugin::{call, step};
+use super::selecting::selected;
 use super::{SceneIndex, ancestors, is_object, roots_of, scene_entity, with_descendants};
 use crate::editor::command::{Command, Over, State, commands};
 use crate::editor::notice::Notices;

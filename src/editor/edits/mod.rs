@@ -12,6 +12,7 @@ mod names;
 mod parents;
 mod plugin;
 mod remove;
+mod selecting;
 
 pub use add::{AddAt, add, add_model};
 pub use copy::{Clipboard, copy, duplicate, paste};
@@ -27,7 +28,6 @@ use parents::with_descendants;
 pub(in crate::editor) use parents::{all_below, ancestors};
 pub use parents::{reparent, roots_of};
 pub use plugin::EditsPlugin;
-pub(in crate::editor) use plugin::{
-    select, step, step_add, step_assign, step_rename, step_reparent,
-};
+pub(in crate::editor) use plugin::{step, step_add, step_assign, step_rename, step_reparent};
 pub use remove::delete;
+pub(in crate::editor) use selecting::select;

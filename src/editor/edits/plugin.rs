@@ -1,20 +1,19 @@
-//! The commands that edit and select, each a step of its own.
+//! The commands that edit, each a step of its own.
 
+use super::selecting::{is_any_selected, select, selected};
 use super::{
     AddAt, Clipboard, SceneIndex, add, assign_material, copy, delete, duplicate, group, hiding,
-    import, is_group, name_of, paste, rename, reparent, roots_of, scene_entity, ungroup,
+    import, is_group, name_of, paste, rename, reparent, roots_of, scene_entity, selecting, ungroup,
 };
 use crate::editor::action::{Addition, shapes};
 use crate::editor::command::{AddCommands, Command, Over, State, commands};
 use crate::editor::history::{Gesture, History, commit, redo, undo};
 use crate::editor::notice::Notices;
-use crate::editor::selection::{Escaped, Selection};
-use crate::scene::{SceneId, UsesMaterial};
+use crate::editor::selection::Selection;
+use crate::scene::SceneId;
 use bevy::app::{App, Plugin};
-use bevy::ecs::entity::Entity;
 use bevy::ecs::world::World;
 use bevy::transform::components::Transform;
-use std::collections::HashSet;
 
 /// Does what [`Action`](crate::editor::Action)s ask for that edit the scene or select in it. Needs
 /// [`HistoryPlugin`](crate::editor::history::HistoryPlugin).
@@ -30,6 +29,7 @@ impl Plugin for EditsPlugin {
             .init_resource::<import::DroppedAt>()
             .add_commands(commands())
             .add_commands(hiding::commands())
+            .add_commands(selecting::commands())
             .add_commands(import::commands())
             .add_commands(shape_commands());
     }
@@ -58,14 +58,6 @@ fn commands() -> Vec<Command> {
             => |world| step(world, step_group); menu("Edit", 2); over(ANY); state(can_be_grouped),
         "edit.ungroup" "Ungroup" ["Ctrl+Shift+G"] "Takes the selected groups away; what is below them stays, and stays where it is"
             => |world| step(world, step_ungroup); menu("Edit", 2); over(ANY); state(is_any_group_selected),
-        "select.all" "Select all" ["Ctrl+A"] "Selects every entity"
-            => select_all; menu("Edit", 3); over(&[Over::Nothing]),
-        "select.none" "Select nothing" ["Escape"] "Selects no entity, lets go of a chosen ray or box, and brings the panels back"
-            => select_none; menu("Edit", 3),
-        "select.invert" "Invert the selection" ["Ctrl+Shift+I"] "Selects every entity that is not selected, and no other"
-            => select_others; menu("Edit", 3),
-        "select.same-material" "Select what shares its material" [] "Selects all objects that have the material which is selected, or that of a selected object"
-            => select_sharing; menu("Edit", 3); over(&[Over::Entity]); state(is_any_selected),
         "add.point-light" "Point light" [] "Shines in all directions from one point; with a cone it is a spot"
             => |world| step_add(world, &Addition::PointLamp); menu("Add", 2),
         "add.directional-light" "Directional light" [] "Shines from infinitely far, like the sun"
@@ -94,11 +86,6 @@ fn shape_commands() -> impl Iterator<Item = Command> {
         })
         .menu("Add/Shape", 0)
     })
-}
-
-fn is_any_selected(world: &World) -> State {
-    let any = !world.resource::<Selection>().is_empty();
-    State::when(any, "Nothing is selected.")
 }
 
 fn can_be_grouped(world: &World) -> State {
@@ -167,31 +154,6 @@ fn keep_selected(world: &mut World) -> bool {
             false
         }
     }
-}
-
-fn select_all(world: &mut World) {
-    let mut all = world.query::<&SceneId>();
-    let mut all: Vec<SceneId> = all.iter(world).copied().collect();
-    all.sort_unstable();
-    select(world, all);
-}
-
-fn select_others(world: &mut World) {
-    let mut all = world.query::<&SceneId>();
-    let now = world.resource::<Selection>();
-    let others = all.iter(world).filter(|id| !now.contains(**id));
-    let mut others: Vec<SceneId> = others.copied().collect();
-    others.sort_unstable();
-    select(world, others);
-}
-
-fn select_none(world: &mut World) {
-    select(world, Vec::new());
-    world.trigger(Escaped);
-}
-
-pub(super) fn selected(world: &World) -> Vec<SceneId> {
-    world.resource::<Selection>().ids().to_vec()
 }
 
 /// Makes a step of what `change` does; it tells how the step is to be called.
@@ -322,43 +284,6 @@ fn step_delete(world: &mut World) -> Option<String> {
     Some(name)
 }
 
-/// Selects the objects that have the selected materials, or those of the selected objects.
-fn select_sharing(world: &mut World) {
-    let chosen = selected(world).into_iter();
-    let chosen = chosen
-        .filter_map(|id| scene_entity(world, id))
-        .map(|entity| {
-            let material = world.get::<UsesMaterial>(entity);
-            material.map_or(entity, |material| material.0)
-        });
-    let chosen: HashSet<Entity> = chosen.collect();
-    let mut users = world.query::<(&SceneId, &UsesMaterial)>();
-    let users = users
-        .iter(world)
-        .filter(|(_, material)| chosen.contains(&material.0));
-    let mut users: Vec<SceneId> = users.map(|(id, _)| *id).collect();
-    users.sort_unstable();
-    if users.is_empty() {
-        let text = "No object shares the material of what is selected.";
-        world.resource_mut::<Notices>().tell(text);
-        return;
-    }
-    select(world, users);
-}
-
-/// Selects these, as far as they are entities of the scene, and no others.
-pub(in crate::editor) fn select(world: &mut World, ids: Vec<SceneId>) {
-    let index = world.resource::<SceneIndex>();
-    let ids: Vec<SceneId> = ids
-        .into_iter()
-        .filter(|&id| index.find(world, id).is_some())
-        .collect();
-    let mut selection = world.resource_mut::<Selection>();
-    if selection.ids() != ids {
-        selection.set(ids);
-    }
-}
-
 /// One by its name, several by their number.
 pub(super) fn call(world: &World, ids: &[SceneId]) -> String {
     match ids {
@@ -422,25 +347,6 @@ mod tests {
         act(&mut app, Action::run("edit.undo"));
         assert_eq!(count(&mut app), none + 2);
         assert!(scene_entity(app.world(), group).is_some());
-    }
-
-    #[test]
-    fn what_was_not_selected_is_and_what_was_is_not() {
-        let mut app = headless_editor();
-        let act = |app: &mut App, action: Action| {
-            app.world_mut().write_message(action);
-            app.update();
-        };
-        let mut ids = Vec::new();
-        for _ in 0..3 {
-            act(&mut app, Action::Add(Addition::Group));
-            ids.extend(app.world().resource::<Selection>().active());
-        }
-        act(&mut app, Action::Select(vec![ids[1]]));
-        act(&mut app, Action::run("select.invert"));
-        assert_eq!(app.world().resource::<Selection>().ids(), [ids[0], ids[2]]);
-        act(&mut app, Action::run("select.invert"));
-        assert_eq!(app.world().resource::<Selection>().ids(), [ids[1]]);
     }
 
     #[test]
