@@ -185,50 +185,104 @@ impl Fate {
     }
 
     fn sentence(&self, light: &str, names: &BTreeMap<u64, String>) -> String {
+        // One sample is not counted.
+        let alone = self.samples == 1;
         let mut parts = Vec::new();
-        if self.arrived > 0 {
-            parts.push(format!("{} arrive{}", self.arrived, one(self.arrived)));
+        let mut add = |count: u32, one: &str, many: &str| match (alone, count) {
+            (_, 0) => {}
+            (true, _) => parts.push(one.to_owned()),
+            (false, 1) => parts.push(format!("1 {one}")),
+            (false, count) => parts.push(format!("{count} {many}")),
+        };
+        add(self.arrived, "arrives", "arrive");
+        let tinted = "through something transparent";
+        let of_them = format!("of them {tinted}");
+        let one = if alone { tinted } else { of_them.as_str() };
+        add(self.tinted, one, &of_them);
+        let blockers = self.blockers.iter().map(|&id| named(names, id));
+        let blockers = blockers.collect::<Vec<_>>().join(", ");
+        add(
+            self.blocked,
+            &format!("is blocked by {blockers}"),
+            &format!("are blocked by {blockers}"),
+        );
+        add(
+            self.behind,
+            "comes from behind the surface",
+            "come from behind the surface",
+        );
+        let unlit = "of a colour that the surface does not reflect, or from behind its triangle";
+        add(
+            self.unlit - self.behind,
+            &format!("is {unlit}"),
+            &format!("are {unlit}"),
+        );
+        add(
+            self.left_out,
+            "is so faint that chance left it out",
+            "are so faint that chance left them out",
+        );
+        let parts = parts.join(", ");
+        match alone {
+            true => format!("{light}: its sample {parts}"),
+            false => format!(
+                "{light}: of {} {parts}",
+                counted(self.samples.into(), "sample")
+            ),
         }
-        if self.tinted > 0 {
-            parts.push(format!(
-                "{} of them through something transparent",
-                self.tinted
-            ));
-        }
-        if self.blocked > 0 {
-            let list: Vec<String> = self.blockers.iter().map(|&id| named(names, id)).collect();
-            parts.push(format!(
-                "{} {} blocked by {}",
-                self.blocked,
-                if self.blocked == 1 { "is" } else { "are" },
-                list.join(", ")
-            ));
-        }
-        if self.behind > 0 {
-            parts.push(format!(
-                "{} come{} from behind the surface",
-                self.behind,
-                one(self.behind)
-            ));
-        }
-        if self.unlit > self.behind {
-            let others = self.unlit - self.behind;
-            parts.push(format!("{others} are of a colour that the surface does not reflect, or from behind its triangle"));
-        }
-        if self.left_out > 0 {
-            parts.push(format!(
-                "{} {} so faint that chance left {} out",
-                self.left_out,
-                if self.left_out == 1 { "is" } else { "are" },
-                if self.left_out == 1 { "it" } else { "them" },
-            ));
-        }
-        let samples = counted(self.samples.into(), "sample");
-        format!("{light}: of {samples} {}", parts.join(", "))
     }
 }
 
-/// The ending of a verb after a number.
-fn one(count: u32) -> &'static str {
-    if count == 1 { "s" } else { "" }
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_sample_is_told_without_a_number_and_of_several_each_number_agrees() {
+        let names = BTreeMap::from([(7, "Block".to_owned())]);
+        let sentence = |fate: Fate| fate.sentence("Lamp", &names);
+        let blocked = |samples, blocked, arrived| Fate {
+            samples,
+            arrived,
+            blocked,
+            blockers: BTreeSet::from([7]),
+            ..Fate::default()
+        };
+        let unlit = |samples, unlit| Fate {
+            samples,
+            unlit,
+            ..Fate::default()
+        };
+        let tinted = |samples, arrived, tinted| Fate {
+            samples,
+            arrived,
+            tinted,
+            ..Fate::default()
+        };
+        let color = "of a colour that the surface does not reflect, or from behind its triangle";
+        for (fate, text) in [
+            (blocked(1, 1, 0), "its sample is blocked by Block"),
+            (
+                blocked(4, 1, 3),
+                "of 4 samples 3 arrive, 1 is blocked by Block",
+            ),
+            (
+                blocked(4, 3, 1),
+                "of 4 samples 1 arrives, 3 are blocked by Block",
+            ),
+            (unlit(1, 1), &*format!("its sample is {color}")),
+            (unlit(2, 1), &*format!("of 2 samples 1 is {color}")),
+            (unlit(2, 2), &*format!("of 2 samples 2 are {color}")),
+            (
+                tinted(1, 1, 1),
+                "its sample arrives, through something transparent",
+            ),
+            (
+                tinted(2, 2, 1),
+                "of 2 samples 2 arrive, 1 of them through something transparent",
+            ),
+        ] {
+            assert_eq!(sentence(fate), format!("Lamp: {text}"));
+        }
+    }
 }

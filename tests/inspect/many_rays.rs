@@ -180,7 +180,7 @@ fn rays_that_chance_leaves_out_are_named_in_the_tree_the_table_the_sentences_and
             } else {
                 format!("#{}", light.id)
             };
-            let text = format!("{name}: of 1 sample 1 {fate}");
+            let text = format!("{name}: its sample {fate}");
             assert!(sentences.contains(&text), "{text} is not in {sentences:#?}");
         };
         match ray.end {

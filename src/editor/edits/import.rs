@@ -1,7 +1,8 @@
 //! A model in a scene that is there already: how large it becomes, what it stands on, and what comes along with it.
 
 use super::parents::with_descendants;
-use super::plugin::{select, step};
+use super::plugin::step;
+use super::selecting::select;
 use super::{AddAt, add_model, name_of, scene_entity};
 use crate::editor::command::{Command, State, commands, flip};
 use crate::editor::extent::{Extent, extent_now, scene_extent};

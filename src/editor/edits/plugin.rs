@@ -1,21 +1,19 @@
-//! The commands that edit and select, each a step of its own.
+//! The commands that edit, each a step of its own.
 
+use super::selecting::{is_any_selected, select, selected};
 use super::{
-    AddAt, Clipboard, SceneIndex, add, assign_material, copy, delete, duplicate, group, import,
-    is_group, name_of, paste, rename, reparent, roots_of, scene_entity, set_visible, ungroup,
+    AddAt, Clipboard, SceneIndex, add, assign_material, copy, delete, duplicate, group, hiding,
+    import, is_group, name_of, paste, rename, reparent, roots_of, scene_entity, selecting, ungroup,
 };
 use crate::editor::action::{Addition, shapes};
 use crate::editor::command::{AddCommands, Command, Over, State, commands};
 use crate::editor::history::{Gesture, History, commit, redo, undo};
 use crate::editor::notice::Notices;
-use crate::editor::selection::{Escaped, Selection};
-use crate::scene::{SceneId, UsesMaterial};
+use crate::editor::selection::Selection;
+use crate::scene::SceneId;
 use bevy::app::{App, Plugin};
-use bevy::camera::visibility::Visibility;
-use bevy::ecs::entity::Entity;
 use bevy::ecs::world::World;
 use bevy::transform::components::Transform;
-use std::collections::HashSet;
 
 /// Does what [`Action`](crate::editor::Action)s ask for that edit the scene or select in it. Needs
 /// [`HistoryPlugin`](crate::editor::history::HistoryPlugin).
@@ -30,6 +28,8 @@ impl Plugin for EditsPlugin {
             .init_resource::<SceneIndex>()
             .init_resource::<import::DroppedAt>()
             .add_commands(commands())
+            .add_commands(hiding::commands())
+            .add_commands(selecting::commands())
             .add_commands(import::commands())
             .add_commands(shape_commands());
     }
@@ -44,26 +44,20 @@ fn commands() -> Vec<Command> {
             => step_back; menu("Edit", 0); repeats(); state(about_undo),
         "edit.redo" "Redo" ["Ctrl+Shift+Z", "Ctrl+Y"] "Does the step again that was taken back"
             => step_forth; menu("Edit", 0); repeats(); state(about_redo),
+        "edit.cut" "Cut" ["Ctrl+X"] "Keeps the selected entities for pasting, and removes them and their children"
+            => |world| step(world, step_cut); menu("Edit", 2); over(ANY); state(is_any_selected),
         "edit.copy" "Copy" ["Ctrl+C"] "Keeps the selected entities for pasting"
-            => copy_selected; menu("Edit", 2); over(ANY); state(is_any_selected),
+            => |world| { keep_selected(world); }; menu("Edit", 2); over(ANY); state(is_any_selected),
         "edit.paste" "Paste" ["Ctrl+V"] "Adds what was copied"
             => |world| step(world, step_paste); menu("Edit", 2); over(ANYWHERE); state(is_any_copied),
         "edit.duplicate" "Duplicate" ["Ctrl+D"] "Adds a copy of the selected entities where they are"
             => |world| step(world, step_duplicate); menu("Edit", 2); over(ANY); state(is_any_selected),
         "edit.delete" "Delete" ["Delete", "X"] "Removes the selected entities and their children"
             => |world| step(world, step_delete); menu("Edit", 2); over(ANY); state(is_any_selected),
-        "edit.hide" "Hide or show" ["H"] "A hidden entity is not traced"
-            => |world| step(world, step_hide); menu("Edit", 2); over(ANY); state(is_any_selected),
         "edit.group" "Group" ["Ctrl+G"] "Puts the selected entities below a new group: what is done to it is done to all of them"
             => |world| step(world, step_group); menu("Edit", 2); over(ANY); state(can_be_grouped),
         "edit.ungroup" "Ungroup" ["Ctrl+Shift+G"] "Takes the selected groups away; what is below them stays, and stays where it is"
             => |world| step(world, step_ungroup); menu("Edit", 2); over(ANY); state(is_any_group_selected),
-        "select.all" "Select all" ["Ctrl+A"] "Selects every entity"
-            => select_all; menu("Edit", 3); over(&[Over::Nothing]),
-        "select.none" "Select nothing" ["Escape"] "Selects no entity, lets go of a chosen ray or box, and brings the panels back"
-            => select_none; menu("Edit", 3),
-        "select.same-material" "Select what shares its material" [] "Selects all objects that have the material which is selected, or that of a selected object"
-            => select_sharing; menu("Edit", 3); over(&[Over::Entity]); state(is_any_selected),
         "add.point-light" "Point light" [] "Shines in all directions from one point; with a cone it is a spot"
             => |world| step_add(world, &Addition::PointLamp); menu("Add", 2),
         "add.directional-light" "Directional light" [] "Shines from infinitely far, like the sun"
@@ -92,11 +86,6 @@ fn shape_commands() -> impl Iterator<Item = Command> {
         })
         .menu("Add/Shape", 0)
     })
-}
-
-fn is_any_selected(world: &World) -> State {
-    let any = !world.resource::<Selection>().is_empty();
-    State::when(any, "Nothing is selected.")
 }
 
 fn can_be_grouped(world: &World) -> State {
@@ -153,27 +142,18 @@ fn step_forth(world: &mut World) {
     }
 }
 
-fn copy_selected(world: &mut World) {
+/// Whether they are kept; why not is said.
+fn keep_selected(world: &mut World) -> bool {
     match copy(world, &selected(world)) {
-        Ok(clipboard) => world.insert_resource(clipboard),
-        Err(error) => world.resource_mut::<Notices>().fault(error.to_string()),
+        Ok(clipboard) => {
+            world.insert_resource(clipboard);
+            true
+        }
+        Err(error) => {
+            world.resource_mut::<Notices>().fault(error.to_string());
+            false
+        }
     }
-}
-
-fn select_all(world: &mut World) {
-    let mut all = world.query::<&SceneId>();
-    let mut all: Vec<SceneId> = all.iter(world).copied().collect();
-    all.sort_unstable();
-    select(world, all);
-}
-
-fn select_none(world: &mut World) {
-    select(world, Vec::new());
-    world.trigger(Escaped);
-}
-
-fn selected(world: &World) -> Vec<SceneId> {
-    world.resource::<Selection>().ids().to_vec()
 }
 
 /// Makes a step of what `change` does; it tells how the step is to be called.
@@ -287,6 +267,16 @@ fn step_duplicate(world: &mut World) -> Option<String> {
     Some(name)
 }
 
+/// What could not be kept is not removed.
+fn step_cut(world: &mut World) -> Option<String> {
+    let ids = selected(world);
+    let name = format!("Cut {}", call(world, &ids));
+    keep_selected(world).then(|| {
+        delete(world, &ids);
+        name
+    })
+}
+
 fn step_delete(world: &mut World) -> Option<String> {
     let ids = selected(world);
     let name = format!("Delete {}", call(world, &ids));
@@ -294,59 +284,8 @@ fn step_delete(world: &mut World) -> Option<String> {
     Some(name)
 }
 
-fn step_hide(world: &mut World) -> Option<String> {
-    let ids = selected(world);
-    let shown = |&id: &SceneId| {
-        let entity = scene_entity(world, id);
-        let now = entity.and_then(|entity| world.get::<Visibility>(entity));
-        now.is_some_and(|now| *now != Visibility::Hidden)
-    };
-    let show = !ids.iter().any(shown);
-    let verb = if show { "Show" } else { "Hide" };
-    let name = format!("{verb} {}", call(world, &ids));
-    set_visible(world, &ids, show);
-    Some(name)
-}
-
-/// Selects the objects that have the selected materials, or those of the selected objects.
-fn select_sharing(world: &mut World) {
-    let chosen = selected(world).into_iter();
-    let chosen = chosen
-        .filter_map(|id| scene_entity(world, id))
-        .map(|entity| {
-            let material = world.get::<UsesMaterial>(entity);
-            material.map_or(entity, |material| material.0)
-        });
-    let chosen: HashSet<Entity> = chosen.collect();
-    let mut users = world.query::<(&SceneId, &UsesMaterial)>();
-    let users = users
-        .iter(world)
-        .filter(|(_, material)| chosen.contains(&material.0));
-    let mut users: Vec<SceneId> = users.map(|(id, _)| *id).collect();
-    users.sort_unstable();
-    if users.is_empty() {
-        let text = "No object shares the material of what is selected.";
-        world.resource_mut::<Notices>().tell(text);
-        return;
-    }
-    select(world, users);
-}
-
-/// Selects these, as far as they are entities of the scene, and no others.
-pub(in crate::editor) fn select(world: &mut World, ids: Vec<SceneId>) {
-    let index = world.resource::<SceneIndex>();
-    let ids: Vec<SceneId> = ids
-        .into_iter()
-        .filter(|&id| index.find(world, id).is_some())
-        .collect();
-    let mut selection = world.resource_mut::<Selection>();
-    if selection.ids() != ids {
-        selection.set(ids);
-    }
-}
-
 /// One by its name, several by their number.
-fn call(world: &World, ids: &[SceneId]) -> String {
+pub(super) fn call(world: &World, ids: &[SceneId]) -> String {
     match ids {
         [one] => name_of(world, *one),
         ids => format!("{} entities", ids.len()),
@@ -375,6 +314,39 @@ mod tests {
         app.world_mut().write_message(Action::Add(cuboid));
         app.update();
         assert_eq!(traced(&app), 1);
+    }
+
+    #[test]
+    fn what_is_cut_is_gone_in_one_step_and_pasted_with_its_children() {
+        let mut app = headless_editor();
+        let act = |app: &mut App, action: Action| {
+            app.world_mut().write_message(action);
+            app.update();
+        };
+        let count = |app: &mut App| {
+            let mut all = app.world_mut().query::<&SceneId>();
+            all.iter(app.world()).count()
+        };
+        act(&mut app, Action::run("edit.cut"));
+        let none = count(&mut app);
+        act(&mut app, Action::Add(Addition::Group));
+        let group = app.world().resource::<Selection>().active().unwrap();
+        act(&mut app, Action::Add(Addition::PointLamp));
+        let lamp = app.world().resource::<Selection>().active().unwrap();
+        act(&mut app, Action::Reparent(vec![lamp], Some(group)));
+        act(&mut app, Action::Select(vec![group]));
+        let before = app.world().resource::<History>().steps().count();
+        act(&mut app, Action::run("edit.cut"));
+        assert_eq!(count(&mut app), none);
+        let history = app.world().resource::<History>();
+        assert_eq!(history.steps().count(), before + 1);
+        assert_eq!(history.undo_text(), Some("Cut Group"));
+        act(&mut app, Action::run("edit.paste"));
+        assert_eq!(count(&mut app), none + 2);
+        act(&mut app, Action::run("edit.undo"));
+        act(&mut app, Action::run("edit.undo"));
+        assert_eq!(count(&mut app), none + 2);
+        assert!(scene_entity(app.world(), group).is_some());
     }
 
     #[test]

@@ -1,10 +1,9 @@
-//! Taking entities away, and hiding them.
+//! Taking entities away.
 
 use super::parents::{roots_of, with_descendants};
 use super::scene_entity;
 use crate::editor::history::remove;
 use crate::scene::{Phong, SceneId, UsesMaterial};
-use bevy::camera::visibility::Visibility;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::world::World;
 use std::collections::BTreeSet;
@@ -36,25 +35,5 @@ pub fn delete(world: &mut World, ids: &[SceneId]) {
     }
     for root in roots {
         remove(world, root);
-    }
-}
-
-/// Shows or hides entities. What is below a hidden one is hidden too, unless it says otherwise.
-pub fn set_visible(world: &mut World, ids: &[SceneId], visible: bool) {
-    for &id in ids {
-        let Some(entity) = scene_entity(world, id) else {
-            continue;
-        };
-        let Some(now) = world.get::<Visibility>(entity).copied() else {
-            continue;
-        };
-        let wanted = match (visible, now) {
-            (false, _) => Visibility::Hidden,
-            (true, Visibility::Hidden) => Visibility::Inherited,
-            (true, shown) => shown,
-        };
-        if wanted != now {
-            world.entity_mut(entity).insert(wanted);
-        }
     }
 }

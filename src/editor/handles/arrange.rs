@@ -27,7 +27,7 @@ pub(super) fn commands() -> Vec<Command> {
             put_down,
         )
         .keys(&["End"])
-        .menu("Edit/Arrange", 0)
+        .menu("Edit/Arrange", 2)
         .state(|world| ready(world, 1)),
     ];
     for (name, axis) in AXES {
@@ -35,7 +35,7 @@ pub(super) fn commands() -> Vec<Command> {
         let title = format!("Align in {name}");
         let help = format!("The middles of the selected objects get the active one's {name}");
         let run = move |world: &mut World| align(world, name, axis);
-        let row = Command::new(id, title, help, run).menu("Edit/Arrange", 1);
+        let row = Command::new(id, title, help, run).menu("Edit/Arrange", 3);
         all.push(row.state(|world| ready(world, 2)));
     }
     for (name, axis) in AXES {
@@ -45,7 +45,7 @@ pub(super) fn commands() -> Vec<Command> {
             "The middles of the selected objects get equal distances in {name}; the first and the last stay"
         );
         let run = move |world: &mut World| distribute(world, name, axis);
-        let row = Command::new(id, title, help, run).menu("Edit/Arrange", 2);
+        let row = Command::new(id, title, help, run).menu("Edit/Arrange", 4);
         all.push(row.state(|world| ready(world, 3)));
     }
     all
@@ -213,6 +213,7 @@ fn put_down(world: &mut World) {
 mod tests {
     use super::*;
     use crate::editor::action::Addition;
+    use crate::editor::command::find;
     use crate::editor::edits::{AddAt, add};
     use crate::editor::headless_editor;
     use crate::editor::history::undo;
@@ -220,6 +221,18 @@ mod tests {
     use crate::scene::PointLamp;
     use bevy::app::App;
     use bevy::ecs::name::Name;
+
+    #[test]
+    fn arranging_stands_in_the_menu_with_what_else_is_done_to_the_selection() {
+        let app = headless_editor();
+        let delete = find(app.world(), "edit.delete").unwrap();
+        let all = commands();
+        let first = all
+            .iter()
+            .flat_map(|row| &row.menus)
+            .map(|(_, group)| group);
+        assert_eq!(first.min(), Some(&delete.menus[0].1));
+    }
 
     fn lamps(places: &[Vec3]) -> App {
         let mut app = headless_editor();

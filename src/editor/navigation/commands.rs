@@ -28,7 +28,7 @@ pub(super) fn commands() -> Vec<Command> {
             => toggle_pause; menu("View", 1); button("traced", "⏸"); state(is_paused),
         "view.restart" "Restart" ["Ctrl+R"] "Renders the traced view from its first sample again"
             => restart; menu("View", 1); button("traced", "⟲"),
-        "view.frame-selected" "Frame selected" ["F"] "Moves the view so that the selection fills it; the whole scene where nothing is selected"
+        "view.frame-selected" "Frame selected" ["F", "Num Decimal"] "Moves the view so that the selection fills it; the whole scene where nothing is selected"
             => |world| frame(world, false); menu("View", 2); over(&[Over::Entity]),
         "view.frame-all" "Frame all" ["Home"] "Moves the view so that the whole scene fills it"
             => |world| frame(world, true); menu("View", 2); over(&[Over::Nothing]),

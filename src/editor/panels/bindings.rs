@@ -41,6 +41,7 @@ pub(super) fn bindings_ui(ui: &mut Ui, world: &mut World, search: &mut String) {
     let conflicts = table.conflicts(bindings);
     let needle = search.trim().to_lowercase();
     let mut wish = None;
+    let mut shown = 0;
     let width = ui.available_width() - NAMES - KEYS - 60.0;
     Grid::new("keys")
         .num_columns(3)
@@ -54,6 +55,7 @@ pub(super) fn bindings_ui(ui: &mut Ui, world: &mut World, search: &mut String) {
                 if !fits(&row.name) && !fits(&keys) {
                     continue;
                 }
+                shown += 1;
                 let records = recorded.as_deref() == Some(&*row.id);
                 let clash = conflicts
                     .iter()
@@ -95,6 +97,9 @@ pub(super) fn bindings_ui(ui: &mut Ui, world: &mut World, search: &mut String) {
                 ui.end_row();
             }
         });
+    if shown == 0 {
+        ui.weak("No command is called that, nor has such keys.");
+    }
     match wish {
         Some(Wish::Record(id)) => {
             if let Some(mut recording) = world.get_resource_mut::<Recording>() {

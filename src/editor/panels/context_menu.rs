@@ -10,7 +10,8 @@ use bevy::ecs::resource::Resource;
 use bevy::ecs::system::ResMut;
 use bevy::ecs::world::World;
 use bevy::math::Vec2;
-use bevy_egui::egui::{self, Id, LayerId, Popup, PopupKind, Pos2, SetOpenCommand};
+use bevy_egui::egui::containers::menu::menu_style;
+use bevy_egui::egui::{self, Align, Id, LayerId, Layout, Popup, PopupKind, Pos2, SetOpenCommand};
 use std::sync::Arc;
 
 /// The menu of a right click.
@@ -54,22 +55,80 @@ pub(super) fn context_menu_ui(context: &egui::Context, world: &mut World, menu: 
         .flatten()
         .any(|view| view.contains(in_window));
     let table = world.resource::<CommandTable>().rows().iter();
-    let rows: Vec<Arc<Command>> = table
-        .filter(|row| row.over.contains(&over) || is_pixel && row.over.contains(&Over::Pixel))
-        .cloned()
-        .collect();
+    let rows =
+        table.filter(|row| row.over.contains(&over) || is_pixel && row.over.contains(&Over::Pixel));
+    let groups = groups_of(rows);
     let mut chosen = false;
     Popup::new(id, context.clone(), at, LayerId::background())
         .kind(PopupKind::Menu)
+        // As the menus above: keys end at one edge.
+        .layout(Layout::top_down_justified(Align::Min))
+        .style(menu_style)
         .open_memory(opens.map(|_| SetOpenCommand::Bool(true)))
         .show(|ui| {
             ui.set_min_width(190.0);
-            for row in &rows {
-                chosen |= item_ui(ui, world, row);
+            for (i, group) in groups.iter().enumerate() {
+                if i > 0 {
+                    ui.separator();
+                }
+                for row in group {
+                    chosen |= item_ui(ui, world, row);
+                }
             }
         });
     menu.chosen_at = (chosen && is_pixel).then_some(in_window);
     if !Popup::is_id_open(context, id) {
         menu.over = None;
+    }
+}
+
+/// What stands together in the menus above stands together here too, in the order in which groups begin.
+fn groups_of<'a>(rows: impl Iterator<Item = &'a Arc<Command>>) -> Vec<Vec<Arc<Command>>> {
+    let mut groups: Vec<Vec<Arc<Command>>> = Vec::new();
+    for row in rows {
+        let is_beside =
+            |group: &&mut Vec<Arc<Command>>| group[0].menus.first() == row.menus.first();
+        match groups.iter_mut().find(is_beside) {
+            Some(group) => group.push(row.clone()),
+            None => groups.push(vec![row.clone()]),
+        }
+    }
+    groups
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::panels::tests::{Desk, texts};
+    use crate::editor::selection::Selection;
+
+    #[test]
+    fn rows_stand_in_the_groups_of_the_menus_above_and_their_keys_end_at_one_edge() {
+        let mut desk = Desk::open("cornell-box");
+        let (_, id) = desk.named("Short block");
+        desk.world().resource_mut::<Selection>().set([id]);
+        let (at, over) = (Vec2::new(640.0, 100.0), Over::Entity);
+        desk.world().trigger(RightClicked { at, over });
+        desk.settle();
+        let all = texts(&desk);
+        let edge = |keys: &str| {
+            let mut found = all.iter().filter(|(text, place, _)| {
+                text == keys && place.left() > at.x && place.top() > at.y
+            });
+            let (_, place, _) = found
+                .next()
+                .unwrap_or_else(|| panic!("{keys} is not shown"));
+            place.right()
+        };
+        let right = edge("Ctrl+C");
+        for keys in ["Ctrl+D", "Ctrl+G", "F2", "H"] {
+            assert!((edge(keys) - right).abs() < 1.0, "{keys}: {}", edge(keys));
+        }
+        // Editing before asking, though the tables come in another order.
+        let height = |text: &str| desk.place_of(text).y;
+        assert!(height("Rename") < height("Select what shares its material"));
+        let step = height("Paste") - height("Copy");
+        let gap = height("Why is this pixel black?") - height("Select what shares its material");
+        assert!(gap > step, "a line is between groups: {gap}, {step}");
     }
 }

@@ -175,13 +175,17 @@ fn row_ui(
     response
 }
 
-/// The commands whose names have these letters in this order, the best first; all for none.
+/// How much less it is worth that a word stands in what is said of a command than in its name.
+const SAID: i32 = 60;
+
+/// The commands whose names have these letters in this order, or whose explanations have this word, the best first; all for
+/// no letters.
 fn find(world: &World, text: &str) -> Vec<Arc<Command>> {
     let rows = world.resource::<CommandTable>().rows();
     let scored = rows.iter().filter_map(|row| {
         // Who knows the id finds it by that too.
-        let score = score(text, &row.name).or_else(|| Some(score(text, &row.id)? - 50))?;
-        Some((score, row))
+        let named = score(text, &row.name).or_else(|| Some(score(text, &row.id)? - 50));
+        Some((named.max(score_said(text, &row.help))?, row))
     });
     let mut found: Vec<(i32, &Arc<Command>)> = scored.collect();
     found.sort_by_key(|(score, _)| -score);
@@ -217,9 +221,52 @@ pub(super) fn score(text: &str, name: &str) -> Option<i32> {
     found.map(|score| score * 4 - name.len() as i32 * i32::from(!wanted.is_empty()))
 }
 
+/// How well an explanation fits what was typed: a person who asks for a spot is shown the light that becomes one.
+fn score_said(text: &str, says: &str) -> Option<i32> {
+    let wanted = text.trim().to_lowercase();
+    let mut words = says.split(|c: char| !c.is_alphanumeric());
+    let has = !wanted.is_empty() && words.any(|word| word.to_lowercase() == wanted);
+    match has {
+        true => Some(score(&wanted, &wanted)? - SAID),
+        false => None,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_word_of_an_explanation_finds_what_it_explains_before_letters_here_and_there() {
+        let mut world = World::new();
+        let row = |id: &'static str, name: &'static str, says: &'static str| {
+            Command::new(id, name, says, |_| {})
+        };
+        let mut table = CommandTable::default();
+        for row in [
+            row(
+                "a",
+                "Perspective or orthographic",
+                "Far things keep their size",
+            ),
+            row("b", "Point light", "With a cone it is a spot"),
+            row("c", "Spotless", "Shows spots"),
+        ] {
+            table.add(row);
+        }
+        world.insert_resource(table);
+        let names = |text: &str| -> Vec<String> {
+            let found = find(&world, text).into_iter();
+            found.map(|row| row.name.to_string()).collect()
+        };
+        assert_eq!(
+            names("Spot "),
+            ["Spotless", "Point light", "Perspective or orthographic"]
+        );
+        assert_eq!(names("cone"), ["Point light"]);
+        assert!(names("con").iter().all(|name| name != "Point light"));
+        assert_eq!(names("").len(), 3);
+    }
 
     fn best<'a>(text: &str, names: &[&'a str]) -> &'a str {
         let scored = names

@@ -11,6 +11,10 @@ use std::f64::consts::PI;
 /// Angles that can be entered, in radians: a thousand turns either way.
 const TURNS: f64 = 2000.0 * PI;
 
+/// Steps of a degree in which the angles of a rotation are known: its f32 numbers leave some 1e-5° of no meaning, which would
+/// be shown as a turn of 4.5e-7.
+const STEPS: f32 = 1e4;
+
 /// The angles that were entered last, in degrees about x, y and z, and for which rotation they stand.
 #[derive(Clone, Copy)]
 struct Entered {
@@ -76,7 +80,7 @@ pub(super) fn with_angle(rotation: Quat, axis: usize, to: f32) -> Quat {
 fn degrees(rotation: Quat) -> Vec3 {
     let (y, x, z) = rotation.to_euler(EulerRot::YXZ);
     // -0 is no angle that anyone entered.
-    Vec3::new(x, y, z).map(|angle| angle.to_degrees() + 0.0)
+    Vec3::new(x, y, z).map(|angle| (angle.to_degrees() * STEPS).round() / STEPS + 0.0)
 }
 
 fn rotated(degrees: Vec3) -> Quat {
@@ -87,6 +91,7 @@ fn rotated(degrees: Vec3) -> Quat {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bevy::transform::components::Transform;
 
     #[test]
     fn angles_that_were_entered_stay_and_others_come_from_the_rotation() {
@@ -98,6 +103,18 @@ mod tests {
         let other = Vec3::new(10.0, -20.0, 30.0);
         let found = Entered::of(known, rotated(other));
         assert!(found.distance(other) < 1e-3, "{found}");
+    }
+
+    #[test]
+    fn what_rounding_left_of_a_rotation_is_no_angle() {
+        for i in 0..40 {
+            let from = Vec3::new(0.1 * i as f32 - 2.0, 0.85, 2.04);
+            let camera = Transform::from_translation(from).looking_at(Vec3::ZERO, Vec3::Y);
+            let found = degrees(camera.rotation);
+            assert_eq!(found.z, 0.0, "the roll of a camera at {from}");
+            let off = (rotated(found) * Vec3::Z).distance(camera.rotation * Vec3::Z);
+            assert!(off < 1e-5, "{off}");
+        }
     }
 
     #[test]

@@ -13,7 +13,7 @@ use super::command::Over;
 use super::embed::Switched;
 use super::handles::{self, GripDrag, grip_at};
 use super::keys::Inbox;
-use super::navigation::{self, LookThrough, ViewDrag};
+use super::navigation::{self, Eye, LookThrough, ViewDrag};
 use super::pick;
 use super::schedule::{Dispatch, EditorUpdate};
 use super::selection::Selection;
@@ -32,7 +32,7 @@ use bevy::ecs::world::{Mut, World};
 use bevy::input::keyboard::KeyCode;
 use bevy::input::mouse::{MouseButton, MouseScrollUnit};
 use bevy::input::{ButtonInput, ButtonState};
-use bevy::math::{Rect, Vec2};
+use bevy::math::{Rect, Vec2, Vec3};
 use bevy::window::{PrimaryWindow, Window, WindowEvent};
 use bevy_egui::{EguiPrimaryContextPass, egui};
 use clicks::{answer_target, click, right_click, select_box};
@@ -40,6 +40,8 @@ use std::time::{Duration, Instant};
 
 /// How far a click may move, in logical pixels.
 const STILL: f32 = 4.0;
+/// How far a view that stays may have come from where it stood, in its distances from what it looks at: rounding.
+const STAYS: f32 = 1e-4;
 /// How long after a click another one makes it a double click.
 const DOUBLE: Duration = Duration::from_millis(400);
 /// Pixels of a touch pad's scrolling that are one notch of a wheel.
@@ -115,6 +117,28 @@ pub(super) struct RightClicked {
     pub over: Over,
 }
 
+/// A press that may become a click.
+#[derive(Clone, Copy, Debug)]
+struct Press {
+    at: Vec2,
+    /// Where the view stood; a hand that trembles turns it a little, keys fly it away.
+    eye: Option<Vec3>,
+}
+
+impl Press {
+    fn of(world: &World, at: Vec2) -> Self {
+        let eye = world.get_resource::<Eye>().map(Eye::position);
+        Self { at, eye }
+    }
+
+    /// Whether the view stands where it stood. How long that was says nothing: where frames are slow, the shortest press
+    /// takes a second.
+    fn has_stayed(&self, world: &World) -> bool {
+        let moved = |eye: &Eye| Some(eye.position().distance(self.eye?) > STAYS * eye.distance);
+        !world.get_resource::<Eye>().and_then(moved).unwrap_or(false)
+    }
+}
+
 #[derive(Resource, Default)]
 struct Pointer {
     /// In logical pixels of the window; over the second of two views, where the first one shows the same.
@@ -122,8 +146,8 @@ struct Pointer {
     /// From there to where it is. It stays from a press to its release.
     offset: Vec2,
     held: Option<MouseButton>,
-    /// Where and when it was pressed, while the pointer has not moved since.
-    pressed: Option<(Vec2, Instant)>,
+    /// How it was pressed, while nothing was done with it since.
+    pressed: Option<Press>,
     inbox: Inbox,
     last_click: Option<(Instant, Vec2)>,
 }
@@ -186,7 +210,9 @@ fn go(world: &mut World, to: Vec2) {
         pointer.offset = here;
     }
     let to = to - pointer.offset;
-    pointer.pressed = pointer.pressed.filter(|(at, _)| at.distance(to) <= STILL);
+    pointer.pressed = pointer
+        .pressed
+        .filter(|press| press.at.distance(to) <= STILL);
     let Some(from) = pointer.at.replace(to) else {
         return;
     };
@@ -247,9 +273,10 @@ fn press(world: &mut World, button: MouseButton) {
     } else {
         return;
     };
+    let press = Press::of(world, at);
     let mut pointer = world.resource_mut::<Pointer>();
     pointer.held = Some(button);
-    pointer.pressed = Some((at, Instant::now()));
+    pointer.pressed = Some(press);
     *world.resource_mut::<PointerUse>() = next;
 }
 
@@ -284,11 +311,11 @@ fn release(world: &mut World, button: MouseButton) {
         PointerUse::Free | PointerUse::Gizmo => {}
         PointerUse::View(kind) => {
             navigation::end_gesture(world);
-            // A short press that moved nothing is a click.
-            if let (ViewDrag::Fly, Some((at, when))) = (kind, pressed)
-                && when.elapsed() <= DOUBLE
+            // A press that moved nothing is a click.
+            if let (ViewDrag::Fly, Some(press)) = (kind, pressed)
+                && press.has_stayed(world)
             {
-                right_click(world, at);
+                right_click(world, press.at);
             }
         }
         PointerUse::Grip(drag) => drag.end(world),
@@ -352,6 +379,7 @@ fn turn_wheel(world: &mut World, notches: f32) {
         PointerUse::View(ViewDrag::Fly)
     );
     if notches != 0.0 && (flying || is_over_scene(world, at)) {
+        world.resource_mut::<Pointer>().pressed = None;
         if world.resource::<Pointer>().inbox.modifiers.ctrl && !flying {
             navigation::widen(world, notches);
         } else {

@@ -39,3 +39,21 @@ fn a_drag_ends_where_the_editor_is_switched_off_and_the_pointer_is_where_it_is_t
     app.update();
     assert_eq!(app.world().resource::<Pointer>().at, Some(at));
 }
+
+#[test]
+fn a_right_press_that_moves_nothing_is_a_click_however_long_a_frame_takes() {
+    let mut world = World::new();
+    world.init_resource::<Eye>();
+    let press = Press::of(&world, Vec2::new(40.0, 30.0));
+    std::thread::sleep(DOUBLE + Duration::from_millis(10));
+    assert!(press.has_stayed(&world), "nothing happened");
+    // A hand that trembles looks around by some pixels.
+    world.resource_mut::<Eye>().look(Vec2::new(3.0, -2.0));
+    assert!(press.has_stayed(&world), "it trembled");
+    let step = 0.01 * Vec3::NEG_Z;
+    world.resource_mut::<Eye>().fly(step);
+    assert!(!press.has_stayed(&world), "it flew");
+    // An editor without a view of its own has none that moves.
+    let world = World::new();
+    assert!(Press::of(&world, Vec2::ZERO).has_stayed(&world));
+}

@@ -1,6 +1,7 @@
 //! What is in front of everything else, and takes keys and clicks until it is answered.
 
 mod about;
+mod folder;
 mod history;
 mod keys;
 mod path;

@@ -4,21 +4,17 @@
 use super::super::asked::Asked;
 use super::super::number_field::select_letters;
 use super::super::says::Says;
+use super::folder::{Taken, above, list_ui, names_in};
 use super::question::whole_path_ui;
 use crate::editor::document::{Answer, Purpose};
 use crate::editor::texts::{path_of, path_text};
-use crate::io::{MODEL_EXTENSIONS, PICTURE_EXTENSIONS, extension};
-use bevy_egui::egui::{
-    Button, Context, EventFilter, Id, Key, Modifiers, RichText, ScrollArea, TextEdit, Ui,
-};
-use std::fs;
+use crate::io::PICTURE_EXTENSIONS;
+use bevy_egui::egui::{Button, Context, EventFilter, Id, Key, Modifiers, RichText, TextEdit, Ui};
 use std::ops::Range;
 use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 
 /// Recent folders that are offered.
 const OFFERED: usize = 6;
-/// Files and folders of one folder that are looked at.
-const MOST: usize = 2000;
 /// What a scene's name ends with where one is suggested.
 const SUGGESTED: &str = ".scn.ron";
 /// What names end with of what is saved.
@@ -78,7 +74,7 @@ impl PathForm {
 }
 
 /// The folder with its separator, and what follows.
-fn split(text: &str) -> (&str, &str) {
+pub(super) fn split(text: &str) -> (&str, &str) {
     let is_separator = |c: char| c == '/' || c == MAIN_SEPARATOR;
     text.split_at(text.rfind(is_separator).map_or(0, |at| at + 1))
 }
@@ -104,44 +100,6 @@ fn shared(names: &[String]) -> String {
     let ends = first.char_indices().map(|(at, c)| at + c.len_utf8());
     let end = ends.take_while(|&end| fits(end)).last().unwrap_or(0);
     first[..end].to_owned()
-}
-
-/// Folders, and those files that the purpose is about. Empty where it cannot be read: then typing goes on alone.
-fn names_in((folder, purpose): (PathBuf, Purpose)) -> Vec<String> {
-    let folder = match folder.as_os_str().is_empty() {
-        true => Path::new("."),
-        false => &folder,
-    };
-    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    let (mut folders, mut files) = (Vec::new(), Vec::new());
-    for entry in entries.take(MOST) {
-        // A name that is no text cannot be typed.
-        let Ok(name) = entry.file_name().into_string() else {
-            continue;
-        };
-        // Through links, as what is opened is.
-        let is_folder = fs::metadata(entry.path()).is_ok_and(|data| data.is_dir());
-        if is_folder {
-            folders.push(name + "/");
-        } else if is_meant(&name, purpose) {
-            files.push(name);
-        }
-    }
-    folders.sort();
-    files.sort();
-    folders.into_iter().chain(files).collect()
-}
-
-fn is_meant(name: &str, purpose: Purpose) -> bool {
-    let extension = extension(Path::new(name));
-    let extension = extension.as_str();
-    match purpose {
-        Purpose::Picture => PICTURE_EXTENSIONS.contains(&extension),
-        Purpose::Import => MODEL_EXTENSIONS.contains(&extension),
-        Purpose::Open | Purpose::SaveAs => {
-            extension == "scn.ron" || MODEL_EXTENSIONS.contains(&extension)
-        }
-    }
 }
 
 /// The question for a path; `refused` says why the one before did not do.
@@ -172,6 +130,7 @@ pub(super) fn path_ui(
     {
         chosen = Some(shared(fitting));
     }
+    let is_known = fitting.is_some();
     let fitting = fitting.unwrap_or_default();
     let field = TextEdit::singleline(&mut form.text)
         .id(id)
@@ -202,7 +161,10 @@ pub(super) fn path_ui(
         Purpose::SaveAs => without_suggested(&form.text),
         Purpose::Open | Purpose::Import | Purpose::Picture => &form.text,
     });
-    whole_path_ui(ui, &path);
+    match path.as_os_str().is_empty() {
+        true => drop(ui.weak(path_text(Path::new(".")))),
+        false => whole_path_ui(ui, &path),
+    }
     if let Some(given) = &form.given {
         let verb = match purpose {
             Purpose::Open | Purpose::Import | Purpose::Picture => "Reading",
@@ -224,27 +186,19 @@ pub(super) fn path_ui(
             }
         }
     });
-    // As high however little is in it: the field stays where it is while a path is typed.
-    ScrollArea::vertical()
-        .max_height(180.0)
-        .auto_shrink(false)
-        .show_rows(
-            ui,
-            ui.spacing().interact_size.y,
-            fitting.len(),
-            |ui, rows| {
-                for name in &fitting[rows] {
-                    let button = Button::selectable(false, name.as_str());
-                    let says = match name.ends_with('/') {
-                        true => "Looks into this folder",
-                        false => "Takes this file",
-                    };
-                    if ui.add(button).says(says).clicked() {
-                        chosen = Some(name.clone());
-                    }
-                }
-            },
-        );
+    let missing = match (is_known, purpose) {
+        (false, _) => Some("Reading the folder…"),
+        (true, Purpose::SaveAs) => None,
+        (true, _) => Some("Nothing like that is here"),
+    };
+    match list_ui(ui, above(&form.text).is_some(), &fitting, missing) {
+        Some(Taken::Above) => {
+            form.text = above(&form.text).unwrap_or_default();
+            chosen = Some(String::new());
+        }
+        Some(Taken::Name(name)) => chosen = Some(name),
+        None => {}
+    }
     if let Some(name) = chosen {
         if !name.is_empty() {
             form.complete(&name);
@@ -312,7 +266,8 @@ fn stem(text: &str) -> Range<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bevy_egui::egui::{Event, RawInput};
+    use bevy_egui::egui::{Event, PointerButton, RawInput, Shape};
+    use std::fs;
 
     #[test]
     fn a_path_is_completed_from_what_lies_in_its_folder() {
@@ -354,6 +309,50 @@ mod tests {
         assert!(form.text.ends_with("/Scenes/"), "{}", form.text);
         form.text = "/no/such/folder/x".into();
         assert!(fitting(&mut form, Purpose::Open).is_empty());
+    }
+
+    #[test]
+    fn where_nothing_can_be_taken_it_is_said_and_the_way_out_is_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let inner = folder.path().join("inner");
+        fs::create_dir(&inner).unwrap();
+        let mut form = PathForm::new(&inner.join(""), &[]);
+        form.names.wait((inner.join(""), Purpose::Open), names_in);
+        let context = Context::default();
+        let mut frame = |events| {
+            let input = RawInput {
+                events,
+                ..RawInput::default()
+            };
+            let output = context.run_ui(input, |ui| {
+                path_ui(ui, &mut form, Purpose::Open, None);
+            });
+            let place = |wanted: &str| {
+                output.shapes.iter().find_map(|shape| match &shape.shape {
+                    Shape::Text(text) if text.galley.text() == wanted => {
+                        Some(text.visual_bounding_rect().center())
+                    }
+                    _ => None,
+                })
+            };
+            let found = ["../", "Nothing like that is here"].map(place);
+            (found, form.text.clone())
+        };
+        frame(Vec::new());
+        let ([up, nothing], _) = frame(Vec::new());
+        assert!(nothing.is_some());
+        let pos = up.unwrap();
+        let button = |pressed| Event::PointerButton {
+            pos,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        };
+        frame(vec![Event::PointerMoved(pos)]);
+        frame(vec![button(true)]);
+        frame(vec![button(false)]);
+        let (_, text) = frame(Vec::new());
+        assert_eq!(path_of(&text), folder.path().join(""));
     }
 
     #[test]

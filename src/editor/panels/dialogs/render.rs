@@ -19,7 +19,7 @@ use bevy::ecs::resource::Resource;
 use bevy::ecs::system::ResMut;
 use bevy::ecs::world::World;
 use bevy::math::UVec2;
-use bevy_egui::egui::{self, Color32, ComboBox, Label, ProgressBar, RichText, TextEdit, Ui};
+use bevy_egui::egui::{self, Color32, ComboBox, Key, Label, ProgressBar, RichText, TextEdit, Ui};
 
 /// What of the settings is entered here. All others are the scene's as it is when the render begins.
 const ENTERED: [&str; 4] = ["size", "spp", "sampling.error", "sampling.time"];
@@ -107,11 +107,12 @@ pub(super) fn render_ui(ui: &mut Ui, world: &mut World, form: &mut RenderForm) {
     }
     let mut settings = form.settings(world.resource::<RenderSettings>());
     let says = "PNG and JPEG as on the screen; EXR and HDR keep the linear light. Relative paths begin in the working folder, ~ is home";
-    row(ui, "File", says, |ui| {
+    let field = row(ui, "File", says, |ui| {
         let width = ui.available_width();
-        ui.add(TextEdit::singleline(&mut form.file).desired_width(width))
-            .says(says);
+        let field = ui.add(TextEdit::singleline(&mut form.file).desired_width(width));
+        field.says(says)
     });
+    let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     let file = path_of(&form.file);
     whole_path_ui(ui, &file);
     from_ui(ui, world, form);
@@ -133,7 +134,9 @@ pub(super) fn render_ui(ui: &mut Ui, world: &mut World, form: &mut RenderForm) {
         ),
         false => ("Render", "Begins; the editing goes on meanwhile"),
     };
-    if ui.button(name).says(says).clicked() && form.replaces.allows(replaces) {
+    let clicked = ui.button(name).says(says).clicked();
+    // A file that is there is replaced by its button alone.
+    if (clicked || entered && !replaces) && form.replaces.allows(replaces) {
         let camera = match form.from {
             Some(id) => Some(RenderFrom::Camera(id)),
             None => view_camera(world),
@@ -218,7 +221,6 @@ mod tests {
     use crate::editor::panels::dialogs::{Dialog, Dialogs};
     use crate::editor::panels::tests::Desk;
     use crate::sync::TracedCameras;
-    use bevy_egui::egui::Key;
     use std::time::Instant;
 
     fn open(desk: &mut Desk) {
@@ -314,6 +316,45 @@ mod tests {
             refused.as_ref().is_some_and(|why| why.contains(&there)),
             "{refused:?}"
         );
+    }
+
+    #[test]
+    fn enter_behind_a_files_name_begins_the_render_and_replaces_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.png");
+        let mut desk = Desk::open("triangle");
+        open(&mut desk);
+        let camera = desk.world().resource::<TracedCameras>().0[0].id;
+        let mut form = desk.world().resource_mut::<RenderForm>();
+        form.file = file.display().to_string();
+        form.from = Some(camera);
+        let entered = form.entered.as_mut().unwrap();
+        (entered.size, entered.spp) = (UVec2::splat(8), 1);
+        desk.settle();
+        let enter = |desk: &mut Desk| {
+            let at = desk.place_of(&file.display().to_string());
+            desk.click(at);
+            desk.key(Key::Enter);
+            desk.settle();
+        };
+        enter(&mut desk);
+        let start = Instant::now();
+        while desk.world().resource::<RenderJob>().done().is_none() {
+            assert!(start.elapsed().as_secs() < 60, "it is not rendered");
+            desk.settle();
+        }
+        // Another picture's file is asked about.
+        std::fs::write(&file, "old").unwrap();
+        adopt(desk.world(), "another", None);
+        desk.settle();
+        desk.world().resource_mut::<RenderForm>().file = file.display().to_string();
+        while desk.find("Replace").is_none() {
+            assert!(start.elapsed().as_secs() < 60, "it is not told");
+            desk.settle();
+        }
+        enter(&mut desk);
+        assert!(desk.world().resource::<RenderJob>().progress().is_none());
+        assert_eq!(std::fs::read(&file).unwrap(), b"old");
     }
 
     #[test]

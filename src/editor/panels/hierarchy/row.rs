@@ -132,19 +132,18 @@ fn inks(
         _ => Color32::TRANSPARENT,
     };
     ui.painter().rect_filled(rect, 3.0, fill);
+    // The name of what is hidden is fainter, and read all the same; its icon and its eye say the rest.
     let ink = match (unseen, selected) {
-        (true, _) => visuals.weak_text_color().gamma_multiply(0.6),
-        (false, true) => visuals.selection.stroke.color,
-        _ => visuals.widgets.inactive.fg_stroke.color,
+        (_, true) => visuals.selection.stroke.color,
+        (true, false) => visuals.weak_text_color(),
+        (false, false) => visuals.widgets.inactive.fg_stroke.color,
     };
-    (
-        ink,
-        if selected {
-            ink
-        } else {
-            ink.gamma_multiply(0.8)
-        },
-    )
+    let icon = match (unseen, selected) {
+        (true, _) => 0.5,
+        (false, true) => 1.0,
+        (false, false) => 0.8,
+    };
+    (ink, ink.gamma_multiply(icon))
 }
 
 /// The name, ending in an ellipsis where there is no more room.

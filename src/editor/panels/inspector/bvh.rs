@@ -15,7 +15,7 @@ use crate::editor::inspection::Inspected;
 use crate::editor::inspection::choice::Node;
 use crate::editor::selection::Selection;
 use crate::editor::texts::{counted, grouped};
-use crate::inspect::{InspectSettings, Names, TreeChoice};
+use crate::inspect::{InspectSettings, Names, TreeChoice, plural};
 use crate::scene::{Property, RenderSettings, SceneId, TreeSettings};
 use crate::sync::Traced;
 use crate::trace;
@@ -51,8 +51,8 @@ struct Tree {
     mesh: Option<Arc<MeshTree>>,
     stats: TreeStats,
     build_time: Duration,
-    /// What its leaves hold, and how many there are.
-    primitives: &'static str,
+    /// What its leaves hold, one of them, and how many there are.
+    primitive: &'static str,
     count: u64,
 }
 
@@ -91,7 +91,7 @@ impl Trees {
             mesh: None,
             stats: aggregate.stats(),
             build_time: aggregate.build_time(),
-            primitives: if one { "triangles" } else { "objects" },
+            primitive: if one { "triangle" } else { "object" },
             count: aggregate.tree().primitive_indices.len() as u64,
         }];
         if !one {
@@ -120,7 +120,7 @@ impl Trees {
                         None => tree.stats(),
                     },
                     build_time: tree.build_time(),
-                    primitives: "triangles",
+                    primitive: "triangle",
                     count: tree.traced() as u64,
                 }
             }));
@@ -224,12 +224,8 @@ fn list_ui(ui: &mut Ui, trees: &mut Trees, went: bool) {
     area.show_rows(ui, ROW, rows, |ui, range| {
             for at in range {
                 let tree = &trees.trees[at];
-                let figures = format!(
-                    "{} {}, SAH {:.1}",
-                    grouped(tree.count),
-                    tree.primitives,
-                    tree.stats.sah_cost
-                );
+                let holds = counted(tree.count, tree.primitive);
+                let figures = format!("{holds}, SAH {:.1}", tree.stats.sah_cost);
                 let row = Button::selectable(trees.shown == at, &tree.name)
                     .truncate()
                     .right_text(RichText::new(figures).small());
@@ -301,10 +297,7 @@ fn figures_ui(ui: &mut Ui, trees: &Trees) {
                 (
                     "Largest leaf",
                     "The most that one leaf holds",
-                    match stats.largest_leaf {
-                        1 => format!("1 {}", tree.primitives.trim_end_matches('s')),
-                        n => format!("{} {}", grouped(n.into()), tree.primitives),
-                    },
+                    counted(stats.largest_leaf.into(), tree.primitive),
                 ),
                 (
                     "SAH cost",
@@ -327,7 +320,7 @@ fn figures_ui(ui: &mut Ui, trees: &Trees) {
                 ui.end_row();
             }
         });
-    let leaf_axis = format!("{} in a leaf", tree.primitives);
+    let leaf_axis = format!("{} in a leaf", plural(0, tree.primitive));
     histogram_ui(ui, "leaf sizes", &leaf_axis, &stats.leaf_sizes, true);
     histogram_ui(ui, "depths", "depth of a leaf", &stats.depths, false);
 }
@@ -367,8 +360,10 @@ fn histogram_ui(ui: &mut Ui, id: &str, axis: &str, counts: &[u32], is_clipped: b
 
 #[cfg(test)]
 mod tests {
+    use super::super::{Inspector, Tab};
     use super::*;
     use crate::editor::headless_editor;
+    use crate::editor::panels::tests::{Desk, texts};
     use crate::io::{OpenOptions, SceneSource, builtin, open};
     use crate::scene::Builder;
     use bevy::ecs::query::With;
@@ -423,6 +418,20 @@ mod tests {
         // What has no tree leads nowhere.
         assert!(!trees.follow(world, None));
         assert_eq!(trees.shown, 0);
+    }
+
+    #[test]
+    fn one_triangle_and_one_object_are_told_in_the_singular() {
+        let mut desk = Desk::open("triangle");
+        desk.world().resource_mut::<Inspector>().tab = Tab::Bvh;
+        desk.settle();
+        let begins = |begin: &str| {
+            let mut all = texts(&desk).into_iter();
+            all.any(|(text, ..)| text.starts_with(begin))
+        };
+        for [one, many] in [["1 object,", "1 objects"], ["1 triangle,", "1 triangles"]] {
+            assert!(begins(one) && !begins(many), "{one}");
+        }
     }
 
     #[test]

@@ -32,7 +32,8 @@ pub(super) fn object_ui(ui: &mut Ui, world: &mut World, panel: &mut Inspector) {
         return;
     }
     let others = entities.len() - 1;
-    ui.horizontal(|ui| {
+    // A line that is longer than the panel would make all of it wider.
+    ui.horizontal_wrapped(|ui| {
         kind_ui(ui, active.kind);
         ui.strong(active.kind.name());
         if others > 0 {

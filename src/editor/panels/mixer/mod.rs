@@ -30,7 +30,7 @@ use crate::view::TracedRender;
 use bevy::ecs::observer::On;
 use bevy::ecs::system::ResMut;
 use bevy::ecs::world::{Mut, World};
-use bevy_egui::egui::{self, Button, RichText, ScrollArea, Ui, UiBuilder, vec2};
+use bevy_egui::egui::{self, Button, RichText, ScrollArea, Ui, UiBuilder, pos2, vec2};
 use groups::{Row, rows_of};
 use mix::{LightRow, lights};
 
@@ -39,6 +39,11 @@ pub(super) use mix::{Mixer, apply};
 
 /// Of the picture's height, what the rows take at most.
 const PART: f32 = 0.6;
+
+/// Points that the rows are wide at first.
+const WIDTH: f32 = 420.0;
+/// Points of the window's frame, and between it and the picture's edge.
+const BESIDE: f32 = 28.0;
 
 /// The mix of another scene says nothing about this one.
 pub(super) fn forget_scene(_: On<SceneOpened>, mixer: Option<ResMut<Mixer>>) {
@@ -57,12 +62,15 @@ pub(super) fn mixer_ui(context: &egui::Context, free: egui::Rect, world: &mut Wo
         let most = (free.size() - vec2(20.0, 60.0)).max(vec2(300.0, 160.0));
         // As high as its rows, and where they are many most of the picture stays to be seen.
         let rows = (PART * free.height()).clamp(100.0, most.y - 60.0);
+        let width = WIDTH.min(most.x);
+        // On the right, where there is room: the legend of lines and the comparison of pictures begin on the left.
+        let left = (free.max.x - width - BESIDE).max(free.min.x + 12.0);
         egui::Window::new("Light mixer")
             .id(egui::Id::new("light mixer"))
             .open(&mut is_open)
             .collapsible(true)
-            .default_width(420_f32.min(most.x))
-            .default_pos(free.min + vec2(12.0, 12.0))
+            .default_width(width)
+            .default_pos(pos2(left, free.min.y + 12.0))
             .min_width(300.0)
             .max_width(most.x)
             .resizable([true, false])

@@ -1,13 +1,13 @@
 //! The mixer as a person meets it, without a window.
 
 use super::super::temperature::{WHITE, nearest};
-use super::super::tests::Desk;
+use super::super::tests::{Desk, SMALL};
 use super::mix::{Mixer, Strip, lights};
 use crate::editor::action::Action;
 use crate::editor::document::{Document, adopt};
 use crate::editor::history::{History, undo};
 use crate::editor::preferences::Preferences;
-use crate::editor::viewport::EditorCamera;
+use crate::editor::viewport::{EditorCamera, Viewport};
 use crate::film::LightMix;
 use crate::scene::{PointLamp, SceneId};
 use crate::view::ViewSettings;
@@ -18,7 +18,7 @@ use bevy::ecs::query::With;
 use bevy::math::Vec3;
 use bevy::transform::components::Transform;
 use bevy_egui::egui::accesskit::Role;
-use bevy_egui::egui::{Modifiers, vec2};
+use bevy_egui::egui::{Id, Modifiers, vec2};
 
 fn lamp(desk: &mut Desk) -> (Entity, SceneId, String) {
     let mut lamps = desk
@@ -54,6 +54,24 @@ fn set(desk: &mut Desk, id: SceneId, change: impl FnOnce(&mut Strip)) {
     change(&mut strip);
     mixer.set(id, strip);
     desk.settle();
+}
+
+#[test]
+fn the_mixer_opens_beside_the_comparison_and_inside_the_picture() {
+    for (size, is_beside) in [([1920.0, 1080.0, 1.0], true), (SMALL, false)] {
+        let mut desk = Desk::empty(size);
+        desk.world().spawn((SceneId(1), PointLamp::default()));
+        desk.settle();
+        run(&mut desk, "lights.mixer");
+        let picture = desk.world().resource::<Viewport>().rect;
+        let id = Id::new("light mixer");
+        let mixer = desk.context.memory(|memory| memory.area_rect(id));
+        let mixer = mixer.expect("it is open");
+        assert!(picture.min.x <= mixer.left() && mixer.right() <= picture.max.x);
+        // A comparison is 640 wide besides its frame.
+        let right_of_it = mixer.left() > picture.min.x + 12.0 + 640.0 + 12.0;
+        assert_eq!(right_of_it, is_beside, "{mixer:?} in {picture:?}");
+    }
 }
 
 #[test]

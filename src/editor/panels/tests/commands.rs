@@ -75,6 +75,9 @@ fn a_row_that_an_app_adds_stands_in_its_menu_the_palette_the_keys_and_the_menu_o
     desk.world().resource_mut::<Dialogs>().bindings_search = "start the".into();
     desk.settle();
     desk.place_of("Ctrl+Shift+J");
+    desk.world().resource_mut::<Dialogs>().bindings_search = "make tea".into();
+    desk.settle();
+    desk.place_of("No command is called that, nor has such keys.");
     desk.key(Key::Escape);
 
     desk.settle();

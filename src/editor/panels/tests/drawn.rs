@@ -263,8 +263,10 @@ fn no_text_of_any_tab_is_cut_off_at_the_side_and_long_names_end_in_an_ellipsis()
         desk.size = size;
         for tab in [Tab::Object, Tab::Render, Tab::Debug, Tab::Bvh] {
             desk.world().resource_mut::<Inspector>().tab = tab;
-            for &id in shown_in(tab, &ids) {
-                desk.select([id]);
+            // One after the other, then all at once.
+            let choices = shown_in(tab, &ids).iter().map(|&id| vec![id]);
+            for selected in choices.chain([ids.clone()]) {
+                desk.select(selected);
                 let rect = desk.world().resource::<Viewport>().rect;
                 // What is typed is scrolled in its field.
                 let typed = desk.bounds(Role::TextInput);

@@ -3,17 +3,19 @@
 use super::super::hierarchy::Hierarchy;
 use super::super::outline::Outline;
 use super::super::renaming::Renaming;
+use super::super::theme::tests::assert_readable;
 use super::desk::Desk;
 use crate::editor::action::Action;
 use crate::editor::edits::name_of;
 use crate::editor::history::History;
+use crate::editor::preferences::{Preferences, ThemeChoice};
 use crate::editor::selection::Selection;
 use crate::editor::viewport::Viewport;
 use crate::scene::{Phong, PointLamp, SceneId, UsesMaterial};
 use bevy::camera::visibility::Visibility;
 use bevy::ecs::name::Name;
 use bevy_egui::egui::accesskit::Role;
-use bevy_egui::egui::{Event, Key, Modifiers, MouseWheelUnit, TouchPhase, vec2};
+use bevy_egui::egui::{Event, Key, Modifiers, MouseWheelUnit, Shape, Theme, TouchPhase, vec2};
 use std::time::Instant;
 
 #[test]
@@ -34,6 +36,30 @@ fn a_click_on_a_row_selects_ctrl_adds_and_shift_takes_what_lies_between() {
     let at = desk.place_of(&names[2]);
     desk.click_with(at, Modifiers::SHIFT);
     assert_eq!(desk.world().resource::<Selection>().ids(), &ids[..3]);
+}
+
+#[test]
+fn the_name_of_what_is_hidden_can_be_read_in_both_themes() {
+    let mut desk = Desk::open("cornell-box");
+    let (entity, _) = desk.named("Floor");
+    desk.world().entity_mut(entity).insert(Visibility::Hidden);
+    for (theme, choice) in [
+        (Theme::Dark, ThemeChoice::Dark),
+        (Theme::Light, ThemeChoice::Light),
+    ] {
+        desk.world().resource_mut::<Preferences>().theme = choice;
+        desk.settle();
+        let inks = desk.output.shapes.iter().filter_map(|clipped| {
+            let Shape::Text(text) = &clipped.shape else {
+                return None;
+            };
+            let is_row = text.galley.text() == "Floor";
+            is_row.then_some(text.override_text_color?)
+        });
+        let inks: Vec<_> = inks.collect();
+        assert_eq!(inks.len(), 1, "{theme:?}");
+        assert_readable(theme, inks[0], "of a hidden row");
+    }
 }
 
 /// The first entities of the list.
