@@ -74,7 +74,9 @@ struct AppComponents {
 pub trait KeepInSceneFiles {
     /// From now on scene files keep this component of the scene's entities. It is registered for reflection, too, so that
     /// an editor shows it. Fields that name entities are written as the numbers of those entities where
-    /// [`MapEntities`](bevy::ecs::entity::MapEntities) says which they are.
+    /// [`MapEntities`](bevy::ecs::entity::MapEntities) says which they are. Handles are written as the paths of their
+    /// assets, which the app's `AssetServer` loads again; one of an asset that the app has made itself is left out, and
+    /// saving says so. The app has initialised those kinds of assets (`init_asset`).
     ///
     /// A scene file that holds it is opened only by apps that keep it.
     fn keep_in_scene_files<C>(&mut self) -> &mut Self

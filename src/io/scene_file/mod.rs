@@ -3,9 +3,11 @@
 //! [keeps](KeepInSceneFiles) of its own.
 //!
 //! Entities are written in the order of their [`SceneId`], and that number is their label, so that
-//! the same scene gives the same bytes. Handles are not written: the sources are.
+//! the same scene gives the same bytes. The scene's handles are not written: the sources are. Those in components of an
+//! app's own are, by the paths of their assets.
 
 mod check;
+mod handles;
 mod kept;
 mod migrate;
 mod read;

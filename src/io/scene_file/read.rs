@@ -4,14 +4,13 @@ use super::super::notes::Notes;
 use super::super::on_disk::OnDisk;
 use super::super::text::{is_utf_16, no_text, utf_16};
 use super::check::check_value;
+use super::handles::AppAssets;
 use super::migrate::migrate;
 use super::{FileVersion, KeptTypes};
 use crate::io::Limits;
 use crate::scene::{Environment, MeshSource, Phong, RenderSettings, SceneId, UsesMaterial};
-use bevy::asset::{AssetPath, Handle, LoadFromPath, UntypedHandle};
 use bevy::ecs::entity::EntityHashMap;
 use bevy::ecs::hierarchy::ChildOf;
-use bevy::image::Image;
 use bevy::prelude::{Entity, World};
 use bevy::reflect::{PartialReflect, ReflectRef};
 use bevy::world_serialization::serde::WorldDeserializer;
@@ -72,7 +71,10 @@ pub(crate) fn read_scene_text(
         ron::de::Deserializer::from_str(text).map_err(|error| ron_error(file, &error))?;
     let content = WorldDeserializer {
         type_registry: &types.registry,
-        load_from_path: &mut NoAssets,
+        load_from_path: &mut AppAssets {
+            server: world.get_resource(),
+            registry: &types.registry,
+        },
     }
     .deserialize(&mut deserializer)
     .and_then(|content| deserializer.end().map(|()| content))
@@ -327,15 +329,6 @@ fn ron_error(file: &Path, error: &ron::error::SpannedError) -> FileError {
     };
     let place = Place::LineColumn(error.span.start.line, error.span.start.col);
     FileError::at(file, place, problem)
-}
-
-/// Scene files hold no handles, so nothing is ever loaded through this.
-struct NoAssets;
-
-impl LoadFromPath for NoAssets {
-    fn load_from_path_erased(&mut self, _: TypeId, _: AssetPath<'static>) -> UntypedHandle {
-        Handle::<Image>::default().untyped()
-    }
 }
 
 /// Looks for the version before anything else is understood: a newer file may hold what this

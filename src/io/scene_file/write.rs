@@ -6,6 +6,7 @@ use super::super::notes::Notes;
 use super::super::on_disk::OnDisk;
 use super::super::replace::{check_space, replace_file};
 use super::super::sources::SceneFiles;
+use super::handles::forget_nameless;
 use super::{FileVersion, KeptTypes, scene_entities};
 use crate::scene::{
     Environment, MeshSource, Phong, PhongMap, SceneId, TextureSource, UsesMaterial,
@@ -112,6 +113,12 @@ impl SceneContent {
         for dynamic in &mut content.entities {
             dynamic.components.retain_mut(|component| {
                 types.name_entities(component.as_mut(), &mut Labels(&labels));
+                if forget_nameless(component.as_mut(), &types.registry) {
+                    let what = "handles of assets that come from no file, in components";
+                    let kind = component.get_represented_type_info();
+                    let kind = kind.map_or("", |kind| kind.type_path_table().short_path());
+                    notes.add_named(file, Place::Whole, what, kind, "left out");
+                }
                 let kept = relabel(component.as_mut(), &labels);
                 if !kept {
                     let what = "a reference to an entity outside the scene";
