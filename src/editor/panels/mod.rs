@@ -31,6 +31,7 @@
 mod answer;
 mod any_number;
 mod asked;
+mod asset_text;
 mod bindings;
 mod commands;
 mod compare;

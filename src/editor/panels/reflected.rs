@@ -2,6 +2,7 @@
 //! the rest is shown.
 
 use super::any_number::AnyNumber;
+use super::asset_text::asset_text;
 use super::fields::{Changed, axes_of, chosen_ui, color_ui, property_ui, row, switch};
 use super::number_field::MIXED;
 use super::says::Says;
@@ -86,8 +87,13 @@ impl Reflected<'_> {
             let changed = row(ui, label, says, |ui| text_ui(ui, text, mixed));
             return changed.then(|| path.to_owned());
         }
+        if let Some(text) = asset_text(value, self.registry) {
+            let mixed = (self.is_mixed)(path);
+            shown_ui(ui, property, if mixed { MIXED } else { &text });
+            return None;
+        }
         if depth >= DEEPEST {
-            shown_ui(ui, property, value);
+            shown_ui(ui, property, &short_text(value));
             return None;
         }
         match value.reflect_ref() {
@@ -106,7 +112,7 @@ impl Reflected<'_> {
                     .inner
             }
             _ => {
-                shown_ui(ui, property, value);
+                shown_ui(ui, property, &short_text(value));
                 None
             }
         }
@@ -384,12 +390,11 @@ fn text_ui(ui: &mut Ui, text: &mut String, mixed: bool) -> bool {
 }
 
 /// What cannot be entered.
-fn shown_ui(ui: &mut Ui, property: &Property, value: &dyn PartialReflect) {
+fn shown_ui(ui: &mut Ui, property: &Property, text: &str) {
     row(ui, &property.label, &property.says, |ui| {
-        let text = short_text(value);
-        let label = bevy_egui::egui::RichText::new(&text).weak();
+        let label = bevy_egui::egui::RichText::new(text).weak();
         ui.add(bevy_egui::egui::Label::new(label).truncate())
-            .says(&text);
+            .says(text);
     });
 }
 

@@ -5,12 +5,13 @@ use crate::editor::edits::{copy, duplicate, paste, scene_entity};
 use crate::editor::history::{History, redo, reset, undo};
 use crate::io::{KeepInSceneFiles, OpenOptions, SceneSource, builtin, open, save};
 use crate::scene::{Quantity, SceneId};
-use bevy::asset::Assets;
+use bevy::asset::{AssetServer, Assets, Handle};
 use bevy::color::Color;
 use bevy::ecs::component::Component;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::hierarchy::{ChildOf, Children};
 use bevy::ecs::reflect::ReflectComponent;
+use bevy::image::Image;
 use bevy::math::primitives::Cuboid;
 use bevy::math::{Quat, Vec3};
 use bevy::mesh::morph::MeshMorphWeights;
@@ -88,6 +89,16 @@ struct Fence {
     posts: u32,
 }
 
+/// It has assets.
+#[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
+#[reflect(Component)]
+#[type_path = "garden"]
+struct Labelled {
+    front: Handle<Image>,
+    back: Option<Handle<Image>>,
+    inside: Handle<Image>,
+}
+
 /// It is registered, and says nothing of being a component.
 #[derive(Component, Reflect, Clone, Debug, PartialEq, Default)]
 #[type_path = "garden"]
@@ -112,6 +123,7 @@ fn garden(carries: impl bevy::ecs::bundle::Bundle) -> (Desk, Entity, SceneId) {
         .register_type::<Growing>()
         .register_type::<Fence>()
         .register_type::<Hidden>()
+        .register_type::<Labelled>()
         .register_type::<Sealed>();
     let source = SceneSource::Builtin(builtin::find("cornell-box").unwrap());
     open(desk.world(), &source, OpenOptions::default()).unwrap();
@@ -361,6 +373,27 @@ fn no_number_and_great_depth_make_no_steps_of_their_own() {
     let after = growing(&mut desk, entity);
     assert_eq!((after.rings, after.weights.len()), (7, 300));
     assert!(after.girth.is_nan());
+}
+
+#[test]
+fn a_handle_is_shown_as_the_path_of_its_asset() {
+    let (mut desk, entity, _) = garden(Labelled::default());
+    let made = desk
+        .world()
+        .resource_mut::<Assets<Image>>()
+        .add(Image::default());
+    let loaded = desk.world().resource::<AssetServer>().load("leaf.png");
+    let labelled = Labelled {
+        front: loaded,
+        back: Some(made),
+        inside: Handle::default(),
+    };
+    desk.world().entity_mut(entity).insert(labelled);
+    desk.settle();
+    for text in ["leaf.png", "made by the app", "none"] {
+        desk.place_of(text);
+    }
+    assert!(desk.find("Strong").is_none(), "what Bevy calls a handle");
 }
 
 #[test]
