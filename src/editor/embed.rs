@@ -5,7 +5,7 @@ use super::history::OnlyWithin;
 use super::schedule::EditorUpdate;
 use super::viewport::EditorCamera;
 use crate::scene::{NotTraced, Projection as SceneProjection, SceneCamera, SceneId};
-use crate::view::draws_handles;
+use crate::view::{draws_handles, height_of};
 use bevy::app::{App, Plugin, PostUpdate};
 use bevy::camera::visibility::RenderLayers;
 use bevy::camera::{Camera, Camera3d, Projection, RenderTarget};
@@ -127,7 +127,7 @@ fn scene_projection(projection: &Projection) -> Option<SceneProjection> {
     match projection {
         Projection::Perspective(p) => Some(SceneProjection::Perspective { fov_y: p.fov }),
         Projection::Orthographic(p) => Some(SceneProjection::Orthographic {
-            height: p.area.height(),
+            height: height_of(p),
         }),
         Projection::Custom(_) => None,
     }

@@ -56,6 +56,8 @@ pub use render::{PrintInfo, TracedRender};
 pub use shot::shoot_window;
 pub use standard::{AddTracedMaterial, StandardMappingPlugin};
 pub use symbols::{Outlined, SymbolOf, Symbols, SymbolsPlugin, nearest_symbol};
+#[cfg(feature = "editor")]
+pub(crate) use traced::height_of;
 pub use traced::{
     Converged, Failed, ShowsPictureOf, TracedView, TracedViewPlugin, ViewSettings, traced_camera,
 };

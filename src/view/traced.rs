@@ -17,7 +17,7 @@ use crate::scene::{self, Output, RenderSettings, Sampling, SceneId};
 use crate::sync::{LeftOut, SyncSystems, Traced, TracedCameras};
 use crate::trace;
 use bevy::asset::{AssetEventSystems, Assets};
-use bevy::camera::{Camera, Camera3d, Projection};
+use bevy::camera::{Camera, Camera3d, OrthographicProjection, Projection, ScalingMode};
 use bevy::ecs::change_detection::DetectChangesMut;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::entity_disabling::Disabled;
@@ -137,25 +137,43 @@ pub struct Failed {
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShowsPictureOf(pub Entity);
 
-/// The tracer's camera for a Bevy camera. `None` for a projection or place that has no picture.
+/// The tracer's camera for a Bevy camera, with the lens, shutter and motion of `optics`. `None` for a projection or place that
+/// has no picture. How high an orthographic picture is, where that hangs on its width, is as Bevy has last laid it out.
 pub fn traced_camera(
     transform: &GlobalTransform,
     projection: &Projection,
     optics: Option<&trace::Camera>,
 ) -> Option<trace::Camera> {
-    let projection = match projection {
-        Projection::Perspective(p) => scene::Projection::Perspective { fov_y: p.fov },
-        Projection::Orthographic(p) => scene::Projection::Orthographic {
-            height: p.area.height(),
-        },
+    let (scale, rotation, position) = transform.to_scale_rotation_translation();
+    let (projection, middle) = match projection {
+        Projection::Perspective(p) => {
+            let projection = scene::Projection::Perspective { fov_y: p.fov };
+            (projection, Vec2::ZERO)
+        }
+        Projection::Orthographic(p) => {
+            let height = height_of(p) * scale.y.abs();
+            let middle = p.area.center() * scale.truncate();
+            (scene::Projection::Orthographic { height }, middle)
+        }
         Projection::Custom(_) => return None,
     };
-    let (_, rotation, position) = transform.to_scale_rotation_translation();
+    let position = position + rotation * middle.extend(0.0);
     if !(rotation.is_finite() && position.is_finite()) {
         return None;
     }
     let optics = optics.map(|camera| camera.optics).unwrap_or_default();
     Some(trace::Camera::new(position, rotation, projection, optics))
+}
+
+/// How high the picture of an orthographic camera is, in metres; also where Bevy has not laid it out for a viewport.
+pub(crate) fn height_of(projection: &OrthographicProjection) -> f32 {
+    match projection.scaling_mode {
+        ScalingMode::FixedVertical {
+            viewport_height: height,
+        }
+        | ScalingMode::Fixed { height, .. } => height * projection.scale,
+        _ => projection.area.height(),
+    }
 }
 
 /// Nothing is left of a view, and nothing goes on for it, once it is none any more.

@@ -4,7 +4,7 @@ use super::Mapped;
 use crate::scene::{Environment, Phong, PhongMaps};
 use crate::sync::LeftOut;
 use crate::view::TracedView;
-use bevy::camera::{Camera, ClearColor, ClearColorConfig, Projection};
+use bevy::camera::{Camera, ClearColor, ClearColorConfig, Projection, ScalingMode};
 use bevy::color::LinearRgba;
 use bevy::light::{AmbientLight, AtmosphereEnvironmentMapLight, GlobalAmbientLight, LightProbe};
 use bevy::pbr::DistanceFog;
@@ -101,6 +101,20 @@ pub(super) fn name_probes(
     }
 }
 
+/// Whether what a camera sees fills its viewport only by being stretched, by more than a pixel in a thousand.
+fn is_stretched(camera: &Camera, projection: &Projection) -> bool {
+    let Projection::Orthographic(projection) = projection else {
+        return false;
+    };
+    let ScalingMode::Fixed { width, height } = projection.scaling_mode else {
+        return false;
+    };
+    let viewport = camera.physical_viewport_size().map(|size| size.as_vec2());
+    viewport.is_some_and(|viewport| {
+        (width * viewport.y - height * viewport.x).abs() > 1e-3 * (height * viewport.x).abs()
+    })
+}
+
 /// Names what surrounds a scene of Bevy's in its raster picture alone.
 pub(super) fn name_surroundings(
     views: Query<(Entity, &Camera, &Projection, Around), With<TracedView>>,
@@ -123,6 +137,10 @@ pub(super) fn name_surroundings(
             (
                 matches!(projection, Projection::Custom(_)),
                 "its projection is its own, which cannot be traced",
+            ),
+            (
+                is_stretched(camera, projection),
+                "its ScalingMode::Fixed has other proportions than its viewport: it is traced as high as that says, and not stretched",
             ),
             (
                 camera.sub_camera_view.is_some(),

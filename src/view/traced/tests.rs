@@ -1,10 +1,12 @@
 use super::super::StandardMappingPlugin;
 use super::*;
 use crate::app::headless_app_with;
+use bevy::camera::CameraProjection;
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
-use bevy::math::Vec3;
+use bevy::math::{EulerRot, Quat, Vec3};
 use bevy::transform::components::Transform;
+use bevy::utils::default;
 
 #[test]
 fn a_twin_shows_what_its_view_shows_and_nothing_once_that_shows_nothing() {
@@ -35,6 +37,60 @@ fn a_twin_shows_what_its_view_shows_and_nothing_once_that_shows_nothing() {
     world.despawn(view);
     world.run_system(show).unwrap();
     assert!(world.get::<Screen>(twin).is_none());
+}
+
+#[test]
+fn an_orthographic_picture_covers_what_bevys_camera_shows() {
+    let size = UVec2::new(160, 90);
+    let place = Transform::from_xyz(1.0, 2.0, 3.0)
+        .with_rotation(Quat::from_euler(EulerRot::YXZ, 0.7, -0.3, 0.2))
+        .with_scale(Vec3::splat(2.0))
+        .into();
+    for scaling_mode in [
+        ScalingMode::WindowSize,
+        ScalingMode::FixedVertical {
+            viewport_height: 4.0,
+        },
+        ScalingMode::FixedHorizontal {
+            viewport_width: 4.0,
+        },
+        ScalingMode::Fixed {
+            width: 16.0,
+            height: 9.0,
+        },
+    ] {
+        let mut projection = OrthographicProjection {
+            scaling_mode,
+            scale: 0.5,
+            viewport_origin: Vec2::new(0.25, 1.0),
+            ..OrthographicProjection::default_3d()
+        };
+        projection.update(size.x as f32, size.y as f32);
+        let world_from_ndc =
+            GlobalTransform::to_matrix(&place) * projection.get_clip_from_view().inverse();
+        let camera = traced_camera(&place, &Projection::Orthographic(projection), None).unwrap();
+        let corners = [(Vec2::ZERO, [-1.0, 1.0]), (size.as_vec2(), [1.0, -1.0])];
+        for (pixel, [x, y]) in corners {
+            let from = camera.ray(pixel, size, [0.5; 2], 0.0).origin;
+            let off = world_from_ndc.project_point3(Vec3::new(x, y, 0.5)) - from;
+            let off = off.reject_from(camera.forward).length();
+            assert!(off < 1e-3, "{scaling_mode:?}: {off} m at {pixel}");
+        }
+    }
+}
+
+#[test]
+fn an_orthographic_camera_that_bevy_has_not_laid_out_is_as_high_as_it_says() {
+    let projection = OrthographicProjection {
+        scaling_mode: ScalingMode::FixedVertical {
+            viewport_height: 4.0,
+        },
+        scale: 0.5,
+        ..OrthographicProjection::default_3d()
+    };
+    let camera = traced_camera(&default(), &Projection::Orthographic(projection), None);
+    let height = scene::Projection::Orthographic { height: 2.0 };
+    assert_eq!(camera.unwrap().projection, height);
 }
 
 /// Of what a view was told that it cannot be rendered.
