@@ -54,7 +54,7 @@ pub use raster::{RASTER_LAYER, RasterPlugin};
 pub use reference::{ReferenceRendered, TracedPicture, render_reference};
 pub use render::{PrintInfo, TracedRender};
 pub use shot::shoot_window;
-pub use standard::{AddTracedMaterial, StandardMappingPlugin};
+pub use standard::{AddTracedMaterial, StandardMappingPlugin, TracedAs};
 pub use symbols::{Outlined, SymbolOf, Symbols, SymbolsPlugin, nearest_symbol};
 #[cfg(feature = "editor")]
 pub(crate) use traced::height_of;

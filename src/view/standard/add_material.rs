@@ -3,12 +3,12 @@
 use super::derived::{DerivedPictures, Pictures};
 use super::returned::Returned;
 use super::unknown::KnownMaterials;
-use super::{Mapped, MappingSystems};
+use super::{Mapped, MappingSystems, material};
 use crate::scene::{NotTraced, Phong, PhongMaps};
 use crate::sync::LeftOut;
 use bevy::asset::{AssetEvent, Assets};
 use bevy::image::Image;
-use bevy::pbr::{Material, MeshMaterial3d};
+use bevy::pbr::{Material, MeshMaterial3d, StandardMaterial};
 use bevy::platform::collections::HashSet;
 use bevy::prelude::{
     App, Changed, Commands, DetectChanges, DetectChangesMut, Entity, IntoScheduleConfigs,
@@ -22,20 +22,91 @@ pub(super) struct Surface {
     pub left_out: Vec<String>,
 }
 
+/// What a material of an app's own is traced as; a [`Phong`], one with its [`PhongMaps`] and a `StandardMaterial` become
+/// it by `into`.
+#[derive(Clone, Debug)]
+pub enum TracedAs {
+    /// Ours, with pictures of the app's.
+    Phong(Box<Phong>, PhongMaps),
+    /// What Bevy's material is traced as, by the table of [`standard`](super): for one that extends it.
+    Standard(Box<StandardMaterial>),
+}
+
+impl From<Phong> for TracedAs {
+    fn from(phong: Phong) -> Self {
+        (phong, PhongMaps::default()).into()
+    }
+}
+
+impl From<(Phong, PhongMaps)> for TracedAs {
+    fn from((phong, maps): (Phong, PhongMaps)) -> Self {
+        Self::Phong(Box::new(phong), maps)
+    }
+}
+
+impl From<StandardMaterial> for TracedAs {
+    fn from(material: StandardMaterial) -> Self {
+        Self::Standard(Box::new(material))
+    }
+}
+
+impl TracedAs {
+    fn surface(self, pictures: &mut Pictures) -> Surface {
+        match self {
+            Self::Phong(phong, maps) => Surface {
+                phong: *phong,
+                maps,
+                left_out: Vec::new(),
+            },
+            Self::Standard(standard) => material::surface(&standard, pictures),
+        }
+    }
+}
+
 /// Traces materials of an app's own.
 pub trait AddTracedMaterial {
-    /// Objects with this material are traced as `phong` says, now and whenever it is edited. Needs
+    /// Objects with this material are traced as the function says, now and whenever it is edited. Needs
     /// [`StandardMappingPlugin`](super::StandardMappingPlugin), before or after.
-    fn add_traced_material<M: Material>(&mut self, phong: fn(&M) -> Phong) -> &mut Self;
+    ///
+    /// ```no_run
+    /// # use bevy::pbr::{ExtendedMaterial, MaterialExtension};
+    /// # use bevy::prelude::*;
+    /// # use bevy::render::render_resource::AsBindGroup;
+    /// # use glassbox::prelude::*;
+    /// #[derive(Asset, AsBindGroup, TypePath, Clone)]
+    /// struct Poster {
+    ///     #[texture(0)]
+    ///     #[sampler(1)]
+    ///     picture: Handle<Image>,
+    /// }
+    /// # impl Material for Poster {}
+    /// # #[derive(Asset, AsBindGroup, TypePath, Clone)]
+    /// # struct Wet {}
+    /// # impl MaterialExtension for Wet {}
+    /// # fn build(app: &mut App) {
+    /// // With pictures …
+    /// app.add_traced_material(|poster: &Poster| {
+    ///     let diffuse = Some(poster.picture.clone());
+    ///     (Phong::default(), PhongMaps { diffuse, ..default() })
+    /// });
+    /// // … and as the material that it extends.
+    /// app.add_traced_material(|wet: &ExtendedMaterial<StandardMaterial, Wet>| wet.base.clone());
+    /// # }
+    /// ```
+    fn add_traced_material<M: Material, T: Into<TracedAs> + 'static>(
+        &mut self,
+        traced_as: fn(&M) -> T,
+    ) -> &mut Self;
 }
 
 impl AddTracedMaterial for App {
-    fn add_traced_material<M: Material>(&mut self, phong: fn(&M) -> Phong) -> &mut Self {
+    fn add_traced_material<M: Material, T: Into<TracedAs> + 'static>(
+        &mut self,
+        traced_as: fn(&M) -> T,
+    ) -> &mut Self {
         let is_new = !self.world().contains_resource::<Mapping<M>>();
-        register(self, move |material: &M, _| Surface {
-            phong: phong(material),
-            maps: PhongMaps::default(),
-            left_out: Vec::new(),
+        register(self, move |material: &M, pictures| {
+            traced_as(material).into().surface(pictures)
         });
         if is_new {
             self.init_resource::<DerivedPictures>()

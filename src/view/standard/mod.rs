@@ -19,7 +19,7 @@
 //! | vertex colours | multiply `diffuse`, of what is unlit `emission`; their alpha `opacity` |
 //! | double-sidedness, culling | both sides are seen and lit; a view that sees a back which Bevy culls is named |
 //! | `uv_transform`, second texture coordinates, occlusion, depth, clearcoat, anisotropy, diffuse transmission | named |
-//! | **another material** | what [`add_traced_material`](AddTracedMaterial::add_traced_material) says; else named |
+//! | **another material** | what [`add_traced_material`](AddTracedMaterial::add_traced_material) says: ours, with pictures, or the row above of the `StandardMaterial` that it extends; else named |
 //!
 //! | Bevy's lights | ours |
 //! |---|---|
@@ -60,7 +60,7 @@ mod unknown;
 #[cfg(test)]
 mod tests;
 
-pub use add_material::AddTracedMaterial;
+pub use add_material::{AddTracedMaterial, TracedAs};
 
 use add_material::map_materials;
 use bevy::asset::{AssetApp, AssetEventSystems, Assets};

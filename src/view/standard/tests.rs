@@ -6,14 +6,17 @@ mod sky;
 use super::derived::DerivedPictures;
 use super::{AddTracedMaterial, StandardMappingPlugin};
 use crate::app::headless_app_with;
-use crate::scene::{Environment, NotTraced, Phong, PointLamp};
+use crate::scene::{Alpha, Environment, NotTraced, Phong, PhongMaps, PointLamp};
 use crate::sync::{LeftOut, Traced};
 use crate::view::TracedView;
-use bevy::asset::{Asset, AssetApp, RenderAssetUsages};
+use bevy::asset::{Asset, AssetApp, RenderAssetUsages, uuid_handle};
 use bevy::color::LinearRgba;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::light::{AmbientLight, GlobalAmbientLight, NotShadowCaster};
-use bevy::pbr::{DistanceFog, Lightmap, Material, MeshMaterial3d, StandardMaterial};
+use bevy::pbr::{
+    DistanceFog, ExtendedMaterial, Lightmap, Material, MaterialExtension, MeshMaterial3d,
+    StandardMaterial,
+};
 use bevy::prelude::*;
 use bevy::reflect::TypePath;
 use bevy::render::render_resource::{AsBindGroup, Extent3d, TextureDimension, TextureFormat};
@@ -24,6 +27,14 @@ struct Water {
 }
 
 impl Material for Water {}
+
+/// A picture of the app's.
+const RIPPLES: Handle<Image> = uuid_handle!("0c3f6a52-6f0e-4a1f-9a54-7a5a1b7d9d6e");
+
+#[derive(Asset, AsBindGroup, TypePath, Clone, Debug)]
+struct Salty {}
+
+impl MaterialExtension for Salty {}
 
 fn app() -> App {
     let mut app = headless_app_with(StandardMappingPlugin);
@@ -109,6 +120,57 @@ fn a_material_of_the_apps_own_is_named_until_a_function_says_how_it_is_traced() 
     app.update();
     app.update();
     assert_eq!(blue(&app), Some(0.5));
+}
+
+#[test]
+fn a_material_of_the_apps_own_is_traced_with_its_pictures_or_as_the_one_that_it_extends() {
+    type Foam = ExtendedMaterial<StandardMaterial, Salty>;
+    let mut app = app();
+    app.init_asset::<Foam>()
+        .register_type::<MeshMaterial3d<Foam>>();
+    let picture = add::<Image>(&mut app, Image::default());
+    let foam = Foam {
+        base: StandardMaterial {
+            base_color: Color::linear_rgb(0.0, 0.5, 0.0),
+            base_color_texture: Some(picture),
+            alpha_mode: AlphaMode::Mask(0.25),
+            clearcoat: 1.0,
+            ..default()
+        },
+        extension: Salty {},
+    };
+    let mesh = add::<Mesh>(&mut app, Cuboid::default());
+    let foamy = MeshMaterial3d(add::<Foam>(&mut app, foam.clone()));
+    let plain = MeshMaterial3d(add::<StandardMaterial>(&mut app, foam.base));
+    let wet = MeshMaterial3d(add::<Water>(&mut app, Water { depth: 0.5 }));
+    let objects = [
+        app.world_mut().spawn((Mesh3d(mesh.clone()), foamy)).id(),
+        app.world_mut().spawn((Mesh3d(mesh.clone()), plain)).id(),
+        app.world_mut().spawn((Mesh3d(mesh), wet)).id(),
+    ];
+    app.add_traced_material(|foam: &Foam| foam.base.clone())
+        .add_traced_material(|_: &Water| {
+            let maps = PhongMaps {
+                normal: Some(RIPPLES),
+                ..default()
+            };
+            (Phong::default(), maps)
+        });
+    let named = problems(&mut app);
+    let coats = named.iter().filter(|line| line.contains("clearcoat"));
+    assert_eq!(coats.count(), 2, "{named:#?}");
+    let world = app.world();
+    let look = |object: Entity| {
+        let phong = world.get::<Phong>(object).unwrap();
+        (
+            phong.clone(),
+            world.get::<PhongMaps>(object).unwrap().clone(),
+        )
+    };
+    let [foamy, plain, wet] = objects.map(look);
+    assert_eq!(foamy, plain);
+    assert_eq!(foamy.0.alpha, Alpha::Mask { cutoff: 0.25 });
+    assert_eq!(wet.1.normal, Some(RIPPLES));
 }
 
 #[test]

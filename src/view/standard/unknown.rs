@@ -83,7 +83,7 @@ pub(super) fn name_unknown(
         let of = unknown.iter().find(|(other, _)| other == id);
         let note = of.map(|(_, of)| {
             format!(
-                "its {of} is unknown, and it is traced as plain grey; say how to trace it with `app.add_traced_material::<{of}>(…)`"
+                "its {of} is unknown, and it is traced as plain grey; say how to trace it with `app.add_traced_material(|material: &{of}| …)`"
             )
         });
         LeftOut::note(&mut left_out, "mesh", *entity, note.into_iter().collect());
