@@ -99,6 +99,7 @@ fn parse_point(text: &str) -> Result<Vec3, String> {
 
 pub(super) fn run(args: Inspect) -> Result<(), Failure> {
     args.settings.check()?;
+    (args.settings).check_said_once(&[("--builder", "tree.builder", args.builder.is_some())])?;
     let gizmos = Gizmos::new(args.preset, &args.gizmo)?;
     if args.pixel.is_none() && args.picture.is_none() {
         return Err(Failure::Usage(

@@ -63,6 +63,20 @@ const LATE: f64 = 1.0;
 
 pub(super) fn run(args: Render) -> Result<(), Failure> {
     args.settings.check()?;
+    args.settings.check_said_once(&[
+        ("--error", "sampling.error", args.stop.error.is_some()),
+        ("--time", "sampling.time", args.stop.time.is_some()),
+        (
+            "--adaptive",
+            "sampling.adaptive",
+            args.stop.adaptive.is_some(),
+        ),
+        ("--builder", "tree.builder", args.builder.is_some()),
+        // A part has all of its samples.
+        ("--samples", "spp", args.stop.samples.is_some()),
+        ("--samples", "sampling.error", args.stop.samples.is_some()),
+        ("--samples", "sampling.time", args.stop.samples.is_some()),
+    ])?;
     args.stop.check()?;
     let format = PictureFormat::of(&args.output).map_err(Failure::of_output)?;
     if args.stop.samples.is_some() && format != PictureFormat::Exr {

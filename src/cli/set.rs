@@ -204,7 +204,10 @@ pub(super) fn parse_size(text: &str) -> Result<UVec2, String> {
     parse().ok_or_else(|| "WxH in pixels, for example 800x600".to_owned())
 }
 
-/// Says that there is no such thing, and which ones have a similar name.
+/// So many names are told where none is similar.
+const FEW: usize = 16;
+
+/// Says that there is no such thing, and which ones have a similar name; where there are few, and none of them has, all.
 pub(super) fn unknown<'a>(
     where_from: &str,
     what: &str,
@@ -217,20 +220,22 @@ pub(super) fn unknown<'a>(
     };
     let mut near: Vec<(usize, &str)> = names.map(|path| (distance(path), path)).collect();
     near.sort_by_key(|(distance, _)| *distance);
-    // The nearest in any case, two more where they are mistakes of a few letters.
-    let close = |i: usize, distance: usize| i == 0 || (i < 3 && distance <= key.len() / 3);
-    let names: Vec<&str> = near
-        .iter()
-        .enumerate()
+    // The nearest where half of its letters are right, two more where they are mistakes of a few.
+    let letters = key.chars().count();
+    let close = |i: usize, distance: usize| match i {
+        0 => distance <= letters / 2,
+        _ => i < 3 && distance <= letters / 3,
+    };
+    let similar: Vec<&str> = (near.iter().enumerate())
         .filter(|(i, (distance, _))| close(*i, *distance))
         .map(|(_, (_, path))| *path)
         .collect();
-    match names.is_empty() {
-        true => format!("{where_from}: no such {what}"),
-        false => format!(
-            "{where_from}: no such {what}; did you mean {}?",
-            names.join(" or ")
-        ),
+    let all = || near.iter().map(|(_, path)| *path).collect::<Vec<_>>();
+    let none = format!("{where_from}: no such {what}");
+    match (similar.is_empty(), near.len()) {
+        (false, _) => format!("{none}; did you mean {}?", similar.join(" or ")),
+        (true, 1..=FEW) => format!("{none}; there is {}", all().join(", ")),
+        _ => none,
     }
 }
 
@@ -365,5 +370,21 @@ mod tests {
         assert_eq!(edit_distance("kitten", "sitting"), 3);
         assert_eq!(edit_distance("", "abc"), 3);
         assert_eq!(edit_distance("abc", ""), 3);
+    }
+
+    #[test]
+    fn only_names_that_are_similar_are_suggested_and_a_few_are_all_told() {
+        let told = |key: &str, names: &[&str]| unknown("here", "name", key, names.iter().copied());
+        let settings = ["spp", "features.shadows", "size"];
+        assert_eq!(
+            told("shadow", &settings),
+            "here: no such name; did you mean features.shadows?"
+        );
+        assert_eq!(
+            told("foo", &settings),
+            "here: no such name; there is spp, size, features.shadows"
+        );
+        assert_eq!(told("foo", &["spp"; FEW + 1]), "here: no such name");
+        assert_eq!(told("foo", &[]), "here: no such name");
     }
 }

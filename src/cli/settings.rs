@@ -82,11 +82,27 @@ impl SettingArgs {
     /// Checks the flags against the defaults, before a scene is opened for nothing. What is about entities is checked
     /// when they are there.
     pub fn check(&self) -> Result<(), Failure> {
+        self.check_said_once(&[
+            ("--size", "size", self.size.is_some()),
+            ("--spp", "spp", self.spp.is_some()),
+            ("--seed", "seed", self.seed.is_some()),
+        ])?;
         self.apply_settings(&mut RenderSettings::default())
     }
 
-    /// Writes the flags into a scene: first each `--set` in its order, then the flags of their own. Values out of range
-    /// are an error.
+    /// Refuses a `--set` of what a flag of its own says, too: one of the two would count for nothing. A flag, its setting,
+    /// and whether it is given.
+    pub fn check_said_once(&self, flags: &[(&str, &str, bool)]) -> Result<(), Failure> {
+        let is_set = |path: &str| self.set.iter().any(|set| set.parts().0 == path);
+        match flags.iter().find(|(_, path, given)| *given && is_set(path)) {
+            Some((flag, path, _)) => Err(Failure::Usage(format!(
+                "{flag} and --set {path} say the same: give one of them"
+            ))),
+            None => Ok(()),
+        }
+    }
+
+    /// Writes the flags into a scene. Values out of range are an error.
     pub fn apply(&self, world: &mut World) -> Result<(), Failure> {
         for assignment in self.set.iter().filter(|set| set.is_of_entity()) {
             set_on_entity(world, assignment)?;
@@ -174,6 +190,13 @@ mod tests {
     use super::*;
     use clap::FromArgMatches;
 
+    fn args(flags: &[&str]) -> SettingArgs {
+        let command = SettingArgs::augment_args(clap::Command::new("glassbox"));
+        let words = ["glassbox"].iter().chain(flags);
+        let matches = command.try_get_matches_from(words).unwrap();
+        SettingArgs::from_arg_matches(&matches).unwrap()
+    }
+
     #[test]
     fn samples_of_a_pixel_are_given_by_either_flag() {
         for (flags, given) in [
@@ -183,11 +206,26 @@ mod tests {
             (&["--set", "seed=8"], false),
             (&[], false),
         ] {
-            let command = SettingArgs::augment_args(clap::Command::new("glassbox"));
-            let words = ["glassbox"].iter().chain(flags);
-            let matches = command.try_get_matches_from(words).unwrap();
-            let args = SettingArgs::from_arg_matches(&matches).unwrap();
-            assert_eq!(args.give_spp(), given, "{flags:?}");
+            assert_eq!(args(flags).give_spp(), given, "{flags:?}");
+        }
+    }
+
+    #[test]
+    fn what_two_flags_say_is_refused() {
+        for (flags, says) in [
+            (&["--spp", "8", "--set", "spp=8"][..], Some("--set spp")),
+            (&["--size", "8x8", "--set", "size=9x9"], Some("--set size")),
+            (&["--set", "seed*=2", "--seed", "3"], Some("--set seed")),
+            (&["--spp", "8", "--set", "seed=3"], None),
+            (&["--set", "spp=8", "--set", "spp*=2"], None),
+        ] {
+            let why = args(flags).check().err().map(|failure| {
+                assert!(matches!(failure, Failure::Usage(_)), "{flags:?}");
+                failure.to_string()
+            });
+            assert_eq!(why.is_some(), says.is_some(), "{flags:?}: {why:?}");
+            let holds = |says| why.as_ref().is_some_and(|why| why.contains(says));
+            assert!(says.is_none_or(holds), "{flags:?}: {why:?}");
         }
     }
 

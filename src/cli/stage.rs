@@ -135,8 +135,8 @@ impl Stage {
         let camera = cameras.iter().find(|camera| camera.name == *name);
         camera.cloned().ok_or_else(|| {
             let known: Vec<&str> = cameras.iter().map(|camera| camera.name.as_str()).collect();
-            Failure::Scene(format!(
-                "{}: has no camera `{name}`; it has {}",
+            Failure::Usage(format!(
+                "--camera {name}: {} has no camera `{name}`; it has {}",
                 self.name,
                 known.join(", ")
             ))

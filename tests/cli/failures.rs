@@ -76,6 +76,15 @@ fn a_wrong_command_line_ends_with_code_2_and_says_what_would_be_right() {
     );
     render(&["--set", "spp"], &["--set", "key=value"]);
     render(
+        &["--error", "0.1", "--set", "sampling.error=0.2"],
+        &["--error", "--set sampling.error"],
+    );
+    render(
+        &["--builder", "sah", "--set", "tree.builder=Ploc"],
+        &["--builder", "--set tree.builder"],
+    );
+    render(&["--camera", "nobody"], &["triangle", "nobody", "it has "]);
+    render(
         &["--set", "output.exposure=NaN"],
         &["output.exposure is NaN", "-64 to 64"],
     );
@@ -123,10 +132,6 @@ fn what_is_not_there_or_cannot_be_written_ends_with_code_1_and_is_named() {
                 "missing/a.json",
             ],
             &["missing/a.json", "folder"],
-        ),
-        (
-            &["render", "triangle", "-o", "a.png", "--camera", "nobody"],
-            &["triangle", "nobody", "it has "],
         ),
         (&["convert", "no-such.glb", "a.obj"], &["no-such.glb"]),
         (
