@@ -4,7 +4,7 @@
 //! `cargo run --release --example embed`; space switches between Bevy's renderer and the tracer.
 
 use bevy::prelude::*;
-use glassbox::view::{GlassboxPlugins, TracedView};
+use glassbox::prelude::*;
 
 fn main() {
     App::new()

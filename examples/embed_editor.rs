@@ -10,7 +10,7 @@
 use bevy::asset::RenderAssetUsages;
 use bevy::prelude::*;
 use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat};
-use glassbox::prelude::{Editing, EditorPlugins, KeepInSceneFiles, Quantity, in_editor};
+use glassbox::prelude::*;
 
 fn main() {
     App::new()

@@ -4,9 +4,8 @@
 
 use bevy::prelude::*;
 use glassbox::app::headless_app_with;
-use glassbox::film;
 use glassbox::prelude::*;
-use glassbox::view::{StandardMappingPlugin, traced_camera};
+use glassbox::{film, io};
 
 const FRAMES: u32 = 8;
 
@@ -54,10 +53,8 @@ fn main() -> Result {
             eprintln!("{problem}");
         }
         let rendered = film::render(&traced.world, &camera, &settings, &|_, _| {});
-        let bytes = film::develop_rgba8(&rendered.picture, &settings.output);
-        let (width, height) = (settings.size.x, settings.size.y);
-        let picture = image::RgbaImage::from_raw(width, height, bytes).ok_or("too few bytes")?;
-        picture.save(format!("frame-{frame}.png"))?;
+        let file = format!("frame-{frame}.png");
+        io::write_rendered(file.as_ref(), &rendered.picture, &settings.output, &[])?;
     }
     Ok(())
 }
