@@ -30,6 +30,10 @@ impl Priority {
 /// short beside what an eye takes for a delay.
 const TURN: Duration = Duration::from_millis(30);
 
+/// Also in a build that is not optimised, where a packet of rays takes more than the usual 2 MB, and where turns lie on each
+/// other ([`SharedPool`]). What is not used takes no memory.
+const STACK_BYTES: usize = 16 << 20;
+
 /// Threads that several renders share in turns.
 pub(super) struct SharedPool {
     threads: ThreadPool,
@@ -93,6 +97,7 @@ pub(super) fn shared_pool(priority: Priority) -> io::Result<Arc<SharedPool>> {
     let threads = ThreadPoolBuilder::new()
         .num_threads(rayon::current_num_threads())
         .thread_name(|i| format!("trace {i}"))
+        .stack_size(STACK_BYTES)
         .start_handler(move |_| give_way(priority.of_threads()))
         .build()
         .map_err(io::Error::other)?;
