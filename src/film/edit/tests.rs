@@ -2,7 +2,7 @@ use super::super::engine::{Engine, Mode};
 use super::super::subject::Subject;
 use super::super::test_scene::{camera, edited, lit, many, repainted, settings};
 use super::super::{Ending, Progressive, Snapshot, lock};
-use crate::trace::{Gains, Lights, PointLight, Untinted, World};
+use crate::trace::{Gains, Lights, PlaneSet, PointLight, Untinted, World};
 use glam::{UVec2, Vec3};
 use std::sync::Arc;
 
@@ -432,4 +432,43 @@ fn a_light_that_is_set_apart_from_many_is_no_reason_to_begin_anew() {
         rays.push(engine.status().rays.total() - before);
     }
     assert!(4 * rays[1] < rays[0], "{rays:?}");
+}
+
+/// Of which some tiles show a material, and some do not.
+const LARGER: UVec2 = UVec2::new(96, 54);
+
+/// A render that somebody watches and that is complete, on this thread.
+fn complete(world: &World, spp: u32) -> Engine {
+    let mode = Mode {
+        watched: true,
+        samples: 0..spp.into(),
+        region: None,
+    };
+    let subject = Subject::new(world.clone(), camera(), settings(LARGER, spp), true);
+    let engine = Engine::new(subject, mode, None);
+    engine.run(&|_| {});
+    engine
+}
+
+#[test]
+fn tiles_of_another_material_have_a_sample_before_other_lights_have_more_than_one() {
+    let world = lit();
+    let engine = complete(&world, 16);
+    let moved = edited(&world, |lights| lights.points[0].position.x += 0.1);
+    let now = repainted(&moved, 1, Vec3::X);
+    assert!(engine.edit(now.clone(), &Gains::default()));
+    engine.take_edit();
+    let is_empty = |tile: &&u32| !lock(&engine.tiles[**tile as usize]).has_samples();
+    let emptied: Vec<u32> = engine.rendered.iter().filter(is_empty).copied().collect();
+    assert!(!emptied.is_empty() && emptied.len() < engine.rendered.len());
+    let chunks = engine.next_pass().unwrap();
+    assert!(chunks.iter().all(|chunk| chunk.range == (0..1)));
+    for tile in emptied {
+        let chunk = chunks.iter().find(|chunk| chunk.tile == tile);
+        assert_eq!(chunk.map(|chunk| chunk.planes), Some(PlaneSet::ALL));
+    }
+    engine.run(&|_| {});
+    let fresh = Progressive::start(now, camera(), settings(LARGER, 16)).unwrap();
+    fresh.wait();
+    assert_eq!(engine.picture(), fresh.snapshot().picture);
 }
