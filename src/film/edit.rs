@@ -230,10 +230,14 @@ impl Engine {
             edit = edit.after(before);
         }
         if edit.is_of_tints(&now) {
-            *waiting = None;
-            self.edit_waits.store(false, Ordering::Relaxed);
-            self.set_subject(edit.subject);
-            return true;
+            // A coarse picture is of the tints with which it began: then the render takes them when it is stopped.
+            let preview = lock(&self.preview);
+            if preview.is_none() {
+                *waiting = None;
+                self.edit_waits.store(false, Ordering::Relaxed);
+                self.set_subject(edit.subject);
+                return true;
+            }
         }
         if edit.needs_rays() {
             let part = edit.part_of_sample(self.part_that_shows(edit.materials));
@@ -284,11 +288,12 @@ impl Engine {
             }
         }
         self.start_over(emptied, needs_rays);
-        if needs_rays {
+        let was_coarse = lock(&self.preview).take().is_some();
+        if needs_rays || was_coarse {
             // Until it has light everywhere again, what is seen stays, or is coarse.
             self.set_divider(0);
-            *lock(&self.preview) = None;
-            self.begins_coarse.store(edit.is_long, Ordering::Relaxed);
+            let begins_coarse = edit.is_long || !needs_rays;
+            self.begins_coarse.store(begins_coarse, Ordering::Relaxed);
         }
     }
 }
