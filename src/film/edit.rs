@@ -274,7 +274,7 @@ impl Engine {
         let needs_rays = edit.needs_rays();
         let old = self.subject();
         let moved = other_points(&old.light.world, &edit.subject.light.world, &old.settings);
-        self.kept.edit(edit.leaves_lights(&old), moved);
+        let leaves_lights = edit.leaves_lights(&old);
         let arrangement = old.arrangement.wrapping_add(1);
         edit.subject.arrangement = arrangement;
         self.batch.suit(&edit.subject);
@@ -296,6 +296,9 @@ impl Engine {
             self.begins_coarse.store(begins_coarse, Ordering::Relaxed);
         }
     }
+        drop(waiting);
+        // That takes its time, in which others may edit: nothing is traced before it is done.
+        self.kept.edit(leaves_lights, moved);
 }
 
 #[cfg(test)]
