@@ -82,7 +82,7 @@ pub fn radiance(
 
 /// The same kept apart: `values` holds the samples' values in the first plane that is `wanted`, then those in the next, and
 /// so on. Lights whose planes are not wanted are not asked. `None` where `stopped` said so, which is asked after every bounce
-/// and every surface that paths go through: the values mean nothing then.
+/// and every surface that paths go through, and now and then among many lights: the values mean nothing then.
 ///
 /// # Panics
 /// If there is not exactly one value for each sample and wanted plane.
@@ -184,6 +184,7 @@ fn evaluate<R: Recorder>(
         counts: RayCounts::default(),
         known: known_now,
         recorder,
+        stopped,
     };
     for ray in &paths.rays {
         batch.recorder.camera_ray(ray);
@@ -193,8 +194,9 @@ fn evaluate<R: Recorder>(
         batch.find_hits(paths, hits_now, behind);
         next.clear();
         batch.find_vertices(paths, cone, hits_now, vertices);
-        if settings.features.shading {
-            batch.add_direct_light(vertices, shadow_rays);
+        if settings.features.shading && !batch.add_direct_light(vertices, shadow_rays) {
+            known.forget();
+            return None;
         }
         batch.continue_paths(vertices, paths, next);
         std::mem::swap(paths, next);
@@ -225,6 +227,7 @@ pub(super) struct Batch<'a, R> {
     pub counts: RayCounts,
     pub known: KnownNow<'a>,
     pub recorder: &'a mut R,
+    pub stopped: &'a dyn Fn() -> bool,
 }
 
 impl<R: Recorder> Batch<'_, R> {
