@@ -46,12 +46,13 @@ pub(super) struct Edit {
 impl Edit {
     /// From what is rendered to another world. `None` where nothing of the picture stays true.
     pub fn between(old: &Subject, world: World, gains: &Gains) -> Option<Self> {
+        let gained = gains.applied(&world);
         let same_paths = old.stays_apart
             && Arc::ptr_eq(&old.world.aggregate, &world.aggregate)
             && Arc::ptr_eq(&old.world.objects, &world.objects)
             && Arc::ptr_eq(&old.world.textures, &world.textures)
             && old.world.environment.is_same(&world.environment)
-            && old.world.needs == world.needs
+            && old.world.needs == gained.needs
             && samples_per_pixel(&old.world, &old.camera, &old.settings)
                 == samples_per_pixel(&world, &old.camera, &old.settings);
         let is_shared = old.settings.lighting == Lighting::Classic
@@ -60,7 +61,7 @@ impl Edit {
             return None;
         }
         let materials = old.world.changed_materials(&world)?;
-        let first = edited_first(old, &gains.applied(&world));
+        let first = edited_first(old, &gained);
         let sets_apart = first.iter().any(|id| !old.first.contains(id));
         let subject = old.edited(world, first, gains.clone());
         let from = same_planes(old, &subject)?;

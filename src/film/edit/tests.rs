@@ -2,7 +2,7 @@ use super::super::engine::{Engine, Mode};
 use super::super::preview::Preview;
 use super::super::subject::Subject;
 use super::super::test_scene::{camera, edited, lit, many, repainted, settings};
-use super::super::{Ending, Progressive, Snapshot, lock};
+use super::super::{Ending, LightMix, Progressive, Snapshot, lock};
 use crate::trace::{Gains, Lights, PlaneSet, PointLight, Untinted, World};
 use glam::{UVec2, Vec3};
 use std::sync::Arc;
@@ -504,4 +504,47 @@ fn a_coarse_picture_begins_anew_where_a_light_has_another_colour() {
     let fresh = Progressive::start(again, camera(), settings(LARGER, 2)).unwrap();
     fresh.wait();
     assert_eq!(engine.picture(), fresh.snapshot().picture);
+}
+
+#[test]
+fn a_faint_light_of_many_has_all_its_rays_where_it_shines_alone() {
+    let mut world = many(1..101);
+    world = edited(&world, |lights| lights.points[70].color *= 1e-3);
+    let solo: Gains = world
+        .lights
+        .all()
+        .map(|lamp| (lamp.id(), Vec3::ZERO))
+        .filter(|(id, _)| *id != 71)
+        .collect();
+    assert!(world.needs.faint > 0.0);
+    assert_eq!(solo.applied(&world).needs.faint, 0.0);
+    let subject = Subject::new(world.clone(), camera(), settings(SIZE, 1), true);
+    // Which of the others are asked for is another question then.
+    assert!(super::Edit::between(&subject, world.clone(), &solo).is_none());
+    let mix = LightMix {
+        apart: true,
+        gains: solo.clone(),
+    };
+    let alone = Subject::mixed(world.clone(), camera(), settings(SIZE, 1), Vec::new(), &mix);
+    assert_eq!(alone.light.world.needs.faint, 0.0);
+    let edit = super::Edit::between(&alone, world, &solo).unwrap();
+    assert!(!edit.needs_rays());
+}
+
+#[test]
+fn what_a_very_bright_light_far_away_adds_stays_in_the_range_of_its_plane() {
+    let far = edited(&lit(), |lights| {
+        lights.points[0].position = Vec3::new(3e9, 1e10, 1e9);
+        lights.points[0].color = Vec3::new(1e20, 2e19, 0.0);
+    });
+    let render = start(&far, 1);
+    render.wait();
+    let apart = render.film().picture();
+    let file = crate::film::render(&far, &camera(), &settings(SIZE, 1), &|_, _| {});
+    let file = file.film.picture();
+    for (one, other) in apart.pixels.iter().zip(&file.pixels) {
+        let allowed = 1e-5 * other.max(Vec3::splat(1e-6));
+        let is_near = (*one - *other).abs().cmple(allowed);
+        assert!(is_near.all(), "{one} {other}");
+    }
 }
