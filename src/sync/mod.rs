@@ -37,6 +37,7 @@
     reason = "a system's parameters are the list of what it reads"
 )]
 
+mod ahead;
 mod cameras;
 mod conversions;
 mod cut_outs;
