@@ -56,7 +56,7 @@ impl<R: Recorder> Batch<'_, R> {
         behind
             .rays
             .extend(behind.others.iter().map(|&i| paths.rays[i as usize]));
-        aggregate.closest_hits(&behind.rays, &mut behind.hits);
+        aggregate.closest_hits_in(self.order(paths), &behind.rays, &mut behind.hits);
         hits.clear();
         hits.resize(paths.rays.len(), None);
         for (&i, hit) in behind.others.iter().zip(&behind.hits) {
