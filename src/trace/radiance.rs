@@ -185,6 +185,7 @@ fn evaluate<R: Recorder>(
         known: known_now,
         recorder,
         stopped,
+        crossings: 0,
     };
     for ray in &paths.rays {
         batch.recorder.camera_ray(ray);
@@ -228,6 +229,8 @@ pub(super) struct Batch<'a, R> {
     pub known: KnownNow<'a>,
     pub recorder: &'a mut R,
     pub stopped: &'a dyn Fn() -> bool,
+    /// How many rays have gone straight on behind a hit.
+    pub crossings: u32,
 }
 
 impl<R: Recorder> Batch<'_, R> {
