@@ -378,7 +378,7 @@ impl<R: Recorder> Batch<'_, R> {
         self.counts.shadow += rays.len() as u64;
         if self.settings.features.transparency && self.world.needs.transparency {
             let (world, settings) = (self.world, self.settings);
-            let through = |ray: usize, hit: &Hit| through(world, settings, &rays[ray], hit);
+            let through = |_: usize, hit: &Hit| through(world, settings, hit);
             (world.aggregate).transmittances_in(Order::Light, rays, through, passing);
             let passing = passing.get();
             for (shadow, &rank) in shadows.iter().zip(&*ranks) {

@@ -343,7 +343,7 @@ impl RayTree {
             let occluded = aggregate.occluded_with(&ray, visitor);
             return aggregate.closest_hit(&ray).filter(|_| occluded);
         }
-        let through = |hit: &Hit| through(world, settings, &ray, hit);
+        let through = |hit: &Hit| through(world, settings, hit);
         if aggregate.transmittance_with(&ray, through, visitor) != Vec3::ZERO {
             return None;
         }
