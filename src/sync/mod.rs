@@ -49,6 +49,7 @@ mod left_out;
 mod lights;
 mod material_data;
 mod materials;
+mod mesh_copies;
 mod mesh_data;
 mod meshes;
 mod motions;
