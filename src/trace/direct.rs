@@ -428,7 +428,12 @@ impl Asked<'_> {
     /// Whether the point of a question is.
     #[inline(always)]
     fn is_asked(&self, value: Vec3, chances: &[f32], question: usize) -> bool {
-        self.faint == 0.0 || chances[question] < self.chance(value)
+        if self.faint == 0.0 {
+            return true;
+        }
+        let chance = self.chance(value);
+        // A number tells no smaller chances.
+        chance >= f32::EPSILON && chances[question] < chance
     }
 
     /// The point that numbers choose for a surface at `from`, by itself.
