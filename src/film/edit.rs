@@ -79,7 +79,7 @@ impl Edit {
         for from in &mut self.from {
             *from = from.and_then(|plane| before.from[plane]);
         }
-        self.materials = self.materials.and(before.materials);
+        self.materials = self.materials.union(before.materials);
         self.sets_apart |= before.sets_apart;
         self
     }
@@ -296,10 +296,10 @@ impl Engine {
             let begins_coarse = edit.is_long || !needs_rays;
             self.begins_coarse.store(begins_coarse, Ordering::Relaxed);
         }
-    }
         drop(waiting);
         // That takes its time, in which others may edit: nothing is traced before it is done.
         self.kept.edit(leaves_lights, moved);
+    }
 }
 
 #[cfg(test)]
