@@ -14,16 +14,18 @@
 //! the triangle (|n| · error, what the point was off, and one step of each coordinate) and 1.5e beside the exact point. In
 //! a wedge of the angle φ a start `h` above one side at the distance `d` from the edge is before the other side where
 //! `d sin φ > h cos φ`. So nothing has to be done at a distance of more than 1.5e + 2.5e cot φ from every edge, for which
-//! 4e / sin φ is enough at every angle; the angle is that of the mesh's [`Wedges`]. Edges are measured where
-//! the mesh is: distances there are `1/s` times those in the world, s the least factor by which the transform shortens
-//! ([`Instance::edge_reach`]).
+//! 4e / sin φ is enough at every angle; the angle is that of the triangle's narrowest wedge ([`MeshTree::wedge_of`]).
+//! Edges are measured where the mesh is: distances there are `1/s` times those in the world, s the least factor by which the
+//! transform shortens ([`Instance::edge_reach`]).
+//!
+//! [`MeshTree::wedge_of`]: super::MeshTree
 //!
 //! What is nearer ([`SurfacePoint::near_edge`]) is one hit in some ten thousand beside the origin, and one in three in a
 //! room that stands 12 km away from it. [`super::leave`] finds a start for those.
 
 use glam::Vec3;
 
-use super::{Hit, Instance, TriangleId, wedges::Wedges};
+use super::{Hit, Instance, TriangleId};
 
 /// A point of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,8 +117,6 @@ pub(crate) struct Placement {
     velocity: Vec3,
     condition: f32,
     edge_reach: f32,
-    /// Of the mesh's wedges.
-    narrowest: f32,
 }
 
 /// A hit in the world, as it is found without a branch.
@@ -149,16 +149,23 @@ fn weighted([a, b, c]: [Vec3; 3], [u, v, w]: [f32; 3]) -> Vec3 {
 }
 
 impl Placement {
-    /// Where the point of a triangle lies that a ray of `time` hit at (u, v).
+    /// Where the point of a triangle lies that a ray of `time` hit at (u, v); one over the sine of the triangle's narrowest
+    /// wedge is `wedge`.
     #[inline(always)]
-    pub(crate) fn of_hit(&self, corners: [Vec3; 3], [u, v]: [f32; 2], time: f32) -> Placed {
+    pub(crate) fn of_hit(
+        &self,
+        corners: [Vec3; 3],
+        wedge: f32,
+        [u, v]: [f32; 2],
+        time: f32,
+    ) -> Placed {
         let plane = Plane::of(corners);
         let mut placed = self.place(corners, [1.0 - u - v, u, v], time, plane.normal);
         let weight = 1.0 - u - v;
         let least = if weight < u { weight } else { u };
         let least = if least < v { least } else { v };
         // NaN is nothing ordinary.
-        let is_clear = least * plane.height > placed.clear * self.narrowest;
+        let is_clear = least * plane.height > placed.clear * wedge;
         placed.is_ordinary = plane.is_ordinary & is_clear;
         placed
     }
@@ -236,7 +243,6 @@ impl Instance {
             velocity: self.velocity(),
             condition: self.condition(),
             edge_reach: self.edge_reach(),
-            narrowest: self.mesh.wedges().narrowest(),
         }
     }
 
@@ -247,14 +253,14 @@ impl Instance {
     pub fn surface_point(&self, hit: &Hit, time: f32) -> SurfacePoint {
         let corners = self.mesh.triangles().corners(hit.triangle);
         let placement = self.placement();
-        let mut placed = placement.of_hit(corners, [hit.u, hit.v], time);
+        let wedge = self.mesh.wedge_of(hit.triangle);
+        let mut placed = placement.of_hit(corners, wedge, [hit.u, hit.v], time);
         let mut near = None;
         if !placed.is_ordinary {
             let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
             let normal = Plane::exact_normal(corners);
             placed = placement.place(corners, weights, time, normal);
-            let wedges = self.mesh.wedges();
-            near = near_edge(corners, weights, placed.clear, hit.triangle, wedges)
+            near = near_edge(corners, weights, placed.clear * wedge)
                 .then_some(NearEdge { hit: *hit, time });
         }
         SurfacePoint {
@@ -267,16 +273,10 @@ impl Instance {
     }
 }
 
-/// Whether the point of a triangle with these weights is not `clear` of an edge, times what its wedge asks for.
+/// Whether the point of a triangle with these weights is not `clear` of an edge.
 #[cold]
-fn near_edge(
-    [a, b, c]: [Vec3; 3],
-    weights: [f32; 3],
-    clear: f32,
-    triangle: u32,
-    wedges: &Wedges,
-) -> bool {
-    let clear = f64::from(clear * wedges.of_triangle(triangle));
+fn near_edge([a, b, c]: [Vec3; 3], weights: [f32; 3], clear: f32) -> bool {
+    let clear = f64::from(clear);
     let [a, b, c] = [a, b, c].map(|corner| corner.as_dvec3());
     let area = (b - a).cross(c - a).length();
     let opposite = [c - b, a - c, b - a];
@@ -376,6 +376,38 @@ mod tests {
         }
         let n = Plane::exact_normal([Vec3::ZERO, Vec3::X, Vec3::new(0.5, 0.0, -1e-7)]);
         assert!((n - Vec3::Y).length() < 1e-6, "sliver: {n}");
+    }
+
+    #[test]
+    fn a_narrow_wedge_elsewhere_in_the_mesh_is_no_matter_to_a_hit() {
+        // Far from the origin a wedge of a thousandth asks for more than a triangle has.
+        let at = Vec3::splat(300.0);
+        let wedge = [Vec3::Y, Vec3::new(0.1, 1.0, 1e-3)].map(|third| [Vec3::ZERO, Vec3::X, third]);
+        let alone = [Vec3::Z, Vec3::Z + Vec3::X, Vec3::Z + Vec3::Y].map(|p| 3.0 * p);
+        let corners: Vec<Vec3> = wedge.into_iter().chain([alone]).flatten().collect();
+        let corners = corners.into_iter().map(|p| at + 0.3 * p).collect();
+        let indices = vec![[0, 1, 2], [3, 4, 5], [6, 7, 8]];
+        let triangles = Triangles::new(corners, indices).unwrap();
+        let mesh = Arc::new(MeshTree::build(triangles, &BuildOptions::default()));
+        let instance = Instance::new(mesh, &Affine3A::IDENTITY).unwrap();
+        let is_near = |triangle| {
+            let hit = Hit {
+                t: 1.0,
+                instance: 0,
+                triangle,
+                u: 0.3,
+                v: 0.3,
+            };
+            let corners = instance.mesh.triangles().corners(triangle);
+            let wedge = instance.mesh.wedge_of(triangle);
+            let placed = (instance.placement()).of_hit(corners, wedge, [hit.u, hit.v], 0.0);
+            let is_near = instance.surface_point(&hit, 0.0).near_edge.is_some();
+            (placed.is_ordinary, is_near)
+        };
+        assert_eq!(
+            [0, 1, 2].map(is_near),
+            [(false, true), (false, true), (true, false)]
+        );
     }
 
     #[test]

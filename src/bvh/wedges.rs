@@ -8,13 +8,17 @@
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-use super::triangles::Triangles;
+use super::{MeshTree, triangles::Triangles};
 
 /// Wedges narrower than one over two to this are taken for ones of this.
 const NARROWEST: u8 = 12;
 
-/// Around a corner of more triangles than this not every pair is compared: all of them count as [`NARROWEST`].
-const MOST_AROUND: usize = 64;
+/// Around a corner of more triangles than this not every pair is compared: all of them count as [`NARROWEST`]. Tips of cones,
+/// poles of spheres and caps of cylinders have fewer.
+const MOST_AROUND: usize = 1024;
+/// Where pairs around corners of many triangles are more than [`MOST_PAIRS`], only corners of no more than this are looked at.
+const FEW_AROUND: usize = 64;
+const MOST_PAIRS: usize = 1 << 22;
 
 /// One over the sine of each triangle's narrowest wedge, at least 1, rounded up to a power of two (but for a tenth of
 /// one).
@@ -22,7 +26,6 @@ const MOST_AROUND: usize = 64;
 pub(super) struct Wedges {
     /// Exponents; empty where all are 0.
     exponents: Box<[u8]>,
-    narrowest: u8,
 }
 
 impl Wedges {
@@ -34,28 +37,20 @@ impl Wedges {
             .with_min_len(1024)
             .map(|&triangle| corners.narrowest(triangle))
             .collect();
-        let narrowest = found.iter().copied().max().unwrap_or(0);
         let mut exponents = Box::default();
-        if narrowest > 0 {
+        if found.iter().any(|exponent| *exponent > 0) {
             let mut all = vec![0; triangles.len()];
             for (&triangle, exponent) in traced.iter().zip(found) {
                 all[triangle as usize] = exponent;
             }
             exponents = all.into_boxed_slice();
         }
-        Self {
-            exponents,
-            narrowest,
-        }
-    }
-
-    /// One over the sine of the mesh's narrowest wedge.
-    pub(super) fn narrowest(&self) -> f32 {
-        (1_u32 << self.narrowest) as f32
+        Self { exponents }
     }
 
     /// One over the sine of this triangle's narrowest wedge.
-    pub(super) fn of_triangle(&self, triangle: u32) -> f32 {
+    #[inline(always)]
+    fn of_triangle(&self, triangle: u32) -> f32 {
         let exponent = self.exponents.get(triangle as usize).copied();
         (1_u32 << exponent.unwrap_or(0)) as f32
     }
@@ -63,6 +58,14 @@ impl Wedges {
     /// Memory held, in bytes.
     pub(super) fn bytes(&self) -> usize {
         self.exponents.len()
+    }
+}
+
+impl MeshTree {
+    /// One over the sine of the narrowest wedge that a triangle makes with its neighbours, at least 1.
+    #[inline(always)]
+    pub(crate) fn wedge_of(&self, triangle: u32) -> f32 {
+        self.wedges().of_triangle(triangle)
     }
 }
 
@@ -75,6 +78,8 @@ struct Corners<'a> {
     first: Vec<u32>,
     /// Traced triangles and which of their corners it is, place by place.
     around: Vec<(u32, u8)>,
+    /// Triangles around a corner that are compared with each other.
+    most_around: usize,
 }
 
 impl<'a> Corners<'a> {
@@ -92,6 +97,7 @@ impl<'a> Corners<'a> {
         for place in 0..same.len() {
             first[place + 1] += first[place];
         }
+        let most_around = most_around(first.windows(2).map(|place| (place[1] - place[0]) as usize));
         let mut next = first.clone();
         let mut around = vec![(0, 0); 3 * traced.len()];
         for &triangle in traced {
@@ -106,6 +112,7 @@ impl<'a> Corners<'a> {
             places,
             first,
             around,
+            most_around,
         }
     }
 
@@ -127,7 +134,7 @@ impl<'a> Corners<'a> {
         for corner in 0..3 {
             let [here, left, right] = [0, 1, 2].map(|i| places[(corner + i) % 3]);
             let around = self.around(here);
-            if around.len() > MOST_AROUND {
+            if around.len() > self.most_around {
                 return NARROWEST;
             }
             let from = points[corner];
@@ -170,6 +177,27 @@ impl<'a> Corners<'a> {
         let narrow = ((1.0 / sine).log2() - 0.1).ceil();
         (narrow as u8).min(NARROWEST)
     }
+}
+
+/// How many triangles are compared with each other where so many meet around each corner: as many as [`MOST_PAIRS`] allow,
+/// halved until they do.
+fn most_around(counts: impl Iterator<Item = usize>) -> usize {
+    let mut most = MOST_AROUND;
+    let halvings = (MOST_AROUND / FEW_AROUND).ilog2() as usize;
+    let mut pairs = [0; (MOST_AROUND / FEW_AROUND).ilog2() as usize];
+    for count in counts.filter(|count| (FEW_AROUND + 1..=MOST_AROUND).contains(count)) {
+        let halving = (MOST_AROUND / count).ilog2() as usize;
+        pairs[halving.min(halvings - 1)] += count * count;
+    }
+    let mut left: usize = pairs.iter().sum();
+    for pairs in pairs {
+        if left <= MOST_PAIRS {
+            break;
+        }
+        left -= pairs;
+        most /= 2;
+    }
+    most
 }
 
 /// A triangle as one of its corners sees it: what lies between two edges.
@@ -270,6 +298,24 @@ mod tests {
         Wedges::of(triangles, &traced.collect::<Vec<_>>())
     }
 
+    /// Of all its triangles.
+    fn narrowest(wedges: &Wedges) -> f32 {
+        let count = wedges.exponents.len() as u32;
+        (0..count).fold(1.0, |most, triangle| most.max(wedges.of_triangle(triangle)))
+    }
+
+    /// A drum of so many segments: its caps are fans around their middles.
+    fn drum(segments: u32) -> Triangles {
+        let rim = |i: u32, y| {
+            let turn = (i % segments) as f32 * std::f32::consts::TAU / segments as f32;
+            Vec3::new(turn.cos(), y, turn.sin())
+        };
+        soup((0..segments).flat_map(|i| {
+            let [[a, b], [c, d]] = [0.0, 1.0].map(|y| [rim(i, y), rim(i + 1, y)]);
+            [[Vec3::ZERO, a, b], [Vec3::Y, d, c], [a, c, b], [b, c, d]]
+        }))
+    }
+
     fn wedge(angle: f32) -> Triangles {
         // Two triangles over the x axis.
         let (sin, cos) = angle.sin_cos();
@@ -289,7 +335,7 @@ mod tests {
             for narrow in [
                 wedges.of_triangle(0),
                 wedges.of_triangle(1),
-                wedges.narrowest(),
+                narrowest(&wedges),
             ] {
                 assert!(
                     (expected * 0.93..2.0 * expected).contains(&narrow),
@@ -304,22 +350,22 @@ mod tests {
         let over = |height: f32| {
             let far = [Vec3::new(1.0, -1.0, height), Vec3::new(1.0, 1.0, height)];
             let floor = [Vec3::new(2.0, -2.0, 0.0), Vec3::new(2.0, 2.0, 0.0)];
-            of(&soup([floor, far].map(|[a, b]| [Vec3::ZERO, a, b])))
+            narrowest(&of(&soup([floor, far].map(|[a, b]| [Vec3::ZERO, a, b]))))
         };
-        assert_eq!(over(0.1).narrowest(), 16.0);
-        assert_eq!(over(-0.1).narrowest(), 16.0, "and under it");
+        assert_eq!(over(0.1), 16.0);
+        assert_eq!(over(-0.1), 16.0, "and under it");
         // Beside it, there is none.
         let beside = [Vec3::new(-1.0, -1.0, 0.01), Vec3::new(-1.0, 1.0, 0.01)];
         let floor = [Vec3::new(2.0, -2.0, 0.0), Vec3::new(2.0, 2.0, 0.0)];
         let both = [floor, beside].map(|[a, b]| [Vec3::ZERO, a, b]);
-        assert_eq!(of(&soup(both)).narrowest(), 1.0);
+        assert_eq!(narrowest(&of(&soup(both))), 1.0);
     }
 
     #[test]
     fn boxes_and_spheres_have_none_and_pay_no_memory() {
         for mesh in [cube(), sphere(3)] {
             let wedges = of(&mesh);
-            assert_eq!((wedges.narrowest(), wedges.bytes()), (1.0, 0));
+            assert_eq!((narrowest(&wedges), wedges.bytes()), (1.0, 0));
         }
     }
 
@@ -331,7 +377,7 @@ mod tests {
         );
         let apart: Vec<[Vec3; 3]> = (0..2).map(|i| shared.corners(i)).collect();
         let (shared, apart) = (of(&shared), of(&soup(apart)));
-        assert!(shared.narrowest() > 8.0, "{shared:?}");
+        assert!(narrowest(&shared) > 8.0, "{shared:?}");
         assert_eq!(shared.exponents, apart.exponents);
     }
 
@@ -339,10 +385,47 @@ mod tests {
     fn a_corner_of_very_many_triangles_takes_no_longer_and_counts_as_narrow() {
         let hub = |i: u32| Vec3::new(1.0, i as f32 * 1e-3, 0.5);
         let fan = soup((0..50_000).map(|i| [Vec3::ZERO, hub(i), hub(i + 1)]));
-        assert_eq!(of(&fan).narrowest(), 4096.0);
+        assert_eq!(narrowest(&of(&fan)), 4096.0);
         // So does the same triangle, many times over.
         let heap = soup((0..50_000).map(|_| [Vec3::ZERO, Vec3::X, Vec3::Y]));
-        assert_eq!(of(&heap).narrowest(), 4096.0);
+        assert_eq!(narrowest(&of(&heap)), 4096.0);
+    }
+
+    #[test]
+    fn a_fan_of_many_triangles_is_no_wedge_and_its_mesh_has_none() {
+        for segments in [24, 64, 96, 512, 1000] {
+            let wedges = of(&drum(segments));
+            assert_eq!(narrowest(&wedges), 1.0, "{segments} segments");
+        }
+    }
+
+    #[test]
+    fn a_wedge_in_a_fan_of_many_triangles_is_found() {
+        let mut corners: Vec<[Vec3; 3]> = {
+            let drum = drum(200);
+            (0..drum.len() as u32).map(|i| drum.corners(i)).collect()
+        };
+        // Over the lower cap, at a tenth.
+        corners.push([
+            Vec3::ZERO,
+            Vec3::new(0.5, 0.05, 0.2),
+            Vec3::new(0.5, 0.05, -0.2),
+        ]);
+        let wedges = of(&soup(corners));
+        assert_eq!(wedges.of_triangle(800), 16.0);
+        let narrow = (0..800).filter(|i| wedges.of_triangle(*i) > 1.0).count();
+        assert!((10..40).contains(&narrow), "{narrow} of 800");
+    }
+
+    #[test]
+    fn of_very_many_fans_those_of_fewer_triangles_are_looked_at() {
+        let fans = |size: usize, count: usize| vec![size; count];
+        let most = |counts: Vec<usize>| most_around(counts.into_iter());
+        assert_eq!(most(fans(1024, 4)), 1024);
+        assert_eq!(most(fans(1024, 5)), 512);
+        assert_eq!(most([fans(1024, 5), fans(100, 400)].concat()), 512);
+        assert_eq!(most(fans(100, 420)), 64);
+        assert_eq!(most([fans(64, 1 << 20), fans(5000, 100)].concat()), 1024);
     }
 
     #[test]
@@ -353,6 +436,6 @@ mod tests {
             [Vec3::ZERO, Vec3::X, Vec3::X * 2.0],
             [Vec3::ZERO, Vec3::X, nan],
         ]));
-        assert_eq!(wedges.narrowest(), 1.0);
+        assert_eq!(narrowest(&wedges), 1.0);
     }
 }

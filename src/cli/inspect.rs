@@ -287,8 +287,8 @@ impl Picked<'_> {
         }));
         let rows: Vec<Vec<String>> = rows.into_iter().map(Vec::from).collect();
         say(format_args!("\n{}", aligned(&rows)))?;
-        let mut samples = (0..).zip(&rays.samples);
-        let equal = samples.all(|(i, sample)| rays.sum(i) == sample.value);
+        let mut samples = rays.sums().into_iter().zip(&rays.samples);
+        let equal = samples.all(|(sum, sample)| sum == sample.value);
         let first = rays.samples.first().map_or(0, |sample| sample.index);
         say(format_args!(
             "rays of sample {first} (for every sample, what its rays add sums to its value, bit for \

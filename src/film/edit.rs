@@ -46,12 +46,13 @@ pub(super) struct Edit {
 impl Edit {
     /// From what is rendered to another world. `None` where nothing of the picture stays true.
     pub fn between(old: &Subject, world: World, gains: &Gains) -> Option<Self> {
+        let gained = gains.applied(&world);
         let same_paths = old.stays_apart
             && Arc::ptr_eq(&old.world.aggregate, &world.aggregate)
             && Arc::ptr_eq(&old.world.objects, &world.objects)
             && Arc::ptr_eq(&old.world.textures, &world.textures)
             && old.world.environment.is_same(&world.environment)
-            && old.world.needs == world.needs
+            && old.world.needs == gained.needs
             && samples_per_pixel(&old.world, &old.camera, &old.settings)
                 == samples_per_pixel(&world, &old.camera, &old.settings);
         let is_shared = old.settings.lighting == Lighting::Classic
@@ -60,7 +61,7 @@ impl Edit {
             return None;
         }
         let materials = old.world.changed_materials(&world)?;
-        let first = edited_first(old, &gains.applied(&world));
+        let first = edited_first(old, &gained);
         let sets_apart = first.iter().any(|id| !old.first.contains(id));
         let subject = old.edited(world, first, gains.clone());
         let from = same_planes(old, &subject)?;
@@ -78,7 +79,7 @@ impl Edit {
         for from in &mut self.from {
             *from = from.and_then(|plane| before.from[plane]);
         }
-        self.materials = self.materials.and(before.materials);
+        self.materials = self.materials.union(before.materials);
         self.sets_apart |= before.sets_apart;
         self
     }
@@ -230,10 +231,14 @@ impl Engine {
             edit = edit.after(before);
         }
         if edit.is_of_tints(&now) {
-            *waiting = None;
-            self.edit_waits.store(false, Ordering::Relaxed);
-            self.set_subject(edit.subject);
-            return true;
+            // A coarse picture is of the tints with which it began: then the render takes them when it is stopped.
+            let preview = lock(&self.preview);
+            if preview.is_none() {
+                *waiting = None;
+                self.edit_waits.store(false, Ordering::Relaxed);
+                self.set_subject(edit.subject);
+                return true;
+            }
         }
         if edit.needs_rays() {
             let part = edit.part_of_sample(self.part_that_shows(edit.materials));
@@ -270,7 +275,7 @@ impl Engine {
         let needs_rays = edit.needs_rays();
         let old = self.subject();
         let moved = other_points(&old.light.world, &edit.subject.light.world, &old.settings);
-        self.kept.edit(edit.leaves_lights(&old), moved);
+        let leaves_lights = edit.leaves_lights(&old);
         let arrangement = old.arrangement.wrapping_add(1);
         edit.subject.arrangement = arrangement;
         self.batch.suit(&edit.subject);
@@ -284,12 +289,16 @@ impl Engine {
             }
         }
         self.start_over(emptied, needs_rays);
-        if needs_rays {
+        let was_coarse = lock(&self.preview).take().is_some();
+        if needs_rays || was_coarse {
             // Until it has light everywhere again, what is seen stays, or is coarse.
             self.set_divider(0);
-            *lock(&self.preview) = None;
-            self.begins_coarse.store(edit.is_long, Ordering::Relaxed);
+            let begins_coarse = edit.is_long || !needs_rays;
+            self.begins_coarse.store(begins_coarse, Ordering::Relaxed);
         }
+        drop(waiting);
+        // That takes its time, in which others may edit: nothing is traced before it is done.
+        self.kept.edit(leaves_lights, moved);
     }
 }
 

@@ -104,10 +104,17 @@ impl Engine {
         Ok(self.pass(missing))
     }
 
-    /// The samples that lights lack which are another than before: twice as many as they have in each tile.
+    /// The samples that lights lack which are another than before: twice as many as they have in each tile. And the first one
+    /// of tiles that have none while others do, since another material is seen there: the picture is complete before it
+    /// gets finer.
     fn catch_up(&self) -> Option<Vec<Chunk>> {
+        let has_samples = |tile: &u32| lock(&self.tiles[*tile as usize]).has_samples();
+        let has_begun = self.rendered.iter().any(has_samples);
+        let first = self.mode.samples.start;
         let chunks = self.pass(|state, half| {
-            state.count(half)?;
+            if state.count(half)? == 0 {
+                return has_begun.then_some((PlaneSet::ALL, first..first + 1));
+            }
             let (planes, has, goal) = state.behind(half)?;
             Some((
                 planes,

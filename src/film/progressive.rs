@@ -83,6 +83,8 @@ impl Progressive {
             worker.0.run(&|_| {});
             // Until the other end is dropped.
             while edits.recv().is_ok() {
+                // Edits that came meanwhile are one.
+                while edits.try_recv().is_ok() {}
                 worker.0.run(&|_| {});
             }
         })?;

@@ -24,9 +24,12 @@ use std::time::{Duration, Instant};
 /// it may take.
 pub(super) struct BatchSize {
     now: AtomicUsize,
+    least: AtomicUsize,
     most: AtomicUsize,
 }
 
+/// Of many lights each is looked at for a batch: so many samples take hardly longer than one.
+const LEAST_OF_MANY_LIGHTS: usize = 32;
 const LARGEST_BATCH: usize = 512;
 /// Samples of a pixel that stand side by side in a batch, at most: their rays go nearly the same way from nearly the same
 /// place, and meet the same triangles. Where too few are asked for to fill packets, each pixel has one in turn.
@@ -41,6 +44,7 @@ impl BatchSize {
     pub fn new(subject: &Subject) -> Self {
         let size = Self {
             now: AtomicUsize::new(1),
+            least: AtomicUsize::new(1),
             most: AtomicUsize::new(1),
         };
         size.suit(subject);
@@ -50,13 +54,19 @@ impl BatchSize {
     /// Batches are of another subject from now on.
     pub fn suit(&self, subject: &Subject) {
         let most = RAYS / rays_of_first_hit(subject);
-        let most = (most as usize).clamp(1, LARGEST_BATCH);
+        let least = if subject.light.world.needs.faint > 0.0 {
+            LEAST_OF_MANY_LIGHTS
+        } else {
+            1
+        };
+        let most = (most as usize).clamp(least, LARGEST_BATCH);
+        self.least.store(least, Ordering::Relaxed);
         self.most.store(most, Ordering::Relaxed);
     }
 
     pub fn get(&self) -> usize {
-        let most = self.most.load(Ordering::Relaxed);
-        self.now.load(Ordering::Relaxed).min(most)
+        let [least, most] = [&self.least, &self.most].map(|n| n.load(Ordering::Relaxed));
+        self.now.load(Ordering::Relaxed).max(least).min(most)
     }
 
     fn learn(&self, samples: usize, took: Duration) {

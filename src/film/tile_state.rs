@@ -237,7 +237,7 @@ impl TileState {
 
     /// Samples on their way into it met these materials.
     pub fn meet(&mut self, met: MaterialSet) {
-        self.met = self.met.and(met);
+        self.met = self.met.union(met);
     }
 
     /// Whether some sample may have met one of these materials.

@@ -1,6 +1,7 @@
 use super::tile_state::Pixels;
 use bevy::math::URect;
 use glam::{UVec2, Vec2};
+use std::ops::Range;
 
 /// Edge of a square tile in pixels: 256 pixels of one sample each fill a batch, and the arrays of a
 /// batch stay within a core's second-level cache.
@@ -105,20 +106,31 @@ impl TileGrid {
             Some(region) => (region.min.min(self.size), region.max.min(self.size)),
             None => (UVec2::ZERO, self.size),
         };
-        let (first, end) = (min / TILE, max.map(|n| n.div_ceil(TILE)));
-        if min.cmpge(max).any() {
-            let nothing = Tile {
-                origin: UVec2::ZERO,
-                extent: UVec2::ZERO,
-            };
-            return (Vec::new(), nothing);
-        }
-        let tiles = (first.y..end.y)
-            .flat_map(|y| (first.x..end.x).map(move |x| y * self.columns() + x))
-            .collect();
+        let [first, end] = touched([min, max]);
+        let tiles = self.rows(first, end).flatten().collect();
         let origin = first * TILE;
         let extent = (end * TILE).min(self.size) - origin;
         (tiles, Tile { origin, extent })
+    }
+
+    /// The tiles that a region touches, row by row.
+    pub fn rows_within(self, region: URect) -> impl Iterator<Item = Range<u32>> {
+        let [first, end] = touched([region.min, region.max].map(|n| n.min(self.size)));
+        self.rows(first, end)
+    }
+
+    fn rows(self, first: UVec2, end: UVec2) -> impl Iterator<Item = Range<u32>> {
+        let columns = self.columns();
+        (first.y..end.y).map(move |y| y * columns + first.x..y * columns + end.x)
+    }
+}
+
+/// The first column and row of tiles that these pixels touch, and the first ones beyond: zero where there is no pixel.
+fn touched([min, max]: [UVec2; 2]) -> [UVec2; 2] {
+    if min.cmpge(max).any() {
+        [UVec2::ZERO; 2]
+    } else {
+        [min / TILE, max.map(|n| n.div_ceil(TILE))]
     }
 }
 
@@ -214,6 +226,16 @@ mod tests {
         assert_eq!(of([60, 40], [900, 900]), (vec![13, 14], [48, 32], [22, 13]));
         assert_eq!(of([20, 20], [20, 30]), (vec![], [0, 0], [0, 0]));
         assert_eq!(of([70, 0], [90, 9]), (vec![], [0, 0], [0, 0]));
+        let rows = |a: [u32; 2], b: [u32; 2]| {
+            let region = URect {
+                min: a.into(),
+                max: b.into(),
+            };
+            grid.rows_within(region).flatten().collect::<Vec<_>>()
+        };
+        assert_eq!(rows([17, 3], [33, 17]), [1, 2, 6, 7]);
+        assert_eq!(rows([60, 40], [900, 900]), [13, 14]);
+        assert!(rows([70, 0], [90, 9]).is_empty());
         let (tiles, area) = grid.within(None);
         assert_eq!(tiles, (0..grid.count()).collect::<Vec<_>>());
         assert_eq!((area.origin, area.extent), (UVec2::ZERO, grid.size));

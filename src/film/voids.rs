@@ -36,9 +36,15 @@ impl Voids {
         };
         let whole = |tile: Tile| tile.extent == UVec2::splat(TILE);
         let mut tiles: Vec<bool> = grid.tiles().map(whole).collect();
+        let mut left = tiles.iter().filter(|is_void| **is_void).count();
         for rectangle in rectangles {
-            for tile in grid.within(Some(rectangle)).0 {
-                tiles[tile as usize] = false;
+            for row in grid.rows_within(rectangle) {
+                for is_void in &mut tiles[row.start as usize..row.end as usize] {
+                    left -= usize::from(std::mem::take(is_void));
+                }
+            }
+            if left == 0 {
+                return none;
             }
         }
         Self { color, tiles }

@@ -86,8 +86,7 @@ impl<'a> Tree<'a> {
     }
 
     fn children(&self, parent: u32) -> impl Iterator<Item = (u32, &'a TracedRay)> + use<'a> {
-        let rays = (0..).zip(&self.tree.rays);
-        rays.filter(move |(_, ray)| ray.parent == Some(parent))
+        self.tree.children(parent)
     }
 
     /// The ray by which a surface is seen, where it is more mirror or glass than it is lit itself.

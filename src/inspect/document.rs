@@ -71,9 +71,7 @@ impl<'a> Document<'a> {
                 .collect(),
             counters: COUNTERS,
             value: rays.mean(),
-            sums: (0..rays.samples.len() as u32)
-                .map(|i| rays.sum(i))
-                .collect(),
+            sums: rays.sums(),
             rays,
             sources: sources(rays),
             lights: &world.lights,

@@ -25,7 +25,7 @@ documented! {
         #[reflect(@Quantity::PART)]
         pub mirror: LinearRgba,
         /// s: how narrow the highlight is; a glossy reflection's disc has radius 1/s.
-        #[reflect(@Quantity::within(1.0, f32::MAX as f64, "").shown(1.0, 10_000.0).logarithmic())]
+        #[reflect(@Quantity::within(1.0, 1e6, "").shown(1.0, 10_000.0).logarithmic())]
         pub shininess: f32,
         /// d: 1 is opaque; below it light goes on through the surface, tinted.
         #[reflect(@Quantity::PART)]

@@ -1,5 +1,6 @@
 //! Large pictures on their way to the threads that make textures of them.
 
+use super::ahead::Wanted;
 use super::image_sampler::sampler_of;
 use super::panorama::{is_cube, trace_cube};
 use super::texture_data::{TextureFault, trace_texture};
@@ -112,8 +113,8 @@ impl Conversions {
         }
     }
 
-    /// Goes on copying, and gives to the threads what is copied.
-    pub fn go_on(&mut self, assets: &Assets<Image>) {
+    /// Goes on copying, and gives to the threads what is copied; what is `wanted` of it is made there too.
+    pub fn go_on(&mut self, assets: &Assets<Image>, wanted: Wanted) {
         let mut left = COPIED;
         while let Some(copy) = self.copies.front_mut() {
             let image = assets.get(copy.id);
@@ -157,10 +158,7 @@ impl Conversions {
                 // A panic would be a bug; it must not take the app with it, nor keep it waiting.
                 let converted = || {
                     let converted = convert(&image, is_around)?;
-                    // No frame waits for it here; where the environment lights nothing it is done in vain.
-                    if is_around {
-                        converted.texture.prepare_as_environment();
-                    }
+                    wanted.make(&converted.texture, is_around);
                     Ok(converted)
                 };
                 let texture = catch_unwind(AssertUnwindSafe(converted));

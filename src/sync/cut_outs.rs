@@ -1,5 +1,6 @@
 //! Maps of colours with an opacity map as their alpha; large ones are put together on threads of their own.
 
+use super::ahead::Wanted;
 use super::tree_building::Threads;
 use crate::trace::Texture;
 use bevy::asset::AssetId;
@@ -21,6 +22,7 @@ pub(super) type Pair = [AssetId<Image>; 2];
 pub(super) struct CutOuts {
     made: HashMap<Pair, CutOut>,
     threads: Threads<Finished>,
+    others: Threads<()>,
     /// By the number of the work: what of the same pair was begun earlier counts no more.
     under_way: HashMap<Pair, u64>,
     begun: u64,
@@ -40,11 +42,12 @@ struct Finished {
 }
 
 impl CutOut {
-    fn make(of: [Arc<Texture>; 2]) -> Self {
+    fn make(of: [Arc<Texture>; 2], wanted: Wanted) -> Self {
         let texture = match of[0].cut_out_by(&of[1]) {
             Some(texture) => Arc::new(texture),
             None => of[0].clone(),
         };
+        wanted.make_cut_out(&texture);
         Self { of, texture }
     }
 
@@ -88,7 +91,7 @@ impl CutOuts {
 
     /// Puts these two together where they are others than before: here where that takes no longer than what is `left` of the
     /// frame. One that is under way is not begun again: where one of the two is edited in every frame none would ever be done.
-    pub fn make(&mut self, pair: Pair, of: [Arc<Texture>; 2], left: &mut u64) {
+    pub fn make(&mut self, pair: Pair, of: [Arc<Texture>; 2], wanted: Wanted, left: &mut u64) {
         let is_known = self.made.get(&pair).is_some_and(|made| made.is_of(&of));
         if is_known || self.under_way.contains_key(&pair) {
             return;
@@ -96,7 +99,7 @@ impl CutOuts {
         let cost = cost(&of);
         if cost <= *left {
             *left -= cost;
-            self.made.insert(pair, CutOut::make(of));
+            self.made.insert(pair, CutOut::make(of, wanted));
             return;
         }
         self.begun += 1;
@@ -104,7 +107,7 @@ impl CutOuts {
         self.under_way.insert(pair, number);
         self.threads.run(move || {
             // A panic would be a bug; it must not take the app with it, nor keep it waiting.
-            let made = catch_unwind(AssertUnwindSafe(|| CutOut::make(of.clone())));
+            let made = catch_unwind(AssertUnwindSafe(|| CutOut::make(of.clone(), wanted)));
             let texture = of[0].clone();
             Finished {
                 pair,
@@ -112,6 +115,22 @@ impl CutOuts {
                 cut_out: made.unwrap_or(CutOut { of, texture }),
             }
         });
+    }
+
+    /// Has made of all what is wanted now, on the threads: nobody waits for it.
+    pub fn make_ahead(&mut self, wanted: Wanted) {
+        let made: Vec<_> = self
+            .made
+            .values()
+            .map(|made| made.texture.clone())
+            .collect();
+        if !made.is_empty() {
+            self.others.run(move || {
+                // A panic would be a bug; it must not take the app with it.
+                let all = || made.iter().for_each(|texture| wanted.make_cut_out(texture));
+                let _ = catch_unwind(AssertUnwindSafe(all));
+            });
+        }
     }
 
     /// Takes what was done since this was asked last, and says what.

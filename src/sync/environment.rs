@@ -28,8 +28,9 @@ pub(super) fn sync_environment(
     }
     let draft = draft.into_inner();
     let awaited = map.0.as_ref().filter(|_| settings.features.environment);
-    if awaited.is_some_and(|map| textures.get(map.id()).is_none()) {
-        // All stays as it was until its map is converted.
+    let is_awaited = |id| textures.get(id).is_none() || textures.is_being_prepared(id);
+    if awaited.is_some_and(|map| is_awaited(map.id())) {
+        // All stays as it was until its map is converted, and has its table where it lights.
         return;
     }
     let has_picture = map.0.is_some() || environment.map.is_some();

@@ -161,8 +161,8 @@ pub(super) fn sync_lights(
     moving.sort_unstable_by_key(|light| light.id);
     moving.dedup_by_key(|light| light.id);
     let lights = Lights { moving, ..lights };
-    // Motions that changed are mostly those of other things.
-    if edited || lights != *draft.world.lights {
+    // What changed is mostly something else: a motion another thing's, a visibility that of one that stays out.
+    if lights != *draft.world.lights {
         draft.world.lights = Arc::new(lights);
         draft.changes.lights = true;
     }

@@ -199,6 +199,18 @@ mod tests {
     use bevy::color::LinearRgba;
 
     #[test]
+    fn a_shininess_of_which_f32_tells_nothing_is_the_most_that_it_tells_and_is_named() {
+        let phong = Phong {
+            shininess: 1e9,
+            ..Phong::default()
+        };
+        let textures = TracedTextures::default();
+        let found = MaterialData::of(SceneId(4), None, &phong, None, &textures);
+        assert_eq!(found.material.shininess, 1e6);
+        assert_eq!(found.problems.len(), 1, "{:?}", found.problems);
+    }
+
+    #[test]
     fn numbers_out_of_range_are_moved_into_it_and_named() {
         let phong = Phong {
             diffuse: LinearRgba::rgb(0.5, 2.0, 0.5),

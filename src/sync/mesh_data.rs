@@ -5,7 +5,9 @@ use crate::bvh::{BuildOptions, MeshTree, Triangles};
 use crate::trace;
 use bevy::asset::RenderAssetUsages;
 use bevy::math::{Vec2, Vec3, Vec4};
-use bevy::mesh::{Indices, Mesh, MeshAccessError, PrimitiveTopology, VertexAttributeValues};
+use bevy::mesh::{
+    Indices, Mesh, MeshAccessError, MeshVertexAttributeId, PrimitiveTopology, VertexAttributeValues,
+};
 use std::sync::Arc;
 
 /// Why a mesh cannot be traced.
@@ -44,20 +46,47 @@ pub(super) struct MeshCopy {
     tangents: Vec<Vec4>,
 }
 
+/// What can be read of a mesh at a glance.
+fn positions_of(mesh: &Mesh) -> Result<&[[f32; 3]], MeshFault> {
+    // Said at once, and not when an edit asks for vertices that are gone by then.
+    if !mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD) {
+        return Err(MeshFault::Extracted);
+    }
+    match mesh.try_attribute(Mesh::ATTRIBUTE_POSITION) {
+        Ok(VertexAttributeValues::Float32x3(values)) => Ok(values),
+        Ok(_) | Err(MeshAccessError::NotFound) => Err(MeshFault::NoPositions),
+        Err(MeshAccessError::ExtractedToRenderWorld) => Err(MeshFault::Extracted),
+    }
+}
+
 impl MeshCopy {
+    /// What it reads of a mesh, besides indices.
+    pub const ATTRIBUTES: [MeshVertexAttributeId; 5] = [
+        Mesh::ATTRIBUTE_POSITION.id,
+        Mesh::ATTRIBUTE_NORMAL.id,
+        Mesh::ATTRIBUTE_UV_0.id,
+        Mesh::ATTRIBUTE_COLOR.id,
+        Mesh::ATTRIBUTE_TANGENT.id,
+    ];
+
+    /// Why it could not be made of a mesh, as far as that is to be seen without a look at its vertices.
+    pub fn fault(mesh: &Mesh) -> Option<MeshFault> {
+        let topology = mesh.primitive_topology();
+        let is_of_triangles = matches!(
+            topology,
+            PrimitiveTopology::TriangleList | PrimitiveTopology::TriangleStrip
+        );
+        match positions_of(mesh) {
+            Err(fault) => Some(fault),
+            Ok(_) if !is_of_triangles => Some(MeshFault::NotTriangles(topology)),
+            Ok(_) => None,
+        }
+    }
+
     /// Of this mesh, as it is now.
     pub fn of(mesh: &Mesh) -> Result<Self, MeshFault> {
-        // Said at once, and not when an edit asks for vertices that are gone by then.
-        if !mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD) {
-            return Err(MeshFault::Extracted);
-        }
-        let positions: Vec<Vec3> = match mesh.try_attribute(Mesh::ATTRIBUTE_POSITION) {
-            Ok(VertexAttributeValues::Float32x3(values)) => {
-                values.iter().copied().map(Vec3::from).collect()
-            }
-            Ok(_) | Err(MeshAccessError::NotFound) => return Err(MeshFault::NoPositions),
-            Err(MeshAccessError::ExtractedToRenderWorld) => return Err(MeshFault::Extracted),
-        };
+        let positions = positions_of(mesh)?;
+        let positions: Vec<Vec3> = positions.iter().copied().map(Vec3::from).collect();
         let count = positions.len();
         let indices = triangle_indices(mesh, count)?;
 

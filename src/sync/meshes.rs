@@ -1,3 +1,4 @@
+use super::mesh_copies::{self, MeshCopies};
 use super::mesh_data::{MeshCopy, MeshFault, trace_mesh};
 use super::posed::{PosedMesh, traced_mesh};
 use super::reading::Switched;
@@ -35,6 +36,8 @@ pub(super) struct TracedMeshes {
     ready: HashMap<AssetId<Mesh>, MeshResult>,
     /// What is being built, and whether it was edited since that began.
     building: HashMap<AssetId<Mesh>, bool>,
+    /// Those of them that are still being copied.
+    copies: MeshCopies,
     threads: Threads<Built>,
     /// Which mesh each object has.
     uses: Uses<AssetId<Mesh>>,
@@ -68,6 +71,55 @@ impl TracedMeshes {
                 ..self.wanted
             },
             Levels::Two => self.wanted,
+        }
+    }
+
+    /// Has a mesh's tree built where there is one: copied here where that takes no longer than what is `left` of the frame, or
+    /// where it `hurries`, else some of it in each frame.
+    fn build(&mut self, id: AssetId<Mesh>, assets: &Assets<Mesh>, hurries: bool, left: &mut usize) {
+        let options = self.mesh_options();
+        let mesh = assets.get(id).ok_or(MeshFault::Missing);
+        let cost = mesh.as_ref().map_or(0, |mesh| mesh_copies::cost(mesh));
+        let fault = |mesh: &Mesh| MeshCopy::fault(mesh).map_or(Ok(None), Err);
+        let copy = match mesh {
+            Ok(mesh) if cost > *left && !hurries => fault(mesh),
+            mesh => mesh.and_then(MeshCopy::of).map(Some),
+        };
+        match copy {
+            Ok(Some(copy)) => {
+                *left = left.saturating_sub(cost);
+                build_tree(&mut self.threads, id, options, move || Ok(copy));
+            }
+            Ok(None) => self.copies.begin(id),
+            Err(fault) => {
+                self.building.remove(&id);
+                self.ready.insert(id, Err(fault));
+                return;
+            }
+        }
+        self.building.insert(id, false);
+    }
+
+    /// Goes on with what is being copied, and gives to the threads what is complete. What was edited meanwhile is copied at
+    /// once: where one is edited in every frame none would ever be.
+    fn go_on_copying(&mut self, assets: &Assets<Mesh>, left: &mut usize) {
+        for id in self.copies.ids() {
+            if self.building.get(&id) == Some(&true) {
+                self.copies.forget(id);
+                self.build(id, assets, true, left);
+            }
+        }
+        let options = self.mesh_options();
+        while let Some((id, mesh)) = self.copies.go_on(|id| assets.get(id), left) {
+            match mesh {
+                Ok(mesh) => {
+                    build_tree(&mut self.threads, id, options, move || MeshCopy::of(&mesh));
+                }
+                Err(fault) => {
+                    self.building.remove(&id);
+                    self.ready.insert(id, Err(fault));
+                }
+            }
         }
     }
 
@@ -172,6 +224,14 @@ pub(super) fn sync_meshes(
         _ => None,
     });
     stale.extend(edited);
+    if at_once {
+        // What no thread has yet is built here.
+        for id in known.copies.ids() {
+            known.copies.forget(id);
+            known.building.remove(&id);
+            stale.insert(id);
+        }
+    }
     let built = if at_once {
         known.threads.finish(known.building.len())
     } else {
@@ -185,7 +245,8 @@ pub(super) fn sync_meshes(
             stale.extend(known.uses.things());
         }
     }
-    let nothing = dressed.is_empty() && stale.is_empty() && built.is_empty() && !rebuild;
+    let is_still = stale.is_empty() && built.is_empty() && known.copies.is_empty();
+    let nothing = dressed.is_empty() && is_still && !rebuild;
     if nothing {
         return;
     }
@@ -206,6 +267,9 @@ pub(super) fn sync_meshes(
         if !known.uses.is_used(id) {
             known.shown.remove(&id);
             known.ready.remove(&id);
+            if known.copies.forget(id) {
+                known.building.remove(&id);
+            }
             // Somebody may use it again before its tree is there.
             if let Some(edited) = known.building.get_mut(&id) {
                 *edited |= stale.contains(&id);
@@ -221,8 +285,8 @@ pub(super) fn sync_meshes(
             None => to_build.push(id),
         }
     }
-    let options = known.mesh_options();
     if at_once {
+        let options = known.mesh_options();
         let built = to_build.into_par_iter().map(|id| {
             let mesh = assets.get(id).ok_or(MeshFault::Missing);
             let mesh = mesh.and_then(|mesh| trace_mesh(mesh, &options));
@@ -230,17 +294,10 @@ pub(super) fn sync_meshes(
         });
         known.ready.extend(built.collect::<Vec<_>>());
     } else {
+        let mut left = mesh_copies::AT_ONCE;
+        known.go_on_copying(&assets, &mut left);
         for id in to_build {
-            let mesh = assets.get(id).ok_or(MeshFault::Missing);
-            match mesh.and_then(MeshCopy::of) {
-                Ok(copy) => {
-                    build_tree(&mut known.threads, id, copy, options);
-                    known.building.insert(id, false);
-                }
-                Err(fault) => {
-                    known.ready.insert(id, Err(fault));
-                }
-            }
+            known.build(id, &assets, false, &mut left);
         }
     }
     draft.changes.meshes |= known.show_ready();

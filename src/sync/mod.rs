@@ -37,6 +37,7 @@
     reason = "a system's parameters are the list of what it reads"
 )]
 
+mod ahead;
 mod cameras;
 mod conversions;
 mod cut_outs;
@@ -48,6 +49,7 @@ mod left_out;
 mod lights;
 mod material_data;
 mod materials;
+mod mesh_copies;
 mod mesh_data;
 mod meshes;
 mod motions;

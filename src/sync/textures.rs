@@ -1,3 +1,4 @@
+use super::ahead::{Ahead, Wanted};
 use super::conversions::{AT_ONCE, Conversions, TextureResult, convert, cost};
 use super::cut_outs::{self, CutOuts, Pair};
 use super::panorama::is_cube;
@@ -6,7 +7,9 @@ use super::texture_data::{Replaced, TextureFault};
 use super::traced::Draft;
 use super::tree_building::TreeBuilding;
 use super::uses::Uses;
-use crate::scene::{EnvironmentMap, PhongMap, PhongMaps, TextureSource};
+use crate::scene::{
+    Environment, EnvironmentMap, PhongMap, PhongMaps, RenderSettings, TextureSource,
+};
 use crate::trace::Texture;
 use bevy::asset::{AssetEvent, AssetId, Assets, RenderAssetUsages};
 use bevy::ecs::change_detection::DetectChanges;
@@ -26,6 +29,9 @@ pub(super) struct TracedTextures {
     by_asset: HashMap<AssetId<Image>, TextureResult>,
     conversions: Conversions,
     cut_outs: CutOuts,
+    ahead: Ahead,
+    /// What rays are going to ask of them for.
+    wanted: Wanted,
     /// The pictures of each material.
     uses: Uses<AssetId<Image>>,
     /// And which of them stands as alpha in which.
@@ -52,8 +58,30 @@ impl TracedTextures {
         Some(texture.as_ref().map_err(TextureFault::clone))
     }
 
+    /// Whether something is being made of a picture that was not wanted of it before.
+    pub fn is_being_prepared(&self, id: AssetId<Image>) -> bool {
+        self.ahead.is_awaited(id)
+    }
+
+    /// Begins with what is wanted of them and was not made where they were converted.
+    fn make_ahead(&mut self, wanted: Wanted) {
+        let is_new = std::mem::replace(&mut self.wanted, wanted) != wanted;
+        if is_new {
+            self.cut_outs.make_ahead(wanted);
+        }
+        for (id, texture) in &self.by_asset {
+            if let Ok(texture) = texture
+                && (is_new || self.news.contains(id))
+            {
+                let is_around = self.around == Some(*id);
+                self.ahead.begin(*id, &texture.texture, is_around, wanted);
+            }
+        }
+    }
+
     /// Takes a texture, or why there is none.
     fn take(&mut self, id: AssetId<Image>, texture: TextureResult) {
+        self.ahead.forget(id);
         self.by_asset.insert(id, texture);
         self.news.insert(id);
     }
@@ -84,7 +112,8 @@ impl TracedTextures {
         let both = pair.map(|id| Some(self.by_asset.get(&id)?.as_ref().ok()?.texture.clone()));
         match both {
             [Some(colors), Some(opacity)] if self.pairs.is_used(pair) => {
-                self.cut_outs.make(pair, [colors, opacity], left);
+                self.cut_outs
+                    .make(pair, [colors, opacity], self.wanted, left);
             }
             _ => self.cut_outs.forget(pair),
         }
@@ -122,7 +151,8 @@ pub(super) fn sync_textures(
     mut events: MessageReader<AssetEvent<Image>>,
     mut edited: Edited,
     users: Query<(Entity, &PhongMaps)>,
-    environment: Res<EnvironmentMap>,
+    environment: (Res<EnvironmentMap>, Res<Environment>),
+    settings: Res<RenderSettings>,
     building: Res<TreeBuilding>,
     assets: Res<Assets<Image>>,
     known: ResMut<TracedTextures>,
@@ -130,6 +160,8 @@ pub(super) fn sync_textures(
 ) {
     let known = known.into_inner();
     known.news.clear();
+    let (environment, sky) = environment;
+    let wanted = Wanted::of(&settings, &sky);
     let mut edited = edited.read();
     let mut touched = HashSet::new();
     let mut stale = HashSet::new();
@@ -176,6 +208,7 @@ pub(super) fn sync_textures(
     if at_once {
         // Nothing is waited for: what is under way is made here.
         stale.extend(known.conversions.pictures());
+        known.ahead.stop();
         let under_way = known.cut_outs.stop();
         known.news.extend(under_way.iter().map(|pair| pair[0]));
     } else {
@@ -189,12 +222,14 @@ pub(super) fn sync_textures(
             stale.extend(edited.then_some(id));
         }
     }
+    let ready = known.ahead.finished();
     touched.extend(&stale);
     let mut left = if at_once { usize::MAX } else { AT_ONCE };
     for id in touched {
         if !known.is_used(id) {
             known.by_asset.remove(&id);
             known.conversions.forget(id);
+            known.ahead.forget(id);
             continue;
         }
         if known.by_asset.contains_key(&id) && !stale.contains(&id) {
@@ -217,7 +252,12 @@ pub(super) fn sync_textures(
             known.conversions.begin(id, is_around);
         }
     }
-    known.conversions.go_on(&assets);
+    known.conversions.go_on(&assets, wanted);
+    if !at_once {
+        known.make_ahead(wanted);
+    }
+    // The environment waits for it.
+    (known.news).extend(ready.into_iter().filter(|id| known.around == Some(*id)));
     if !known.news.is_empty() {
         draft.changes.textures = true;
         let is_new = |pair: &[AssetId<Image>; 2]| pair.iter().any(|id| known.news.contains(id));
@@ -227,5 +267,5 @@ pub(super) fn sync_textures(
     for pair in pairs {
         known.cut_out_pair(pair, &mut left);
     }
-    draft.pending_textures = known.conversions.len() + known.cut_outs.len();
+    draft.pending_textures = known.conversions.len() + known.cut_outs.len() + known.ahead.len();
 }

@@ -144,7 +144,7 @@ pub(super) fn publish_snapshot(
             ..draft.changes
         };
         traced.problems = draft.problems.all();
-        traced.world = Arc::new(world.with_needs());
+        traced.world = Arc::new(world.with_needs_after(&traced.world));
         return;
     }
     let changes = std::mem::take(&mut draft.changes);
@@ -156,6 +156,6 @@ pub(super) fn publish_snapshot(
     traced.changes = changes;
     traced.problems = draft.problems.all();
     if changes.any_in_world() {
-        traced.world = Arc::new(draft.world.clone().with_needs());
+        traced.world = Arc::new(draft.world.clone().with_needs_after(&traced.world));
     }
 }

@@ -101,16 +101,16 @@ pub(super) struct Built {
     pub mesh: MeshResult,
 }
 
-/// Builds a mesh's tree: on one of the threads, or here where the system has none to give.
+/// Builds the tree of a mesh, copied there: on one of the threads, or here where the system has none to give.
 pub(super) fn build_tree(
     threads: &mut Threads<Built>,
     id: AssetId<Mesh>,
-    copy: MeshCopy,
     options: BuildOptions,
+    copy: impl FnOnce() -> Result<MeshCopy, MeshFault> + Send + 'static,
 ) {
     threads.run(move || {
         // A panic would be a bug; it must not take the app with it, nor keep it waiting.
-        let built = catch_unwind(AssertUnwindSafe(|| copy.build(&options)));
+        let built = catch_unwind(AssertUnwindSafe(|| copy()?.build(&options)));
         let broken = |_| Err(MeshFault::Broken("its tree could not be built".into()));
         let mesh = built.unwrap_or_else(broken).map(Arc::new);
         Built { id, options, mesh }

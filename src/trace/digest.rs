@@ -28,7 +28,9 @@ pub fn digest(world: &World, camera: &Camera, settings: &RenderSettings) -> Dige
     let mut hash = Hash::new();
     // Another version may compute other values from the same scene.
     hash.text(&env!("CARGO_PKG_VERSION"));
-    hash.text(camera);
+    let mut camera = camera.clone();
+    (camera.optics.lens_samples, camera.optics.motion_samples) = (0, 0);
+    hash.text(&camera);
     hash.text(&RenderSettings {
         spp: 0,
         // It asks for samples; of one sequence it also decides where they lie.
@@ -46,7 +48,9 @@ pub fn digest(world: &World, camera: &Camera, settings: &RenderSettings) -> Dige
         hash.object(object, instance, &mut meshes);
     }
     hash.text(&*world.materials);
-    hash.text(&*world.lights);
+    let mut lights = (*world.lights).clone();
+    lights.moving.iter_mut().for_each(|light| light.samples = 0);
+    hash.text(&lights);
     for texture in world.textures.iter() {
         hash.texture(texture);
     }
@@ -186,7 +190,7 @@ fn glam_words(vectors: &[glam::Vec3]) -> Vec<u32> {
 mod tests {
     use super::*;
     use crate::scene::Features;
-    use crate::trace::{Lights, Material, PointLight};
+    use crate::trace::{Lights, Material, MovingLight, PointLight};
     use glam::Vec3;
 
     fn world() -> World {
@@ -265,9 +269,26 @@ mod tests {
             ..settings.clone()
         };
         other.output.exposure = 2.0;
+        let mut seen = camera();
+        seen.optics.lens_samples += 7;
+        seen.optics.motion_samples += 7;
+        let moving = |samples| {
+            let lights = Lights {
+                moving: vec![MovingLight {
+                    id: 1,
+                    velocity: Vec3::X,
+                    samples,
+                }],
+                ..Lights::default()
+            };
+            World {
+                lights: Arc::new(lights),
+                ..world()
+            }
+        };
         assert_eq!(
-            digest(&world(), &camera(), &settings),
-            digest(&world(), &camera(), &other)
+            digest(&moving(1), &camera(), &settings),
+            digest(&moving(9), &seen, &other)
         );
     }
 }

@@ -21,6 +21,9 @@ use crate::bvh::{Hit, Order, Ray};
 use crate::scene::Lighting;
 use glam::Vec3;
 
+/// So many lights are asked before somebody looks whether to go on: some tenths of a millisecond.
+const LIGHTS_AT_ONCE: usize = 128;
+
 /// A light as it is asked for points.
 struct Asked<'a> {
     lamp: Lamp<'a>,
@@ -35,10 +38,14 @@ struct Asked<'a> {
 }
 
 impl<R: Recorder> Batch<'_, R> {
-    /// Adds what arrives at the vertices from the lights.
-    pub(super) fn add_direct_light(&mut self, vertices: &Vertices, shadow_rays: &mut ShadowRays) {
+    /// Adds what arrives at the vertices from the lights. False where it was stopped.
+    pub(super) fn add_direct_light(
+        &mut self,
+        vertices: &Vertices,
+        shadow_rays: &mut ShadowRays,
+    ) -> bool {
         if vertices.len() == 0 {
-            return;
+            return true;
         }
         let is_even =
             self.settings.lighting == Lighting::Classic || !self.settings.features.soft_shadows;
@@ -47,6 +54,9 @@ impl<R: Recorder> Batch<'_, R> {
         self.recall(vertices);
         let mut first = 0_u32;
         for (i, lamp) in self.world.lamps(self.settings).enumerate() {
+            if i % LIGHTS_AT_ONCE == LIGHTS_AT_ONCE - 1 && (self.stopped)() {
+                return false;
+            }
             let before = first;
             first = before.saturating_add(lamp.samples(self.settings).unwrap_or(1));
             let Some(row) = self.wanted.row(self.planes.of_light(i)) else {
@@ -63,6 +73,7 @@ impl<R: Recorder> Batch<'_, R> {
             self.gather(&asked, row, vertices, shadow_rays);
             self.add_arriving_light(row, shadow_rays);
         }
+        true
     }
 
     /// What a light's reflected radiance is multiplied by: the path's throughput times the surface's opacity, shared by
@@ -367,7 +378,7 @@ impl<R: Recorder> Batch<'_, R> {
         self.counts.shadow += rays.len() as u64;
         if self.settings.features.transparency && self.world.needs.transparency {
             let (world, settings) = (self.world, self.settings);
-            let through = |ray: usize, hit: &Hit| through(world, settings, &rays[ray], hit);
+            let through = |_: usize, hit: &Hit| through(world, settings, hit);
             (world.aggregate).transmittances_in(Order::Light, rays, through, passing);
             let passing = passing.get();
             for (shadow, &rank) in shadows.iter().zip(&*ranks) {
@@ -417,7 +428,12 @@ impl Asked<'_> {
     /// Whether the point of a question is.
     #[inline(always)]
     fn is_asked(&self, value: Vec3, chances: &[f32], question: usize) -> bool {
-        self.faint == 0.0 || chances[question] < self.chance(value)
+        if self.faint == 0.0 {
+            return true;
+        }
+        let chance = self.chance(value);
+        // A number tells no smaller chances.
+        chance >= f32::EPSILON && chances[question] < chance
     }
 
     /// The point that numbers choose for a surface at `from`, by itself.

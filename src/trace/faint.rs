@@ -238,7 +238,7 @@ mod tests {
             let bits = |color: Vec3| color.to_array().map(f32::to_bits);
             let probed = tree.samples[0].value;
             assert_eq!(bits(probed), bits(value), "{id:?}: {probed} and {value}");
-            assert_eq!(bits(tree.sum(0)), bits(value), "{id:?}");
+            assert_eq!(bits(tree.sums()[0]), bits(value), "{id:?}");
             let is_left_out = |end: RayEnd| usize::from(end == RayEnd::LeftOut);
             left_out += tree.rays.iter().map(|r| is_left_out(r.end)).sum::<usize>();
         }

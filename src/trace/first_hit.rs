@@ -100,24 +100,24 @@ pub fn first_surface(world: &World, settings: &RenderSettings, ray: &Ray, hit: H
     if !world.lets_light_through(&world.objects[hit.instance as usize]) {
         return Some(hit);
     }
-    let found = first_there(world, settings, Cone::default(), ray, hit, &mut ());
-    found.map(|(hit, _)| hit)
+    let opacity = |hit: &Hit| Surface::diffuse_and_opacity(world, settings, hit).1;
+    first_there(world, ray, hit, &mut (), opacity, |opacity| *opacity).map(|(hit, _)| hit)
 }
 
-fn first_there(
+/// Of what is there, what `look` says of it.
+fn first_there<T>(
     world: &World,
-    settings: &RenderSettings,
-    cone: Cone,
     ray: &Ray,
     hit: Hit,
     visitor: &mut impl Visitor,
-) -> Option<(Hit, Surface)> {
+    look: impl Fn(&Hit) -> T,
+    opacity: impl Fn(&T) -> f32,
+) -> Option<(Hit, T)> {
     let mut next = Some(hit);
     while let Some(hit) = next {
-        let depth = hit.t * ray.direction.length();
-        let surface = Surface::at(world, settings, ray, cone.width_at(depth), &hit);
-        if surface.opacity > 0.0 {
-            return Some((hit, surface));
+        let looked = look(&hit);
+        if opacity(&looked) > 0.0 {
+            return Some((hit, looked));
         }
         next = world.aggregate.next_crossing_with(ray, &hit, visitor);
     }
@@ -127,7 +127,12 @@ fn first_there(
 fn first_hit(world: &World, settings: &RenderSettings, cone: Cone, ray: &Ray) -> FirstHit {
     let mut cost = Counters::default();
     let hit = world.aggregate.closest_hit_with(ray, &mut cost);
-    let found = hit.and_then(|hit| first_there(world, settings, cone, ray, hit, &mut cost));
+    let look = |hit: &Hit| {
+        let depth = hit.t * ray.direction.length();
+        Surface::at(world, settings, ray, cone.width_at(depth), hit)
+    };
+    let opacity = |surface: &Surface| surface.opacity;
+    let found = hit.and_then(|hit| first_there(world, ray, hit, &mut cost, look, opacity));
     match found {
         Some((hit, surface)) => FirstHit {
             albedo: surface.diffuse,

@@ -1,6 +1,7 @@
 //! What multiplies the light of single lights besides their own colours: a mix, which changes no light.
 
 use super::World;
+use super::faint::faint;
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -23,7 +24,7 @@ impl Gains {
         self.0.is_empty()
     }
 
-    /// The world whose lights shine so by themselves.
+    /// The world whose lights shine so by themselves, and of which as many are asked for by chance as of lights so bright.
     pub fn applied(&self, world: &World) -> World {
         if self.is_neutral() {
             return world.clone();
@@ -35,10 +36,12 @@ impl Gains {
                 *color = times(*color, gain);
             }
         }
-        World {
+        let mut world = World {
             lights: Arc::new(lights),
             ..world.clone()
-        }
+        };
+        world.needs.faint = faint(&world);
+        world
     }
 }
 

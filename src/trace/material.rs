@@ -86,7 +86,7 @@ impl MaterialSet {
 
     /// With those of another one.
     #[must_use]
-    pub fn and(self, other: Self) -> Self {
+    pub fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 

@@ -83,6 +83,7 @@ mod transmittance;
 mod vectors;
 mod vertices;
 mod visibility;
+mod visible_lights;
 mod world;
 mod wrap;
 

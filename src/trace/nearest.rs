@@ -13,9 +13,13 @@ pub(super) struct Behind {
     others: Vec<u32>,
     rays: Vec<Ray>,
     hits: Vec<Option<Hit>>,
-    /// Of each sample the ray that went on last; none where none has gone on yet.
+    /// Of each ray that goes on, by [`Path::crossing`](super::paths::Path::crossing) and no more than [`MOST_CROSSING`]: those
+    /// share them.
     crossing: Vec<MultiHit>,
 }
+
+/// They are kept, each with what lies behind it.
+const MOST_CROSSING: usize = 1 << 13;
 
 impl Behind {
     /// A batch begins, perhaps in another world.
@@ -56,19 +60,20 @@ impl<R: Recorder> Batch<'_, R> {
         behind
             .rays
             .extend(behind.others.iter().map(|&i| paths.rays[i as usize]));
-        aggregate.closest_hits(&behind.rays, &mut behind.hits);
+        aggregate.closest_hits_in(self.order(paths), &behind.rays, &mut behind.hits);
         hits.clear();
         hits.resize(paths.rays.len(), None);
         for (&i, hit) in behind.others.iter().zip(&behind.hits) {
             hits[i as usize] = *hit;
         }
         let crossing = &mut behind.crossing;
-        if crossing.len() < self.samples.len() {
-            crossing.resize_with(self.samples.len(), MultiHit::default);
+        let count = (self.crossings as usize).min(MOST_CROSSING);
+        if crossing.len() < count {
+            crossing.resize_with(count, MultiHit::default);
         }
         for &i in &paths.straight {
             let (ray, path) = (&paths.rays[i as usize], &paths.states[i as usize]);
-            let crossing = &mut crossing[path.sample as usize];
+            let crossing = &mut crossing[path.crossing as usize % count];
             hits[i as usize] = (path.after)
                 .and_then(|after| crossing.next_crossing(aggregate, ray, &after, &mut ()));
         }

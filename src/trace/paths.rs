@@ -69,6 +69,8 @@ pub(super) struct Path {
     pub first: bool,
     /// A straight continuation behind this hit of the same ray, instead of a ray from its start.
     pub after: Option<Hit>,
+    /// Names the ray that goes straight on, hit after hit, among those of the batch, from 1 on; 0 before it does.
+    pub crossing: u32,
 }
 
 impl Path {
@@ -82,6 +84,7 @@ impl Path {
             scatterings: 0,
             first: true,
             after: None,
+            crossing: 0,
         }
     }
 }

@@ -152,16 +152,17 @@ impl Untinted {
 
     /// Takes the tints off the lights of a world that get a plane each ([`Planes::of`]). The tint of a light that is of one
     /// colour is that colour. Of one with a gradient it is a power of two, so that what is left of it is the same gradient,
-    /// digit for digit, and chooses the same places. A light that shares a plane shines with its gain by itself, and so does
-    /// each of many: how often one of those is asked for hangs on how bright it is.
+    /// digit for digit, and chooses the same places. What is very bright or very dim keeps a power of two to itself. A light that shares a plane shines with its gain by itself, and so does each of many: how often
+    /// one of those is asked for hangs on how bright it is, and they are many only where the gains leave many.
     pub fn of(world: &World, own: usize, first: &[u64], gains: &Gains) -> Self {
+        let needs = gains.applied(world).needs;
         let planes = Planes::of(&world.lights, own, first);
         let mut taken = vec![Vec3::ONE; planes.count()];
         let mut tints = taken.clone();
         let mut lights = (*world.lights).clone();
         let gains: Vec<Vec3> = lights.all().map(|light| gains.of(light.id())).collect();
         let is_tinted: Vec<bool> = (0..planes.count())
-            .map(|plane| world.needs.faint == 0.0 && planes.is_of_one(plane))
+            .map(|plane| needs.faint == 0.0 && planes.is_of_one(plane))
             .collect();
         for (light, colors) in lights.colors_mut().enumerate() {
             let (plane, gain) = (planes.of_light(light), gains[light]);
@@ -172,27 +173,51 @@ impl Untinted {
                 continue;
             }
             let first = colors[0];
+            let brightest = colors.iter().map(|color| color.max_element());
+            let octave = brightest.fold(0.0, f32::max).log2().floor();
+            let left = left_in_light(octave);
             let tint = if colors.iter().all(|color| *color == first) {
-                first
+                colors.fill(Vec3::splat(left));
+                first / left
             } else {
-                let brightest = colors.iter().map(|color| color.max_element());
-                Vec3::splat(brightest.fold(0.0, f32::max).log2().floor().exp2())
+                let tint = octave.exp2() / left;
+                for color in colors {
+                    *color /= tint;
+                }
+                Vec3::splat(tint)
             };
             taken[plane] = tint;
             tints[plane] = times(tint, gain);
-            for color in colors {
-                *color = Vec3::select(tint.cmpgt(Vec3::ZERO), *color / tint, Vec3::ONE);
-            }
         }
         Self {
             world: World {
                 lights: Arc::new(lights),
+                needs,
                 ..world.clone()
             },
             planes,
             colors: taken,
             tints,
         }
+    }
+}
+
+/// A light's plane is kept in numbers of the range that pictures have. So what a light adds
+/// there may be no more than some powers of two brighter or darker than in the picture.
+const MOST_TAKEN: f32 = 48.0;
+/// Powers of two that are left in a light, and what is left to be taken, are numbers that f32 has.
+const MOST_LEFT: f32 = 96.0;
+
+/// What stays of a colour in its light, a power of two: 1 of those between 2^-24 and 2^24, and steps as wide, so that a light
+/// that is edited is seldom another.
+fn left_in_light(octave: f32) -> f32 {
+    let steps = (octave / MOST_TAKEN).round();
+    let octaves = (MOST_TAKEN * steps).clamp(-MOST_LEFT, MOST_LEFT);
+    // Black has no octave.
+    if octave.is_finite() {
+        octaves.exp2()
+    } else {
+        1.0
     }
 }
 
@@ -210,5 +235,67 @@ impl Lights {
         (points.chain(directionals))
             .chain(segments)
             .chain(parallelograms)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trace::{PointLight, SegmentLight};
+
+    fn untinted(colors: &[Vec3]) -> Untinted {
+        let point = |(id, color): (u64, &Vec3)| PointLight {
+            id,
+            position: Vec3::ZERO,
+            color: *color,
+            cone: None,
+        };
+        let lights = Lights {
+            points: (0..).zip(colors).map(point).collect(),
+            segments: vec![SegmentLight {
+                id: 99,
+                ends: [Vec3::ZERO, Vec3::X],
+                colors: [Vec3::new(3e25, 1.0, 0.0), Vec3::ONE],
+                samples: 1,
+            }],
+            ..Lights::default()
+        };
+        let world = World {
+            lights: Arc::new(lights),
+            ..World::default()
+        };
+        Untinted::of(&world, 8, &[], &Gains::default())
+    }
+
+    #[test]
+    fn the_colours_of_usual_lights_are_taken_whole_and_of_others_what_leaves_a_usual_value() {
+        let usual = [
+            Vec3::ZERO,
+            Vec3::new(4e4, 0.0, 3.0),
+            Vec3::splat(4e-5),
+            Vec3::new(1.0, 1e-30, 0.0),
+        ];
+        let found = untinted(&usual);
+        for (plane, color) in (1..).zip(usual) {
+            assert_eq!(found.world.lights.points[plane - 1].color, Vec3::ONE);
+            assert_eq!(found.tints[plane], color);
+        }
+        let unusual = [Vec3::new(1e20, 1e3, 0.0), Vec3::splat(1e-12), Vec3::MAX];
+        let found = untinted(&unusual);
+        for (plane, color) in (1..).zip(unusual) {
+            let (light, tint) = (
+                found.world.lights.points[plane - 1].color,
+                found.tints[plane],
+            );
+            assert_eq!(light * tint, color);
+            assert!(light.x.log2().fract() == 0.0 && light == Vec3::splat(light.x));
+            assert!((5e-8..5e9).contains(&tint.x), "{color}: {tint}");
+        }
+        let [first, second] = found.world.lights.segments[0].colors;
+        let tint = found.tints[4];
+        assert_eq!(
+            [first * tint, second * tint],
+            [Vec3::new(3e25, 1.0, 0.0), Vec3::ONE]
+        );
     }
 }

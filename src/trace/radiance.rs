@@ -19,7 +19,8 @@ use super::recorder::{Adding, Recorder};
 use super::sampler::Sampler;
 use super::shadow_rays::ShadowRays;
 use super::vertices::Vertices;
-use super::{Camera, Cone, MaterialSet, ParallelogramLight, RayCounts, World};
+use super::visible_lights::VisibleLights;
+use super::{Camera, Cone, MaterialSet, RayCounts, World};
 use crate::bvh::{Hit, Ray};
 use crate::scene::{Lighting, RenderSettings};
 use glam::{UVec2, Vec3};
@@ -46,6 +47,7 @@ pub struct Workspace {
     /// Of later bounces than the camera's.
     hits: Vec<Option<Hit>>,
     behind: Behind,
+    visible_lights: VisibleLights,
     vertices: Vertices,
     shadow_rays: ShadowRays,
 }
@@ -82,7 +84,7 @@ pub fn radiance(
 
 /// The same kept apart: `values` holds the samples' values in the first plane that is `wanted`, then those in the next, and
 /// so on. Lights whose planes are not wanted are not asked. `None` where `stopped` said so, which is asked after every bounce
-/// and every surface that paths go through: the values mean nothing then.
+/// and every surface that paths go through, and now and then among many lights: the values mean nothing then.
 ///
 /// # Panics
 /// If there is not exactly one value for each sample and wanted plane.
@@ -162,6 +164,7 @@ fn evaluate<R: Recorder>(
         known,
         hits,
         behind,
+        visible_lights,
         vertices,
         shadow_rays,
     } = workspace;
@@ -184,17 +187,23 @@ fn evaluate<R: Recorder>(
         counts: RayCounts::default(),
         known: known_now,
         recorder,
+        stopped,
+        crossings: 0,
     };
     for ray in &paths.rays {
         batch.recorder.camera_ray(ray);
     }
     behind.begin();
+    if batch.lights_are_visible() {
+        visible_lights.of(&world.lights);
+    }
     while !paths.rays.is_empty() {
         batch.find_hits(paths, hits_now, behind);
         next.clear();
-        batch.find_vertices(paths, cone, hits_now, vertices);
-        if settings.features.shading {
-            batch.add_direct_light(vertices, shadow_rays);
+        batch.find_vertices(paths, cone, hits_now, visible_lights, vertices);
+        if settings.features.shading && !batch.add_direct_light(vertices, shadow_rays) {
+            known.forget();
+            return None;
         }
         batch.continue_paths(vertices, paths, next);
         std::mem::swap(paths, next);
@@ -225,6 +234,9 @@ pub(super) struct Batch<'a, R> {
     pub counts: RayCounts,
     pub known: KnownNow<'a>,
     pub recorder: &'a mut R,
+    pub stopped: &'a dyn Fn() -> bool,
+    /// How many rays have gone straight on behind a hit.
+    pub crossings: u32,
 }
 
 impl<R: Recorder> Batch<'_, R> {
@@ -244,12 +256,11 @@ impl<R: Recorder> Batch<'_, R> {
         paths: &Paths,
         cone: Cone,
         hits: &[Option<Hit>],
+        visible: &mut VisibleLights,
         vertices: &mut Vertices,
     ) {
         vertices.clear(cone);
-        // Classic lights are nowhere to be seen, as in simple Phong ray tracers.
-        let lights_are_visible =
-            self.world.needs.visible_lights && self.settings.lighting == Lighting::Physical;
+        let lights_are_visible = self.lights_are_visible();
         if !lights_are_visible && paths.states.is_empty() {
             // Most rays of most pictures.
             for (i, (ray, hit)) in paths.rays.iter().zip(hits).enumerate() {
@@ -263,7 +274,7 @@ impl<R: Recorder> Batch<'_, R> {
                 }
             }
         } else {
-            self.sort_hits(paths, cone, hits, lights_are_visible, vertices);
+            self.sort_hits(paths, cone, hits, lights_are_visible, visible, vertices);
         }
         vertices.look_up(self.world, self.settings, &paths.rays);
         if R::LISTENS {
@@ -279,6 +290,11 @@ impl<R: Recorder> Batch<'_, R> {
         }
     }
 
+    /// Whether rays meet lights. Classic lights are nowhere to be seen, as in simple Phong ray tracers.
+    fn lights_are_visible(&self) -> bool {
+        self.world.needs.visible_lights && self.settings.lighting == Lighting::Physical
+    }
+
     /// Whether what shines by itself is asked for. While a light is edited it is there already.
     fn wants_own(&self) -> bool {
         self.wanted.has(OWN)
@@ -291,13 +307,15 @@ impl<R: Recorder> Batch<'_, R> {
         cone: Cone,
         hits: &[Option<Hit>],
         lights_are_visible: bool,
+        visible: &mut VisibleLights,
         vertices: &mut Vertices,
     ) {
         for (i, (ray, hit)) in paths.rays.iter().zip(hits).enumerate() {
             let number = i as u32;
             let path = paths.get(i, cone);
             if lights_are_visible
-                && let Some((i, t, light)) = self.visible_light(&path, ray, hit.as_ref())
+                && let Some((i, t, light)) =
+                    self.visible_light(&path, ray, hit.as_ref(), visible.near(ray))
             {
                 let lights = &self.world.lights;
                 self.recorder
@@ -363,20 +381,21 @@ impl<R: Recorder> Batch<'_, R> {
         }
     }
 
-    /// The nearest visible light that a path's ray meets before its hit: its number among the parallelograms, where, and
-    /// its radiance.
+    /// The nearest light that a path's ray meets before its hit, of those that are visible: its number among the
+    /// parallelograms, where, and its radiance.
     fn visible_light(
         &self,
         path: &Path,
         ray: &Ray,
         hit: Option<&Hit>,
+        visible: &[u32],
     ) -> Option<(usize, f32, Vec3)> {
         let behind = path.after.map_or(0.0, |hit| hit.t);
         let mut nearest = hit.map_or(f32::INFINITY, |hit| hit.t * LIGHT_BEFORE_SURFACE);
         let mut met = None;
         let lights = &self.world.lights;
-        let visible = |(_, light): &(usize, &ParallelogramLight)| light.visible;
-        for (i, light) in lights.parallelograms.iter().enumerate().filter(visible) {
+        for i in visible.iter().map(|number| *number as usize) {
+            let light = &lights.parallelograms[i];
             let origin = lights.in_rest_frame(light.id, ray.origin, ray.time);
             if let Some((t, radiance)) = light.meet(origin, ray.direction)
                 && t > behind

@@ -295,13 +295,14 @@ impl From<Counters> for RayCost {
 }
 
 impl RayTree {
-    /// What the rays of a sample added, in the order in which they added it: the sample's value, bit
-    /// for bit. `sample` is an index into [`Self::samples`].
-    pub fn sum(&self, sample: u32) -> Vec3 {
-        let of_sample = |ray: &&TracedRay| ray.sample == sample;
-        let rays = self.order.iter().map(|&ray| &self.rays[ray as usize]);
-        rays.filter(of_sample)
-            .fold(Vec3::ZERO, |sum, ray| sum + ray.added)
+    /// What the rays of each sample added, in the order in which they added it: the sample's value, bit for bit. In the order
+    /// of [`Self::samples`].
+    pub fn sums(&self) -> Vec<Vec3> {
+        let mut sums = vec![Vec3::ZERO; self.samples.len()];
+        for ray in self.order.iter().map(|&ray| &self.rays[ray as usize]) {
+            sums[ray.sample as usize] += ray.added;
+        }
+        sums
     }
 
     /// The mean of the samples' values.
@@ -343,7 +344,7 @@ impl RayTree {
             let occluded = aggregate.occluded_with(&ray, visitor);
             return aggregate.closest_hit(&ray).filter(|_| occluded);
         }
-        let through = |hit: &Hit| through(world, settings, &ray, hit);
+        let through = |hit: &Hit| through(world, settings, hit);
         if aggregate.transmittance_with(&ray, through, visitor) != Vec3::ZERO {
             return None;
         }

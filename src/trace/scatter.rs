@@ -147,6 +147,7 @@ impl<R: Recorder> Batch<'_, R> {
                 bounces: path.bounces + 1,
                 first: false,
                 after: None,
+                crossing: 0,
                 ..*path
             };
             let way = if glossy { Way::Gloss } else { Way::Mirror };
@@ -201,6 +202,7 @@ impl<R: Recorder> Batch<'_, R> {
                 scatterings: path.scatterings + 1,
                 first: false,
                 after: None,
+                crossing: 0,
                 ..*path
             };
             let ray = spawned(origin, direction, vertex);
@@ -217,12 +219,16 @@ impl<R: Recorder> Batch<'_, R> {
         &mut self,
         from: &Departure,
         ray: Ray,
-        path: Path,
+        mut path: Path,
         way: Way,
         count: u32,
         weight: f32,
         next: &mut Paths,
     ) {
+        if path.after.is_some() && path.crossing == 0 {
+            self.crossings += 1;
+            path.crossing = self.crossings;
+        }
         (self.recorder).continued(from.number, &ray, &path, way, count, weight);
         next.push(ray, path);
     }

@@ -1,5 +1,5 @@
 use super::footprint::texture_footprint;
-use super::{Material, Object, Reading, World, normal_map};
+use super::{Map, Material, Object, Reading, Texture, World, normal_map};
 use crate::bvh::{Hit, Placement, Ray, SurfacePoint, TriangleId};
 use crate::scene::{Alpha, Lighting, PhongMap, RenderSettings, TextureFilter};
 use glam::{Vec2, Vec3, Vec4};
@@ -49,7 +49,75 @@ struct Textured {
     tangent: Option<Vec4>,
 }
 
+/// Where maps are read, and how.
+struct Looked<'a> {
+    world: &'a World,
+    settings: &'a RenderSettings,
+    uv: Vec2,
+    /// As [`Texture::sample`](super::Texture::sample) has it.
+    footprint: f32,
+}
+
+impl Looked<'_> {
+    fn reading(&self, map: &Map) -> (&Texture, Reading) {
+        let reading = Reading {
+            filter: map.filter.with(self.settings.texture_filter),
+            wrap: map.wrap,
+        };
+        (&self.world.textures[map.texture as usize], reading)
+    }
+
+    fn color(&self, map: &Map) -> Vec3 {
+        let (texture, reading) = self.reading(map);
+        let raw = self.settings.lighting == Lighting::Classic;
+        if map.is_cut_out {
+            texture.sample_cut_out(self.uv, self.footprint, reading, raw)
+        } else {
+            texture.sample(self.uv, self.footprint, reading, raw)
+        }
+    }
+
+    fn opacity(&self, map: &Map) -> f32 {
+        let (texture, reading) = self.reading(map);
+        texture.opacity(self.uv, self.footprint, reading)
+    }
+
+    fn normal(&self, map: &Map) -> Vec3 {
+        let (texture, reading) = self.reading(map);
+        texture.sample(self.uv, self.footprint, reading, true)
+    }
+}
+
+/// How much each corner counts at a hit.
+#[inline(always)]
+fn weights(hit: &Hit) -> [f32; 3] {
+    [1.0 - hit.u - hit.v, hit.u, hit.v]
+}
+
+/// Between those of the corners.
+fn place_in_maps(uvs: [Vec2; 3], hit: &Hit) -> Vec2 {
+    let weights = weights(hit);
+    (0..3).map(|i| weights[i] * uvs[i]).sum()
+}
+
 impl Object {
+    /// The vertices' colour at a hit, and their alpha where they have one; `None` where they have no colours.
+    fn vertex_color(&self, hit: &Hit) -> Option<(Vec3, Option<f32>)> {
+        let mesh = &self.mesh;
+        if mesh.colors.is_empty() {
+            return None;
+        }
+        let corners = self.corners(hit);
+        let weights = weights(hit);
+        let [a, b, c] = corners.map(|corner| mesh.colors[corner as usize]);
+        let color = weights[0] * a + weights[1] * b + weights[2] * c;
+        let alpha = (!mesh.alphas.is_empty()).then(|| {
+            let [a, b, c] = corners.map(|corner| mesh.alphas[corner as usize]);
+            weights[0] * a + weights[1] * b + weights[2] * c
+        });
+        Some((color, alpha))
+    }
+
     /// The vertices of the triangle of a hit on it.
     #[inline(always)]
     pub(super) fn corners(&self, hit: &Hit) -> [u32; 3] {
@@ -177,6 +245,43 @@ impl Surface {
         surface
     }
 
+    /// kd and d of a hit alone, as [`Self::at`] has them by the finest texels: what a shadow ray asks of what it crosses.
+    pub(super) fn diffuse_and_opacity(
+        world: &World,
+        settings: &RenderSettings,
+        hit: &Hit,
+    ) -> (Vec3, f32) {
+        let object = &world.objects[hit.instance as usize];
+        let material = &world.materials[object.material as usize];
+        let (mut diffuse, mut opacity) = (material.diffuse, material.opacity);
+        let mesh = &object.mesh;
+        if let Some((color, alpha)) = object.vertex_color(hit) {
+            diffuse *= color;
+            if let Some(alpha) = alpha {
+                opacity = (opacity * alpha).clamp(0.0, 1.0);
+            }
+        }
+        if !material.maps.is_empty() && settings.features.textures && !mesh.uvs.is_empty() {
+            let uvs = object.corners(hit).map(|corner| mesh.uvs[corner as usize]);
+            let looked = Looked {
+                world,
+                uv: place_in_maps(uvs, hit),
+                footprint: 0.0,
+                settings,
+            };
+            for map in &material.maps {
+                match map.of {
+                    PhongMap::Diffuse => diffuse *= looked.color(map),
+                    PhongMap::Opacity => {
+                        opacity = (opacity * looked.opacity(map)).clamp(0.0, 1.0);
+                    }
+                    _ => {}
+                }
+            }
+        }
+        (diffuse, cut_opacity(opacity, material.alpha, settings))
+    }
+
     /// Multiplies what differs over the object: the vertices' colours and the material's maps.
     pub(super) fn vary(
         &mut self,
@@ -191,18 +296,14 @@ impl Surface {
         let material = &world.materials[object.material as usize];
         let mesh = &object.mesh;
         let corners = object.corners(hit);
-        let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
-        if !mesh.colors.is_empty() {
-            let [a, b, c] = corners.map(|corner| mesh.colors[corner as usize]);
-            let color = weights[0] * a + weights[1] * b + weights[2] * c;
+        let weights = weights(hit);
+        if let Some((color, alpha)) = object.vertex_color(hit) {
             self.diffuse *= color;
             // What has no body shows its colours by itself, as unlit models do.
             if material.diffuse == Vec3::ZERO {
                 self.emission *= color;
             }
-            if !mesh.alphas.is_empty() {
-                let [a, b, c] = corners.map(|corner| mesh.alphas[corner as usize]);
-                let alpha = weights[0] * a + weights[1] * b + weights[2] * c;
+            if let Some(alpha) = alpha {
                 self.opacity = (self.opacity * alpha).clamp(0.0, 1.0);
             }
         }
@@ -219,7 +320,7 @@ impl Surface {
             let triangle = Textured {
                 edges: [b - a, c - a].map(|edge| instance.to_world_vector(edge)),
                 uvs,
-                uv: (0..3).map(|i| weights[i] * uvs[i]).sum(),
+                uv: place_in_maps(uvs, hit),
                 width,
                 is_turned,
                 tangent,
@@ -244,32 +345,24 @@ impl Surface {
         } else {
             0.0
         };
-        let raw = settings.lighting == Lighting::Classic;
+        let looked = Looked {
+            world,
+            uv,
+            footprint,
+            settings,
+        };
         for map in &material.maps {
-            let texture = &world.textures[map.texture as usize];
-            let reading = Reading {
-                filter: map.filter.with(setting),
-                wrap: map.wrap,
-            };
-            let color = || {
-                if map.is_cut_out {
-                    texture.sample_cut_out(uv, footprint, reading, raw)
-                } else {
-                    texture.sample(uv, footprint, reading, raw)
-                }
-            };
             match map.of {
-                PhongMap::Diffuse => self.diffuse *= color(),
-                PhongMap::Specular => self.specular *= color(),
-                PhongMap::Mirror => self.mirror *= color(),
-                PhongMap::Emission => self.emission *= color(),
+                PhongMap::Diffuse => self.diffuse *= looked.color(map),
+                PhongMap::Specular => self.specular *= looked.color(map),
+                PhongMap::Mirror => self.mirror *= looked.color(map),
+                PhongMap::Emission => self.emission *= looked.color(map),
                 PhongMap::Opacity => {
-                    let map = texture.opacity(uv, footprint, reading);
                     // A picture of floats may leave the range, and light would be negative.
-                    self.opacity = (self.opacity * map).clamp(0.0, 1.0);
+                    self.opacity = (self.opacity * looked.opacity(map)).clamp(0.0, 1.0);
                 }
                 PhongMap::Normal => {
-                    let texel = texture.sample(uv, footprint, reading, true);
+                    let texel = looked.normal(map);
                     self.bend_normal(texel, material.normal_scale, triangle);
                 }
             }

@@ -134,11 +134,33 @@ impl Texture {
         })
     }
 
-    /// Has all made now that a lighting environment needs of this map, equirectangular: some tenths of a second of a large
-    /// one. Else whoever needs it first waits for it.
-    pub fn prepare_as_environment(&self) {
+    /// Has all made now that an environment needs of this map, equirectangular; of one that lights some tenths of a second
+    /// where it is large. Else whoever needs it first waits for it.
+    pub fn prepare_as_environment(&self, lights: bool) {
         self.brightest();
-        self.dome_table();
+        if lights {
+            self.dome_table();
+        }
+    }
+
+    /// Whether what a lighting environment needs was made.
+    pub fn has_dome_table(&self) -> bool {
+        self.dome_table.get().is_some()
+    }
+
+    /// Has the smaller copies made now that mipmaps are read from. Else whoever needs them first waits for them.
+    pub fn prepare_levels(&self) {
+        self.plain_levels();
+    }
+
+    /// The same of a map of colours that is cut out.
+    pub fn prepare_cut_out_levels(&self) {
+        self.cut_out_levels();
+    }
+
+    /// Whether smaller copies were made, of some kind.
+    pub fn has_levels(&self) -> bool {
+        self.levels.get().is_some() || self.cut_out_levels.get().is_some()
     }
 
     /// Where light comes from around an equirectangular map; `None` of one that is the same everywhere.

@@ -54,6 +54,8 @@ pub(super) struct Vertices {
 struct Gathered<const N: usize> {
     /// Of the triangle, in the mesh.
     corners: [[[f32; N]; 3]; 3],
+    /// What its narrowest wedge asks for.
+    wedge: [f32; N],
     normals: [[[f32; N]; 3]; 3],
     uv: [[f32; N]; 2],
     /// Of the ray.
@@ -251,6 +253,7 @@ impl Vertices {
                         set_column(&mut gathered.normals[k], lane, normals[corner as usize]);
                     }
                 }
+                gathered.wedge[lane] = instance.mesh.wedge_of(hit.triangle);
                 gathered.uv[0][lane] = hit.u;
                 gathered.uv[1][lane] = hit.v;
                 let ray = &rays[self.numbers[start + lane] as usize];
@@ -295,6 +298,7 @@ impl<const N: usize> Gathered<N> {
     fn nothing() -> Self {
         Self {
             corners: [[[0.0; N]; 3]; 3],
+            wedge: [0.0; N],
             normals: [[[0.0; N]; 3]; 3],
             uv: [[0.0; N]; 2],
             direction: [[0.0; N]; 3],
@@ -362,7 +366,7 @@ fn find<const IDENTITY: bool, const SMOOTH: bool, const N: usize>(
             column_vector(c, i),
         ];
         let uv = [gathered.uv[0][i], gathered.uv[1][i]];
-        let placed = placement.of_hit(corners, uv, gathered.time[i]);
+        let placed = placement.of_hit(corners, gathered.wedge[i], uv, gathered.time[i]);
         let direction = column_vector(&gathered.direction, i);
         let to_viewer = -(direction * (1.0 / direction.length()));
         let mut normal = placed.normal;

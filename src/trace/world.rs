@@ -28,7 +28,13 @@ pub struct World {
 impl World {
     /// This world with its needs looked up: the last step of putting one together.
     pub fn with_needs(mut self) -> Self {
-        self.needs = Needs::of(&self);
+        self.needs = Needs::of(&self, None);
+        self
+    }
+
+    /// The same where it is that world edited: what both share is not looked through again where that takes long.
+    pub fn with_needs_after(mut self, before: &Self) -> Self {
+        self.needs = Needs::of(&self, Some(before));
         self
     }
 }

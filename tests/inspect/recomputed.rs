@@ -310,7 +310,7 @@ fn check(scene: &Scene, name: &str, count: usize) -> f64 {
         let rays = probe(world, camera, settings, pixel, &Samples::One(index)).unwrap();
         let value = rays.samples[0].value;
         assert_eq!(
-            rays.sum(0),
+            rays.sums()[0],
             value,
             "{name}: the rays of sample {index} of {pixel}"
         );

@@ -1,10 +1,12 @@
 use super::super::engine::{Engine, Mode};
+use super::super::preview::Preview;
 use super::super::subject::Subject;
 use super::super::test_scene::{camera, edited, lit, many, repainted, settings};
-use super::super::{Ending, Progressive, Snapshot, lock};
-use crate::trace::{Gains, Lights, PointLight, Untinted, World};
+use super::super::{Ending, LightMix, Progressive, Snapshot, lock};
+use crate::trace::{Gains, Lights, PlaneSet, PointLight, Untinted, World};
 use glam::{UVec2, Vec3};
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 const SIZE: UVec2 = UVec2::new(37, 22);
 
@@ -432,4 +434,117 @@ fn a_light_that_is_set_apart_from_many_is_no_reason_to_begin_anew() {
         rays.push(engine.status().rays.total() - before);
     }
     assert!(4 * rays[1] < rays[0], "{rays:?}");
+}
+
+/// Of which some tiles show a material, and some do not.
+const LARGER: UVec2 = UVec2::new(96, 54);
+
+/// A render that somebody watches and that is complete, on this thread.
+fn complete(world: &World, spp: u32) -> Engine {
+    let mode = Mode {
+        watched: true,
+        samples: 0..spp.into(),
+        region: None,
+    };
+    let subject = Subject::new(world.clone(), camera(), settings(LARGER, spp), true);
+    let engine = Engine::new(subject, mode, None);
+    engine.run(&|_| {});
+    engine
+}
+
+#[test]
+fn tiles_of_another_material_have_a_sample_before_other_lights_have_more_than_one() {
+    let world = lit();
+    let engine = complete(&world, 16);
+    let moved = edited(&world, |lights| lights.points[0].position.x += 0.1);
+    let now = repainted(&moved, 1, Vec3::X);
+    assert!(engine.edit(now.clone(), &Gains::default()));
+    engine.take_edit();
+    let is_empty = |tile: &&u32| !lock(&engine.tiles[**tile as usize]).has_samples();
+    let emptied: Vec<u32> = engine.rendered.iter().filter(is_empty).copied().collect();
+    assert!(!emptied.is_empty() && emptied.len() < engine.rendered.len());
+    let chunks = engine.next_pass().unwrap();
+    assert!(chunks.iter().all(|chunk| chunk.range == (0..1)));
+    for tile in emptied {
+        let chunk = chunks.iter().find(|chunk| chunk.tile == tile);
+        assert_eq!(chunk.map(|chunk| chunk.planes), Some(PlaneSet::ALL));
+    }
+    engine.run(&|_| {});
+    let fresh = Progressive::start(now, camera(), settings(LARGER, 16)).unwrap();
+    fresh.wait();
+    assert_eq!(engine.picture(), fresh.snapshot().picture);
+}
+
+#[test]
+fn a_coarse_picture_begins_anew_where_a_light_has_another_colour() {
+    let world = lit();
+    let engine = complete(&world, 2);
+    lock(&engine.speed).seconds_a_sample = Some(10.0);
+    let moved = edited(&world, |lights| lights.points[0].position.x += 0.1);
+    assert!(engine.edit(moved.clone(), &Gains::default()));
+    engine.take_edit();
+    engine.begins_coarse.store(false, Ordering::Relaxed);
+    // It is seen by now.
+    let preview = Preview::new(engine.area);
+    preview.begin(8);
+    preview.take(&[UVec2::new(8, 8)], &[Vec3::ONE]);
+    *lock(&engine.preview) = Some(Arc::new(preview));
+    let tinted = edited(&moved, |lights| lights.points[0].color *= 3.0);
+    assert!(engine.edit(tinted.clone(), &Gains::default()));
+    engine.take_edit();
+    assert!(lock(&engine.preview).is_none());
+    assert!(engine.begins_coarse.load(Ordering::Relaxed));
+    engine.run(&|_| {});
+    // Where none is seen another colour is there at once.
+    let before = engine.status().rays;
+    let again = edited(&tinted, |lights| lights.points[0].color *= 0.5);
+    assert!(engine.edit(again.clone(), &Gains::default()));
+    assert!(!engine.edit_waits.load(Ordering::Relaxed));
+    assert_eq!(engine.status().rays, before);
+    let fresh = Progressive::start(again, camera(), settings(LARGER, 2)).unwrap();
+    fresh.wait();
+    assert_eq!(engine.picture(), fresh.snapshot().picture);
+}
+
+#[test]
+fn a_faint_light_of_many_has_all_its_rays_where_it_shines_alone() {
+    let mut world = many(1..101);
+    world = edited(&world, |lights| lights.points[70].color *= 1e-3);
+    let solo: Gains = world
+        .lights
+        .all()
+        .map(|lamp| (lamp.id(), Vec3::ZERO))
+        .filter(|(id, _)| *id != 71)
+        .collect();
+    assert!(world.needs.faint > 0.0);
+    assert_eq!(solo.applied(&world).needs.faint, 0.0);
+    let subject = Subject::new(world.clone(), camera(), settings(SIZE, 1), true);
+    // Which of the others are asked for is another question then.
+    assert!(super::Edit::between(&subject, world.clone(), &solo).is_none());
+    let mix = LightMix {
+        apart: true,
+        gains: solo.clone(),
+    };
+    let alone = Subject::mixed(world.clone(), camera(), settings(SIZE, 1), Vec::new(), &mix);
+    assert_eq!(alone.light.world.needs.faint, 0.0);
+    let edit = super::Edit::between(&alone, world, &solo).unwrap();
+    assert!(!edit.needs_rays());
+}
+
+#[test]
+fn what_a_very_bright_light_far_away_adds_stays_in_the_range_of_its_plane() {
+    let far = edited(&lit(), |lights| {
+        lights.points[0].position = Vec3::new(3e9, 1e10, 1e9);
+        lights.points[0].color = Vec3::new(1e20, 2e19, 0.0);
+    });
+    let render = start(&far, 1);
+    render.wait();
+    let apart = render.film().picture();
+    let file = crate::film::render(&far, &camera(), &settings(SIZE, 1), &|_, _| {});
+    let file = file.film.picture();
+    for (one, other) in apart.pixels.iter().zip(&file.pixels) {
+        let allowed = 1e-5 * other.max(Vec3::splat(1e-6));
+        let is_near = (*one - *other).abs().cmple(allowed);
+        assert!(is_near.all(), "{one} {other}");
+    }
 }

@@ -128,3 +128,38 @@ fn the_sums_of_a_chunk_are_those_of_its_samples_one_by_one_whatever_a_batch_hold
         }
     }
 }
+
+#[test]
+fn among_many_lights_a_batch_is_of_some_samples_and_stops_between_lights() {
+    let settings = test_scene::settings(UVec2::new(16, 16), 1);
+    let world = test_scene::many(1..2001);
+    let subject = Subject::new(world, test_scene::camera(), settings, false);
+    let (tile, chunk) = whole_tile(&subject, 1);
+    let batch = BatchSize::new(&subject);
+    assert_eq!(batch.get(), LEAST_OF_MANY_LIGHTS);
+    batch.learn(LEAST_OF_MANY_LIGHTS, LONG + LONG);
+    assert_eq!(batch.get(), LEAST_OF_MANY_LIGHTS);
+    let asked = Cell::new(0);
+    let work = Work {
+        subject: &subject,
+        batch: &batch,
+        kept: None,
+        stopped: &|| {
+            asked.set(asked.get() + 1);
+            true
+        },
+    };
+    let mut scratch = Scratch::default();
+    let taken = scratch.take_samples(
+        &work,
+        tile.origin,
+        &BatchPlaces {
+            tile: 0,
+            places: &tile.places(Pixels::All).collect::<Vec<_>>(),
+            indices: 0..1,
+            by_place: false,
+        },
+        chunk.planes,
+    );
+    assert_eq!((taken, asked.get()), (None, 1));
+}

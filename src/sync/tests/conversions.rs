@@ -2,7 +2,9 @@
 
 use super::background::{pending, until};
 use super::*;
-use crate::scene::{EnvironmentMap, PhongMap, PhongMaps};
+use crate::scene::{
+    Environment, EnvironmentMap, PhongMap, PhongMaps, RenderSettings, TextureFilter,
+};
 use crate::sync::finish;
 use crate::trace::Texture;
 
@@ -156,4 +158,52 @@ fn a_picture_that_goes_while_it_is_converted_is_missing_and_one_that_nobody_uses
     small.app.update();
     until(&mut small.app, |app| pending(app) == 0);
     assert_eq!(map(&small.app), Some(2.0));
+}
+
+/// The texture of the first object's colour.
+fn map_texture(app: &App) -> Option<Arc<Texture>> {
+    let world = world(app);
+    let material = &world.materials[world.objects[0].material as usize];
+    let map = material.map(PhongMap::Diffuse)?;
+    Some(world.textures[map.texture as usize].clone())
+}
+
+#[test]
+fn smaller_copies_are_made_behind_the_frames_where_mipmaps_are_read_and_nowhere_else() {
+    let mut small = background();
+    let picture = add(&mut small.app, large(1, 0.3));
+    paint(&mut small, &picture);
+    until(&mut small.app, |app| {
+        map(app) == Some(0.3) && pending(app) == 0
+    });
+    assert!(!map_texture(&small.app).unwrap().has_levels());
+    let mut settings = (small.app.world_mut()).resource_mut::<RenderSettings>();
+    settings.texture_filter = TextureFilter::Mipmap;
+    small.app.update();
+    until(&mut small.app, |app| pending(app) == 0);
+    assert!(map_texture(&small.app).unwrap().has_levels());
+    // One that comes now has them when it is seen.
+    let other = add(&mut small.app, large(1, 0.6));
+    paint(&mut small, &other);
+    until(&mut small.app, |app| map(app) == Some(0.6));
+    assert!(map_texture(&small.app).unwrap().has_levels());
+}
+
+#[test]
+fn where_a_sky_is_bright_is_found_out_behind_the_frames_when_it_is_to_light() {
+    let mut small = background();
+    let sky = add(&mut small.app, large(1, 0.3));
+    small.app.insert_resource(EnvironmentMap(Some(sky)));
+    until(&mut small.app, |app| {
+        around(app).is_some() && pending(app) == 0
+    });
+    assert!(!around(&small.app).unwrap().has_dome_table());
+    let lights = |app: &App| world(app).environment.lights;
+    let mut environment = small.app.world_mut().resource_mut::<Environment>();
+    environment.lights = true;
+    small.app.update();
+    assert!(!lights(&small.app), "not before it is there");
+    until(&mut small.app, lights);
+    assert!(around(&small.app).unwrap().has_dome_table());
+    assert_eq!(pending(&small.app), 0);
 }

@@ -136,6 +136,7 @@ fn a_write_that_changes_nothing_redoes_nothing_of_the_geometry() {
     let before = world(&small.app);
     small.edit::<Transform>(small.objects[0], |t| t.translation.x += 0.0);
     small.edit::<Phong>(small.objects[0], |phong| phong.opacity = 1.0);
+    small.edit::<Transform>(small.light, |t| t.translation.x += 0.0);
     assert_eq!(frame(&mut small.app), Changes::default());
     assert!(Arc::ptr_eq(&before, &world(&small.app)));
 }
