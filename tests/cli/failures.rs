@@ -124,10 +124,6 @@ fn what_is_not_there_or_cannot_be_written_ends_with_code_1_and_is_named() {
             ],
             &["missing/a.json", "folder"],
         ),
-        (
-            &["render", "triangle", "-o", "a.png", "--camera", "nobody"],
-            &["triangle", "nobody", "it has "],
-        ),
         (&["convert", "no-such.glb", "a.obj"], &["no-such.glb"]),
         (
             &["convert", "triangle", "missing/a.obj"],
@@ -138,6 +134,22 @@ fn what_is_not_there_or_cannot_be_written_ends_with_code_1_and_is_named() {
         (&["no-such.obj"], &["no-such.obj"]),
     ] {
         fails(path, arguments, 1, parts);
+    }
+}
+
+#[test]
+fn what_a_scene_has_nothing_of_that_name_of_is_a_wrong_command_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let render = ["render", "triangle", "-o", "a.png"];
+    for (more, parts) in [
+        (["--camera", "nobody"], ["triangle", "nobody", "it has "]),
+        (
+            ["--set", "nobody/Lens.samples=3"],
+            ["--set nobody", "no such entity", "did you mean "],
+        ),
+    ] {
+        let arguments = [&render[..], &more].concat();
+        fails(folder.path(), &arguments, 2, &parts);
     }
 }
 
