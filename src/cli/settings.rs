@@ -79,10 +79,21 @@ pub(super) fn builder_name(builder: Builder) -> &'static str {
 }
 
 impl SettingArgs {
-    /// Checks the flags against the defaults, before a scene is opened for nothing. What is about entities is checked
-    /// when they are there.
+    /// Refuses what would be wrong for any scene, before one is opened for nothing. What is about entities is checked
+    /// when they are there, and so are ranges where something changes what the scene has.
     pub fn check(&self) -> Result<(), Failure> {
+        let mut settings = RenderSettings::default();
+        for assignment in self.of_settings() {
+            assignment.check(&mut settings)?;
+        }
+        if self.of_settings().any(Assignment::is_change) {
+            return Ok(());
+        }
         self.apply_settings(&mut RenderSettings::default())
+    }
+
+    fn of_settings(&self) -> impl Iterator<Item = &Assignment> {
+        self.set.iter().filter(|set| !set.is_of_entity())
     }
 
     /// Writes the flags into a scene: first each `--set` in its order, then the flags of their own. Values out of range
@@ -101,7 +112,7 @@ impl SettingArgs {
 
     fn apply_settings(&self, settings: &mut RenderSettings) -> Result<(), Failure> {
         let before = range_problems(settings);
-        for assignment in self.set.iter().filter(|set| !set.is_of_entity()) {
+        for assignment in self.of_settings() {
             assignment.apply(settings)?;
         }
         if let Some(size) = self.size {
@@ -174,6 +185,47 @@ mod tests {
     use super::*;
     use clap::FromArgMatches;
 
+    fn args(flags: &[&str]) -> SettingArgs {
+        let command = SettingArgs::augment_args(clap::Command::new("glassbox"));
+        let words = ["glassbox"].iter().chain(flags);
+        let matches = command.try_get_matches_from(words).unwrap();
+        SettingArgs::from_arg_matches(&matches).unwrap()
+    }
+
+    #[test]
+    fn a_change_of_what_the_scene_has_is_judged_with_the_scene() {
+        let mut world = World::new();
+        let mut scene = RenderSettings::default();
+        (scene.sampling.time, scene.spp) = (60.0, 1000);
+        world.insert_resource(scene);
+        for (flags, done) in [
+            (&["--set", "sampling.time-=59.5"][..], true),
+            (&["--set", "spp-=999"], true),
+            (&["--set", "spp/=1000"], true),
+            (&["--set", "spp-=1000"], false),
+            (&["--set", "spp-=1001"], false),
+            (&["--set", "sampling.time-=61"], false),
+            (&["--set", "spp=0", "--set", "spp+=4"], true),
+        ] {
+            let args = args(flags);
+            assert!(args.check().is_ok(), "{flags:?}");
+            let mut world_now = World::new();
+            world_now.insert_resource(world.resource::<RenderSettings>().clone());
+            assert_eq!(args.apply(&mut world_now).is_ok(), done, "{flags:?}");
+        }
+        // Wrong for any scene.
+        for flags in [
+            ["--set", "spp*=many"],
+            ["--set", "spp/=0"],
+            ["--set", "sampling.tim-=1"],
+            ["--set", "sampling.time*=x"],
+            ["--set", "features.shadows*=2"],
+            ["--set", "spp=0"],
+        ] {
+            assert!(args(&flags).check().is_err(), "{flags:?}");
+        }
+    }
+
     #[test]
     fn samples_of_a_pixel_are_given_by_either_flag() {
         for (flags, given) in [
@@ -183,11 +235,7 @@ mod tests {
             (&["--set", "seed=8"], false),
             (&[], false),
         ] {
-            let command = SettingArgs::augment_args(clap::Command::new("glassbox"));
-            let words = ["glassbox"].iter().chain(flags);
-            let matches = command.try_get_matches_from(words).unwrap();
-            let args = SettingArgs::from_arg_matches(&matches).unwrap();
-            assert_eq!(args.give_spp(), given, "{flags:?}");
+            assert_eq!(args(flags).give_spp(), given, "{flags:?}");
         }
     }
 
