@@ -68,16 +68,6 @@ impl BuilderArg {
     }
 }
 
-/// A builder as tables and statistics name it.
-pub(super) fn builder_name(builder: Builder) -> &'static str {
-    match builder {
-        Builder::None => "none",
-        Builder::Median => "median",
-        Builder::Sah => "sah",
-        Builder::Ploc => "ploc",
-    }
-}
-
 impl SettingArgs {
     /// Refuses what would be wrong for any scene, before one is opened for nothing. What is about entities is checked
     /// when they are there, and so are ranges where something changes what the scene has.
