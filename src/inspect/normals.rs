@@ -23,7 +23,7 @@ struct Placed {
 
 /// Normals, as long as `length` pixels, and not denser than one in `spacing` pixels.
 pub(super) fn normals(subject: &Subject) -> LineSet {
-    let mut set = LineSet::new(System::Normals);
+    let mut set = LineSet::of(System::Normals, subject.inspect);
     let settings = &subject.inspect.normals;
     let world = subject.world;
     let chosen = |id: u64| settings.object == 0 || settings.object == id;

@@ -121,6 +121,81 @@ fn of_normals_that_are_all_drawn_none_is_said_to_be_left_out() {
 }
 
 #[test]
+fn whatever_is_drawn_keeps_to_the_most_lines_and_says_what_is_left_out() {
+    let (objects, materials) = (1..=40)
+        .map(|id| {
+            let corners = quad(Vec3::X * id as f32, Vec3::Z, Vec3::X);
+            let (instance, still) = object(id, &corners, 0);
+            (instance.moving(Vec3::Y).unwrap(), still)
+        })
+        .fold(
+            (
+                Vec::new(),
+                vec![Material {
+                    mirror: Vec3::splat(0.5),
+                    specular: Vec3::splat(0.5),
+                    shininess: 10.0,
+                    ..Material::default()
+                }],
+            ),
+            |(mut objects, materials), object| {
+                objects.push(object);
+                (objects, materials)
+            },
+        );
+    let mut world = world(objects, materials);
+    world.lights = Arc::new(Lights {
+        points: (1..=40)
+            .map(|i| PointLight {
+                id: 100 + i,
+                position: Vec3::new(i as f32, 3.0, 0.0),
+                color: Vec3::ONE,
+                cone: None,
+            })
+            .collect(),
+        ..Lights::default()
+    });
+    let mut camera = Camera::looking_at(
+        Vec3::new(5.5, 4.0, 4.0),
+        Vec3::new(5.5, 0.0, 0.5),
+        Vec3::Y,
+        0.8,
+    );
+    camera.optics.aperture_radius = 0.1;
+    let mut scene = Scene::of(world, camera);
+    scene.settings.spp = 4;
+    scene.settings.features.glossy = true;
+    for system in System::ALL {
+        let mut inspect = InspectSettings::default();
+        inspect.boxes.to_level = 40;
+        inspect.boxes.triangles = true;
+        inspect.boxes.split_planes = true;
+        inspect.rays.visited = true;
+        inspect.rays.hit_triangles = true;
+        inspect.rays.hit_normals = true;
+        let all = scene.lines(system, &inspect);
+        assert_eq!(all.thinned, None, "{system:?}");
+        if system == System::Normals {
+            continue;
+        }
+        assert!(
+            all.segments.len() > 30,
+            "{system:?} has {}",
+            all.segments.len()
+        );
+        for most in [1, 7, 20, 30] {
+            inspect.max_lines = most;
+            let set = scene.lines(system, &inspect);
+            let drawn = set.segments.len();
+            assert!(drawn <= most as usize, "{system:?} draws {drawn} of {most}");
+            assert!(set.points.len() <= most as usize, "{system:?}");
+            let thinned = set.thinned.unwrap_or_else(|| panic!("{system:?}, {most}"));
+            assert!(thinned.drawn < thinned.of, "{system:?}: {thinned:?}");
+        }
+    }
+}
+
+#[test]
 fn s11_motion_is_a_segment_from_where_the_shutter_opens_to_where_it_closes() {
     let corners = quad(Vec3::new(-0.5, 0.0, -0.5), Vec3::Z, Vec3::X);
     let (instance, still) = object(7, &corners, 0);
