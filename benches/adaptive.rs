@@ -1,9 +1,9 @@
 //! Samples where the error is, against the same for every pixel: processor seconds to the same error.
 //!
 //! `cargo bench --no-default-features --bench adaptive [-- SCENE…]`: for each built-in scene with an
-//! area light, a lens, gloss or motion a uniform picture of 64 samples a pixel, and the time after which
+//! area light, a dome, a lens, gloss or motion a uniform picture of 64 samples a pixel, and the time after which
 //! an adaptive one is as near to the truth: between the last of ever smaller goals that is farther
-//! from it and the first that is nearer, along a power law. The truth is the mean of other seeds'
+//! from it and the first that is nearer, along a power law; none where no goal comes so near. The truth is the mean of other seeds'
 //! pictures; what that is off by is known from their spread and subtracted. For scenes of point lights
 //! alone, what the rounds of adaptive sampling cost: the same 64 samples of every pixel with and
 //! without them.
@@ -15,6 +15,7 @@ mod scenes;
 
 use glam::UVec2;
 use glassbox::scene::Sampling;
+use glassbox::trace::Dome;
 use scenes::{Reference, Scene, scenes};
 
 const SIZE: UVec2 = UVec2::new(128, 128);
@@ -47,13 +48,14 @@ fn main() {
     });
 }
 
-/// Whether a scene has an area light, a lens, gloss or motion.
+/// Whether a scene has an area light, a dome, a lens, gloss or motion.
 fn is_noisy(scene: &Scene) -> bool {
     let lights = &scene.world.lights;
     let areas = lights.segments.len() + lights.parallelograms.len();
     let sun = lights.directionals.iter().any(|light| light.disc.is_some());
     let moves = scene.world.needs.motion_samples > 0;
-    areas > 0 || sun || moves || scene.camera.has_lens() || scene.settings.features.glossy
+    let dome = Dome::of(&scene.world.environment, &scene.settings).is_some();
+    areas > 0 || sun || dome || moves || scene.camera.has_lens() || scene.settings.features.glossy
 }
 
 fn adaptive(error: f64) -> Sampling {
@@ -67,7 +69,7 @@ fn adaptive(error: f64) -> Sampling {
 /// One line: seconds and error are means over the seeds.
 fn to_the_same_error(scene: &Scene) {
     let reference = Reference::of(scene);
-    let (mut squared, mut seconds) = (0.0, [0.0; 2]);
+    let (mut squared, mut seconds) = (0.0, [Some(0.0); 2]);
     let n = f64::from(SEEDS.end - SEEDS.start);
     for seed in SEEDS {
         let uniform = scene.render(seed, SAMPLES, Sampling::default());
@@ -80,23 +82,36 @@ fn to_the_same_error(scene: &Scene) {
         let sooner = loop {
             let timed = scene.render(seed, 1 << 16, adaptive(goal));
             let now = (timed.seconds, reference.error_of(&timed.rendered.picture));
-            if now.1 <= wanted || goal < nearest {
-                break time_at(wanted, before, now);
+            if now.1 <= wanted {
+                break Some(time_at(wanted, before, now));
+            }
+            if goal < nearest {
+                break None;
             }
             before = Some(now);
             goal *= NEARER;
         };
-        seconds[0] += uniform.seconds / n;
-        seconds[1] += sooner / n;
+        for (seconds, now) in seconds.iter_mut().zip([Some(uniform.seconds), sooner]) {
+            *seconds = seconds.zip(now).map(|(sum, now)| sum + now / n);
+        }
         squared += wanted / n;
     }
+    let [uniform, adaptive] = seconds;
+    let text = |seconds: Option<f64>, unit: &str| {
+        seconds.map_or("not reached".into(), |seconds| {
+            format!("{seconds:.2}{unit}")
+        })
+    };
+    let sooner = uniform
+        .zip(adaptive)
+        .map(|(uniform, adaptive)| uniform / adaptive);
     println!(
-        "| {} | {:.2} % | {:.2} s | {:.2} s | {:.2} |",
+        "| {} | {:.2} % | {} | {} | {} |",
         scene.name,
         100.0 * squared.sqrt(),
-        seconds[0],
-        seconds[1],
-        seconds[0] / seconds[1]
+        text(uniform, " s"),
+        text(adaptive, " s"),
+        text(sooner, "")
     );
 }
 

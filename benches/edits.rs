@@ -4,13 +4,13 @@
 //! the render before it is under way. Per edit, the median and the 95th percentile of the milliseconds
 //! until
 //!
-//! - frame: the edited world is synced, the render before it cancelled, and the new one started: what
-//!   the thread that runs the app's systems is busy with; of several frames the longest;
+//! - frame: the edited world is synced, and the render under way has taken it in or is cancelled and another one started:
+//!   what the thread that runs the app's systems is busy with; of several frames the longest;
 //! - picture: the first picture of the edited scene is developed, on a thread of its own. A mesh's tree
 //!   is built in the background, and the picture before goes on meanwhile;
-//! - sample: every pixel has a sample (in every fourth round);
+//! - sample: every pixel has a sample (in every fourth round; the longest in place of the percentile);
 //!
-//! and what of the tracer's world was redone. With `--csv` the figures are also written as a table, which
+//! how many of the edits the render under way took in, and what of the tracer's world was redone. With `--csv` the figures are also written as a table, which
 //! `glassbox report --editing FILE` takes in. Times are wall-clock, on all the machine's cores: on a
 //! machine that is busy with other things they say little.
 //!
@@ -38,14 +38,16 @@ use bevy::mesh::{Mesh, Mesh3d};
 use bevy::transform::components::Transform;
 use glassbox::app::headless_app;
 use glassbox::film::{Progressive, Snapshot, develop_rgba8};
-use glassbox::io::builtin;
 use glassbox::io::shapes::mesh;
+use glassbox::io::{builtin, check_writable};
 use glassbox::report::{Cell, Table};
 use glassbox::scene::{
     MeshSource, ParallelogramLamp, Phong, PointLamp, RenderSettings, SceneCamera, Shape,
 };
 use glassbox::sync::{Changes, Traced, TracedCameras, TreeBuilding};
+use glassbox::trace::Gains;
 use rayon::ThreadPool;
+use std::path::PathBuf;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -58,7 +60,7 @@ const BETWEEN: Duration = Duration::from_millis(20);
 const FRAME: Duration = Duration::from_millis(4);
 
 /// What is written: a row for each edit of each scene.
-const COLUMNS: [&str; 10] = [
+const COLUMNS: [&str; 11] = [
     "scene",
     "objects",
     "edit",
@@ -67,28 +69,40 @@ const COLUMNS: [&str; 10] = [
     "picture p50 ms",
     "picture p95 ms",
     "sample p50 ms",
-    "sample p95 ms",
+    "sample most ms",
+    "taken in",
     "redone",
 ];
 
 fn main() {
+    let is_asked_for = |part: &str| std::env::args().any(|argument| argument == part);
     #[cfg(feature = "view")]
-    if std::env::args().any(|argument| argument == "lines") {
+    if is_asked_for("lines") {
         return lines::main();
     }
     #[cfg(feature = "view")]
-    if std::env::args().any(|argument| argument == "game") {
+    if is_asked_for("game") {
         return game::main();
     }
-    if std::env::args().any(|argument| argument == "planes") {
+    #[cfg(not(feature = "view"))]
+    for part in ["lines", "game"] {
+        assert!(
+            !is_asked_for(part),
+            "{part} has no figures without the feature `view`"
+        );
+    }
+    if is_asked_for("planes") {
         return planes::main();
     }
     let mut arguments = std::env::args().skip_while(|argument| argument != "--csv");
     let file = arguments.next().map(|_| {
         // Cargo appends a flag of its own.
         let file = arguments.next().filter(|name| !name.starts_with("--"));
-        file.expect("--csv wants a file")
+        PathBuf::from(file.expect("--csv wants a file"))
     });
+    if let Some(file) = &file {
+        check_writable(file).unwrap_or_else(|error| panic!("{error}"));
+    }
     let mut table = Table::new("editing", "Edits", &COLUMNS);
     println!("{} threads", rayon::current_num_threads());
     for (scene, instances) in [
@@ -99,19 +113,24 @@ fn main() {
     ] {
         let mut session = Session::open(scene, instances);
         println!(
-            "\n{scene}, {} triangles in {} objects\n{:<18}{:>16}{:>16}{:>16}  redone",
+            "\n{scene}, {} triangles in {} objects\n{:<18}{:>16}{:>16}{:>16}{:>10}  redone",
             session.triangles(),
             session.traced().world.objects.len(),
             "p50 / p95 ms",
             "frame",
             "picture",
-            "sample"
+            "sample",
+            "taken in"
         );
         session.edits(instances > 0);
         table.rows.append(&mut session.rows);
     }
     if let Some(file) = file {
-        std::fs::write(&file, table.csv()).unwrap_or_else(|error| panic!("{file}: {error}"));
+        // In its place when it is whole: what is there is an hour's work, too.
+        let part = file.with_added_extension("part");
+        let written =
+            std::fs::write(&part, table.csv()).and_then(|()| std::fs::rename(&part, &file));
+        written.unwrap_or_else(|error| panic!("{}: {error}", file.display()));
     }
 }
 
@@ -252,13 +271,13 @@ impl Session {
 
     /// Makes the edit again and again, and prints how long it took.
     fn row(&mut self, name: &str, mut edit: impl FnMut(&mut App, usize)) {
-        let mut redone = Changes::default();
-        let mut rounds = Vec::new();
+        let mut all = Changes::default();
+        let (mut rounds, mut taken_in) = (Vec::new(), 0);
         for i in 0..=ROUNDS {
             let start = Instant::now();
             edit(&mut self.app, i);
             self.app.update();
-            redone = union(redone, self.traced().changes);
+            let mut redone = self.traced().changes;
             let mut frame = ms(start);
             while self.traced().pending > 0 {
                 thread::sleep(FRAME);
@@ -268,45 +287,49 @@ impl Session {
                 frame = ms(start).max(frame);
             }
             let before = Instant::now();
-            self.restart();
+            let number = self.render.as_ref().map(Progressive::number);
+            let is_taken_in = self.show_world(redone);
             frame += ms(before);
-            self.wait_for(|divider| divider.is_some());
+            self.wait_for(number, |divider| divider.is_some());
             self.develop();
             let picture = ms(start);
             let sample = i.is_multiple_of(4).then(|| {
-                self.wait_for(|divider| divider == Some(1));
+                self.wait_for(number, |divider| divider == Some(1));
                 ms(start)
             });
             if i > 0 {
+                taken_in += usize::from(is_taken_in);
                 rounds.push(Times {
                     frame,
                     picture,
                     sample,
                 });
             }
+            all = union(all, redone);
             thread::sleep(BETWEEN);
         }
-        self.note(name, &rounds, &names(redone));
+        self.note(name, &rounds, taken_in, &names(all));
     }
 
     /// Prints a row and keeps it for the table.
-    fn note(&mut self, name: &str, rounds: &[Times], redone: &str) {
+    fn note(&mut self, name: &str, rounds: &[Times], taken_in: usize, redone: &str) {
         let figures = [
-            percentiles(rounds, |t| Some(t.frame)),
-            percentiles(rounds, |t| Some(t.picture)),
-            percentiles(rounds, |t| t.sample),
+            parts(rounds, |t| Some(t.frame), 95),
+            parts(rounds, |t| Some(t.picture), 95),
+            parts(rounds, |t| t.sample, 100),
         ];
         let [frame, picture, sample] = figures.map(|figures| {
             figures.map_or(String::new(), |[half, most]| {
                 format!("{half:.1} / {most:.1}")
             })
         });
-        println!("{name:<18}{frame:>16}{picture:>16}{sample:>16}  {redone}");
+        println!("{name:<18}{frame:>16}{picture:>16}{sample:>16}{taken_in:>10}  {redone}");
         let objects = self.traced().world.objects.len();
         let mut row: Vec<Cell> = vec![self.name.as_str().into(), objects.into(), name.into()];
         for figures in figures {
             row.extend([0, 1].map(|i| Cell::from(figures.map(|figures| figures[i]))));
         }
+        row.push(taken_in.into());
         row.push(redone.into());
         self.rows.push(row);
     }
@@ -337,19 +360,30 @@ impl Session {
         let traced = rays(self)
             .zip(before)
             .map_or(0, |(after, before)| after - before);
-        self.note("exposure", &rounds, &format!("{traced} rays"));
+        self.note("exposure", &rounds, ROUNDS, &format!("{traced} rays"));
     }
 
-    fn restart(&mut self) {
+    /// Shows the world as it is now, as views do: the render that is under way takes it in where it can, else another one
+    /// begins. Whether it was the former.
+    fn show_world(&mut self, redone: Changes) -> bool {
+        let world = trace_world(&self.app);
+        if let Some(render) = &self.render
+            && !redone.cameras
+            && render.edit(world.clone(), &Gains::default())
+        {
+            return true;
+        }
         let camera = &self.app.world().resource::<TracedCameras>().0[0];
         let settings = self.app.world().resource::<RenderSettings>().clone();
-        let render = Progressive::start(trace_world(&self.app), camera.camera.clone(), settings);
+        let render = Progressive::start(world, camera.camera.clone(), settings);
         self.render = Some(render.expect("a thread"));
+        false
     }
 
-    fn wait_for(&self, there: impl Fn(Option<u32>) -> bool) {
+    /// Waits until the render of that number, or one after it, has a picture of which this is so.
+    fn wait_for(&self, before: Option<u64>, there: impl Fn(Option<u32>) -> bool) {
         let render = self.render.as_ref().expect("a render");
-        while !there(render.status().divider) {
+        while Some(render.number()) == before || !there(render.status().divider) {
             thread::sleep(Duration::from_micros(100));
         }
     }
@@ -421,10 +455,11 @@ fn names(changes: Changes) -> String {
     names.join(", ")
 }
 
-/// The median and the 95th percentile.
-fn percentiles(rounds: &[Times], value: fn(&Times) -> Option<f64>) -> Option<[f64; 2]> {
+/// The median and another percentile; the hundredth is the largest.
+fn parts(rounds: &[Times], value: fn(&Times) -> Option<f64>, percent: usize) -> Option<[f64; 2]> {
     let mut values: Vec<f64> = rounds.iter().filter_map(value).collect();
     values.sort_by(f64::total_cmp);
-    let at = |part: usize| values.get(values.len() * part / 100).copied();
-    Some([at(50)?, at(95)?])
+    let last = values.len().checked_sub(1)?;
+    let at = |part: usize| values[(values.len() * part / 100).min(last)];
+    Some([at(50), at(percent)])
 }

@@ -6,11 +6,13 @@ machine in turns.
     v/bin/python benches/peers.py target/release/glassbox model.obj [--size 800] [--threads 2] [--runs 5]
 
 The scene is a model scaled to a cube of edge 1, matt, all of one grey, under one square lamp of radiance 10 that faces down and
-is not seen itself; direct light only, a box filter, no denoiser. Errors are the root of the mean squared difference to the
-renderer's own picture of 1024 samples a pixel. The last lines are Glassbox with an error as its goal instead of a number of
-samples, which then go where they lower it most.
+is not seen itself; direct light only, a box filter, no denoiser. Seconds are those of a picture alone, neither loading nor
+trees nor files; of Cycles those in which it looks through the scene for changes too, which cannot be told apart. Errors are the
+root of the mean squared difference to the mean of two of the renderer's own pictures of 1024 samples a pixel, less what that is
+off by itself, which the difference of the two tells. Last come lines of Glassbox with an error as its goal instead of a number
+of samples, which then go where they lower it most; all lines take turns.
 """
-import argparse, json, os, subprocess, sys, tempfile, time
+import argparse, functools, json, os, subprocess, sys, tempfile, time
 import numpy as np
 import OpenEXR
 
@@ -86,17 +88,26 @@ class Glassbox:
 
 
 class Mitsuba:
-    def __init__(self, corners, size, threads):
+    def __init__(self, folder, corners, size, threads):
         import drjit as dr, mitsuba as mi
-        variant = "llvm_ad_rgb" if "llvm_ad_rgb" in mi.variants() else "scalar_rgb"
-        mi.set_variant(variant)
+
+        def works(variant):
+            """A variant may be there without the library that it compiles with."""
+            try:
+                mi.set_variant(variant)
+                return np.array(mi.TensorXf([1.0, 2.0]) + 1.0)[1] == 3.0
+            except Exception as error:
+                print(f"Mitsuba without {variant}: {error}", file=sys.stderr)
+                return False
+
+        variant = next(filter(works, [name for name in ("llvm_ad_rgb", "scalar_rgb") if name in mi.variants()]))
         dr.set_thread_count(threads)
         mesh = mi.Mesh("model", 3 * len(corners), len(corners))
         parameters = mi.traverse(mesh)
         parameters["vertex_positions"] = corners.reshape(-1).astype("f4")
         parameters["faces"] = np.arange(3 * len(corners), dtype="u4")
         parameters.update()
-        file = os.path.join(tempfile.mkdtemp(), "model.ply")
+        file = os.path.join(folder, "model.ply")
         mesh.write_ply(file)
         first, second = map(np.array, EDGES)
         to_world = np.eye(4)
@@ -116,16 +127,20 @@ class Mitsuba:
                        "sampler": {"type": "multijitter"}},
             "model": {"type": "ply", "filename": file, "face_normals": True, "bsdf": matt},
             "lamp": {"type": "rectangle", "to_world": transform(to_world), "emitter": lamp}})
-        self.mi, self.name = mi, f"Mitsuba {mi.__version__} {variant}"
+        self.dr, self.mi, self.name = dr, mi, f"Mitsuba {mi.__version__} {variant}"
 
     def render(self, spp, seed):
-        start = time.time()
-        picture = np.array(self.mi.render(self.scene, spp=spp, seed=seed))
-        return picture, time.time() - start
+        start = time.perf_counter()
+        picture = self.mi.render(self.scene, spp=spp, seed=seed)
+        # What it returns is a promise.
+        self.dr.eval(picture)
+        self.dr.sync_thread()
+        seconds = time.perf_counter() - start
+        return np.array(picture), seconds
 
 
 class Cycles:
-    def __init__(self, corners, size, threads):
+    def __init__(self, folder, corners, size, threads):
         import bpy, mathutils
         bpy.ops.wm.read_factory_settings(use_empty=True)
         scene = bpy.context.scene
@@ -134,7 +149,7 @@ class Cycles:
         render.threads_mode, render.threads = "FIXED", threads
         render.resolution_x = render.resolution_y = size
         render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
-        render.filepath = os.path.join(tempfile.mkdtemp(), "picture.exr")
+        self.picture = os.path.join(folder, "cycles.exr")
         cycles.device, cycles.pixel_filter_type = "CPU", "BOX"
         cycles.use_adaptive_sampling = cycles.use_denoising = False
         cycles.max_bounces = cycles.sample_clamp_direct = 0
@@ -181,12 +196,37 @@ class Cycles:
         self.scene.cycles.samples, self.scene.cycles.seed = spp, seed
         # What is kept from picture to picture is the whole picture else.
         self.scene.update_tag()
-        start = time.time()
-        self.bpy.ops.render.render(write_still=True)
-        seconds = time.time() - start
-        channels = OpenEXR.File(self.scene.render.filepath).channels()
+        start = time.perf_counter()
+        self.bpy.ops.render.render()
+        seconds = time.perf_counter() - start
+        self.bpy.data.images["Render Result"].save_render(self.picture, scene=self.scene)
+        channels = OpenEXR.File(self.picture).channels()
         picture = next(iter(channels.values())).pixels
         return picture[..., :3].astype("f4"), seconds
+
+
+class Line:
+    """One renderer with so many samples, or with a goal."""
+
+    def __init__(self, reference, render):
+        self.reference, self.render = reference, render
+        self.seconds, self.squares = [], []
+
+    def run(self, seed):
+        picture, seconds = self.render(seed)
+        mean, own = self.reference
+        self.seconds.append(seconds)
+        self.squares.append(((picture - mean) ** 2).mean() - own)
+
+    def figures(self):
+        return np.median(self.seconds), np.sqrt(max(0.0, np.mean(self.squares)))
+
+
+def reference(renderer):
+    """The mean of two pictures, and its own mean squared error."""
+    renderer.render(1, 0)
+    first, second = (renderer.render(1024, seed)[0] for seed in (98, 99))
+    return 0.5 * (first + second), 0.25 * ((first - second) ** 2).mean()
 
 
 def main():
@@ -202,26 +242,35 @@ def main():
         renderers = [Glassbox(options.glassbox, folder, corners, options.size, options.threads)]
         for peer in (Mitsuba, Cycles):
             try:
-                renderers.append(peer(corners, options.size, options.threads))
-            except ImportError as error:
+                renderers.append(peer(folder, corners, options.size, options.threads))
+            # Whatever it lacks, the others are measured.
+            except Exception as error:
                 print(f"without {peer.__name__}: {error}", file=sys.stderr)
         references = []
         for renderer in renderers:
-            renderer.render(1, 0)
-            references.append(renderer.render(1024, 99)[0])
-            print(f"{renderer.name}: mean {references[-1].mean():.5f}")
+            references.append(reference(renderer))
+            print(f"{renderer.name}: mean {references[-1][0].mean():.5f}", flush=True)
+        lines, goals = {}, {}
         for spp in (1, 4, 16, 64):
-            runs = [[renderer.render(spp, 1 + run) for renderer in renderers] for run in range(options.runs)]
-            for i, renderer in enumerate(renderers):
-                seconds = np.median([run[i][1] for run in runs])
-                error = np.sqrt(np.mean([((run[i][0] - references[i]) ** 2).mean() for run in runs]))
-                print(f"{spp:4} spp  {renderer.name:28} {seconds:8.4f} s  rmse {error:.5f}  "
-                      f"{options.size ** 2 * spp / seconds / 1e6:7.1f} million samples/s")
+            for renderer, known in zip(renderers, references):
+                lines[spp, renderer.name] = Line(known, functools.partial(renderer.render, spp))
+        ours = renderers[0]
         for goal in (0.02, 0.01, 0.005, 0.0025):
-            runs = [renderers[0].render(4096, 1 + run, "--error", str(goal)) for run in range(options.runs)]
-            error = np.sqrt(np.mean([((picture - references[0]) ** 2).mean() for picture, _ in runs]))
-            seconds = np.median([seconds for _, seconds in runs])
-            print(f"--error {goal:6}  Glassbox   {seconds:8.4f} s  rmse {error:.5f}")
+            to_goal = lambda seed, goal=goal: ours.render(4096, seed, "--error", str(goal))
+            goals[goal] = Line(references[0], to_goal)
+        for line in (*lines.values(), *goals.values()):
+            # Mitsuba compiles for each number of samples.
+            line.render(0)
+        for run in range(options.runs):
+            for line in (*lines.values(), *goals.values()):
+                line.run(1 + run)
+        for (spp, name), line in lines.items():
+            seconds, error = line.figures()
+            print(f"{spp:4} spp  {name:28} {seconds:8.4f} s  rmse {error:.5f}  "
+                  f"{options.size ** 2 * spp / seconds / 1e6:7.1f} million samples/s")
+        for goal, line in goals.items():
+            seconds, error = line.figures()
+            print(f"--error {goal:6}  {ours.name}   {seconds:8.4f} s  rmse {error:.5f}")
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 //! How fast whole pictures are, and how much of that is rays.
 //!
 //! `cargo bench --no-default-features --bench pictures [-- SCENE…]`: for each built-in scene a picture of 256 × 256 pixels and
-//! 16 samples each, the least of several renderings; the same rays asked of the trees alone, in the batches and the order in
-//! which a render asks them; and the seconds to an error of 1 %, of the picture's true error as it falls with the root of
+//! 16 samples each, the least of several renderings; the same rays asked of the trees alone, in batches as large as a render's
+//! and in much the same order: tile by tile, and those to one light together; and the seconds to an error of 1 %, of the picture's true error as it falls with the root of
 //! the samples. The truth is the mean of other seeds' pictures.
 //!
 //! One thread, its own time on a processor (Linux: `/proc/self/task`; elsewhere the clock's).
@@ -12,10 +12,11 @@
 mod scenes;
 
 use glam::UVec2;
-use glassbox::bvh::Order;
+use glassbox::bvh::{Order, Ray};
 use glassbox::scene::Sampling;
 use glassbox::trace::{RayKind, Samples, probe};
 use scenes::{Reference, Scene, processor_seconds, scenes};
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 const SIZE: UVec2 = UVec2::new(256, 256);
@@ -69,7 +70,8 @@ fn line(scene: &Scene) {
 fn seconds_a_ray(scene: &Scene) -> f64 {
     let mut camera = Vec::new();
     let mut scattered = Vec::new();
-    let mut shadows = Vec::new();
+    // A render asks for one light after another.
+    let mut shadows: BTreeMap<_, Vec<Ray>> = BTreeMap::new();
     let blocks = SIZE / BLOCK;
     for y in (0..blocks.y).step_by(EVERY as usize) {
         for x in (0..blocks.x).step_by(EVERY as usize) {
@@ -83,11 +85,13 @@ fn seconds_a_ray(scene: &Scene) -> f64 {
                     &Samples::One(0),
                 );
                 for ray in &tree.expect("a pixel of the picture").rays {
-                    match ray.kind {
-                        RayKind::Camera => camera.push(ray.ray()),
-                        kind if !kind.is_for_light() => scattered.push(ray.ray()),
+                    match (ray.kind, ray.light) {
+                        (RayKind::Camera, _) => camera.push(ray.ray()),
+                        (_, None) => scattered.push(ray.ray()),
                         // What reflects nothing of a light is not asked of the trees.
-                        _ if ray.end.is_traced() => shadows.push(ray.ray()),
+                        (_, Some(light)) if ray.end.is_traced() => {
+                            shadows.entry(light.id).or_default().push(ray.ray());
+                        }
                         _ => {}
                     }
                 }
@@ -102,11 +106,12 @@ fn seconds_a_ray(scene: &Scene) -> f64 {
                 aggregate.closest_hits_in(order, rays, &mut hits);
             }
         }
-        for rays in shadows.chunks(BATCH) {
+        for rays in shadows.values().flat_map(|rays| rays.chunks(BATCH)) {
             aggregate.occlusions_in(Order::Light, rays, &mut occluded);
         }
     };
-    let count = camera.len() + scattered.len() + shadows.len();
+    let to_lights: usize = shadows.values().map(Vec::len).sum();
+    let count = camera.len() + scattered.len() + to_lights;
     ask();
     let taken = seconds(&mut || (0..REPEATED).for_each(|_| ask()));
     taken / f64::from(REPEATED) / count as f64

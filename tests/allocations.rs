@@ -115,6 +115,16 @@ fn instances(n: u32, options: &BuildOptions) -> (Arc<MeshTree>, Vec<Instance>) {
     (tree, instances)
 }
 
+/// A thousand triangles, each where it stands by its number.
+fn alone(at: impl Fn(usize) -> Vec3, options: &BuildOptions) -> Vec<Instance> {
+    let corners = |i| [Vec3::ZERO, Vec3::X, Vec3::Y].map(|corner| at(i) + corner);
+    let positions = (0..1000).flat_map(corners).collect();
+    let indices = (0..1000).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let triangles = Triangles::new(positions, indices).unwrap();
+    let tree = Arc::new(MeshTree::build(triangles, options));
+    vec![Instance::new(tree, &Affine3A::IDENTITY).unwrap()]
+}
+
 #[test]
 fn rays_through_any_tree_allocate_nothing() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
@@ -125,18 +135,37 @@ fn rays_through_any_tree_allocate_nothing() {
                 levels,
                 ..BuildOptions::default()
             };
-            let aggregate = Aggregate::build(instances(16, &options).1, &options);
-            let mut hits = 0;
-            let count = allocations(|| {
-                for i in 0..1000 {
-                    let x = (i % 37) as f32 * 0.1 - 1.8;
-                    let ray = Ray::new(Vec3::new(x, 3.0, 1.0), Vec3::new(0.1, -1.0, x * 0.3));
-                    hits += u32::from(aggregate.closest_hit(&ray).is_some());
-                    hits += u32::from(aggregate.occluded(&ray));
-                }
-            });
-            assert!(hits > 500, "only {hits} hits");
-            assert_eq!(count, 0, "{builder:?}, {levels:?}: {count} allocations");
+            // A floor; a thousand triangles in one place; as many in a row along x.
+            let down = |x: f32| Ray::new(Vec3::new(x, 3.0, 1.0), Vec3::new(0.1, -1.0, x * 0.3));
+            let onto_one = |x: f32| Ray::new(Vec3::new(0.2 + 0.02 * x, 0.2, 1.0), Vec3::NEG_Z);
+            let onto_row = |x: f32| {
+                let from = Vec3::new((200.0 * (x + 2.0)).round() * 2.0 + 0.2, 0.2, 1.0);
+                Ray::new(from, Vec3::NEG_Z)
+            };
+            let one_place = alone(|_| Vec3::ZERO, &options);
+            let row = alone(|i| Vec3::X * (2 * i) as f32, &options);
+            type Shoot<'a> = &'a dyn Fn(f32) -> Ray;
+            let scenes: [(_, _, Shoot); 3] = [
+                ("floor", instances(16, &options).1, &down),
+                ("one place", one_place, &onto_one),
+                ("row", row, &onto_row),
+            ];
+            for (name, instances, ray) in scenes {
+                let aggregate = Aggregate::build(instances, &options);
+                let mut hits = 0;
+                let count = allocations(|| {
+                    for i in 0..1000 {
+                        let ray = ray((i % 37) as f32 * 0.1 - 1.8);
+                        hits += u32::from(aggregate.closest_hit(&ray).is_some());
+                        hits += u32::from(aggregate.occluded(&ray));
+                    }
+                });
+                assert!(hits > 500, "{name}: only {hits} hits");
+                assert_eq!(
+                    count, 0,
+                    "{name}, {builder:?}, {levels:?}: {count} allocations"
+                );
+            }
         }
     }
 }

@@ -13,7 +13,7 @@ use glassbox::film::{Progressive, Snapshot, develop_rgba8};
 use glassbox::io::shapes::mesh;
 use glassbox::scene::{Builder, Phong, PointLamp, RenderSettings, SceneCamera, Shape};
 use glassbox::sync::{Traced, TracedCameras, TreeBuilding, finish};
-use glassbox::trace::World;
+use glassbox::trace::{Gains, World};
 use std::sync::PoisonError;
 
 const SIZE: UVec2 = UVec2::splat(32);
@@ -27,6 +27,8 @@ struct Edited {
     camera: Entity,
     shapes: [Mesh; 2],
     render: Option<Progressive>,
+    /// Edits of lights and materials that the render under way took in.
+    taken_in: usize,
     snapshot: Snapshot,
 }
 
@@ -65,6 +67,7 @@ impl Edited {
             camera,
             shapes,
             render: None,
+            taken_in: 0,
             snapshot: Snapshot::black(SIZE),
         }
     }
@@ -125,8 +128,15 @@ impl Edited {
         let settings = world.resource::<RenderSettings>().clone();
         let output = settings.output;
         let camera = world.resource::<TracedCameras>().0[0].camera.clone();
-        let traced = World::clone(&world.resource::<Traced>().world);
-        let render = Progressive::start(traced, camera, settings).unwrap();
+        let traced = world.resource::<Traced>();
+        let (changes, traced) = (traced.changes, World::clone(&traced.world));
+        let running = self
+            .render
+            .take()
+            .filter(|render| !changes.cameras && render.edit(traced.clone(), &Gains::default()));
+        self.taken_in += usize::from(running.is_some() && i % 10 < 3);
+        let render =
+            running.unwrap_or_else(|| Progressive::start(traced, camera, settings).unwrap());
         // Most are cancelled on their way; some end.
         if i.is_multiple_of(7) {
             render.wait();
@@ -156,6 +166,11 @@ fn ten_thousand_edits_and_renders_leave_no_memory_behind() {
     for i in 0..10_000 {
         edited.edit(i);
     }
+    let taken_in = edited.taken_in;
+    assert!(
+        taken_in > 100,
+        "{taken_in} edits were of a render under way"
+    );
     let grown = edited.at_rest() - before;
     assert!(
         grown < TOLERANCE,

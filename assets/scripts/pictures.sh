@@ -7,12 +7,19 @@
 set -euo pipefail
 root=$PWD
 program=$(realpath "${GLASSBOX:-target/release/glassbox}")
+for tool in Xvfb convert montage; do
+    command -v "$tool" >/dev/null || { echo "$tool is missing (Debian: xvfb, imagemagick)" >&2; exit 1; }
+done
 folder=$(mktemp -d)
 display=$folder/display
-Xvfb -displayfd 3 -screen 0 1280x720x24 -nolisten tcp 3>"$display" 2>/dev/null &
+# Without -noreset a display begins anew when its last window goes, between two scripts.
+Xvfb -displayfd 3 -screen 0 1280x720x24 -nolisten tcp -noreset 3>"$display" 2>"$folder/server" &
 server=$!
-trap 'kill $server; rm -rf "$folder"' EXIT
-until [[ -s $display ]]; do sleep 0.1; done
+trap 'kill $server 2>/dev/null || true; rm -rf "$folder"' EXIT
+until [[ -s $display ]]; do
+    kill -0 $server 2>/dev/null || { cat "$folder/server" >&2; exit 1; }
+    sleep 0.1
+done
 DISPLAY=:$(cat "$display")
 export DISPLAY
 

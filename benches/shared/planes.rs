@@ -8,8 +8,8 @@
 //! - material: another material, until every pixel has a sample;
 //!
 //! and in milliseconds another exposure, and the 95th percentile from any of these edits to its first picture. The frame from
-//! scratch is measured between them, so that what else the machine does weighs on all alike; a `*` marks edits that were
-//! renders of their own.
+//! scratch is measured between them, so that what else the machine does weighs on all alike; a `*` marks edits of which some
+//! were renders of their own. A first round is not counted.
 
 use bevy::app::App;
 use bevy::color::LinearRgba;
@@ -56,10 +56,35 @@ struct Bench {
     object: Entity,
     render: Option<Progressive>,
     snapshot: Snapshot,
-    /// Milliseconds from an edit to its first picture.
-    first: Vec<f64>,
-    /// Edits that were renders of their own.
-    replaced: usize,
+}
+
+/// Milliseconds of an edit.
+struct Times {
+    /// To its first picture.
+    first: f64,
+    /// To all of its samples.
+    all: f64,
+    /// It was a render of its own.
+    is_replaced: bool,
+}
+
+/// Of one kind of edit, as parts of what a frame from scratch took beside it.
+#[derive(Default)]
+struct Parts {
+    parts: Vec<f64>,
+    is_replaced: bool,
+}
+
+impl Parts {
+    fn push(&mut self, times: &Times, from_scratch: &Times) {
+        self.parts.push(times.all / from_scratch.all);
+        self.is_replaced |= times.is_replaced;
+    }
+
+    fn text(&mut self) -> String {
+        let mark = if self.is_replaced { "*" } else { "" };
+        format!("{:.3}{mark}", half(&mut self.parts))
+    }
 }
 
 impl Bench {
@@ -89,72 +114,85 @@ impl Bench {
             app,
             render: None,
             snapshot: Snapshot::black(SIZE),
-            first: Vec::new(),
-            replaced: 0,
         }
     }
 
     fn measure(&mut self, scene: &str) {
-        let mut scratch = Vec::new();
-        let [mut colour, mut movement, mut material] = [(); 3].map(|()| Vec::new());
-        let [mut rays, mut exposure] = [0_u64, 0].map(|_| Vec::new());
+        let (mut scratch, mut rays, mut exposure) = (Vec::new(), Vec::new(), Vec::new());
+        let [mut colour, mut movement, mut material] = [(); 3].map(|()| Parts::default());
+        let mut first = Vec::new();
         let (lamp, object) = (self.lamp, self.object);
         for round in 0..=ROUNDS {
             let step = if round % 2 == 0 { 0.05 } else { -0.05 };
             self.render = None;
-            let from_scratch = self.until_done(|bench| bench.start());
+            let from_scratch = self.until_done(|bench| {
+                bench.start();
+                true
+            });
             let before = self.rays();
-            let time = self.until_done(|bench| {
+            let of_colour = self.until_done(|bench| {
                 bench.change::<PointLamp>(lamp, |lamp| {
                     lamp.color = LinearRgba::rgb(0.5 + step, 1.0, 0.7)
                 });
-                bench.edit();
+                bench.edit()
             });
-            rays.push((self.rays() - before) as f64);
-            colour.push(time / from_scratch);
-            let time = self.until_done(|bench| {
+            let of_rays = (self.rays() - before) as f64;
+            let of_movement = self.until_done(|bench| {
                 bench.change::<Transform>(lamp, |place| place.translation += Vec3::splat(step));
-                bench.edit();
+                bench.edit()
             });
-            movement.push(time / from_scratch);
             let output = self.app.world().resource::<RenderSettings>().output;
             let start = Instant::now();
             std::hint::black_box(develop_rgba8(&self.snapshot.picture, &output));
-            exposure.push(ms(start));
-            let replaced = self.replaced;
-            let time = self.until_done(|bench| {
+            let of_exposure = ms(start);
+            let of_material = self.until_done(|bench| {
                 bench.change::<Phong>(object, |phong| phong.shininess = 50.0 + 100.0 * step);
-                bench.edit();
+                bench.edit()
             });
-            self.replaced = replaced;
-            material.push(time / from_scratch);
-            scratch.push(from_scratch);
+            if round == 0 {
+                continue;
+            }
+            scratch.push(from_scratch.all);
+            rays.push(of_rays);
+            exposure.push(of_exposure);
+            for (parts, times) in [
+                (&mut colour, of_colour),
+                (&mut movement, of_movement),
+                (&mut material, of_material),
+            ] {
+                first.push(times.first);
+                parts.push(&times, &from_scratch);
+            }
         }
-        let mark = if self.replaced > 0 { "*" } else { "" };
         let lights = self.world().lights.count();
         println!(
-            "{scene:<14}{lights:>7}{:>12.1}{:>10.3}{:>8}{:>8}{:>10.3}{:>13.2}{:>18.1}",
+            "{scene:<14}{lights:>7}{:>12.1}{:>10}{:>8}{:>8}{:>10}{:>13.2}{:>18.1}",
             half(&mut scratch),
-            half(&mut colour),
+            colour.text(),
             half(&mut rays),
-            format!("{:.3}{mark}", half(&mut movement)),
-            half(&mut material),
+            movement.text(),
+            material.text(),
             half(&mut exposure),
-            part(&mut self.first, 0.95),
+            part(&mut first, 0.95),
         );
     }
 
-    /// Milliseconds from what `begin` does until the picture of it has all its samples and is drawn.
-    fn until_done(&mut self, begin: impl FnOnce(&mut Self)) -> f64 {
+    /// From what `begin` does until the picture of it has all its samples and is drawn. `begin` says whether it is a render
+    /// of its own.
+    fn until_done(&mut self, begin: impl FnOnce(&mut Self) -> bool) -> Times {
         let before = self.render.as_ref().map(Progressive::number);
         let start = Instant::now();
-        begin(self);
+        let is_replaced = begin(self);
         self.wait(|render| Some(render.number()) != before && render.status().divider.is_some());
         self.draw();
-        self.first.push(ms(start));
+        let first = ms(start);
         self.render.as_ref().expect("a render").wait();
         self.draw();
-        ms(start)
+        Times {
+            first,
+            all: ms(start),
+            is_replaced,
+        }
     }
 
     fn wait(&self, there: impl Fn(&Progressive) -> bool) {
@@ -169,13 +207,14 @@ impl Bench {
         render.refresh(&mut self.snapshot);
     }
 
-    fn edit(&mut self) {
+    fn edit(&mut self) -> bool {
         self.app.update();
         let render = self.render.as_ref().expect("a render");
-        if !render.edit(self.world(), &Gains::default()) {
-            self.replaced += 1;
+        let is_replaced = !render.edit(self.world(), &Gains::default());
+        if is_replaced {
             self.start();
         }
+        is_replaced
     }
 
     fn start(&mut self) {

@@ -79,7 +79,7 @@ pub struct Timed {
     pub seconds: f64,
 }
 
-/// Nanoseconds that each of the process' threads has spent on a processor, together.
+/// Seconds that each of the process' threads has spent on a processor, together.
 pub fn processor_seconds() -> Option<f64> {
     let mut sum = 0.0;
     for task in std::fs::read_dir("/proc/self/task").ok()? {

@@ -202,8 +202,16 @@ fn inspect(args: &Inspect, gizmos: &InspectSettings) -> Result<(), Failure> {
     }
     if !args.quiet {
         tell_of_lines(&sets);
-        if let Some(thinned) = pattern.as_ref().and_then(|pattern| pattern.thinned) {
-            tell("note", thinned);
+        match &pattern {
+            Some(pattern) => {
+                if let Some(thinned) = pattern.thinned {
+                    tell("note", thinned);
+                }
+            }
+            None if gizmos.on && gizmos.pattern.on => {
+                tell("note", "Pattern: no pixel was picked");
+            }
+            None => {}
         }
     }
     match traversal {
@@ -240,8 +248,8 @@ impl Picked<'_> {
         if !(gizmos.on && choice.on) {
             return None;
         }
+        let pixel = self.rays?.pixel;
         let count = crate::trace::samples_per_pixel(self.world, &self.camera.camera, self.settings);
-        let pixel = self.rays.map_or(UVec2::ZERO, |rays| rays.pixel);
         Some(pattern(
             self.world,
             self.settings,

@@ -3,7 +3,7 @@
 use super::Failure;
 use super::output::{check_room, say, tell};
 use super::progress::Progress;
-use super::settings::{BuilderArg, SettingArgs, builder_name, check_scene, list};
+use super::settings::{BuilderArg, SettingArgs, check_scene, list};
 use super::shown::output_text;
 use super::stage::{SceneArgs, Stage, with_threads};
 use super::stats::{Stats, mrays_per_second, triangles};
@@ -11,7 +11,7 @@ use super::stop::{SampleRange, StopArgs};
 use super::view::ViewArgs;
 use crate::film::views::View;
 use crate::film::{Ending, FirstHits, LightPictures, Status, render_lights, render_samples};
-use crate::inspect::build_time;
+use crate::inspect::{build_time, builder_name};
 use crate::io::{
     FileError, Part, PictureFormat, check_outputs, check_picture, check_writable, part_bytes,
     picture_notes, replace_file, write_lights, write_part, write_rendered,
@@ -163,7 +163,7 @@ fn render_scene(args: &Render) -> Result<(), Failure> {
         relative_error: None,
         relative_error_is_bound: false,
         threads: rayon::current_num_threads(),
-        builder: builder_name(settings.tree.builder),
+        builder: builder_name(world.aggregate.options().builder),
         build_ms: build_time(&world).as_secs_f64() * 1e3,
         render_ms: 0.0,
         rays: RayCounts::default(),

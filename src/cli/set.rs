@@ -8,35 +8,64 @@ use bevy::color::LinearRgba;
 use bevy::math::{UVec2, Vec2, Vec3};
 use bevy::reflect::enums::{DynamicEnum, DynamicVariant, VariantInfo};
 use bevy::reflect::{GetPath, PartialReflect, Reflect, TypeInfo, Typed};
+use std::fmt;
 use std::str::FromStr;
 
-/// `key=value` as it stands on the command line.
+/// `key=value` as it stands on the command line. The value of `spp*=2` begins with its sign: `*=2`.
 #[derive(Clone, Debug)]
 pub(super) struct Assignment {
     key: String,
     value: String,
 }
 
+/// The signs of which one before `=` changes what there is.
+const SIGNS: [char; 4] = ['+', '-', '*', '/'];
+
 impl FromStr for Assignment {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (key, value) = text
-            .split_once('=')
-            .ok_or("it is written key=value, for example max_depth=8")?;
-        // `spp*=2` changes what there is.
-        let (key, sign) = match key.trim_end().strip_suffix(['+', '-', '*', '/']) {
-            Some(shorter) => (shorter, &key.trim_end()[shorter.len()..]),
-            None => (key, ""),
-        };
+        let places = text.match_indices('=').map(|(place, _)| place);
+        let first = places.clone().next();
+        let first = first.ok_or("it is written key=value, for example max_depth=8")?;
+        // Names of entities may hold the sign themselves.
+        let mut places = places.rev();
+        let place = places.find(|&place| names_component(key_and_sign(&text[..place]).0));
+        let place = place.unwrap_or(first);
+        let (key, sign) = key_and_sign(&text[..place]);
+        let value = text[place + 1..].trim();
         let value = match sign {
-            "" => value.trim().to_owned(),
-            sign => format!("{sign}={}", value.trim()),
+            "" => value.to_owned(),
+            sign => format!("{sign}={value}"),
         };
         Ok(Self {
-            key: key.trim().to_owned(),
+            key: key.to_owned(),
             value,
         })
+    }
+}
+
+/// What stands before `=`, without the sign of a change, and that sign or nothing.
+fn key_and_sign(text: &str) -> (&str, &str) {
+    let text = text.trim();
+    match text.strip_suffix(SIGNS) {
+        Some(key) => (key.trim_end(), &text[key.len()..]),
+        None => (text, ""),
+    }
+}
+
+/// Whether it ends as `Lamp/PointLamp.intensity` does: with a component, and a path in it.
+fn names_component(key: &str) -> bool {
+    let is_of_path = |c: char| c.is_alphanumeric() || "._[]".contains(c);
+    key.rsplit_once('/').is_some_and(|(_, path)| {
+        path.starts_with(char::is_uppercase) && path.chars().all(is_of_path)
+    })
+}
+
+impl fmt::Display for Assignment {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let between = if self.is_change() { "" } else { "=" };
+        write!(f, "{}{between}{}", self.key, self.value)
     }
 }
 
@@ -49,6 +78,28 @@ impl Assignment {
     /// Whether it is about a component of an entity: `Lamp/PointLamp.intensity=3`.
     pub fn is_of_entity(&self) -> bool {
         self.key.contains('/')
+    }
+
+    /// Whether it changes what there is, so that what comes of it is known with the scene alone: `spp*=2`.
+    pub fn is_change(&self) -> bool {
+        let after = self.value.strip_prefix(SIGNS);
+        after.is_some_and(|after| after.starts_with('='))
+    }
+
+    /// Writes the value into settings that need not be the scene's: an error is what is wrong with any.
+    pub fn check(&self, settings: &mut RenderSettings) -> Result<(), Failure> {
+        let written = self.apply(settings);
+        let is_whole = |field: &dyn PartialReflect| {
+            field.try_downcast_ref::<u32>().is_some() || field.try_downcast_ref::<u64>().is_some()
+        };
+        match settings.reflect_path(self.key.as_str()) {
+            // Whether a whole number comes of it, and one that is not below 0, depends on what there is.
+            Ok(field) if self.is_change() && is_whole(field) => {
+                let number = typed_number(&self.value, Unit::NONE, 1.0, 1.0);
+                number.map(|_| ()).or(written)
+            }
+            _ => written,
+        }
     }
 
     /// Writes the value into the settings. Ranges are checked afterwards, all together.
@@ -67,7 +118,7 @@ impl Assignment {
         flag: &str,
         help: &str,
     ) -> Result<(), Failure> {
-        let Self { key, value } = self;
+        let key = &self.key;
         let all = Property::all(T::type_info());
         let property = Property::of(T::type_info(), key);
         let field = settings.reflect_path_mut(key.as_str()).ok();
@@ -76,8 +127,8 @@ impl Assignment {
             let text = unknown(&format!("{flag} {key}"), "setting", key, paths);
             return Err(Failure::Usage(format!("{text} (all: {help})")));
         };
-        set_value(field, &property, value)
-            .map_err(|why| Failure::Usage(format!("{flag} {key}={value}: {why}")))
+        set_value(field, &property, &self.value)
+            .map_err(|why| Failure::Usage(format!("{flag} {self}: {why}")))
     }
 }
 
@@ -311,6 +362,35 @@ mod tests {
             let error = set(text).unwrap_err();
             assert!(error.contains(part), "`{text}` gives `{error}`");
         }
+    }
+
+    #[test]
+    fn names_of_entities_may_hold_what_parts_key_and_value() {
+        for (text, key, value) in [
+            ("spp=1/2", "spp", "1/2"),
+            ("jitter *= 0.5", "jitter", "*=0.5"),
+            ("spp=+=3", "spp", "+=3"),
+            ("a=b/PointLamp.intensity=3", "a=b/PointLamp.intensity", "3"),
+            (
+                "a/B=c/Phong.diffuse-=0.1,0,0",
+                "a/B=c/Phong.diffuse",
+                "-=0.1,0,0",
+            ),
+            (
+                "Lamp/Transform.translation.x = 1/2",
+                "Lamp/Transform.translation.x",
+                "1/2",
+            ),
+            ("Lamp/lens.samples=3", "Lamp/lens.samples", "3"),
+        ] {
+            let assignment: Assignment = text.parse().unwrap();
+            assert_eq!(assignment.parts(), (key, value), "{text}");
+        }
+        let told = |text: &str| text.parse::<Assignment>().unwrap().to_string();
+        assert_eq!(told("jitter*=0.5"), "jitter*=0.5");
+        assert_eq!(told("jitter=0.5"), "jitter=0.5");
+        let error = set("jitter*=0.3").unwrap_err();
+        assert!(error.starts_with("--set jitter*=0.3: "), "{error}");
     }
 
     #[test]

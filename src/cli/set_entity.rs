@@ -17,7 +17,7 @@ use std::any::TypeId;
 /// Says which entities, components or fields there are, or what the value may be.
 pub(super) fn set_on_entity(world: &mut World, assignment: &Assignment) -> Result<(), Failure> {
     let (key, value) = assignment.parts();
-    let usage = |why: String| Failure::Usage(format!("--set {key}={value}: {why}"));
+    let usage = |why: String| Failure::Usage(format!("--set {assignment}: {why}"));
     let Some((name, path)) = key.rsplit_once('/') else {
         return Err(usage("it is written Entity/Component.field=value".into()));
     };
@@ -155,7 +155,7 @@ mod tests {
             segments: 8,
             rings: 4,
         });
-        let ball = world.spawn((SceneId(2), Name::new("a/b"), ball)).id();
+        let ball = world.spawn((SceneId(2), Name::new("a/b=c"), ball)).id();
         let mut set = |text: &str| {
             let assignment: Assignment = text.parse().unwrap();
             let set = set_on_entity(world, &assignment);
@@ -167,7 +167,7 @@ mod tests {
         assert_eq!(set("Lamp/PointLamp.intensity=3").0, Ok(()));
         assert_eq!(set("Lamp/PointLamp.color=1,.5,0").0, Ok(()));
         assert_eq!(set("Lamp/Transform.translation.x=10cm").0, Ok(()));
-        assert_eq!(set("a/b/MeshSource.radius*=2").0, Ok(()));
+        assert_eq!(set("a/b=c/MeshSource.radius*=2").0, Ok(()));
         let (done, lamp_now) = set("Lamp/PointLamp.cone.outer=45deg");
         let lamp_now: PointLamp = lamp_now.unwrap();
         assert_eq!(done, Ok(()));

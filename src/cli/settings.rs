@@ -68,26 +68,27 @@ impl BuilderArg {
     }
 }
 
-/// A builder as tables and statistics name it.
-pub(super) fn builder_name(builder: Builder) -> &'static str {
-    match builder {
-        Builder::None => "none",
-        Builder::Median => "median",
-        Builder::Sah => "sah",
-        Builder::Ploc => "ploc",
-    }
-}
-
 impl SettingArgs {
-    /// Checks the flags against the defaults, before a scene is opened for nothing. What is about entities is checked
-    /// when they are there.
+    /// Refuses what would be wrong for any scene, before one is opened for nothing. What is about entities is checked
+    /// when they are there, and so are ranges where something changes what the scene has.
     pub fn check(&self) -> Result<(), Failure> {
         self.check_said_once(&[
             ("--size", "size", self.size.is_some()),
             ("--spp", "spp", self.spp.is_some()),
             ("--seed", "seed", self.seed.is_some()),
         ])?;
+        let mut settings = RenderSettings::default();
+        for assignment in self.of_settings() {
+            assignment.check(&mut settings)?;
+        }
+        if self.of_settings().any(Assignment::is_change) {
+            return Ok(());
+        }
         self.apply_settings(&mut RenderSettings::default())
+    }
+
+    fn of_settings(&self) -> impl Iterator<Item = &Assignment> {
+        self.set.iter().filter(|set| !set.is_of_entity())
     }
 
     /// Refuses a `--set` of what a flag of its own says, too: one of the two would count for nothing. A flag, its setting,
@@ -117,7 +118,7 @@ impl SettingArgs {
 
     fn apply_settings(&self, settings: &mut RenderSettings) -> Result<(), Failure> {
         let before = range_problems(settings);
-        for assignment in self.set.iter().filter(|set| !set.is_of_entity()) {
+        for assignment in self.of_settings() {
             assignment.apply(settings)?;
         }
         if let Some(size) = self.size {
@@ -195,6 +196,40 @@ mod tests {
         let words = ["glassbox"].iter().chain(flags);
         let matches = command.try_get_matches_from(words).unwrap();
         SettingArgs::from_arg_matches(&matches).unwrap()
+    }
+
+    #[test]
+    fn a_change_of_what_the_scene_has_is_judged_with_the_scene() {
+        let mut world = World::new();
+        let mut scene = RenderSettings::default();
+        (scene.sampling.time, scene.spp) = (60.0, 1000);
+        world.insert_resource(scene);
+        for (flags, done) in [
+            (&["--set", "sampling.time-=59.5"][..], true),
+            (&["--set", "spp-=999"], true),
+            (&["--set", "spp/=1000"], true),
+            (&["--set", "spp-=1000"], false),
+            (&["--set", "spp-=1001"], false),
+            (&["--set", "sampling.time-=61"], false),
+            (&["--set", "spp=0", "--set", "spp+=4"], true),
+        ] {
+            let args = args(flags);
+            assert!(args.check().is_ok(), "{flags:?}");
+            let mut world_now = World::new();
+            world_now.insert_resource(world.resource::<RenderSettings>().clone());
+            assert_eq!(args.apply(&mut world_now).is_ok(), done, "{flags:?}");
+        }
+        // Wrong for any scene.
+        for flags in [
+            ["--set", "spp*=many"],
+            ["--set", "spp/=0"],
+            ["--set", "sampling.tim-=1"],
+            ["--set", "sampling.time*=x"],
+            ["--set", "features.shadows*=2"],
+            ["--set", "spp=0"],
+        ] {
+            assert!(args(&flags).check().is_err(), "{flags:?}");
+        }
     }
 
     #[test]

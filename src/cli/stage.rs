@@ -35,7 +35,6 @@ pub(super) struct Stage {
     /// The scene's name.
     pub name: String,
     quiet: bool,
-    warned: usize,
 }
 
 impl Stage {
@@ -74,7 +73,6 @@ impl Stage {
             app,
             name: opened.name,
             quiet,
-            warned: 0,
         })
     }
 
@@ -111,12 +109,10 @@ impl Stage {
         self.app.update();
         let traced = self.app.world().resource::<Traced>();
         if !self.quiet {
-            // The same scene is synced again for the next builder; it is warned of once.
-            for problem in traced.problems.iter().skip(self.warned) {
+            for problem in &traced.problems {
                 tell("warning", format_args!("{}: {problem}", self.name));
             }
         }
-        self.warned = self.warned.max(traced.problems.len());
         traced
     }
 

@@ -65,7 +65,14 @@ pub(super) fn run(
 /// Says what can be done, and shows it.
 #[cfg(not(feature = "editor"))]
 pub(super) fn run(scene: Option<PathBuf>, memory: MemoryArgs) -> Result<(), Failure> {
-    say(format_args!(
+    say(commands())?;
+    show(scene, memory)
+}
+
+/// What this build can do.
+#[cfg(any(test, not(feature = "editor")))]
+fn commands() -> String {
+    format!(
         "Glassbox {}: a scene editor whose ray tracer you can see into.\n\
          This build has no window; these commands work without one:\n\
          \x20 glassbox render SCENE -o OUT   a scene to a picture (.png, .jpg, .exr, .hdr)\n\
@@ -76,10 +83,12 @@ pub(super) fn run(scene: Option<PathBuf>, memory: MemoryArgs) -> Result<(), Fail
          \x20 glassbox bench SCENE           rendering times, builder by builder\n\
          \x20 glassbox report                speed against error, measured on this machine\n\
          \x20 glassbox convert IN OUT        .scn.ron, .obj and .glb from one to the other\n\
+         \x20 glassbox check FILE…           what files hold, and what of it cannot be shown\n\
+         \x20 glassbox completions SHELL     a script that completes commands in a shell\n\
+         \x20 glassbox man [COMMAND]         a manual page\n\
          Each explains itself with --help.",
         env!("CARGO_PKG_VERSION")
-    ))?;
-    show(scene, memory)
+    )
 }
 
 /// Renders a scene to a picture in the working folder.
@@ -123,6 +132,18 @@ fn picture_name(scene: &Path) -> PathBuf {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::Cli;
+    use clap::CommandFactory;
+
+    #[test]
+    fn a_build_without_a_window_names_every_command() {
+        let text = commands();
+        for command in Cli::command().get_subcommands() {
+            let name = command.get_name();
+            let mut named = text.lines().map(|line| line.split_whitespace().nth(1));
+            assert!(named.any(|word| word == Some(name)), "`{name}`: {text}");
+        }
+    }
 
     #[test]
     fn the_picture_is_called_like_the_scene() {

@@ -91,8 +91,17 @@ impl<'a> Tree<'a> {
 
     /// The ray by which a surface is seen, where it is more mirror or glass than it is lit itself.
     fn bounce(&self, index: u32, ray: &TracedRay, light: &Light) -> Option<(u32, &'a TracedRay)> {
-        let mut children = self.children(index);
-        let (child_index, child) = children.find(|(_, child)| child.light.is_none())?;
+        let ways = |mirrored: bool| {
+            let children = self.children(index);
+            children
+                .filter(move |(_, ray)| ray.light.is_none() && is_mirrored(ray.kind) == mirrored)
+        };
+        // A surface may be a faint mirror and clear: what more of its light comes from.
+        let share = |mirrored| -> f32 {
+            let weights = ways(mirrored).map(|(_, ray)| ray.weight.max_element());
+            weights.sum()
+        };
+        let (child_index, child) = ways(share(true) >= share(false)).next()?;
         let hit = ray.hit.as_ref();
         let follows = match child.kind {
             _ if !light.arrives => true,

@@ -7,10 +7,11 @@ use super::trees::{TreeView, trees, triangle_in_world};
 use super::visits::Visits;
 use super::wide_boxes::wide_boxes;
 use super::{Subject, System};
-use crate::bvh::{SplitPlane, TreeRef, node_cost};
+use crate::bvh::{Levels, SplitPlane, TreeRef, node_cost};
 use crate::trace::World;
 use bevy::color::LinearRgba;
 use glam::Vec3;
+use std::cmp::Ordering;
 
 /// How much a split plane covers.
 const PLANE_ALPHA: f32 = 0.12;
@@ -28,7 +29,7 @@ struct Chosen {
 pub(super) fn boxes(subject: &Subject) -> LineSet {
     let settings = &subject.inspect.boxes;
     let world = subject.world;
-    let mut set = LineSet::new(System::Boxes);
+    let mut set = LineSet::of(System::Boxes, subject.inspect);
     if settings.object != 0 && !world.objects.iter().any(|o| o.id == settings.object) {
         set.notes
             .push(format!("object {} is not in the scene", settings.object));
@@ -44,6 +45,10 @@ pub(super) fn boxes(subject: &Subject) -> LineSet {
         _ => None,
     };
     let views: Vec<TreeView> = trees(world).filter(|view| wanted(settings, view)).collect();
+    if views.iter().all(|view| view.tree.nodes.is_empty()) {
+        set.notes.push(without_tree(settings, world));
+        return set;
+    }
     if settings.form == TreeForm::Wide {
         wide_boxes(&mut set, subject, &views, visits.as_ref());
         return set;
@@ -52,23 +57,27 @@ pub(super) fn boxes(subject: &Subject) -> LineSet {
     if chosen.iter().all(Vec::is_empty) && set.notes.is_empty() {
         set.notes.push(nothing(settings, &views));
     }
+    // The twelve edges of a box, and the four of a plane in it.
+    let lines = if settings.split_planes { 16 } else { 12 };
     let scale = Scale::of(settings, &views, &chosen, visits.as_ref());
     let of: usize = chosen.iter().map(Vec::len).sum();
-    let keep = thin(&chosen, subject.inspect.max_lines as usize / 12);
+    let mut keep = thin(&chosen, subject.inspect.max_lines as usize / lines);
     let mut drawn = 0;
+    let mut triangles = Vec::new();
     for (view, nodes) in views.iter().zip(&chosen) {
         let instance = view.instance().map(|(instance, _)| instance);
         let planes = view.split_planes();
-        for chosen in nodes.iter().filter(|chosen| keep(chosen)) {
+        for chosen in nodes {
+            if !keep(chosen) {
+                continue;
+            }
             drawn += 1;
             let node = chosen.node;
             let stands = Stands::Node { instance, node };
             set.edges(&view.corners(node), scale.color(view, chosen), stands);
             let is_leaf = view.tree.nodes[node as usize].is_leaf();
             if is_leaf && (settings.triangles || settings.choice == BoxChoice::Leaf) {
-                for (instance, triangle) in view.triangles(node) {
-                    outline(&mut set, subject, instance, triangle, WHITE);
-                }
+                triangles.extend(view.triangles(node));
             }
             if settings.split_planes && !is_leaf {
                 match planes.of(node) {
@@ -77,6 +86,10 @@ pub(super) fn boxes(subject: &Subject) -> LineSet {
                 }
             }
         }
+    }
+    // After all boxes: where there is not room for both, boxes are what is asked for.
+    for (instance, triangle) in triangles {
+        outline(&mut set, subject, instance, triangle, WHITE);
     }
     if drawn > 0 {
         set.notes.push(
@@ -170,10 +183,24 @@ fn choose(
     chosen
 }
 
-fn nothing(settings: &BoxSettings, views: &[TreeView]) -> String {
-    if views.iter().all(|view| view.tree.nodes.is_empty()) {
-        return "there is no tree: no object with a triangle is traced".into();
+/// Why none of the trees is asked for, or none that is has a node.
+fn without_tree(settings: &BoxSettings, world: &World) -> String {
+    let object = settings.object;
+    if trees(world).all(|view| view.tree.nodes.is_empty()) {
+        "there is no tree: no object with a triangle is traced".into()
+    } else if world.aggregate.options().levels == Levels::One {
+        "there is one tree over all triangles: no mesh has one of its own".into()
+    } else if settings.trees != TreeChoice::Top {
+        format!("object {object} has no triangle that is traced, and so no tree")
+    } else if settings.choice == BoxChoice::Leaf {
+        "the leaves of the tree over the objects hold objects: one with triangles is in a mesh's tree"
+            .into()
+    } else {
+        format!("the tree over the objects is of them all: that of object {object} is its mesh's")
     }
+}
+
+fn nothing(settings: &BoxSettings, views: &[TreeView]) -> String {
     match settings.choice {
         BoxChoice::Levels => {
             let deepest = views.iter().flat_map(TreeView::depths).max().unwrap_or(0);
@@ -196,8 +223,9 @@ fn nothing(settings: &BoxSettings, views: &[TreeView]) -> String {
     }
 }
 
-/// All nodes where there is room for them, else those of the deepest levels for which there is.
-fn thin(chosen: &[Vec<Chosen>], most: usize) -> impl Fn(&Chosen) -> bool + use<> {
+/// All nodes where there is room for `most`; else the levels nearest to the root, and of the first that does not fit as many
+/// as do. It is asked for each node once.
+fn thin(chosen: &[Vec<Chosen>], most: usize) -> impl FnMut(&Chosen) -> bool + use<> {
     let mut counts: Vec<usize> = Vec::new();
     for chosen in chosen.iter().flatten() {
         let depth = chosen.depth as usize;
@@ -206,15 +234,23 @@ fn thin(chosen: &[Vec<Chosen>], most: usize) -> impl Fn(&Chosen) -> bool + use<>
         }
         counts[depth] += 1;
     }
-    let mut sum = 0;
-    let fits = counts
-        .iter()
-        .take_while(|&&count| {
-            sum += count;
-            sum <= most
-        })
-        .count();
-    move |chosen| (chosen.depth as usize) < fits
+    let mut room = most;
+    let mut whole = 0;
+    for count in counts {
+        if count > room {
+            break;
+        }
+        room -= count;
+        whole += 1;
+    }
+    move |chosen| match chosen.depth.cmp(&whole) {
+        Ordering::Less => true,
+        Ordering::Equal if room > 0 => {
+            room -= 1;
+            true
+        }
+        _ => false,
+    }
 }
 
 /// From what the colour shows to the colour.

@@ -1,5 +1,6 @@
 //! All that is known of a picked pixel, as one JSON document.
 
+use super::column::color_text;
 use super::explain::{Source, sources};
 use super::{LineSet, Pattern, Traversal};
 use crate::scene::{RenderSettings, SETTINGS};
@@ -143,7 +144,7 @@ impl RayLine {
         };
         let metres = ray.t * ray.direction.length();
         let transmitted = match aim {
-            Some(_) => rgb(ray.transmittance),
+            Some(_) => color_text(ray.transmittance),
             None => "-".into(),
         };
         let cost = ray.cost;
@@ -161,8 +162,8 @@ impl RayLine {
                 } else {
                     "-".into()
                 },
-                rgb(ray.radiance),
-                rgb(ray.added),
+                color_text(ray.radiance),
+                color_text(ray.added),
                 transmitted,
                 cost.nodes.to_string(),
                 cost.boxes.to_string(),
@@ -179,11 +180,4 @@ pub fn named(names: &BTreeMap<u64, String>, id: u64) -> String {
         _ if id == DOME => "Environment".into(),
         _ => format!("#{id}"),
     }
-}
-
-fn rgb(v: Vec3) -> String {
-    if v == Vec3::ZERO {
-        return "0".into();
-    }
-    format!("{:.4} {:.4} {:.4}", v.x, v.y, v.z)
 }

@@ -12,7 +12,7 @@ const PLANE_ALPHA: f32 = 0.08;
 /// The aperture's circle, the part of the focus plane that the picture shows, and the lines from the
 /// middle of the lens to its corners. All as they stand when the shutter opens.
 pub(super) fn lens(subject: &Subject) -> LineSet {
-    let mut set = LineSet::new(System::Lens);
+    let mut set = LineSet::of(System::Lens, subject.inspect);
     let camera = subject.photographer;
     let optics = &camera.optics;
     let middle = camera.position + optics.velocity * optics.shutter[0];

@@ -22,7 +22,7 @@ const DOME_DIRECTIONS: u32 = 128;
 /// Lights as lines: what has an extent with its gradient, a spot with its cone, a dome with directions that it is sampled
 /// in.
 pub(super) fn lights(subject: &Subject) -> LineSet {
-    let mut set = LineSet::new(System::Lights);
+    let mut set = LineSet::of(System::Lights, subject.inspect);
     let lights = &subject.world.lights;
     let dome = Dome::of(&subject.world.environment, subject.settings);
     if lights.count() == 0 && dome.is_none() {

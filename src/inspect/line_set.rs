@@ -1,6 +1,6 @@
 //! Lines, points, planes and labels as plain data: what a gizmo draws, a file holds and a test reads.
 
-use super::System;
+use super::{InspectSettings, System};
 use bevy::color::LinearRgba;
 use glam::Vec3;
 use serde::Serialize;
@@ -23,6 +23,11 @@ pub struct LineSet {
     pub thinned: Option<Thinned>,
     /// What there was nothing to draw of, and why, in a sentence each.
     pub notes: Vec<String>,
+    /// The most lines, and the most points; what comes after them is counted and left out.
+    #[serde(skip)]
+    most: usize,
+    #[serde(skip)]
+    left_out: [usize; 2],
 }
 
 /// A straight line whose colour goes from one end's to the other's.
@@ -127,8 +132,17 @@ impl fmt::Display for Thinned {
 }
 
 impl LineSet {
-    /// An empty set.
+    /// An empty set, with room for all that comes.
     pub fn new(system: System) -> Self {
+        Self::with_room(system, usize::MAX)
+    }
+
+    /// An empty set, with room for as many lines as the settings allow.
+    pub(super) fn of(system: System, inspect: &InspectSettings) -> Self {
+        Self::with_room(system, inspect.max_lines as usize)
+    }
+
+    fn with_room(system: System, most: usize) -> Self {
         Self {
             system,
             segments: Vec::new(),
@@ -137,6 +151,29 @@ impl LineSet {
             labels: Vec::new(),
             thinned: None,
             notes: Vec::new(),
+            most,
+            left_out: [0; 2],
+        }
+    }
+
+    /// Says what there was no room for.
+    pub(super) fn say_what_is_left_out(&mut self) {
+        let [lines, points] = std::mem::take(&mut self.left_out);
+        let parts = [
+            ("lines", self.segments.len(), lines),
+            ("points", self.points.len(), points),
+        ];
+        for (what, drawn, left_out) in parts.into_iter().filter(|part| part.2 > 0) {
+            let thinned = Thinned {
+                what,
+                drawn,
+                of: drawn + left_out,
+                rule: "the first ones",
+            };
+            match self.thinned {
+                None => self.thinned = Some(thinned),
+                Some(_) => self.notes.push(thinned.to_string()),
+            }
         }
     }
 
@@ -161,7 +198,12 @@ impl LineSet {
 
     /// A line between two colours. One that is not finite is left out: no screen can show it.
     pub(super) fn gradient(&mut self, ends: [Vec3; 2], colors: [LinearRgba; 2], stands: Stands) {
-        if ends.iter().all(|end| end.is_finite()) {
+        if ends.iter().any(|end| !end.is_finite()) {
+            return;
+        }
+        if self.segments.len() >= self.most {
+            self.left_out[0] += 1;
+        } else {
             self.segments.push(Segment {
                 ends,
                 colors,
@@ -207,7 +249,12 @@ impl LineSet {
 
     /// A point; one that is not finite is left out.
     pub(super) fn dot(&mut self, at: Vec3, color: LinearRgba, stands: Stands) {
-        if at.is_finite() {
+        if !at.is_finite() {
+            return;
+        }
+        if self.points.len() >= self.most {
+            self.left_out[1] += 1;
+        } else {
             self.points.push(Dot { at, color, stands });
         }
     }

@@ -12,7 +12,7 @@ const DISTANCE: f32 = 0.15;
 
 /// The disc of each hit that scatters, and where each ray passes it.
 pub(super) fn lobes(subject: &Subject) -> LineSet {
-    let mut set = LineSet::new(System::Lobes);
+    let mut set = LineSet::of(System::Lobes, subject.inspect);
     let Some(tree) = subject.rays else {
         set.notes.push("no pixel was picked".into());
         return set;
@@ -41,9 +41,6 @@ pub(super) fn lobes(subject: &Subject) -> LineSet {
         }
         if let Some(at) = disc.passed_by(&hit, ray) {
             set.dot(at, YELLOW, Stands::Ray(index));
-        }
-        if set.segments.len() > subject.inspect.max_lines as usize {
-            break;
         }
     }
     if drawn == [None; 2] {

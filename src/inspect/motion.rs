@@ -14,7 +14,7 @@ pub(super) const GHOST_ALPHA: f32 = 0.45;
 /// opens to its middle when it closes: objects with their box at both times, lights with their shape,
 /// the camera as a point.
 pub(super) fn motion(subject: &Subject) -> LineSet {
-    let mut set = LineSet::new(System::Motion);
+    let mut set = LineSet::of(System::Motion, subject.inspect);
     let camera = subject.photographer;
     let shutter = camera.optics.shutter;
     objects(subject.world, shutter, &mut set);

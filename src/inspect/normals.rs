@@ -5,7 +5,7 @@ use super::count::counted;
 use super::line_set::{LineSet, Stands, Thinned};
 use super::{Subject, System};
 use crate::trace::Cone;
-use bevy::platform::collections::HashMap;
+use bevy::platform::collections::{HashMap, HashSet};
 use glam::{IVec2, Vec3};
 
 /// Levels between the vertices: each halves the edges.
@@ -17,12 +17,13 @@ struct Placed {
     normal: Vec3,
     stands: Stands,
     ahead: f32,
-    between: bool,
+    /// Which corner of its triangle it is; `None` between them.
+    corner: Option<usize>,
 }
 
 /// Normals, as long as `length` pixels, and not denser than one in `spacing` pixels.
 pub(super) fn normals(subject: &Subject) -> LineSet {
-    let mut set = LineSet::new(System::Normals);
+    let mut set = LineSet::of(System::Normals, subject.inspect);
     let settings = &subject.inspect.normals;
     let world = subject.world;
     let chosen = |id: u64| settings.object == 0 || settings.object == id;
@@ -35,7 +36,8 @@ pub(super) fn normals(subject: &Subject) -> LineSet {
     }
     let n = 1 << settings.between.min(MOST_BETWEEN);
     let mut cells: HashMap<IVec2, Placed> = HashMap::default();
-    let mut of = 0;
+    // The bits of each place and its normal: triangles share them.
+    let mut places: HashSet<[u32; 6]> = HashSet::default();
     let mut without: Vec<u64> = Vec::new();
     let spacing = settings.spacing.max(1.0);
     for (number, object) in (0..).zip(world.objects.iter()) {
@@ -46,10 +48,17 @@ pub(super) fn normals(subject: &Subject) -> LineSet {
             without.push(object.id);
             continue;
         }
-        let triangles = object.mesh.tree.triangles().len() as u32;
-        for triangle in 0..triangles {
+        let triangles = object.mesh.tree.triangles();
+        let mut known = vec![false; object.mesh.normals.len()];
+        for triangle in 0..triangles.len() as u32 {
+            let corners = triangles.indices()[triangle as usize];
             for placed in on_triangle(subject, number, triangle, n) {
-                of += 1;
+                if let Some(corner) = placed.corner {
+                    let known = &mut known[corners[corner] as usize];
+                    if std::mem::replace(known, true) {
+                        continue;
+                    }
+                }
                 let camera = subject.camera;
                 let time = camera.optics.shutter[0];
                 let Some((place, ahead)) = camera.project(placed.at, subject.settings.size, time)
@@ -59,6 +68,19 @@ pub(super) fn normals(subject: &Subject) -> LineSet {
                 let outside = place.cmplt(glam::Vec2::ZERO).any()
                     || place.cmpgt(subject.settings.size.as_vec2()).any();
                 if outside {
+                    continue;
+                }
+                let key = placed
+                    .at
+                    .to_array()
+                    .into_iter()
+                    .chain(placed.normal.to_array());
+                let mut bits = [0; 6];
+                for (bits, number) in bits.iter_mut().zip(key) {
+                    // Zeros have two signs.
+                    *bits = (number + 0.0).to_bits();
+                }
+                if !places.insert(bits) {
                     continue;
                 }
                 let placed = Placed { ahead, ..placed };
@@ -80,15 +102,19 @@ pub(super) fn normals(subject: &Subject) -> LineSet {
     let cone = Cone::of_pixel(subject.camera, subject.settings.size);
     for (_, placed) in &kept {
         let length = settings.length * cone.width_at(placed.ahead);
-        let color = if placed.between { BETWEEN } else { VERTEX };
+        let color = if placed.corner.is_none() {
+            BETWEEN
+        } else {
+            VERTEX
+        };
         let tip = placed.at + length * placed.normal;
         set.line([placed.at, tip], color, placed.stands);
     }
-    if kept.len() < of {
+    if kept.len() < places.len() {
         set.thinned = Some(Thinned {
-            what: "normals",
+            what: "normals in the picture",
             drawn: kept.len(),
-            of,
+            of: places.len(),
             rule: "the nearest in each square of `spacing` pixels of the picture",
         });
     }
@@ -137,7 +163,7 @@ fn on_triangle(
                 normal,
                 stands: Stands::Triangle { instance, triangle },
                 ahead: 0.0,
-                between: !weights.contains(&n),
+                corner: weights.iter().position(|weight| *weight == n),
             })
         })
 }

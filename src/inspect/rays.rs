@@ -27,7 +27,7 @@ pub fn is_shown(settings: &RaySettings, ray: &TracedRay) -> bool {
 
 /// Rays as lines, with what they hit.
 pub(super) fn rays(subject: &Subject) -> LineSet {
-    let mut set = LineSet::new(System::Rays);
+    let mut set = LineSet::of(System::Rays, subject.inspect);
     let settings = &subject.inspect.rays;
     let Some(tree) = subject.rays else {
         set.notes.push("no pixel was picked".into());

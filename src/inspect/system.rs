@@ -73,7 +73,7 @@ impl System {
 
     /// What it shows, whether it is on or not.
     pub fn lines(self, subject: &Subject) -> LineSet {
-        match self {
+        let mut set = match self {
             Self::Boxes => boxes::boxes(subject),
             Self::Visits => visits::visits(subject),
             Self::Rays => rays::rays(subject),
@@ -82,7 +82,9 @@ impl System {
             Self::Lights => lights::lights(subject),
             Self::Lens => lens::lens(subject),
             Self::Motion => motion::motion(subject),
-        }
+        };
+        set.say_what_is_left_out();
+        set
     }
 
     /// A number that differs where the lines may: made of all that the system reads, and of nothing

@@ -69,7 +69,7 @@ impl Visitor for Visits {
 /// Boxes of visited nodes, white, and of pruned ones, red. A node that one ray entered and another
 /// pruned is white.
 pub(super) fn visits(subject: &Subject) -> LineSet {
-    let mut set = LineSet::new(System::Visits);
+    let mut set = LineSet::of(System::Visits, subject.inspect);
     let settings = &subject.inspect.rays;
     let Some(rays) = subject.rays else {
         set.notes

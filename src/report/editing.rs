@@ -18,7 +18,8 @@ pub(super) fn section(table: Table) -> Section {
             "Figures of a benchmark of its own (`cargo bench --bench edits -- --csv FILE.csv`), as it wrote them: medians (p50) and \
              95th percentiles of the milliseconds from an edit, made while the picture before it is being rendered at 1280 × 720, \
              until the app's thread is free again (frame), until the first picture is developed, and until every pixel has a \
-             sample; and what of the tracer's world was made again."
+             sample (the longest of ten in place of a percentile); how many of forty the render under way took in; and what of \
+             the tracer's world was made again."
                 .into(),
         ],
         tables: vec![table],

@@ -18,22 +18,56 @@ pub(super) fn power_law(points: &[(f64, f64)]) -> Option<(f64, f64)> {
     Some((slope, y - slope * x))
 }
 
-/// Where a falling curve of (x, error) reaches `goal`: between two measured points if it can be, else along the fitted
-/// line beyond the last (then the second value is true). `None` where it never does.
-pub(super) fn reaches(points: &[(f64, f64)], goal: f64) -> Option<(f64, bool)> {
+/// Where a curve reaches a goal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Reached {
+    pub at: f64,
+    pub how: How,
+}
+
+/// How that is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum How {
+    /// Between two measured points.
+    Measured,
+    /// The first point is there: so far at most.
+    Bound,
+    /// Beyond the last point, along the fitted line.
+    Extrapolated,
+}
+
+impl How {
+    /// As tables call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Measured => "measured",
+            Self::Bound => "at most",
+            Self::Extrapolated => "extrapolated",
+        }
+    }
+}
+
+/// Where a falling curve of (x, error) reaches `goal`. `None` where it never does.
+pub(super) fn reaches(points: &[(f64, f64)], goal: f64) -> Option<Reached> {
+    let first = points.first()?;
+    if first.1 <= goal {
+        let (at, how) = (first.0, How::Bound);
+        return Some(Reached { at, how });
+    }
     for pair in points.windows(2) {
         let [(x0, y0), (x1, y1)] = [pair[0], pair[1]];
         if y0 > goal && y1 <= goal && y1 > 0.0 {
             let part = (y0 / goal).ln() / (y0 / y1).ln();
-            return Some(((x0.ln() + part * (x1 / x0).ln()).exp(), false));
+            let at = (x0.ln() + part * (x1 / x0).ln()).exp();
+            let how = How::Measured;
+            return Some(Reached { at, how });
         }
     }
-    let first = points.first()?;
-    if first.1 <= goal {
-        return Some((first.0, false));
-    }
     let (slope, offset) = power_law(points)?;
-    (slope < 0.0).then(|| (((goal.ln() - offset) / slope).exp(), true))
+    (slope < 0.0).then(|| Reached {
+        at: ((goal.ln() - offset) / slope).exp(),
+        how: How::Extrapolated,
+    })
 }
 
 #[cfg(test)]
@@ -47,13 +81,21 @@ mod tests {
             .to_vec();
         let (slope, offset) = power_law(&points).unwrap();
         assert!((slope + 0.75).abs() < 1e-12 && (offset - 0.1_f64.ln()).abs() < 1e-12);
-        let (at, beyond) = reaches(&points, 0.0125).unwrap();
-        assert!((at - 16.0).abs() < 1e-9 && beyond, "{at}");
-        let (at, beyond) = reaches(&points, 0.05).unwrap();
-        assert!(
-            (at - 2.0_f64.powf(4.0 / 3.0)).abs() < 1e-9 && !beyond,
-            "{at}"
-        );
+        for (goal, at, how) in [
+            (0.0125, 16.0, How::Extrapolated),
+            (0.05, 2.0_f64.powf(4.0 / 3.0), How::Measured),
+            (0.1, 1.0, How::Bound),
+            (0.2, 1.0, How::Bound),
+        ] {
+            let reached = reaches(&points, goal).unwrap();
+            assert!((reached.at - at).abs() < 1e-9, "{reached:?}");
+            assert_eq!(reached.how, how, "{goal}");
+        }
+        // A curve that begins below its goal was there before it rose above it.
+        let noisy = [(1.0, 0.04), (2.0, 0.06), (4.0, 0.03)];
+        let how = How::Bound;
+        assert_eq!(reaches(&noisy, 0.05), Some(Reached { at: 1.0, how }));
+        assert_eq!(reaches(&[(1.0, 0.1), (2.0, 0.2)], 0.05), None);
         assert_eq!(power_law(&[(1.0, 1.0)]), None);
     }
 }

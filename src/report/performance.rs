@@ -175,7 +175,10 @@ pub fn performance(
     let mut picture: Option<Picture> = None;
     let mut done = 0.0;
     for run in 1..=runs {
-        for (column, world) in columns.iter_mut().zip(&worlds) {
+        // Each run begins with another.
+        for turn in 0..worlds.len() {
+            let i = (turn + run as usize - 1) % worlds.len();
+            let (column, world) = (&mut columns[i], &worlds[i]);
             let what = format!("{} {run}/{runs}", title(column.builder));
             said(tell(&what, done / renders))?;
             let told = Mutex::new(&mut *tell);

@@ -352,6 +352,23 @@ mod tests {
     }
 
     #[test]
+    fn samples_are_as_many_as_asked_for_or_that_many_a_unit_of_size_rounded_up() {
+        for (samples, size, whole, scaled) in [
+            (4, 4.0, 4, 16),
+            (4, 0.25, 4, 1),
+            (4, 0.26, 4, 2),
+            (1, 0.0, 1, 1),
+            (0, 3.0, 1, 1),
+            (1000, 2.0, 1000, 1000),
+            (u32::MAX, 1e-9, 1000, 5),
+            (1, f32::INFINITY, 1, 1000),
+        ] {
+            let counts = [false, true].map(|by_size| sample_count(samples, size, by_size));
+            assert_eq!(counts, [whole, scaled], "{samples} of {size}");
+        }
+    }
+
+    #[test]
     fn a_point_light_follows_the_inverse_square_and_a_classic_one_does_not() {
         let light = PointLight {
             id: 1,

@@ -12,14 +12,6 @@ fn gradient() -> Environment {
     mapped(4, 256, |_, y| 1.0 + (PI * (y as f32 + 0.5) / 256.0).cos())
 }
 
-/// Two numbers of a sequence that fills the square evenly: Roberts' R2.
-fn even_pair(i: u32) -> [f32; 2] {
-    [0.754_877_666_246_693, 0.569_840_290_998_053].map(|step| {
-        let number = (0.5 + step * f64::from(i)).fract() as f32;
-        number.min(1.0_f32.next_down())
-    })
-}
-
 /// What a surface sends back of all directions that are chosen for it, and of directions chosen evenly.
 fn both_ways(environment: &Environment, surface: &Surface, n: u32) -> [f64; 2] {
     let settings = RenderSettings::default();

@@ -1,6 +1,6 @@
 //! Points of lamps that are chosen for the surface that sees them: unbiased, finite, and nearly free of noise.
 
-use super::Numbers;
+use super::{Numbers, even_pair};
 use glam::{DVec3, Vec3};
 use glassbox::scene::Lighting;
 use glassbox::trace::shading::reflected;
@@ -32,14 +32,6 @@ fn matt(normal: Vec3) -> Surface {
         diffuse: Vec3::ONE,
         ..Surface::flat(Vec3::ZERO, normal, normal)
     }
-}
-
-/// Two numbers of a sequence that fills the square evenly: Roberts' R2.
-fn even_pair(i: u32) -> [f32; 2] {
-    [0.754_877_666_246_693, 0.569_840_290_998_053].map(|step| {
-        let number = (0.5 + step * f64::from(i)).fract() as f32;
-        number.min(1.0_f32.next_down())
-    })
 }
 
 /// Mean and standard deviation of the mean of `n` values.

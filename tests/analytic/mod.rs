@@ -53,6 +53,14 @@ impl Numbers {
     }
 }
 
+/// Two numbers of a sequence that fills the square evenly: Roberts' R2.
+fn even_pair(i: u32) -> [f32; 2] {
+    [0.754_877_666_246_693, 0.569_840_290_998_053].map(|step| {
+        let number = (0.5 + step * f64::from(i)).fract() as f32;
+        number.min(1.0_f32.next_down())
+    })
+}
+
 /// An object: corner positions in threes, and a material.
 pub fn object(id: u64, corners: &[Vec3], material: u32) -> (Instance, Object) {
     let indices = (0..corners.len() as u32 / 3)

@@ -1,6 +1,6 @@
 //! Pipes and devices where files are expected: nobody waits for what may never come.
 
-use crate::cli::texts;
+use crate::cli::{PROGRAM, texts, without_display};
 use crate::files::app::write;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -13,13 +13,9 @@ fn pipe(folder: &Path, name: &str) {
 
 /// Runs the program, which is ended after a while.
 fn run(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new("timeout")
-        .arg("60")
-        .arg(env!("CARGO_BIN_EXE_glassbox"))
+    without_display("timeout", folder)
+        .args(["60", PROGRAM])
         .args(arguments)
-        .env("DISPLAY", "")
-        .env("WAYLAND_DISPLAY", "")
-        .current_dir(folder)
         .output()
         .unwrap()
 }

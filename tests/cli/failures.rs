@@ -1,6 +1,6 @@
 //! What goes wrong ends with one line on standard error, the right exit code, and no file.
 
-use super::{files, glassbox, texts};
+use super::{PROGRAM, files, glassbox, texts, without_display};
 use std::path::Path;
 
 /// Runs the program, expects this exit code and one line that holds every part.
@@ -147,6 +147,22 @@ fn what_is_not_there_or_cannot_be_written_ends_with_code_1_and_is_named() {
 }
 
 #[test]
+fn what_a_scene_has_nothing_of_that_name_of_is_a_wrong_command_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let render = ["render", "triangle", "-o", "a.png"];
+    for (more, parts) in [
+        (["--camera", "nobody"], ["triangle", "nobody", "it has "]),
+        (
+            ["--set", "nobody/Lens.samples=3"],
+            ["--set nobody", "no such entity", "did you mean "],
+        ),
+    ] {
+        let arguments = [&render[..], &more].concat();
+        fails(folder.path(), &arguments, 2, &parts);
+    }
+}
+
+#[test]
 fn an_output_that_its_name_or_its_size_rules_out_is_a_wrong_command_line_and_told_at_once() {
     let folder = tempfile::tempdir().unwrap();
     // Far more samples than a test waits for.
@@ -243,9 +259,10 @@ fn a_file_that_is_there_stays_as_it_was_when_rendering_fails() {
 
 #[test]
 fn a_reader_that_closes_the_pipe_is_no_error_and_a_full_disk_is_one() {
-    use std::process::{Command, Stdio};
+    use std::process::Stdio;
+    let folder = tempfile::tempdir().unwrap();
     let run = |stdout: Stdio, close: bool| {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_glassbox"))
+        let mut child = without_display(PROGRAM, folder.path())
             .arg("scenes")
             .stdout(stdout)
             .stderr(Stdio::piped())
@@ -320,11 +337,12 @@ fn a_shells_limit_on_memory_is_kept_to() {
          1: (components: {{\"glassbox::scene::MeshSource\": {sphere}}})}})"
     );
     std::fs::write(folder.path().join("a.scn.ron"), text).unwrap();
-    let glassbox = env!("CARGO_BIN_EXE_glassbox");
-    let command = format!("ulimit -v 4000000; exec {glassbox} render a.scn.ron -o a.png");
-    let output = std::process::Command::new("sh")
+    // Each thread maps a stack of its own, and memory to allocate from.
+    let command =
+        format!("ulimit -v 4000000; exec {PROGRAM} render a.scn.ron -o a.png --threads 2");
+    let output = without_display("sh", folder.path())
         .args(["-c", &command])
-        .current_dir(folder.path())
+        .env("MALLOC_ARENA_MAX", "2")
         .output()
         .unwrap();
     let (_, err) = texts(&output);

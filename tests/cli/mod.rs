@@ -13,14 +13,29 @@ mod report;
 mod statistics;
 mod views;
 
+use std::ffi::OsStr;
 use std::path::Path;
 use std::process::{Command, Output};
 
+/// What `glassbox` is on this machine.
+pub(crate) const PROGRAM: &str = env!("CARGO_BIN_EXE_glassbox");
+
+/// A program that is started in a folder, by itself or to start Glassbox: there is no display, on which an editor would
+/// open and stay, and settings are the folder's, not a person's.
+pub(crate) fn without_display(program: impl AsRef<OsStr>, folder: &Path) -> Command {
+    let mut command = Command::new(program);
+    command
+        .current_dir(folder)
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        .env("GLASSBOX_CONFIG_DIR", folder.join("settings"));
+    command
+}
+
 /// Runs the program in a folder.
 pub(crate) fn glassbox(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_glassbox"))
+    without_display(PROGRAM, folder)
         .args(arguments)
-        .current_dir(folder)
         .output()
         .expect("the program did not start")
 }

@@ -1,6 +1,6 @@
 //! What stands where a file is written stays what it is.
 
-use super::{files, succeeds, texts};
+use super::{PROGRAM, files, succeeds, texts, without_display};
 use std::fs;
 use std::os::unix::fs::{FileTypeExt, MetadataExt, PermissionsExt, symlink};
 use std::path::Path;
@@ -106,12 +106,10 @@ fn a_file_that_is_larger_than_the_system_allows_is_told_in_a_line_and_leaves_not
         "render triangle --size 600x600 --spp 1 -o c.hdr",
         "render triangle --size 600x600 --samples 0..1 -o d.exr",
     ] {
-        let program = env!("CARGO_BIN_EXE_glassbox");
         // Blocks of 512 or of 1024 bytes.
-        let limited = format!("ulimit -f 16; exec {program} {command}");
-        let output = Command::new("sh")
+        let limited = format!("ulimit -f 16; exec {PROGRAM} {command}");
+        let output = without_display("sh", folder)
             .args(["-c", &limited])
-            .current_dir(folder)
             .output()
             .unwrap();
         let (_, err) = texts(&output);

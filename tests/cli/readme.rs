@@ -1,8 +1,7 @@
 //! The commands that README shows, as a reader would paste them.
 
-use super::{files, texts};
+use super::{PROGRAM, files, texts, without_display};
 use std::path::Path;
-use std::process::Command;
 
 /// The first block of commands below a heading of README.
 fn commands(heading: &str) -> String {
@@ -16,16 +15,14 @@ fn commands(heading: &str) -> String {
 #[test]
 fn each_line_of_the_command_line_section_works_as_it_stands_in_this_order() {
     let folder = tempfile::tempdir().unwrap();
-    let program = Path::new(env!("CARGO_BIN_EXE_glassbox"));
-    let beside = program.parent().expect("a folder").display();
+    let beside = Path::new(PROGRAM).parent().expect("a folder").display();
     let path = format!("{beside}:{}", std::env::var("PATH").unwrap_or_default());
     let block = commands("\n## The command line\n");
     let lines: Vec<&str> = block.lines().collect();
     assert!(lines.len() >= 15, "{block}");
     for line in lines {
-        let output = Command::new("sh")
+        let output = without_display("sh", folder.path())
             .args(["-c", line])
-            .current_dir(folder.path())
             .env("PATH", &path)
             .output()
             .expect("a shell");

@@ -1,7 +1,6 @@
 //! `glassbox report`: what it writes and what it takes in.
 
-use super::{files, glassbox, succeeds, texts};
-use std::process::Command;
+use super::{PROGRAM, files, glassbox, succeeds, texts, without_display};
 
 #[test]
 fn an_editing_benchmarks_figures_are_a_section_of_the_report() {
@@ -62,10 +61,9 @@ fn an_embree_that_is_named_and_is_none_is_refused_before_anything_is_measured() 
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("text.so"), "not a library").unwrap();
     for name in ["./text.so", "./missing.so"] {
-        let output = Command::new(env!("CARGO_BIN_EXE_glassbox"))
+        let output = without_display(PROGRAM, folder.path())
             .args(["report", "kernels", "triangle", "--quick"])
             .env("EMBREE_LIB", name)
-            .current_dir(folder.path())
             .output()
             .unwrap();
         let (_, err) = texts(&output);

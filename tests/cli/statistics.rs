@@ -220,15 +220,30 @@ fn every_command_is_completed_and_has_a_manual_page() {
     let folder = tempfile::tempdir().unwrap();
     let whole = succeeds(folder.path(), &["man"]);
     assert!(whole.contains("glassbox"), "{whole}");
+    let help = succeeds(folder.path(), &["--help"]);
+    let (_, list) = help.split_once("Commands:\n").expect("a list of commands");
+    let (list, _) = list.split_once("\n\n").expect("its end");
+    // What a command is said to be may go on in the next line, farther in.
+    let starts = list
+        .lines()
+        .filter(|line| line.starts_with("  ") && !line.starts_with("   "));
+    let commands: Vec<&str> = starts
+        .filter_map(|line| line.split_whitespace().next())
+        .collect();
+    let commands: Vec<&str> = commands
+        .into_iter()
+        .filter(|name| *name != "help")
+        .collect();
+    assert!(commands.len() >= 11, "{help}");
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
         let script = succeeds(folder.path(), &["completions", shell]);
-        for command in [
-            "render", "merge", "bvh", "inspect", "scenes", "convert", "man",
-        ] {
+        for command in &commands {
             assert!(script.contains(command), "{shell} lacks {command}");
-            let page = succeeds(folder.path(), &["man", command]);
-            assert!(page.contains(&format!("glassbox\\-{command}")), "{page}");
         }
+    }
+    for command in &commands {
+        let page = succeeds(folder.path(), &["man", command]);
+        assert!(page.contains(&format!("glassbox\\-{command}")), "{page}");
     }
     let output = glassbox(folder.path(), &["man", "rendr"]);
     let why = String::from_utf8_lossy(&output.stderr).into_owned();

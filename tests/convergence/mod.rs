@@ -37,8 +37,8 @@ fn means(world: &World, camera: &Camera, settings: &RenderSettings, counts: &[u6
     means
 }
 
-/// Slope of log RMSE over log N, N = 4 … 1024, over 64 seeds; the mean of all seeds' last means,
-/// 65,536 samples, or `truth` is what is compared with.
+/// Slope of log RMSE over log N, N = 4 … 1024, over 64 seeds. What is compared with is `truth`, or the mean of eight other
+/// seeds' 65,536 samples each.
 fn slope(
     world: &World,
     camera: &Camera,

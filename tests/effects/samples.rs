@@ -4,7 +4,10 @@ use crate::analytic::{central_radiance, dark_before_light, object, quad, square_
 use glam::{UVec2, Vec3};
 use glassbox::film::render;
 use glassbox::scene::{PixelSampling, RenderSettings};
-use glassbox::trace::{Camera, Material, RayCounts, World};
+use glassbox::trace::{
+    Camera, Lights, Material, ParallelogramLight, RayCounts, SegmentLight, World,
+};
+use std::sync::Arc;
 
 /// Mean squared deviation of one pixel's value over 64 seeds, and the rays of one of them.
 fn spread(world: &World, camera: &Camera, settings: &RenderSettings) -> (f64, RayCounts) {
@@ -62,6 +65,53 @@ fn light_samples_are_shadow_rays_at_the_first_hit() {
     );
     assert_eq!((few_rays.shadow, many_rays.shadow), (1, 16));
     assert_eq!((few_rays.camera, many_rays.camera), (1, 1));
+}
+
+#[test]
+fn samples_that_go_by_the_size_of_a_light_are_as_many_as_it_has_metres() {
+    let floor = quad(Vec3::new(-5.0, 0.0, -5.0), Vec3::Z * 10.0, Vec3::X * 10.0);
+    let mut scene = world(vec![object(1, &floor, 0)], vec![Material::default()]);
+    let camera = Camera::looking_at(Vec3::new(0.0, 0.5, 0.4), Vec3::ZERO, Vec3::Y, 0.01);
+    let tube = |samples| SegmentLight {
+        id: 9,
+        ends: [Vec3::new(-2.0, 1.0, 0.0), Vec3::new(2.0, 1.0, 0.0)],
+        colors: [Vec3::ONE; 2],
+        samples,
+    };
+    let panel = |edge: f32, samples| ParallelogramLight {
+        id: 9,
+        corner: Vec3::new(-0.5 * edge, 1.0, -0.5 * edge),
+        edges: [Vec3::X * edge, Vec3::Z * edge],
+        colors: [Vec3::ONE; 4],
+        two_sided: true,
+        visible: false,
+        samples,
+    };
+    let mut run = |lights: &Arc<Lights>, scale_light_samples| {
+        scene.lights = lights.clone();
+        let mut settings = once();
+        settings.features.scale_light_samples = scale_light_samples;
+        settings.size = UVec2::splat(4);
+        let rendered = render(&scene, &camera, &settings, &|_, _| {});
+        (rendered.picture.pixels, rendered.status.rays.shadow)
+    };
+    // 4 m, 4 m² and a quarter of a square metre.
+    for (size, parts, whole) in [(None, 3, 12), (Some(2.0), 3, 12), (Some(0.5), 16, 4)] {
+        let lights = |samples| match size {
+            Some(edge) => Arc::new(Lights {
+                parallelograms: vec![panel(edge, samples)],
+                ..Lights::default()
+            }),
+            None => Arc::new(Lights {
+                segments: vec![tube(samples)],
+                ..Lights::default()
+            }),
+        };
+        let scaled = run(&lights(parts), true);
+        assert_eq!(scaled.1, 16 * u64::from(whole), "{size:?}");
+        assert!(scaled == run(&lights(whole), false), "{size:?}");
+        assert!(scaled != run(&lights(parts), false), "{size:?}");
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Names of files that hold what formats and systems treat specially: what is written can be opened.
 
 use super::app::{opened, write};
-use crate::cli::{glassbox, succeeds, texts};
+use crate::cli::{PROGRAM, glassbox, succeeds, texts, without_display};
 use glassbox::io::save;
 use glassbox::scene::Phong;
 use std::ffi::{OsStr, OsString};
@@ -55,12 +55,10 @@ fn renders_alike(folder: &Path, file: &OsStr, like: &str) {
         "--set",
         "features.shading=false",
     ];
-    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_glassbox"));
-    let output = command
+    let output = without_display(PROGRAM, folder)
         .args(arguments)
         .arg("--")
         .arg(file)
-        .current_dir(folder)
         .output()
         .unwrap();
     let (_, err) = texts(&output);

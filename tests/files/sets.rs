@@ -1,12 +1,12 @@
 //! Files that belong together: an OBJ with its materials and pictures is complete at any time.
 
 use super::app::{app, opened, write};
-use crate::cli::{files, glassbox, succeeds, texts};
+use crate::cli::{PROGRAM, files, glassbox, succeeds, texts, without_display};
 use glassbox::io::save;
 use glassbox::scene::{Phong, TextureSource};
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::thread;
 use std::time::Duration;
 
@@ -67,10 +67,9 @@ fn an_export_that_is_killed_leaves_the_old_set_or_the_new_one() {
     scene(folder, "a", 1.0, 0.25, "builtin:uv");
     scene(folder, "b", 2.0, 0.75, "builtin:checker");
     let export = |name: &str| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_glassbox"));
+        let mut command = without_display(PROGRAM, folder);
         command
             .args(["convert", &format!("{name}.scn.ron"), "out.obj", "--quiet"])
-            .current_dir(folder)
             .stderr(Stdio::null());
         command
     };
@@ -109,10 +108,8 @@ fn what_a_killed_export_left_goes_with_the_next_and_what_others_wrote_stays() {
     let folder = folder.path();
     scene(folder, "a", 1.0, 0.25, "builtin:uv");
     let export = || {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_glassbox"));
-        command
-            .args(["convert", "a.scn.ron", "out.obj", "--quiet"])
-            .current_dir(folder);
+        let mut command = without_display(PROGRAM, folder);
+        command.args(["convert", "a.scn.ron", "out.obj", "--quiet"]);
         assert!(command.status().unwrap().success());
     };
     export();
@@ -139,9 +136,8 @@ fn an_export_that_finds_no_room_changes_no_file_of_the_set() {
         .collect();
     // The materials and pictures fit, the OBJ does not.
     let command = "ulimit -f 200; exec \"$0\" convert b.scn.ron out.obj";
-    let output = Command::new("sh")
-        .args(["-c", command, env!("CARGO_BIN_EXE_glassbox")])
-        .current_dir(folder)
+    let output = without_display("sh", folder)
+        .args(["-c", command, PROGRAM])
         .output()
         .unwrap();
     let (_, err) = texts(&output);

@@ -1,6 +1,6 @@
 //! Parts of pictures, by the program as people run it.
 
-use crate::cli::{files, glassbox, succeeds, texts};
+use crate::cli::{PROGRAM, files, glassbox, succeeds, texts, without_display};
 use exr::prelude::{
     AnyChannel, Blocks, Compression, Encoding, FlatSamples, LineOrder, ReadChannels, ReadLayers,
     Vec2, WritableImage, read,
@@ -231,15 +231,13 @@ fn the_recipe_for_gnu_parallel_gives_what_one_run_gives() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
-    let glassbox = env!("CARGO_BIN_EXE_glassbox");
     // As in README.md, with two of four jobs at a time and a small picture.
     let recipe = format!(
-        "parallel -j2 '{glassbox} render {SCENE} --size 48x36 --quiet --threads 1 \
+        "parallel -j2 '{PROGRAM} render {SCENE} --size 48x36 --quiet --threads 1 \
          --samples {{}}..$(({{}} + 4)) -o part-{{}}.exr' ::: 0 4 8 12"
     );
-    let status = Command::new("sh")
+    let status = without_display("sh", folder.path())
         .args(["-c", &recipe])
-        .current_dir(folder.path())
         .status()
         .unwrap();
     assert!(status.success(), "{recipe}: {status}");

@@ -1,5 +1,6 @@
 //! What the tracer says of itself, against what is worked out without it: rays, trees, lines.
 
+mod answers;
 mod bad_input;
 mod effects;
 mod figures;

@@ -130,7 +130,7 @@ fn what_cannot_be_inspected_ends_with_one_line_and_no_file() {
         ),
         (
             "inspect triangle --pixel 1,1 --camera top",
-            1,
+            2,
             vec!["no camera `top`"],
         ),
         ("inspect nothing.glb --pixel 1,1", 1, vec!["nothing.glb"]),

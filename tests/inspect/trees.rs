@@ -302,8 +302,72 @@ fn more_boxes_than_there_is_room_for_are_thinned_by_level_and_it_says_so() {
     inspect.boxes.to_level = 40;
     let set = scene.lines(System::Boxes, &inspect);
     let thinned = set.thinned.expect("a teapot has more than 100 nodes");
-    assert!(thinned.drawn <= 100 && thinned.of > 1000, "{thinned:?}");
+    assert!(thinned.drawn == 100 && thinned.of > 1000, "{thinned:?}");
     assert_eq!(set.segments.len(), 12 * thinned.drawn);
+}
+
+#[test]
+fn of_a_level_that_does_not_fit_as_many_boxes_are_drawn_as_do() {
+    let mut inspect = InspectSettings::default();
+    for (most, level, drawn, of) in [(2, 2, 2, 4), (5, 0, 5, 7), (6, 0, 6, 7), (1, 0, 1, 7)] {
+        inspect.max_lines = 12 * most + 5;
+        inspect.boxes.trees = TreeChoice::Meshes;
+        (inspect.boxes.from_level, inspect.boxes.to_level) = (level, 40);
+        let set = Scene::of(row(Builder::Median), camera()).lines(System::Boxes, &inspect);
+        let thinned = set.thinned.expect("there is no room for all");
+        assert_eq!((thinned.drawn, thinned.of), (drawn, of), "{most}");
+        assert_eq!(set.segments.len(), 12 * drawn, "{most}");
+    }
+}
+
+#[test]
+fn where_no_tree_is_asked_for_it_says_why() {
+    let scene = Scene::of(row(Builder::Median), camera());
+    let note = |scene: &Scene, change: &dyn Fn(&mut BoxSettings)| {
+        let mut inspect = InspectSettings::default();
+        change(&mut inspect.boxes);
+        let mut notes = Vec::new();
+        for form in [TreeForm::Binary, TreeForm::Wide] {
+            inspect.boxes.form = form;
+            let set = scene.lines(System::Boxes, &inspect);
+            assert!(set.is_empty(), "{:?}", set.notes);
+            notes.extend(set.notes);
+        }
+        assert!(notes.len() == 2 && notes[0] == notes[1], "{notes:?}");
+        notes.remove(0)
+    };
+    let leaf = |boxes: &mut BoxSettings| {
+        (boxes.choice, boxes.trees) = (BoxChoice::Leaf, TreeChoice::Top);
+    };
+    assert_eq!(
+        note(&scene, &leaf),
+        "the leaves of the tree over the objects hold objects: one with triangles is in a mesh's tree"
+    );
+    let top = |boxes: &mut BoxSettings| (boxes.object, boxes.trees) = (5, TreeChoice::Top);
+    assert_eq!(
+        note(&scene, &top),
+        "the tree over the objects is of them all: that of object 5 is its mesh's"
+    );
+    let mut one = Scene::of(row(Builder::Median), camera());
+    let options = BuildOptions {
+        levels: Levels::One,
+        ..*one.world.aggregate.options()
+    };
+    let instances = one.world.aggregate.instances().to_vec();
+    one.world.aggregate = Arc::new(Aggregate::build(instances, &options));
+    let one_tree = "there is one tree over all triangles: no mesh has one of its own";
+    assert_eq!(
+        note(&one, &|boxes| boxes.trees = TreeChoice::Meshes),
+        one_tree
+    );
+    assert_eq!(note(&one, &|boxes| boxes.object = 5), one_tree);
+    let empty = Scene::of(of_mesh(vec![], Builder::Median), camera());
+    for trees in [TreeChoice::Both, TreeChoice::Top, TreeChoice::Meshes] {
+        assert_eq!(
+            note(&empty, &|boxes| boxes.trees = trees),
+            "there is no tree: no object with a triangle is traced"
+        );
+    }
 }
 
 #[test]

@@ -171,6 +171,8 @@ fn a_few_hundred_mutations_of_every_kind_end_in_a_scene_or_in_one_line() {
     for (kind, ..) in KINDS {
         let (read, opened) = mutate(kind, 300, Duration::MAX, 7);
         println!("{kind}: {read} read, {opened} opened");
+        // What is behind a reader's first check is met, too.
+        assert!(opened > 0, "{kind}: none of {read} opens");
     }
 }
 

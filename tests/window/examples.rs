@@ -4,16 +4,37 @@ use super::{Display, missing, until};
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::time::SystemTime;
 use x11rb::connection::Connection;
 use x11rb::protocol::xproto::{ConnectionExt, ImageFormat};
 
-/// Where cargo puts them, beside this test. `None`, said loudly, where it was not asked for them.
+/// The latest time at which a file below a folder was written.
+fn written(folder: &Path) -> SystemTime {
+    let entries = std::fs::read_dir(folder).unwrap().map(Result::unwrap);
+    let times = entries.map(|entry| match entry.file_type().unwrap().is_dir() {
+        true => written(&entry.path()),
+        false => entry.metadata().unwrap().modified().unwrap(),
+    });
+    times.max().unwrap_or(SystemTime::UNIX_EPOCH)
+}
+
+/// Where cargo puts them, beside this test. `None`, said loudly, where it was not asked for them, now or since something was
+/// written.
 fn built(name: &str) -> Option<PathBuf> {
     let test = std::env::current_exe().unwrap();
     let profile = test.parent().and_then(Path::parent).unwrap();
     let example = profile.join("examples").join(name);
     if !example.exists() {
         missing(&format!("the example {name} is not built"));
+        return None;
+    }
+    let package = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let own = package.join("examples").join(name).with_extension("rs");
+    let own = own.metadata().unwrap().modified().unwrap();
+    if example.metadata().unwrap().modified().unwrap() < written(&package.join("src")).max(own) {
+        missing(&format!(
+            "the example {name} is older than what it is built from"
+        ));
         return None;
     }
     Some(example)

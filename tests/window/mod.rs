@@ -17,6 +17,7 @@ mod startup;
 mod story;
 mod two_trees;
 
+use crate::cli::{PROGRAM, without_display};
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
@@ -102,12 +103,9 @@ impl Display {
 
     /// The same, started by another program, which gets its arguments.
     pub fn command_in(&self, folder: &Path, by: &[&str]) -> Command {
-        let words = [by, &[env!("CARGO_BIN_EXE_glassbox")]].concat();
-        let mut command = Command::new(words[0]);
-        command
-            .args(&words[1..])
-            .current_dir(folder)
-            .env("GLASSBOX_CONFIG_DIR", folder.join("settings"));
+        let words = [by, &[PROGRAM]].concat();
+        let mut command = without_display(words[0], folder);
+        command.args(&words[1..]);
         self.show(command)
     }
 

@@ -1,17 +1,8 @@
 //! Starting where there is no display, one that does not answer, or nothing to draw with.
 
 use super::{Display, finish};
-use crate::cli::{files, texts};
+use crate::cli::{PROGRAM, files, texts, without_display};
 use std::process::Command;
-
-fn without_display(folder: &std::path::Path) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_glassbox"));
-    command
-        .current_dir(folder)
-        .env_remove("DISPLAY")
-        .env_remove("WAYLAND_DISPLAY");
-    command
-}
 
 fn says_so_and_renders(mut command: Command, folder: &std::path::Path, named: &str) {
     let output = finish({
@@ -31,7 +22,7 @@ fn says_so_and_renders(mut command: Command, folder: &std::path::Path, named: &s
 #[test]
 fn without_a_display_the_scene_is_rendered_to_a_file() {
     let folder = tempfile::tempdir().unwrap();
-    let command = without_display(folder.path());
+    let command = without_display(PROGRAM, folder.path());
     says_so_and_renders(command, folder.path(), "DISPLAY is not set");
 }
 
@@ -39,7 +30,7 @@ fn without_a_display_the_scene_is_rendered_to_a_file() {
 fn a_display_that_does_not_answer_is_none() {
     let folder = tempfile::tempdir().unwrap();
     for display in [":4711", "nonsense", "localhost:4711"] {
-        let mut command = without_display(folder.path());
+        let mut command = without_display(PROGRAM, folder.path());
         command.env("DISPLAY", display);
         says_so_and_renders(command, folder.path(), display);
     }
@@ -49,7 +40,7 @@ fn a_display_that_does_not_answer_is_none() {
 fn a_script_needs_a_window_and_says_so() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("s.ron"), "[Quit]").unwrap();
-    let mut command = without_display(folder.path());
+    let mut command = without_display(PROGRAM, folder.path());
     let output = finish({
         command.args(["--script", "s.ron"]);
         command

@@ -48,20 +48,24 @@ pub fn compare_builders_told(
 ) -> ControlFlow<(), Vec<BuilderFigures>> {
     let options = *world.aggregate.options();
     let steps = match view {
-        Some(_) => builders.len() * 2 + 1 + rates::STEPS,
-        None => builders.len(),
+        Some(_) => builders.len() * 2 + 2 + rates::STEPS,
+        None => builders.len() + 1,
     };
     let mut step = 0;
     let mut next = |what: &str| {
         step += 1;
         tell(what, (step - 1) as f32 / steps as f32)
     };
+    // The first tree that is built pays for memory and caches that the others find; it is thrown away.
+    next("a first tree")?;
+    let levels = Levels::One;
+    drop(rebuilt(world, &BuildOptions { levels, ..options }));
     let mut figures = Vec::with_capacity(builders.len());
     for &builder in builders {
         next(&format!("{}: one tree", builder_name(builder)))?;
         let options = BuildOptions {
             builder,
-            levels: Levels::One,
+            levels,
             ..options
         };
         figures.push(BuilderFigures::of(&rebuilt(world, &options)));

@@ -22,8 +22,11 @@ pub struct BuilderRates {
 /// Pixels along each side of the grid whose rays are timed.
 const GRID: u32 = 24;
 
-/// A measurement takes at least this long, or all rays.
+/// A measurement takes at least this long.
 const LEAST: Duration = Duration::from_millis(4);
+
+/// Of a slow tree so few rays of the view are timed, if they take that long.
+const FEWEST: usize = 16;
 
 /// Measurements of each builder, taking turns; the middle one counts.
 const ROUNDS: usize = 5;
@@ -89,6 +92,38 @@ impl ViewRays {
     }
 }
 
+/// Rays from all over the view, and how often each of them is traced: whole passes, so that no part of the view counts more
+/// than another.
+struct Load {
+    rays: Vec<Ray>,
+    passes: usize,
+}
+
+impl Load {
+    /// The fewest, by powers of two, that are enough.
+    fn of(rays: &[Ray], mut is_enough: impl FnMut(&Self) -> bool) -> Self {
+        let mut every = (rays.len() / FEWEST).max(1);
+        let mut passes = 1;
+        loop {
+            let load = Self {
+                rays: rays.iter().step_by(every).copied().collect(),
+                passes,
+            };
+            if is_enough(&load) || load.count() >= 1 << 24 {
+                return load;
+            }
+            match every {
+                1 => passes *= 2,
+                _ => every /= 2,
+            }
+        }
+    }
+
+    fn count(&self) -> usize {
+        self.rays.len() * self.passes
+    }
+}
+
 /// Million rays a second of each aggregate.
 fn rates(
     rays: &[Ray],
@@ -99,34 +134,24 @@ fn rates(
     if rays.is_empty() {
         return ControlFlow::Continue(vec![None; aggregates.len()]);
     }
-    let mut seconds = |aggregate: &Aggregate, count: usize| {
+    let mut seconds = |aggregate: &Aggregate, load: &Load| {
         let start = Instant::now();
-        let mut left = count;
-        while left > 0 {
-            let part = left.min(rays.len());
-            trace(aggregate, &rays[..part]);
-            left -= part;
-        }
+        (0..load.passes).for_each(|_| trace(aggregate, &load.rays));
         start.elapsed()
     };
-    // As many rays as take long enough; a power of two times a few.
     go_on()?;
-    let counts: Vec<usize> = aggregates
+    let loads: Vec<Load> = aggregates
         .iter()
-        .map(|aggregate| {
-            let mut count = 16;
-            while seconds(aggregate, count) < LEAST && count < 1 << 24 {
-                count *= 2;
-            }
-            count
-        })
+        .map(|aggregate| Load::of(rays, |load| seconds(aggregate, load) >= LEAST))
         .collect();
     let mut measured = vec![Vec::with_capacity(ROUNDS); aggregates.len()];
-    for _ in 0..ROUNDS {
+    for round in 0..ROUNDS {
         go_on()?;
-        for (i, aggregate) in aggregates.iter().enumerate() {
-            let took = seconds(aggregate, counts[i]).as_secs_f64();
-            measured[i].push(counts[i] as f64 / took.max(1e-9) / 1e6);
+        // Who comes first in one round comes last in the next.
+        for turn in 0..aggregates.len() {
+            let i = (turn + round) % aggregates.len();
+            let took = seconds(&aggregates[i], &loads[i]).as_secs_f64();
+            measured[i].push(loads[i].count() as f64 / took.max(1e-9) / 1e6);
         }
     }
     let middle = measured.into_iter().map(|mut rates| {
@@ -134,4 +159,31 @@ fn rates(
         Some(rates[ROUNDS / 2])
     });
     ControlFlow::Continue(middle.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    #[test]
+    fn what_is_timed_is_from_all_over_the_view_in_whole_passes() {
+        let rays: Vec<Ray> = (0..100)
+            .map(|i| Ray::new(Vec3::X * i as f32, Vec3::Z))
+            .collect();
+        let load = |least: usize| Load::of(&rays, |load| load.count() >= least);
+        for (least, count, passes) in [
+            (1, 17, 1),
+            (18, 34, 1),
+            (40, 100, 1),
+            (101, 100, 2),
+            (500, 100, 8),
+        ] {
+            let load = load(least);
+            assert_eq!((load.rays.len(), load.passes), (count, passes), "{least}");
+            assert!(load.rays[count - 1].origin.x >= 95.0, "{least}");
+        }
+        let one = Load::of(&rays[..1], |load| load.passes > 2);
+        assert_eq!((one.rays.len(), one.passes), (1, 4));
+    }
 }

@@ -186,8 +186,38 @@ fn load(path: &Path) -> Result<Embree4Or3, String> {
     of_library(path, library).ok_or_else(|| "it is not the library of Embree 3 or 4".into())
 }
 
+/// All that is asked of a library.
+const FUNCTIONS: [&[u8]; 18] = [
+    b"rtcNewDevice",
+    b"rtcGetDeviceProperty",
+    b"rtcIntersect1",
+    b"rtcOccluded1",
+    b"rtcIntersect8",
+    b"rtcOccluded8",
+    b"rtcNewScene",
+    b"rtcReleaseScene",
+    b"rtcReleaseDevice",
+    b"rtcSetSceneFlags",
+    b"rtcCommitScene",
+    b"rtcNewGeometry",
+    b"rtcSetNewGeometryBuffer",
+    b"rtcCommitGeometry",
+    b"rtcAttachGeometry",
+    b"rtcReleaseGeometry",
+    b"rtcSetGeometryInstancedScene",
+    b"rtcSetGeometryTransform",
+];
+
 /// `None` where it is another library, or another version's.
 fn of_library(path: &Path, library: Library) -> Option<Embree4Or3> {
+    // One that lacks a function is left before it has made a device, which nobody would release.
+    let has = |name: &&[u8]| {
+        // SAFETY: the function is not called; any of them has some type of function.
+        unsafe { library.get::<unsafe extern "C" fn()>(name) }.is_ok()
+    };
+    if !FUNCTIONS.iter().all(has) {
+        return None;
+    }
     // SAFETY: the types are those of the C declarations; they are the same in versions 3 and 4.
     let device = unsafe {
         let new_device: Symbol<unsafe extern "C" fn(*const c_char) -> Device> =
@@ -216,7 +246,14 @@ fn of_library(path: &Path, library: Library) -> Option<Embree4Or3> {
             intersect: function!(b"rtcIntersect1"),
             occluded: function!(b"rtcOccluded1"),
         },
-        _ => return None,
+        _ => {
+            let release: unsafe extern "C" fn(Device) = function!(b"rtcReleaseDevice");
+            // SAFETY: the device was made above, and nothing is of it.
+            unsafe { release(device) };
+            // Its threads may still be in its code.
+            std::mem::forget(library);
+            return None;
+        }
     };
     let eights = match queries {
         Queries::Version3 { .. } => Eights::Version3 {

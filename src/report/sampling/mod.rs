@@ -44,6 +44,7 @@ pub fn measure(subjects: &[Subject], options: &Options, watch: Watch) -> Section
             "film's own, over seconds",
             "seconds to 1 %",
             "Mrays to 1 %",
+            "1 % is",
         ],
     );
     let mut section = Section {
@@ -96,7 +97,7 @@ fn method(effort: &Effort) -> Vec<String> {
          error / (value² + {RELATIVE_FLOOR}), each averaged over the channels, `relative error` its root. Jitter is on a grid \
          with as many cells as samples. Adaptive sampling gets as its goal what the film estimates for Sobol points with the \
          same number of samples for every pixel. Slopes are least squares through logarithms; where 1 % lies beyond what was \
-         measured (~), along the fitted line. The film's own slope is that of its estimates over its last two doublings, as the \
+         measured (extrapolated), along the fitted line; where the first point is there, it is reached there at most. The film's own slope is that of its estimates over its last two doublings, as the \
          editor shows it while it renders. The estimate is calibrated for Sobol points and for independent numbers from 16 samples on; \
          it is known to be off where the edge of a bright lamp runs exactly along a row of pixels.",
         effort.side, effort.seeds, effort.reference

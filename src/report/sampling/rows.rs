@@ -1,7 +1,6 @@
 //! The figures of a scene's curves as rows of tables, and as plots.
 
 use super::super::fit::{power_law, reaches};
-use super::super::table::digits;
 use super::super::{Axis, Cell, Dash, Marker, Plot, Series, Subject};
 use super::GOAL;
 use super::curve::{Point, Way};
@@ -24,7 +23,7 @@ pub(super) fn point_cells(scene: &str, way: Way, point: &Point) -> [Cell; 10] {
     ]
 }
 
-pub(super) fn slope_cells(scene: &str, way: Way, curve: &[Point]) -> [Cell; 8] {
+pub(super) fn slope_cells(scene: &str, way: Way, curve: &[Point]) -> [Cell; 9] {
     let over = |x: fn(&Point) -> f64| -> Vec<(f64, f64)> {
         curve
             .iter()
@@ -32,11 +31,11 @@ pub(super) fn slope_cells(scene: &str, way: Way, curve: &[Point]) -> [Cell; 8] {
             .collect()
     };
     let slope = |x| power_law(&over(x)).map(|(slope, _)| slope);
-    let reached = |x| match reaches(&over(x), GOAL) {
-        Some((at, false)) => Cell::from(at),
-        Some((at, true)) => Cell::Text(format!("~{}", digits(at, 2))),
-        None => Cell::Empty,
-    };
+    let reached = |x| reaches(&over(x), GOAL);
+    let (seconds, rays) = (
+        reached(|point| point.seconds),
+        reached(|point| point.rays * 1e-6),
+    );
     [
         scene.into(),
         way.name().into(),
@@ -46,8 +45,10 @@ pub(super) fn slope_cells(scene: &str, way: Way, curve: &[Point]) -> [Cell; 8] {
         (curve.last().and_then(|point| point.decline))
             .map(|decline| -decline)
             .into(),
-        reached(|point| point.seconds),
-        reached(|point| point.rays * 1e-6),
+        seconds.map(|seconds| seconds.at).into(),
+        rays.map(|rays| rays.at).into(),
+        // Both are of the same errors.
+        seconds.or(rays).map(|reached| reached.how.name()).into(),
     ]
 }
 

@@ -67,7 +67,8 @@ pub(super) fn heaps(effort: &Effort) -> Outcome {
     let count = 100_000;
     let probes = (effort.rays / 100).clamp(1, count);
     let (mut wrong, mut deepest, mut dearest) = (0, 0, 0.0_f64);
-    let (mut slowest, mut steepest) = (Duration::ZERO, 0.0_f64);
+    // Of what was not measured nothing is known.
+    let (mut slowest, mut steepest) = (Duration::ZERO, Some(0.0_f64));
     for builder in BUILDERS {
         let options = BuildOptions {
             builder,
@@ -88,7 +89,7 @@ pub(super) fn heaps(effort: &Effort) -> Outcome {
         dearest = dearest.max((counters.boxes + counters.triangles) as f64 / probes as f64);
         for build in [identical, collinear] {
             let growth = growth(count, |count| build(count, &options));
-            steepest = steepest.max(growth.unwrap_or(0.0));
+            steepest = steepest.zip(growth).map(|(most, growth)| most.max(growth));
         }
         for scene in [&heap, &row] {
             let (stats, time) = built(scene);
@@ -100,7 +101,7 @@ pub(super) fn heaps(effort: &Effort) -> Outcome {
         "built in at most {} ms, by {} times the work of a quarter of them; {deepest} levels, {} boxes and triangles a ray, \
          {wrong} wrong hits",
         digits(1e3 * slowest.as_secs_f64(), 3),
-        digits(steepest, 2),
+        digits(steepest.unwrap_or(f64::NAN), 2),
         digits(dearest, 3)
     );
     Outcome::new(BUILDERS.len() * (probes + 1), figures)
@@ -111,8 +112,11 @@ pub(super) fn heaps(effort: &Effort) -> Outcome {
             format!("{dearest} boxes and triangles a ray"),
         )
         .require(
-            steepest < MOST_GROWTH,
-            format!("four times as many are {steepest:.1} times the work"),
+            steepest.is_some_and(|steepest| steepest < MOST_GROWTH),
+            match steepest {
+                Some(steepest) => format!("four times as many are {steepest:.1} times the work"),
+                None => "a thread that builds could not be started".into(),
+            },
         )
 }
 
