@@ -1,6 +1,7 @@
 //! Scripts themselves: what is wrong in one, and a claim that does not hold.
 
 use super::Display;
+use super::pictures::Shot;
 use crate::cli::texts;
 
 #[test]
@@ -55,6 +56,37 @@ fn the_scripts_that_come_with_glassbox_are_understood() {
         read += 1;
     }
     assert!(read >= 5, "there are {read}");
+}
+
+/// What is clicked, run, opened and written there has to be there, whatever it looks like.
+#[test]
+fn the_scripts_of_the_pictures_play_to_their_ends() {
+    let Some(display) = Display::open() else {
+        return;
+    };
+    for (name, pictures) in [
+        ("readme.ron", &["editor.png", "editor-split.png"][..]),
+        (
+            "tutorial.ron",
+            &[
+                "tutorial-black.png",
+                "tutorial-tree.png",
+                "tutorial-noise.png",
+            ],
+        ),
+    ] {
+        let script = std::fs::read_to_string(super::assets().join(name)).unwrap();
+        // Whole pictures take minutes of a software driver's machine.
+        let quick = script.replace("Wait(Samples(1e9))", "Wait(Samples(1))");
+        assert_ne!(script, quick, "{name} waits for no picture");
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("assets")).unwrap();
+        display.plays(folder.path(), &["cornell-box"], &quick);
+        for picture in pictures {
+            let picture = folder.path().join("assets").join(picture);
+            assert_eq!(Shot::open(&picture).size(), [1280, 720], "{name}");
+        }
+    }
 }
 
 #[test]
