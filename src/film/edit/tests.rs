@@ -455,7 +455,7 @@ fn complete(world: &World, spp: u32) -> Engine {
 #[test]
 fn tiles_of_another_material_have_a_sample_before_other_lights_have_more_than_one() {
     let world = lit();
-    let engine = complete(&world, 16);
+    let engine = complete(&world, 4);
     let moved = edited(&world, |lights| lights.points[0].position.x += 0.1);
     let now = repainted(&moved, 1, Vec3::X);
     assert!(engine.edit(now.clone(), &Gains::default()));
@@ -470,7 +470,7 @@ fn tiles_of_another_material_have_a_sample_before_other_lights_have_more_than_on
         assert_eq!(chunk.map(|chunk| chunk.planes), Some(PlaneSet::ALL));
     }
     engine.run(&|_| {});
-    let fresh = Progressive::start(now, camera(), settings(LARGER, 16)).unwrap();
+    let fresh = Progressive::start(now, camera(), settings(LARGER, 4)).unwrap();
     fresh.wait();
     assert_eq!(engine.picture(), fresh.snapshot().picture);
 }
