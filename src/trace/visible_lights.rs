@@ -100,15 +100,15 @@ vectorized! {
     fn cross(balls: &Balls, origin: Vec3, direction: Vec3, crosses: &mut [u32; LANES]) -> bool {
         let along = direction.length_squared();
         let mut any = 0;
-        for i in 0..LANES {
+        for (i, crosses) in crosses.iter_mut().enumerate() {
             let to_middle = column_vector(&balls.middle, i) - origin;
             let beside = to_middle.cross(direction).length_squared();
             let radius = balls.radius[i];
             let reach = radius + balls.rounding[i] * (to_middle.length_squared() + radius);
             // What is no number may be anywhere.
             let misses = (beside > reach * along) | (radius < 0.0);
-            crosses[i] = !misses as u32;
-            any |= crosses[i];
+            *crosses = u32::from(!misses);
+            any |= *crosses;
         }
         any != 0
     }
