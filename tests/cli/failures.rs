@@ -154,7 +154,7 @@ fn what_a_scene_has_nothing_of_that_name_of_is_a_wrong_command_line() {
         (["--camera", "nobody"], ["triangle", "nobody", "it has "]),
         (
             ["--set", "nobody/Lens.samples=3"],
-            ["--set nobody", "no such entity", "did you mean "],
+            ["--set nobody", "no such entity", "there is Camera"],
         ),
     ] {
         let arguments = [&render[..], &more].concat();

@@ -122,9 +122,6 @@ fn settings_reach_the_picture() {
         unshadowed > plain * 1.02,
         "{plain} with shadows, {unshadowed} without"
     );
-    // A flag of its own wins over --set.
-    let said = render(folder.path(), "cornell-box", "b.png", &["--set", "spp=9"]);
-    assert!(said.contains(" 4 spp,"), "{said}");
 }
 
 #[test]
