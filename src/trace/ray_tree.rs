@@ -15,7 +15,7 @@ use serde::Serialize;
 /// radiance`: so `carried` of all children and the surface's own light make the parent's `radiance`,
 /// and the camera ray's `radiance` is the sample's value but for rounding. `added` is what the ray
 /// put into the sample's value by itself, multiplied by everything on its way to the camera; summed
-/// in the order in which the tracer added it ([`Self::sum`]) it is the value bit for bit.
+/// in the order in which the tracer added it ([`Self::sums`]) it is the value bit for bit.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct RayTree {
     /// (0, 0) is the top left pixel.
