@@ -24,6 +24,7 @@ mod set_entity;
 mod settings;
 mod shell;
 mod shown;
+mod similar;
 mod stage;
 mod stats;
 mod stop;

@@ -1,7 +1,8 @@
 //! `--set Lamp/PointLamp.intensity=3`: a component of a named entity by its reflected path.
 
 use super::Failure;
-use super::set::{Assignment, set_value, unknown};
+use super::set::{Assignment, set_value};
+use super::similar::unknown;
 use crate::scene::{Phong, Property, SceneId, UsesMaterial, range_problems};
 use bevy::ecs::entity::Entity;
 use bevy::ecs::name::Name;

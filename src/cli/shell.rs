@@ -1,7 +1,7 @@
 //! `glassbox completions` and `glassbox man`: the command line described to a shell, and to `man`.
 
 use super::output::say;
-use super::set::unknown;
+use super::similar::unknown;
 use super::{Cli, Failure};
 use clap::{Args, CommandFactory};
 use clap_complete::Shell;

@@ -221,6 +221,7 @@ mod tests {
     use crate::editor::panels::dialogs::{Dialog, Dialogs};
     use crate::editor::panels::tests::Desk;
     use crate::sync::TracedCameras;
+    use std::path::Path;
     use std::time::Instant;
 
     fn open(desk: &mut Desk) {
@@ -260,22 +261,26 @@ mod tests {
         );
     }
 
-    #[test]
-    fn a_picture_that_is_there_is_replaced_only_by_who_was_told_so() {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("a.png");
-        std::fs::write(&file, "old").unwrap();
+    /// The dialog, about to render one sample of a small picture to a file.
+    fn small_to(file: &Path) -> Desk {
         let mut desk = Desk::open("triangle");
         open(&mut desk);
         let camera = desk.world().resource::<TracedCameras>().0[0].id;
         let mut form = desk.world().resource_mut::<RenderForm>();
         form.file = file.display().to_string();
         form.from = Some(camera);
-        (
-            form.entered.as_mut().unwrap().size,
-            form.entered.as_mut().unwrap().spp,
-        ) = (UVec2::splat(8), 1);
+        let entered = form.entered.as_mut().unwrap();
+        (entered.size, entered.spp) = (UVec2::splat(8), 1);
         desk.settle();
+        desk
+    }
+
+    #[test]
+    fn a_picture_that_is_there_is_replaced_only_by_who_was_told_so() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.png");
+        std::fs::write(&file, "old").unwrap();
+        let mut desk = small_to(&file);
         let start = Instant::now();
         while desk.find("Replace").is_none() {
             assert!(start.elapsed().as_secs() < 60, "it is not told");
@@ -322,15 +327,7 @@ mod tests {
     fn enter_behind_a_files_name_begins_the_render_and_replaces_nothing() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("a.png");
-        let mut desk = Desk::open("triangle");
-        open(&mut desk);
-        let camera = desk.world().resource::<TracedCameras>().0[0].id;
-        let mut form = desk.world().resource_mut::<RenderForm>();
-        form.file = file.display().to_string();
-        form.from = Some(camera);
-        let entered = form.entered.as_mut().unwrap();
-        (entered.size, entered.spp) = (UVec2::splat(8), 1);
-        desk.settle();
+        let mut desk = small_to(&file);
         let enter = |desk: &mut Desk| {
             let at = desk.place_of(&file.display().to_string());
             desk.click(at);
