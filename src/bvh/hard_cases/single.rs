@@ -28,6 +28,12 @@ impl ReadyRay {
         Self { ray, shear }
     }
 
+    /// The ray itself.
+    #[cfg(test)]
+    pub(crate) fn ray(&self) -> &ObjectRay {
+        &self.ray
+    }
+
     /// Its frame.
     pub(crate) fn shear(&self) -> &Shear {
         &self.shear

@@ -10,6 +10,7 @@ mod magnitude;
 mod malformed;
 mod multi_hit;
 mod spawned;
+mod sure;
 mod transmit;
 mod trees;
 mod wide;

@@ -1,12 +1,14 @@
 //! Eight triangles, tested against a ray at once.
 
+use std::hint::black_box;
+
 use glam::Vec3;
 
 use super::{Eight, by_axis};
 use crate::bvh::{
     goal::{Goal, Question, is_end},
     object_ray::ObjectRay,
-    triangle::{Axis, Depths, Shear, accept},
+    triangle::{Axis, Crossing, Depths, Shear, UNSURE_EDGE, UNSURE_PLANE, accept},
     triangles::Triangles,
     visitor::Visitor,
 };
@@ -197,20 +199,46 @@ impl TriangleBlock {
     ) -> f32 {
         let corners = self.moved::<E>(sight);
         let (crossed, [u, v, w]) = edges(&corners);
-        let reached = within(&corners, sight.depths().span(reach, limit));
+        let from_start = sight.depths();
+        let reached = within(&corners, from_start.span(reach, limit));
         let left = self.is_triangle::<E>(question.starts_on(instance));
         // All at once: most blocks are crossed by the line somewhere.
         let mut passed = E::bits(E::and_not(left, E::and(crossed, reached)));
         if passed == 0 {
             return limit;
         }
+        let slack = from_start.slack_of(reach);
+        let sure = surely_crossed(&corners, [u, v, w], slack);
+        if G::ANY {
+            // What follows depends on the ray alone: it would be made ready for all rays, and few of them meet anything.
+            let limit = black_box(limit);
+            let met = surely_within(&corners, from_start.sure_span(slack, limit));
+            let met = passed & E::bits(E::and(sure, met));
+            if met != 0 {
+                // Somewhere before the limit.
+                let crossing = Crossing {
+                    t: 0.5 * limit.min(1.0),
+                    u: 0.0,
+                    v: 0.0,
+                };
+                let lane = met.trailing_zeros() as usize % 8;
+                let (is_wanted, new) =
+                    question.meet((instance, self.number(lane)), crossing, limit);
+                if V::LOOKS {
+                    *wanted |= u32::from(is_wanted) << lane;
+                }
+                return new;
+            }
+        }
+        let sure = E::bits(sure);
         let [u, v, w] = [u.to_array(), v.to_array(), w.to_array()];
         let ray = sight.ray();
         while passed != 0 {
             let lane = passed.trailing_zeros() as usize % 8;
             passed &= passed - 1;
             let edges = [u[lane], v[lane], w[lane]];
-            if let Some(crossing) = accept(&ray, self.corners(lane), edges, limit, G::ANY) {
+            let is_sure = sure >> lane & 1 == 1;
+            if let Some(crossing) = accept(&ray, self.corners(lane), edges, limit, is_sure) {
                 let (is_wanted, new) =
                     question.meet((instance, self.number(lane)), crossing, limit);
                 limit = new;
@@ -260,10 +288,35 @@ fn edges<E: Eight>([a, b, c]: &[[E; 3]; 3]) -> (E::Mask, [E; 3]) {
 
 /// Which triangles are not wholly outside those depths.
 #[inline(always)]
-fn within<E: Eight>([a, b, c]: &[[E; 3]; 3], (first, last): (f32, f32)) -> E::Mask {
-    let nearest = a[2].min(b[2]).min(c[2]);
-    let farthest = a[2].max(b[2]).max(c[2]);
+fn within<E: Eight>(corners: &[[E; 3]; 3], (first, last): (f32, f32)) -> E::Mask {
+    let [nearest, farthest] = depths(corners);
     E::and(E::splat(first).le(farthest), nearest.le(E::splat(last)))
+}
+
+/// Which triangles are wholly between those depths.
+#[inline(always)]
+fn surely_within<E: Eight>(corners: &[[E; 3]; 3], (first, last): (f32, f32)) -> E::Mask {
+    let [nearest, farthest] = depths(corners);
+    E::and(E::splat(first).lt(nearest), farthest.lt(E::splat(last)))
+}
+
+/// Which triangles the line of the ray surely crosses, of those that it crosses by the edge functions.
+#[inline(always)]
+fn surely_crossed<E: Eight>(corners: &[[E; 3]; 3], [u, v, w]: [E; 3], slack: f32) -> E::Mask {
+    let [a, b, c] = by_axis!(|corner| corners[corner][0].abs().max(corners[corner][1].abs()));
+    let size = a.max(b).max(c);
+    let [nearest, farthest] = depths(corners);
+    let side = size.add(size).add(farthest.sub(nearest));
+    let moved = (size.add(E::splat(slack))).mul(E::splat(slack * UNSURE_EDGE));
+    let tilted = side.mul(side).mul(E::splat(UNSURE_PLANE));
+    let unsure = moved.add(tilted).add(E::splat(f32::MIN_POSITIVE));
+    unsure.lt(u.abs().min(v.abs()).min(w.abs()))
+}
+
+/// Between which depths triangles lie.
+#[inline(always)]
+fn depths<E: Eight>([a, b, c]: &[[E; 3]; 3]) -> [E; 2] {
+    [a[2].min(b[2]).min(c[2]), a[2].max(b[2]).max(c[2])]
 }
 
 /// The edge function of the edge between two corners. Not fused: see [`super::super::triangle`].
