@@ -1,5 +1,12 @@
 //! Pixels over time: samples become a picture, a picture becomes a screen's.
 //!
+//! ```text
+//! sums ── errors ── planes ── samples ── render      develop, views
+//! ```
+//! `sums` are exact, pixel by pixel; `errors` are read from how their means move; `planes` keep a tile's light apart;
+//! `samples` evaluates them, chunk by chunk; `render` does so pass by pass. Each uses those left of it. `develop` and
+//! [`views`] make a screen's picture of what is there. All are given a `subject`: a world, seen in some way.
+//!
 //! A [`Film`] keeps, for every pixel, the exact sum of its samples ([`Sum`]) and their number. Sums
 //! are exact, so they do not depend on the order in which samples arrive: the same picture for any
 //! number of threads, any order of tiles, any pause, any merge.
@@ -17,72 +24,33 @@
 //! [`trace::radiance`](crate::trace::radiance()), [`FirstHits::trace`] and [`depths()`]. Bloom,
 //! exposure, view transforms and [`views`] read what was traced.
 
-mod adaptive;
-mod agx;
-mod bloom;
-mod coarse;
-mod control;
-mod depth;
-mod edit;
-mod eight_bits;
-mod engine;
-mod error;
-mod estimate;
-mod first_hits;
-mod fixed_point;
-mod gaussian;
-mod kept;
+mod develop;
+mod errors;
 mod light_mix;
-mod light_pictures;
-mod means;
-mod passes;
-mod past_moves;
-mod per_pixel;
-mod per_sample;
 mod picture;
-mod plane_sums;
-mod pool;
-mod preview;
-mod progressive;
-mod queue;
+mod planes;
 mod render;
-mod sample_chunk;
-mod snapshot;
-mod status;
+mod samples;
 mod subject;
-mod sum;
-mod sum_columns;
+mod sums;
 #[cfg(test)]
 mod test_scene;
-mod tile_planes;
-mod tile_state;
-mod tiled_film;
-mod tiles;
-mod unmet;
-mod view_transform;
 pub mod views;
-mod voids;
-mod work;
 
-pub use agx::agx;
-pub use bloom::{bloom_layer, bloom_threshold, with_bloom};
-pub use depth::depths;
-pub use eight_bits::develop_rgba8;
-pub use error::{ErrorEstimate, RELATIVE_FLOOR};
-pub use first_hits::FirstHits;
-pub use gaussian::{MAX_SIGMA, blurred, kernel};
+pub use develop::{
+    MAX_SIGMA, agx, bloom_layer, bloom_threshold, blurred, develop, develop_rgba8, kernel,
+    view_transform, with_bloom,
+};
+pub use errors::{ErrorEstimate, RELATIVE_FLOOR};
 pub use light_mix::{FilmMemory, LightMix};
-pub use light_pictures::{LightPicture, LightPictures, render_lights};
-pub use per_pixel::PixelError;
 pub use picture::Picture;
-pub use progressive::Progressive;
-pub use render::{Rendered, render, render_samples, render_while};
-pub use snapshot::Snapshot;
-pub use status::{Before, Ending, State, Status, TrendPoint, duration_text};
-pub use sum::Sum;
-pub use tiled_film::Film;
-pub use tiles::TILE;
-pub use view_transform::{develop, view_transform};
+pub use planes::{Film, PixelError};
+pub use render::{
+    Before, Ending, LightPicture, LightPictures, Progressive, Rendered, Snapshot, State, Status,
+    TrendPoint, duration_text, render, render_lights, render_samples, render_while,
+};
+pub use samples::{FirstHits, depths};
+pub use sums::{Sum, TILE};
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

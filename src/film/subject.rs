@@ -1,8 +1,8 @@
 //! What a render is of, and how its light is kept.
 
 use super::LightMix;
-use super::tile_planes::PLANE_BYTES;
-use super::tiles::TileGrid;
+use super::sums::sum_columns::PLANE_BYTES;
+use super::sums::tiles::TileGrid;
 use crate::scene::RenderSettings;
 use crate::trace::planes::Planes;
 use crate::trace::{Camera, Gains, Untinted, World};

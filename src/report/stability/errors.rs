@@ -160,7 +160,7 @@ const LAMPS: [(&str, Lamp); 5] = [
 ];
 
 /// Most of whose light falls into one pixel, which is then most of the picture's error. What that pixel errs by and what
-/// it moved by are two numbers of chance, so their ratio is any (`film/error.rs`); on average over many pictures it is not.
+/// it moved by are two numbers of chance, so their ratio is any (`film/errors/error.rs`); on average over many pictures it is not.
 const IN_ONE_PIXEL: Lamp = Lamp::Point(1e-3);
 const SEEDS_OF_ONE_PIXEL: u32 = 64;
 /// 1.9 to 2.2 with 16 and 64 samples: what moved a pixel far is taken for rare.
