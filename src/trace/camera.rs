@@ -5,7 +5,7 @@
 //! aperture and goes through the point where the pinhole's ray meets the focus plane, so a point
 //! at distance d makes a circle of diameter `2a·|d-f|/d` on the focus plane.
 
-use super::disc::concentric;
+use super::math::disc::concentric;
 use crate::bvh::{Ray, TriangleId};
 use crate::scene::Projection;
 use glam::{Quat, UVec2, Vec2, Vec3};

@@ -1,5 +1,12 @@
 //! The tracer: what rays read, and what they carry.
 //!
+//! ```text
+//! math ── random, textures ── world ── surfaces ── light_sampling ── stages ── survey
+//! ```
+//! `world` is what rays read, with its `textures`; `surfaces` what they meet there, `light_sampling` where on a light a surface
+//! looks for it; `stages` give samples their values, and `survey` answers other questions. Each uses those left of it (but for
+//! [`Needs`], which look at how much lights add), and all may use [`camera`].
+//!
 //! [`World`] is everything a ray may ask for, as flat arrays. [`Camera`] turns a place in the
 //! picture into a ray. [`radiance`](radiance()) takes a batch of [`SampleId`]s and gives each its
 //! value, going bounce by bounce, and in each stage by stage: all rays are handed to the trees together, all hits become
@@ -24,106 +31,35 @@
 //! distance in each coordinate: light and what is out of focus shift by that much, what is in focus stays sharp.
 
 pub mod camera;
-mod camera_rays;
-mod crossings;
-mod cut_out;
-mod digest;
-mod direct;
-mod disc;
-mod dome;
-mod dome_table;
-mod emitters;
-mod environment;
-mod faint;
-mod first_hit;
-mod footprint;
-mod gains;
-mod in_view;
-mod known;
-mod lamp;
-mod light_columns;
-mod light_frames;
-pub mod lights;
-mod material;
-mod mipmap;
-mod nearest;
-mod needs;
-mod normal_map;
-mod numbers;
-mod parallelogram_frame;
-mod parallelogram_warp;
-mod paths;
-mod piecewise;
-pub mod planes;
-mod polynomials;
-mod probe;
-mod questions;
-mod radiance;
-mod ray_counts;
-mod ray_tree;
-mod receiver;
-mod recorder;
-mod replies;
-mod sampler;
-mod scatter;
-mod second_hits;
-mod segment_warp;
-pub mod shading;
-mod shadow_rays;
-mod sobol;
-mod spot_cone;
-pub mod srgb;
-mod sun_disc;
-mod surface;
+mod light_sampling;
+mod math;
+mod random;
+mod stages;
+mod surfaces;
+mod survey;
 #[cfg(test)]
 mod test_scene;
-mod texels;
-mod texture;
-mod transmittance;
-mod vectors;
-mod vertices;
-mod visibility;
-mod visible_lights;
+mod textures;
 mod world;
-mod wrap;
 
 pub use camera::{Camera, ImagePlane, Optics};
-pub use crossings::Crossings;
-pub use digest::{Digest, digest};
-pub use dome::{DOME, Dome};
-pub use emitters::emitters;
-pub use environment::{Environment, direction_at};
-pub use faint::FEW as FEW_LIGHTS;
-pub use first_hit::{FirstHit, central_hits, central_ray, first_hits, first_surface};
-pub use footprint::Cone;
-pub use gains::Gains;
-pub use in_view::in_view;
-pub use known::Known;
-pub use lamp::Lamp;
-pub use lights::{
-    DirectionalLight, LightPoint, Lights, MovingLight, ParallelogramLight, PointLight, SegmentLight,
+pub use light_sampling::{
+    DOME, Dome, FEW_LIGHTS, Gains, Lamp, LightKind, ParallelogramFrame, Places, PlaneSet, Planes,
+    Receivers, SegmentFrame, SegmentPlaces, Untinted, planes,
 };
-pub use material::{Map, Material, MaterialSet};
-pub use needs::{Needs, samples_per_pixel};
-pub use parallelogram_frame::ParallelogramFrame;
-pub use parallelogram_warp::Places;
-pub use planes::{PlaneSet, Planes, Untinted};
-pub use probe::{MOST_RAYS, ProbeError, Samples, probe, probe_while};
-pub use radiance::{SampleId, Workspace, radiance, radiance_in_planes};
-pub use ray_counts::RayCounts;
-pub use ray_tree::{
-    Crossing, LightSample, ProbedSample, RayCost, RayEnd, RayHit, RayKind, RayTree, TracedRay,
+pub use random::{Purpose, SampleId, Sampler};
+pub use stages::{
+    Known, RayCounts, SecondHit, Visibility, Workspace, other_points, radiance, radiance_in_planes,
 };
-pub use receiver::Receivers;
-pub use recorder::LightKind;
-pub use sampler::{Purpose, Sampler};
-pub use second_hits::SecondHit;
-pub use segment_warp::{SegmentFrame, SegmentPlaces};
-pub use spot_cone::SpotCone;
-pub use sun_disc::SunDisc;
-pub use surface::Surface;
-pub use texels::Texels;
-pub use texture::{Texture, TextureError};
-pub use visibility::{Visibility, other_points};
-pub use world::{Mesh, Object, World};
-pub use wrap::Reading;
+pub use surfaces::{Cone, Surface, shading};
+pub use survey::{
+    Crossing, Crossings, FirstHit, LightSample, MOST_RAYS, ProbeError, ProbedSample, RayCost,
+    RayEnd, RayHit, RayKind, RayTree, Samples, TracedRay, central_hits, central_ray, emitters,
+    first_hits, first_surface, in_view, probe, probe_while,
+};
+pub use textures::{Reading, Texels, Texture, TextureError, srgb};
+pub use world::{
+    Digest, DirectionalLight, Environment, LightPoint, Lights, Map, Material, MaterialSet, Mesh,
+    MovingLight, Needs, Object, ParallelogramLight, PointLight, SegmentLight, SpotCone, SunDisc,
+    World, digest, direction_at, lights, samples_per_pixel,
+};

@@ -1,6 +1,6 @@
 //! A scene for tests of stages over columns: whatever a hit may lie on, and rays that find it.
 
-use super::vertices::Vertices;
+use super::stages::vertices::Vertices;
 use super::{Cone, Lights, Material, Mesh, Object, World};
 use crate::bvh::{Aggregate, BuildOptions, Hit, Instance, MeshTree, Ray, Triangles};
 use crate::scene::{Alpha, RenderSettings};
