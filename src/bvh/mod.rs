@@ -1,5 +1,12 @@
 //! Triangles, trees over them, and the rays that walk those trees. Knows no scene and no ECS.
 //!
+//! ```text
+//! measure ── build ── kernel ── geometry ── traversal
+//! ```
+//! `build` makes trees, `measure` tells what they are like; `kernel` walks one of them with a ray or a packet; `geometry` are
+//! meshes and instances and where hits lie on them, `traversal` the questions to all of them. Each uses those left of it.
+//! Tests and the report check them with `hard_cases`.
+//!
 //! # The way of a ray
 //! ```text
 //! positions, indices ── Triangles ── MeshTree ──┐            Ray
@@ -39,68 +46,29 @@
 //! Rules at the borders: both sides are hit; an edge belongs to all its triangles; a ray in a triangle's plane misses it;
 //! hits lie strictly between 0 and `t_max`.
 
-pub(crate) mod aggregate;
-mod batch;
-mod boxes;
 mod build;
-mod columns;
-mod crossing;
-mod depth;
-mod epo;
-mod goal;
+mod geometry;
 pub(crate) mod hard_cases;
-mod instance;
-mod layout;
-mod leave;
-mod leaves;
-mod levels;
-mod median;
-pub(crate) mod mesh_tree;
-mod multi_hit;
-mod object_ray;
-mod options;
-mod order;
-mod packets;
-mod ploc;
-mod queries;
-mod ray;
-pub(crate) mod safe_ray;
-mod sah;
-pub(crate) mod slab;
+mod kernel;
+mod measure;
 #[cfg(test)]
 mod specimens;
-mod split_plane;
-mod stats;
-mod support;
-mod surface_point;
 #[cfg(test)]
 mod tests;
-mod top_down;
-mod transmit;
-mod tree_ray;
-mod treelets;
-pub(crate) mod triangle;
+mod traversal;
 mod triangles;
-mod visitor;
-mod wedges;
-mod wide;
 
-pub use aggregate::{Aggregate, Primitive};
-pub use build::build_tree;
-pub use depth::MAX_DEPTH;
-pub use epo::{EPO_SAMPLES, epo};
-pub use instance::{Instance, SingularTransform};
-pub use mesh_tree::MeshTree;
-pub use multi_hit::MultiHit;
-pub use options::{BuildOptions, Builder, Levels, Preset};
-pub use order::Order;
-pub use ray::{Hit, Ray, TriangleId};
-pub use sah::{COST_INTERSECT, COST_TRAVERSE};
-pub use split_plane::{SplitPlane, gap_plane, primitives_below, split_plane};
-pub use stats::{LARGEST_LEAF_BIN, TreeStats, bytes, node_cost, sah_cost};
-pub use surface_point::{NearEdge, SurfacePoint};
-pub(crate) use surface_point::{Placement, beyond_error};
-pub use transmit::Transmittances;
+pub use build::{BuildOptions, Builder, Levels, MAX_DEPTH, Preset, build_tree};
+pub use geometry::{
+    Aggregate, Instance, MeshTree, NearEdge, Primitive, SingularTransform, SurfacePoint,
+};
+pub(crate) use geometry::{Placement, beyond_error};
+pub use kernel::{
+    Counters, Hit, NodeEvent, Order, Ray, TreeRef, TriangleId, Visitor, WideBox, WideStats,
+};
+pub use measure::{
+    COST_INTERSECT, COST_TRAVERSE, EPO_SAMPLES, LARGEST_LEAF_BIN, SplitPlane, TreeStats, bytes,
+    epo, gap_plane, node_cost, primitives_below, sah_cost, split_plane,
+};
+pub use traversal::{MultiHit, Transmittances};
 pub use triangles::{REACH, Triangles, TrianglesError};
-pub use visitor::{Counters, NodeEvent, TreeRef, Visitor};
-pub use wide::{WideBox, WideStats};

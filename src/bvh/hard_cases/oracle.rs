@@ -14,15 +14,11 @@
 
 use glam::{DMat3, DVec3, Vec3};
 
-use crate::bvh::{
-    Aggregate, Hit, Ray,
-    hard_cases::{
-        sieve::{Sheared, Sieve},
-        single::{ReadyRay, SingleTriangle},
-    },
-    instance::Instance,
-    safe_ray::SafeRay,
-};
+use super::super::geometry::instance::Instance;
+use super::super::kernel::safe_ray::SafeRay;
+use crate::bvh::hard_cases::sieve::{Sheared, Sieve};
+use crate::bvh::hard_cases::single::{ReadyRay, SingleTriangle};
+use crate::bvh::{Aggregate, Hit, Ray};
 
 const U: f64 = f32::EPSILON as f64 / 2.0;
 

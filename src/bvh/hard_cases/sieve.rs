@@ -7,7 +7,8 @@ use std::ops::Range;
 
 use glam::Vec3;
 
-use crate::bvh::{Aggregate, Triangles, triangle::Shear};
+use super::super::kernel::triangle::Shear;
+use crate::bvh::{Aggregate, Triangles};
 use crate::instruction_sets::vectorized;
 
 /// The traced triangles of a mesh, a column for each coordinate of each corner.

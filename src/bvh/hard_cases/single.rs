@@ -3,12 +3,10 @@
 
 use glam::{Vec3, Vec3A, Vec3Swizzles};
 
-use crate::bvh::{
-    Ray,
-    object_ray::ObjectRay,
-    safe_ray::SafeRay,
-    triangle::{Crossing, Shear, accept},
-};
+use super::super::kernel::object_ray::ObjectRay;
+use super::super::kernel::safe_ray::SafeRay;
+use super::super::kernel::triangle::{Crossing, Shear, accept};
+use crate::bvh::Ray;
 
 /// A ray that is ready for [`SingleTriangle::cross`].
 pub(crate) struct ReadyRay {

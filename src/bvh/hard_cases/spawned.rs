@@ -113,7 +113,7 @@ pub(crate) fn mirrored_inside(
 
 /// From so many steps of the coordinates on no ray leaves a pane by starting on its other side.
 pub(crate) const SAFE_PANE: f32 = 6.0;
-/// In thinner ones so many starts of rays that leave a side far from its edges may lie outside (`bvh/leave.rs`).
+/// In thinner ones so many starts of rays that leave a side far from its edges may lie outside (`bvh/geometry/leave.rs`).
 pub(crate) const OUTSIDE_OF_THIN_PANES: f64 = 1e-3;
 
 /// A pane of 20 m by 40 m that stands 148 km away, turned and moving; so many steps of the coordinates thick.

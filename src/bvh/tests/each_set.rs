@@ -2,12 +2,12 @@
 
 use glam::Vec3;
 
-use crate::bvh::{
-    Aggregate, Hit, Order, Ray, Transmittances,
-    aggregate::Places,
-    levels::{AnyOf, Closest, OneLevel, OneMesh, Passing, TwoLevels, arranged},
-    wide::{InstructionSet, Query, answer_with_each},
+use super::super::geometry::aggregate::Places;
+use super::super::kernel::wide::{InstructionSet, Query, answer_with_each};
+use super::super::traversal::levels::{
+    AnyOf, Closest, OneLevel, OneMesh, Passing, TwoLevels, arranged,
 };
+use crate::bvh::{Aggregate, Hit, Order, Ray, Transmittances};
 
 /// Questions to an aggregate.
 #[derive(Clone, Copy)]

@@ -2,18 +2,15 @@
 
 use glam::{Vec3, Vec3A};
 
+use super::super::kernel::goal::{Any, Goal, Nearest, Question};
+use super::super::kernel::object_ray::ObjectRay;
+use super::super::kernel::safe_ray::Measure;
+use super::super::kernel::wide::{Owner, Portable, Sheared, TriangleBlock};
 use super::{
     random::Random,
     single::{ReadyRay, SingleTriangle},
 };
-use crate::bvh::{
-    Triangles,
-    goal::{Any, Goal, Nearest, Question},
-    object_ray::ObjectRay,
-    ray::TriangleId,
-    safe_ray::Measure,
-    wide::{Owner, Portable, Sheared, TriangleBlock},
-};
+use crate::bvh::{TriangleId, Triangles};
 
 /// What a goal has found after a block was tested.
 fn asked<G: Goal>(block: &TriangleBlock, ray: &ReadyRay, reach: f32, limit: f32, mut goal: G) -> G {

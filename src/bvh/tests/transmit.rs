@@ -3,6 +3,7 @@
 use glam::{Affine3A, Vec3};
 use std::sync::Arc;
 
+use super::super::kernel::safe_ray::SafeRay;
 use super::{
     meshes::{alone, cube, joined, knot, mesh, placed, scatter, soup},
     random::Random,
@@ -11,7 +12,7 @@ use super::{
 };
 use crate::bvh::{
     Aggregate, BuildOptions, Builder, Counters, Hit, Instance, Levels, MeshTree, NodeEvent, Order,
-    Ray, Transmittances, TreeRef, Visitor, safe_ray::SafeRay,
+    Ray, Transmittances, TreeRef, Visitor,
 };
 
 /// What a triangle lets through: a number for each colour that depends on which it is, and of some nothing.

@@ -14,14 +14,16 @@ use super::{
 };
 use std::sync::Arc;
 
+use super::super::kernel::goal::{All, Nearest, Question};
+use super::super::kernel::safe_ray::Measure;
+use super::super::kernel::slab::SlabRay;
+use super::super::kernel::visitor::TreeRef;
+use super::super::kernel::wide::{
+    FEW, LEAF, Leaves, MANY, Portable, TriangleBlock, WIDTH, WideRay, WideTree, walk,
+};
 use crate::bvh::{
     Aggregate, BuildOptions, Builder, Hit, Instance, Levels, MAX_DEPTH, MeshTree, Order, Ray,
     Transmittances, TriangleId, Triangles,
-    goal::{All, Nearest, Question},
-    safe_ray::Measure,
-    slab::SlabRay,
-    visitor::TreeRef,
-    wide::{FEW, LEAF, Leaves, MANY, Portable, TriangleBlock, WIDTH, WideRay, WideTree, walk},
 };
 
 /// Rays from everywhere to everywhere, some along axes and into corners, some that end early.
