@@ -72,6 +72,7 @@ mod state;
 mod status;
 mod temperature;
 mod theme;
+mod thumbnail;
 mod told;
 mod toolbar;
 mod tree_pair;
