@@ -275,7 +275,7 @@ fn of_two_trees_the_one_that_is_traced_is_not_built_again() {
         &desk.world().resource::<Traced>().world,
         &traced
     ));
-    assert!(desk.find("median: to look at, not traced").is_some());
+    assert!(desk.find("Median: to look at, not traced").is_some());
     assert!(desk.find("SAH: these trees are traced").is_some());
     desk.world().resource_mut::<InspectSettings>().on = false;
     desk.settle();
