@@ -4,7 +4,7 @@ use crate::bvh::REACH;
 use crate::editor::edits::{all_below, roots_of, scene_entity};
 use crate::io::place::world_from;
 use crate::scene::{
-    DirectionalLamp, ParallelogramLamp, PointLamp, SceneCamera, SceneId, SegmentLamp,
+    DirectionalLamp, MeshSource, ParallelogramLamp, PointLamp, SceneCamera, SceneId, SegmentLamp,
 };
 use bevy::asset::Assets;
 use bevy::camera::primitives::{Aabb, MeshAabb};
@@ -56,6 +56,11 @@ impl Extent {
             least: self.least + by,
             most: self.most + by,
         }
+    }
+
+    /// Whether the boxes have a point in common.
+    pub fn meets(self, other: Self) -> bool {
+        self.least.cmple(other.most).all() && other.least.cmple(self.most).all()
     }
 
     /// Whether a point is in the box.
@@ -113,17 +118,37 @@ pub(super) fn extent_now(world: &World, root: Entity) -> Option<Extent> {
 /// The room that an entity itself takes, without its children. `None` for what stands nowhere, and
 /// for an object whose mesh is not there yet.
 pub(super) fn own_extent(entity: EntityRef) -> Option<Extent> {
-    let world_from_own = entity.get::<GlobalTransform>()?.affine();
+    extent_from(entity, entity.get::<GlobalTransform>()?)
+}
+
+/// The room that an object, a light or a camera itself takes, as places are now; where an object's mesh is not there yet, or
+/// not measured, that of a unit cube, as which most are added. `None` for what takes none, and for what stands nowhere.
+pub(super) fn extent_as_placed(world: &World, entity: Entity) -> Option<Extent> {
+    let world_from_own = world_from_entity(world, entity)?;
+    let entity = world.get_entity(entity).ok()?;
+    if entity.contains::<MeshSource>() && !entity.contains::<Aabb>() {
+        let corners = corners(&Aabb::from_min_max(Vec3::splat(-0.5), Vec3::splat(0.5)));
+        return Extent::of_points(corners.map(|corner| world_from_own.transform_point(corner)));
+    }
+    let is_seen = entity.contains::<Mesh3d>()
+        || entity.contains::<SceneCamera>()
+        || entity.contains::<PointLamp>()
+        || entity.contains::<DirectionalLamp>()
+        || !lamp_points(entity).is_empty();
+    is_seen.then(|| extent_from(entity, &world_from_own))?
+}
+
+fn extent_from(entity: EntityRef, world_from_own: &GlobalTransform) -> Option<Extent> {
     if let Some(aabb) = entity.get::<Aabb>().filter(|_| entity.contains::<Mesh3d>()) {
-        let corners = corners(aabb).map(|corner| world_from_own.transform_point3(corner));
+        let corners = corners(aabb).map(|corner| world_from_own.transform_point(corner));
         return Extent::of_points(corners);
     }
     let points = lamp_points(entity);
     if points.is_empty() {
-        return Extent::of_points([world_from_own.translation.into()]);
+        return Extent::of_points([world_from_own.translation()]);
     }
     let points = points.into_iter();
-    Extent::of_points(points.map(|point| world_from_own.transform_point3(point)))
+    Extent::of_points(points.map(|point| world_from_own.transform_point(point)))
 }
 
 /// The room that these entities take with all that hangs on them. `None` where that is nothing.

@@ -76,28 +76,14 @@ const fn heading(
     }
 }
 
-/// All columns, from the left.
+/// All columns, from the left: what a ray met and what light it brings before where and how.
 pub const COLUMNS: [Heading; 18] = [
     heading(
         Column::Ray,
         "ray",
-        190.0,
+        176.0,
         false,
         "What the ray is for, and its number; its children stand below it",
-    ),
-    heading(
-        Column::Depth,
-        "depth",
-        44.0,
-        true,
-        "Surfaces between the camera and the ray's start",
-    ),
-    heading(
-        Column::From,
-        "from",
-        96.0,
-        false,
-        "The object whose surface it leaves",
     ),
     heading(
         Column::End,
@@ -114,11 +100,32 @@ pub const COLUMNS: [Heading; 18] = [
         "The object or light where it ended; of a shadow ray its light, and what blocks it",
     ),
     heading(
-        Column::Triangle,
-        "triangle",
-        58.0,
+        Column::Adds,
+        "adds",
+        168.0,
         true,
-        "The triangle that was hit, by its index in the mesh",
+        "What it put into the sample's value by itself; these add up to the value, bit for bit",
+    ),
+    heading(
+        Column::In,
+        "in",
+        168.0,
+        true,
+        "The radiance that comes back along the ray to its start, linear RGB",
+    ),
+    heading(
+        Column::Out,
+        "out",
+        168.0,
+        true,
+        "Its part of what comes back along its parent: weight × radiance",
+    ),
+    heading(
+        Column::Transmittance,
+        "transmitted",
+        150.0,
+        true,
+        "The part of the light that arrives, for rays to lights",
     ),
     heading(
         Column::Distance,
@@ -126,6 +133,27 @@ pub const COLUMNS: [Heading; 18] = [
         66.0,
         true,
         "Metres from the ray's start to where it ended",
+    ),
+    heading(
+        Column::From,
+        "from",
+        96.0,
+        false,
+        "The object whose surface it leaves",
+    ),
+    heading(
+        Column::Depth,
+        "depth",
+        44.0,
+        true,
+        "Surfaces between the camera and the ray's start",
+    ),
+    heading(
+        Column::Triangle,
+        "triangle",
+        58.0,
+        true,
+        "The triangle that was hit, by its index in the mesh",
     ),
     heading(
         Column::Barycentric,
@@ -154,34 +182,6 @@ pub const COLUMNS: [Heading; 18] = [
         92.0,
         false,
         "Which material was hit, and kd there as a colour",
-    ),
-    heading(
-        Column::In,
-        "in",
-        168.0,
-        true,
-        "The radiance that comes back along the ray to its start, linear RGB",
-    ),
-    heading(
-        Column::Out,
-        "out",
-        168.0,
-        true,
-        "Its part of what comes back along its parent: weight × radiance",
-    ),
-    heading(
-        Column::Adds,
-        "adds",
-        168.0,
-        true,
-        "What it put into the sample's value by itself; these add up to the value, bit for bit",
-    ),
-    heading(
-        Column::Transmittance,
-        "transmitted",
-        150.0,
-        true,
-        "The part of the light that arrives, for rays to lights",
     ),
     heading(
         Column::Nodes,

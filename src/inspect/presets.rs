@@ -35,12 +35,12 @@ impl InspectPreset {
         }
     }
 
-    /// The question.
-    pub fn question(self) -> &'static str {
+    /// What it does, or the question that it answers.
+    pub fn title(self) -> &'static str {
         match self {
-            Self::WhyBlack => "why is this pixel black?",
-            Self::IsTheTreeGood => "is this tree good?",
-            Self::WhereIsTheNoiseFrom => "where is my noise from?",
+            Self::WhyBlack => "Draw why a pixel is black",
+            Self::IsTheTreeGood => "Is this tree good?",
+            Self::WhereIsTheNoiseFrom => "Where is my noise from?",
         }
     }
 

@@ -73,7 +73,7 @@ pub(crate) use loader::MODEL_EXTENSIONS;
 pub use notes::{FileNote, Notes};
 #[cfg(feature = "editor")]
 pub(crate) use on_disk::{OnDisk, has_changed};
-pub use open::{OpenOptions, Opened, SceneSource, open, open_empty};
+pub use open::{OpenOptions, Opened, SceneSource, open, open_new};
 pub use part::{Merge, MergeError, Part, part_bytes, read_part, write_part};
 pub(crate) use picture::stage_picture;
 pub use picture::{

@@ -3,7 +3,7 @@ use super::builtin::{self, BuiltinScene};
 use super::error::{FileError, Problem};
 use super::file_name::encoded;
 use super::folder::Folder;
-use super::frame::{frame, frame_nothing};
+use super::frame::frame;
 use super::ids::assign_ids;
 use super::loader::{Loader, MODEL_EXTENSIONS, read_model};
 use super::model::Model;
@@ -207,12 +207,12 @@ fn check_shapes(scene: &SceneFile, memory: &Budget) -> Result<(), Problem> {
     memory.apart().claim(bytes)
 }
 
-/// Replaces the open scene by one with a camera and a light, and nothing to see.
-pub fn open_empty(world: &mut World) {
+/// Replaces the open scene by a new one: a floor, a cube on it, a lamp above and a camera that sees them.
+pub fn open_new(world: &mut World) {
     let limits = world.get_resource::<SceneFiles>();
     let limits = limits.map(|files| files.limits.clone()).unwrap_or_default();
     clear(world, SceneFiles::new(Folder::default(), limits));
-    frame_nothing(world);
+    builtin::new_scene(world);
     resolve(world);
 }
 

@@ -34,6 +34,7 @@ pub mod raster;
 mod reference;
 mod render;
 mod screen;
+mod screen_part;
 mod screen_pass;
 mod shot;
 mod sketch;

@@ -6,6 +6,7 @@
 //! whole viewport nothing of the rasterised scene is drawn below it.
 
 use super::screen::{Screen, widening};
+use super::screen_part::{traced_part, whole_part};
 use bevy::anti_alias::contrast_adaptive_sharpening::cas;
 use bevy::anti_alias::fxaa::fxaa;
 use bevy::anti_alias::smaa::smaa;
@@ -18,7 +19,6 @@ use bevy::core_pipeline::schedule::{Core3d, Core3dSystems};
 use bevy::core_pipeline::tonemapping::tonemapping;
 use bevy::ecs::entity_disabling::Disabled;
 use bevy::log::error;
-use bevy::math::{URect, UVec2};
 use bevy::pbr::{RenderMaterialInstances, ViewLightEntities};
 use bevy::prelude::{
     App, Commands, Component, Entity, IntoScheduleConfigs, Plugin, Query, Res, ResMut, Resource,
@@ -400,53 +400,5 @@ fn draw_screen(
         if let Err(problem) = phase.render_range(&mut pass, world, entity, place..=place) {
             error!("a gizmo over the traced picture was not drawn: {problem}");
         }
-    }
-}
-
-/// The pixels of the target that show the picture; `None` where there are none.
-fn traced_part(camera: &ExtractedCamera, divider: f32) -> Option<URect> {
-    right_of(whole_part(camera)?, divider, camera.physical_target_size?)
-}
-
-/// The pixels of the target that are a view's.
-fn whole_part(camera: &ExtractedCamera) -> Option<URect> {
-    Some(match &camera.viewport {
-        Some(viewport) => URect {
-            min: viewport.physical_position,
-            max: viewport.physical_position + viewport.physical_size,
-        },
-        None => URect {
-            min: UVec2::ZERO,
-            max: camera.physical_target_size?,
-        },
-    })
-}
-
-/// What is right of a part of the width, and inside the target.
-fn right_of(mut part: URect, divider: f32, target: UVec2) -> Option<URect> {
-    let left = (part.width() as f32 * divider.clamp(0.0, 1.0)).round() as u32;
-    part.min.x += left;
-    part.max = part.max.min(target);
-    let any = part.min.cmplt(part.max).all();
-    any.then_some(part)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_picture_is_drawn_right_of_the_divider_in_its_own_viewport_alone() {
-        let target = UVec2::new(200, 100);
-        let right = URect::new(100, 0, 200, 100);
-        let part = |divider| right_of(right, divider, target);
-        assert_eq!(part(0.0), Some(right));
-        assert_eq!(part(0.25), Some(URect::new(125, 0, 200, 100)));
-        assert_eq!(part(1.0), None);
-        let beyond = URect::new(150, 50, 300, 300);
-        let inside = Some(URect::new(150, 50, 200, 100));
-        assert_eq!(right_of(beyond, 0.0, target), inside);
-        assert_eq!(right_of(URect::new(200, 0, 300, 9), 0.0, target), None);
-        assert_eq!(right_of(URect::new(5, 5, 5, 9), 0.0, target), None);
     }
 }

@@ -11,7 +11,7 @@ use crate::editor::selection::Selection;
 use crate::editor::texts::{file_name, path_text};
 use crate::io::{
     FileError, OpenOptions, Problem, SceneFiles, SceneSource, extension, has_changed, open,
-    open_empty, save,
+    open_new, save,
 };
 use bevy::app::AppExit;
 use bevy::ecs::world::World;
@@ -36,7 +36,7 @@ pub(in crate::editor) fn request(world: &mut World, task: FileTask) {
 pub(super) fn perform_now(world: &mut World, task: FileTask) {
     match task {
         FileTask::New => {
-            open_empty(world);
+            open_new(world);
             finish_opening(world, "Untitled".into(), None);
         }
         FileTask::Open(path) => open_file(world, &path, false),

@@ -144,7 +144,7 @@ impl Plugin for DocumentPlugin {
 
 fn commands() -> Vec<Command> {
     commands! {
-        "file.new" "New" ["Ctrl+N"] "Starts an empty scene with a camera and a light"
+        "file.new" "New" ["Ctrl+N"] "Starts a new scene: a cube on a floor, a lamp above, and a camera that sees them"
             => |world| request(world, FileTask::New); menu("File", 0),
         "file.open" "Open…" ["Ctrl+O"] "Opens a scene or a model: .scn.ron, .obj, .gltf, .glb, .stl, .ply"
             => |world| dialog::ask(world, Purpose::Open); menu("File", 0),

@@ -46,6 +46,18 @@ const LAMP_HEIGHT: f32 = 1.5;
 /// How far before its place a camera of a size of 1 is added: it sees what stands there, and the view, farther back, sees it.
 const CAMERA_DISTANCE: f32 = 2.5;
 
+/// From where it is added to where it stands. `None` for what takes no room there.
+pub(super) fn stands_from(what: &Addition, at: AddAt) -> Option<Vec3> {
+    match what {
+        Addition::Shape(_) | Addition::DirectionalLamp => Some(Vec3::ZERO),
+        Addition::PointLamp | Addition::SegmentLamp | Addition::ParallelogramLamp => {
+            Some(LAMP_HEIGHT * at.size * Vec3::Y)
+        }
+        Addition::Camera => Some(CAMERA_DISTANCE * at.size * (at.view * Vec3::Z)),
+        Addition::Group | Addition::Material => None,
+    }
+}
+
 /// Adds a thing at a place, a lamp above it, a camera before it. `None` where no shape is called so.
 pub fn add(world: &mut World, what: &Addition, at: AddAt) -> Option<SceneId> {
     let id = FreeIds::new(world).next();
@@ -53,8 +65,9 @@ pub fn add(world: &mut World, what: &Addition, at: AddAt) -> Option<SceneId> {
     let scaled = place.with_scale(Vec3::splat(at.size));
     // Lamps shine along their local -Z.
     let downwards = place.with_rotation(Quat::from_rotation_x(-FRAC_PI_2));
-    let above = place.with_translation(at.place + LAMP_HEIGHT * at.size * Vec3::Y);
-    let scaled_above = above.with_scale(scaled.scale);
+    let from = stands_from(what, at).unwrap_or_default();
+    let stands = place.with_translation(at.place + from);
+    let stands_scaled = stands.with_scale(scaled.scale);
     // As bright on a surface `size` away as one W/sr is at a metre.
     let intensity = at.size * at.size;
     match what {
@@ -69,7 +82,7 @@ pub fn add(world: &mut World, what: &Addition, at: AddAt) -> Option<SceneId> {
                 intensity: 5.0 * intensity,
                 ..PointLamp::default()
             };
-            spawn(world, id, "Point light", (lamp, above));
+            spawn(world, id, "Point light", (lamp, stands));
         }
         Addition::DirectionalLamp => {
             let lamp = DirectionalLamp {
@@ -84,7 +97,7 @@ pub fn add(world: &mut World, what: &Addition, at: AddAt) -> Option<SceneId> {
                 intensity: 5.0 * at.size,
                 ..SegmentLamp::default()
             };
-            spawn(world, id, "Segment light", (lamp, scaled_above));
+            spawn(world, id, "Segment light", (lamp, stands_scaled));
         }
         Addition::ParallelogramLamp => {
             let lamp = ParallelogramLamp {
@@ -92,11 +105,10 @@ pub fn add(world: &mut World, what: &Addition, at: AddAt) -> Option<SceneId> {
                 intensity: 5.0,
                 ..ParallelogramLamp::default()
             };
-            spawn(world, id, "Parallelogram light", (lamp, scaled_above));
+            spawn(world, id, "Parallelogram light", (lamp, stands_scaled));
         }
         Addition::Camera => {
-            let back = CAMERA_DISTANCE * at.size * (at.view * Vec3::Z);
-            let before = Transform::from_translation(at.place + back).with_rotation(at.view);
+            let before = stands.with_rotation(at.view);
             spawn(world, id, "Camera", (SceneCamera::default(), before));
         }
         Addition::Material => spawn(world, id, "Material", Phong::default()),

@@ -3,6 +3,7 @@
 
 mod add;
 mod copy;
+mod free_place;
 mod group;
 mod hiding;
 mod import;

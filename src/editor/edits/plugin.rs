@@ -1,5 +1,6 @@
 //! The commands that edit, each a step of its own.
 
+use super::free_place::free_place;
 use super::selecting::{is_any_selected, select, selected};
 use super::{
     AddAt, Clipboard, SceneIndex, add, assign_material, copy, delete, duplicate, group, hiding,
@@ -58,13 +59,13 @@ fn commands() -> Vec<Command> {
             => |world| step(world, step_group); menu("Edit", 2); over(ANY); state(can_be_grouped),
         "edit.ungroup" "Ungroup" ["Ctrl+Shift+G"] "Takes the selected groups away; what is below them stays, and stays where it is"
             => |world| step(world, step_ungroup); menu("Edit", 2); over(ANY); state(is_any_group_selected),
-        "add.point-light" "Point light" [] "Shines in all directions from one point; with a cone it is a spot"
+        "add.point-light" "Point light" [] "A lamp that shines in all directions from one point; with a cone it is a spot"
             => |world| step_add(world, &Addition::PointLamp); menu("Add", 2),
         "add.directional-light" "Directional light" [] "Shines from infinitely far, like the sun"
             => |world| step_add(world, &Addition::DirectionalLamp); menu("Add", 2),
-        "add.segment-light" "Segment light" [] "A glowing line with a colour at each end: soft shadows"
+        "add.segment-light" "Segment light" [] "A lamp like a tube: a glowing line with a colour at each end, soft shadows"
             => |world| step_add(world, &Addition::SegmentLamp); menu("Add", 2),
-        "add.parallelogram-light" "Parallelogram light" [] "A glowing surface with a colour at each corner: soft shadows"
+        "add.parallelogram-light" "Parallelogram light" [] "An area lamp: a glowing surface with a colour at each corner, soft shadows"
             => |world| step_add(world, &Addition::ParallelogramLamp); menu("Add", 2),
         "add.camera" "Camera" [] "Adds a camera at what the view looks at; Keep this view as a camera adds one where the view stands"
             => |world| step_add(world, &Addition::Camera); menu("Add", 3),
@@ -80,7 +81,23 @@ fn shape_commands() -> impl Iterator<Item = Command> {
     shapes().into_iter().map(|(name, _)| {
         let id = format!("add.{}", name.to_lowercase());
         let what = Addition::Shape(name.into());
-        let help = "Adds the shape at what the view looks at";
+        // By other words for it, too, the palette finds it.
+        let known_as = match name {
+            "Cuboid" => "A box, to begin with a cube",
+            "Sphere" => "A ball",
+            "Cylinder" => "A round rod, closed at both ends",
+            "Torus" => "A ring, like a doughnut",
+            "Ground" => "A level floor, a plane whose texture repeats in tiles",
+            "Quad" => "A flat parallelogram, like a wall",
+            "Quadrilateral" => "A surface between four corners",
+            "Triangle" => "A single triangle, by its three corners",
+            "Prism" => "A wedge with a polygon as its base",
+            "Teapot" => "Newell's teapot, a pot of curved patches",
+            "Head" => "A smooth head",
+            "Knot" => "A knotted rope of many triangles",
+            _ => "A shape",
+        };
+        let help = format!("{known_as}: added at what the view looks at, beside what is there");
         Command::new(id, name, help, move |world: &mut World| {
             step_add(world, &what)
         })
@@ -170,10 +187,11 @@ pub(in crate::editor) fn step(
     commit(world);
 }
 
-/// Adds one thing where the view looks, and selects it.
+/// Adds one thing where the view looks, beside what is there, and selects it.
 pub(in crate::editor) fn step_add(world: &mut World, what: &Addition) {
     step(world, |world| {
         let at = *world.resource::<AddAt>();
+        let at = free_place(world, what, at);
         let Some(id) = add(world, what, at) else {
             let text = format!("{what:?} is no shape that can be added");
             world.resource_mut::<Notices>().fault(text);

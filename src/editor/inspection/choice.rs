@@ -117,7 +117,7 @@ pub(super) fn let_go(_: On<Escaped>, mut inspected: ResMut<Inspected>) {
 fn has_ray(world: &World) -> State {
     State::when(
         world.resource::<Inspected>().ray.is_some(),
-        "Steps are those of a debug ray: shoot one (R), and choose a ray of the list or of the view",
+        "Steps are those of a debug ray: point at the picture and press R, and choose a ray of the list or of the view",
     )
 }
 
@@ -149,6 +149,12 @@ fn step(world: &mut World, how: impl FnOnce(&mut Stepper)) {
     let mut inspected = world.resource_mut::<Inspected>();
     inspected.side = Side::Steps;
     how(&mut inspected.stepper);
+}
+
+/// The pixel in the middle of the picture.
+pub(in crate::editor) fn shoot_middle(world: &mut World) {
+    let size = view_of(world).map_or(UVec2::ZERO, |(_, size)| size);
+    shoot_pixel(world, size / 2);
 }
 
 /// A pixel of the picture as the view shows it now.

@@ -184,7 +184,7 @@ impl DebugRay {
         }
         if self.shot.is_none() {
             return Some(
-                "Nothing was shot yet: point at the traced picture and press R, click it with Alt, or enter a pixel"
+                "No pixel was picked yet: point at the traced picture and press R, click it with Alt, or enter a pixel"
                     .into(),
             );
         }

@@ -15,7 +15,7 @@ pub(in crate::editor) fn json(world: &World) -> Result<String, String> {
     let (Some(rays), Some((traced, settings)), Some(shot)) =
         (ray.rays(), ray.traced_with(), ray.shot())
     else {
-        return Err("nothing was shot yet, so there is nothing to copy".into());
+        return Err("no pixel was picked yet, so there is nothing to copy".into());
     };
     let names = world.resource::<Names>();
     let settings = RenderSettings {

@@ -26,7 +26,7 @@ pub(super) mod lit;
 mod names;
 mod questions;
 
-pub(super) use choice::{Inspected, shoot_pixel};
+pub(super) use choice::{Inspected, shoot_middle, shoot_pixel};
 pub(super) use debug_ray::{DebugRay, Which};
 pub(super) use draw::Drawings;
 pub(super) use drawn_set::{DrawnSet, Source};

@@ -74,7 +74,7 @@ mod tests {
     use crate::editor::document::adopt;
     use crate::editor::headless_editor;
     use crate::editor::history::History;
-    use crate::io::open_empty;
+    use crate::io::open_new;
     use crate::scene::SceneId;
 
     fn camera(world: &mut World) -> (SceneId, f32) {
@@ -89,7 +89,7 @@ mod tests {
     #[test]
     fn a_cameras_field_of_view_is_a_step_and_the_views_own_is_none() {
         let mut app = headless_editor();
-        open_empty(app.world_mut());
+        open_new(app.world_mut());
         adopt(app.world_mut(), "empty", None);
         app.update();
         let world = app.world_mut();

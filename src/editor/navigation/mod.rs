@@ -232,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn in_a_scene_with_nothing_in_it_things_are_added_at_the_origin_at_their_own_size() {
+    fn in_a_new_scene_things_are_added_in_its_middle_at_their_own_size() {
         let mut app = crate::editor::headless_editor();
         app.init_resource::<Eye>()
             .init_resource::<LookThrough>()
@@ -245,18 +245,15 @@ mod tests {
                     .chain()
                     .after(Dispatch),
             );
-        crate::io::open_empty(app.world_mut());
-        crate::editor::document::adopt(app.world_mut(), "empty", None);
+        crate::io::open_new(app.world_mut());
+        crate::editor::document::adopt(app.world_mut(), "new", None);
         for _ in 0..=SETTLE {
             app.update();
         }
         let at = *app.world().resource::<AddAt>();
-        let view = app.world().resource::<Eye>().transform().rotation;
-        let as_in_a_file = AddAt {
-            view,
-            ..AddAt::default()
-        };
-        assert_eq!(at, as_in_a_file);
+        assert_eq!(at.size, 1.0);
+        let above_the_cube = Vec3::new(0.0, 0.9, 0.0);
+        assert!(at.place.distance(above_the_cube) < 0.3, "{at:?}");
     }
 
     #[test]

@@ -97,7 +97,7 @@ pub(super) fn armed_ui(context: &egui::Context, free: Rect, world: &World) {
         None | Some(Armed::No) => return,
         Some(Armed::Why(Question::Black)) => "Click a pixel: why is it black? (Esc: none)",
         Some(Armed::Why(Question::Noisy)) => "Click a pixel: why is it noisy? (Esc: none)",
-        Some(Armed::Why(Question::Color)) => "Click a pixel: why this colour? (Esc: none)",
+        Some(Armed::Why(Question::Color)) => "Click a pixel: why has it this colour? (Esc: none)",
         Some(Armed::Aim) => "Click what shall be aimed at (Esc: nothing)",
         Some(Armed::Focus) => "Click what shall be sharp (Esc: nothing)",
     };
@@ -199,7 +199,7 @@ pub(super) fn answer_ui(
                             Wish::Rays,
                         ),
                         (
-                            "Ray tree",
+                            "Ray inspector",
                             "Lists the pixel's rays with all their numbers",
                             Wish::Tree,
                         ),

@@ -21,7 +21,7 @@ pub(super) fn commands() -> Vec<Command> {
             => |world| toggle(world, Dialog::Scenes); menu("File", 0),
         "file.render" "Render to file…" ["F12"] "Renders a picture to a file while you go on editing"
             => open_render; menu("File", 3),
-        "file.preferences" "Preferences…" [] "Theme and size of the panels"
+        "file.preferences" "Preferences…" [] "Dark or light theme, and the size of text and panels"
             => |world| toggle(world, Dialog::Preferences); menu("File", 4),
         "edit.history" "History…" [] "All steps, to go back and forth between"
             => |world| toggle(world, Dialog::History); menu("Edit", 0),
@@ -37,7 +37,7 @@ pub(super) fn commands() -> Vec<Command> {
             => |world| answer::ask(world, Question::Black); menu("View/Rays and trees", 1); button("questions", "Why black?"); over(&[Over::Pixel]),
         "why.noisy" "Why is this pixel noisy?" [] "The next click in the view answers in a sentence what the pixel's samples differ in"
             => |world| answer::ask(world, Question::Noisy); menu("View/Rays and trees", 1); over(&[Over::Pixel]),
-        "why.color" "Why this colour?" [] "The next click in the view answers in a sentence what the pixel's colour is mixed of"
+        "why.color" "Why has this pixel this colour?" [] "The next click in the view answers in a sentence what the pixel's colour is mixed of"
             => |world| answer::ask(world, Question::Color); menu("View/Rays and trees", 1); over(&[Over::Pixel]),
         "help.keys" "Keys and mouse" ["F1", "?"] "Shows every key, and changes them"
             => |world| toggle(world, Dialog::Keys); menu("Help", 0),

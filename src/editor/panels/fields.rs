@@ -11,7 +11,7 @@ use bevy::reflect::enums::{DynamicEnum, DynamicVariant};
 use bevy::reflect::{
     PartialReflect, Reflect, ReflectMut, ReflectPath, ReflectRef, TypeInfo, Typed,
 };
-use bevy_egui::egui::{self, Align, ComboBox, Label, Layout, Ui, vec2};
+use bevy_egui::egui::{self, Align, ComboBox, Label, Layout, StrokeKind, Ui, vec2};
 
 /// The part of the width that labels take.
 const LABELS: f32 = 0.38;
@@ -240,6 +240,11 @@ pub(super) fn switch(ui: &mut Ui, label: &str, says: &str, value: &mut bool, mix
 pub(super) fn color_ui(ui: &mut Ui, says: &str, value: &mut LinearRgba, mixed: bool) -> bool {
     let mut rgb = [value.red, value.green, value.blue];
     let response = ui.color_edit_button_rgb(&mut rgb).says(says);
+    // A white one is to be seen in the light theme, too.
+    let visuals = ui.style().interact(&response);
+    let (corner, edge) = (visuals.corner_radius, visuals.bg_stroke);
+    ui.painter()
+        .rect_stroke(response.rect, corner, edge, StrokeKind::Inside);
     if mixed {
         ui.weak(MIXED);
     }

@@ -63,7 +63,7 @@ pub(super) fn first_steps_ui(
 fn card_ui(ui: &mut Ui, world: &mut World, tried: &mut FirstSteps) -> bool {
     let mut seen = false;
     ui.horizontal(|ui| {
-        ui.label(RichText::new("Three things to try").strong());
+        ui.label(RichText::new("First steps").strong());
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let close = ui.small_button("Close");
             let says = "Does not show this again; Help, First steps does";

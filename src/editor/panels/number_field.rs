@@ -2,9 +2,8 @@
 //! field is left, and only as a whole: where it cannot be read the old value stays, the field is marked, and its tooltip
 //! says why. Click it again to mend what was typed.
 
-use super::number_text::significant;
 use super::says::{Says, name_control};
-use crate::scene::schema::{Quantity, typed_number};
+use crate::scene::schema::Quantity;
 use bevy_egui::egui::{
     self, Align2, Button, CursorIcon, Id, Key, Modifiers, Order, Response, RichText, Sense, Slider,
     SliderClamping, Stroke, TextEdit, TextWrapMode, Ui, WidgetInfo, accesskit, vec2,
@@ -13,9 +12,6 @@ use std::ops::Range;
 
 /// What is shown in place of a value in which several entities differ.
 pub(super) const MIXED: &str = "mixed";
-/// Ends of ranges up to this are meant, and what is typed beyond is brought to them. Farther ones only keep numbers
-/// from what cannot be computed with.
-const MEANT: f64 = 1e9;
 /// How wide a number is beside its slider, in points.
 const BESIDE_SLIDER: f32 = 60.0;
 
@@ -321,106 +317,6 @@ impl NumberField<'_> {
             _ => least,
         }
     }
-
-    /// The number that a text means here.
-    fn read(self, text: &str, before: f64) -> Result<Entered, String> {
-        let unit = self.quantity.unit;
-        let number = match self.quantity.zero {
-            Some(word) if text.trim().eq_ignore_ascii_case(word) => 0.0,
-            _ => typed_number(text, unit, unit.kept_per_shown(), before)?,
-        };
-        if self.is_whole && number.fract() != 0.0 {
-            return Err("a whole number is wanted".into());
-        }
-        let number = match self.is_whole {
-            true => number,
-            false => f64::from(number as f32),
-        };
-        if self.quantity.allows(number) {
-            return Ok(Entered { number, note: None });
-        }
-        let range = self.quantity.shown_range_text();
-        let nearest = self.quantity.nearest(number);
-        if number.is_infinite() || nearest.abs() > MEANT {
-            return Err(format!("it has to be {range}"));
-        }
-        let taken = self.text_with_unit(nearest);
-        Ok(Entered {
-            number: nearest,
-            note: Some(format!("it has to be {range}: {taken} is taken")),
-        })
-    }
-
-    /// As many digits as there is room for.
-    fn text_that_fits(self, ui: &Ui, number: f64) -> String {
-        if self.is_mixed {
-            return MIXED.into();
-        }
-        if let Some(word) = self.word(number) {
-            return word.into();
-        }
-        let room = ui.spacing().interact_size.x - 2.0 * ui.spacing().button_padding.x;
-        let font = ui.style().drag_value_text_style.resolve(ui.style());
-        let with_unit = |digits| self.text(number, digits) + &self.quantity.unit.suffix();
-        let texts = [with_unit(5), with_unit(4), with_unit(3)];
-        let bare = [5, 4, 3, 2].map(|digits| self.text(number, digits));
-        let shortest = format!("{:.1e}", number / self.quantity.unit.kept_per_shown());
-        let mut last = String::new();
-        for text in texts.into_iter().chain(bare).chain([shortest]) {
-            let width = ui.fonts_mut(|fonts| {
-                let galley = fonts.layout_no_wrap(text.clone(), font.clone(), egui::Color32::WHITE);
-                galley.size().x
-            });
-            last = text;
-            if width <= room {
-                break;
-            }
-        }
-        last
-    }
-
-    fn text_with_unit(self, number: f64) -> String {
-        match self.word(number) {
-            Some(word) => word.into(),
-            None => self.text(number, 6) + &self.quantity.unit.suffix(),
-        }
-    }
-
-    /// What a number is called that is no amount.
-    fn word(self, number: f64) -> Option<&'static str> {
-        self.quantity.zero.filter(|_| number == 0.0)
-    }
-
-    fn text(self, number: f64, digits: usize) -> String {
-        let shown = number / self.quantity.unit.kept_per_shown();
-        match self.is_whole {
-            true => format!("{shown}"),
-            false => significant(shown, digits),
-        }
-    }
-
-    /// All of its digits that are meant: in the eighth of a computed one there is only what rounding left.
-    fn text_to_edit(self, number: f64) -> String {
-        let unit = self.quantity.unit.kept_per_shown();
-        match (unit == 1.0, number.abs()) {
-            (false, _) => significant(number / unit, 7),
-            (true, size) if size == 0.0 || (1e-5..1e9).contains(&size) || self.is_whole => {
-                match self.is_whole {
-                    true => format!("{number}"),
-                    false if (1e-4..1e7).contains(&size) => significant(number, 7),
-                    false => format!("{}", number as f32),
-                }
-            }
-            (true, _) => format!("{:e}", number as f32),
-        }
-    }
-}
-
-/// What was typed, as it is taken.
-struct Entered {
-    number: f64,
-    /// Where it is not what was typed.
-    note: Option<String>,
 }
 
 /// What was typed last and not taken, where the number is still the one that it left.
@@ -453,32 +349,4 @@ fn note_beside(ui: &Ui, id: Id, response: &Response, text: &str) {
                 ui.label(text);
             });
         });
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_zero_that_is_no_amount_is_called_so_and_may_be_typed_as_a_word() {
-        let field = NumberField {
-            quantity: Quantity::within(0.0, 10.0, "s").zero_is("never"),
-            is_whole: false,
-            is_mixed: false,
-            says: "",
-        };
-        assert_eq!(
-            [0.0, 1.5].map(|x| field.text_with_unit(x)),
-            ["never", "1.5 s"]
-        );
-        let read = |text| field.read(text, 3.0).ok().map(|entered| entered.number);
-        assert_eq!([" Never ", "0", "2"].map(read), [0.0, 0.0, 2.0].map(Some));
-        assert_eq!(read("nevermore"), None);
-        let plain = NumberField {
-            quantity: Quantity::within(0.0, 10.0, "s"),
-            ..field
-        };
-        assert_eq!(plain.text_with_unit(0.0), "0 s");
-        assert!(plain.read("never", 3.0).is_err());
-    }
 }

@@ -268,6 +268,30 @@ mod tests {
         assert_eq!(names("").len(), 3);
     }
 
+    #[test]
+    fn what_can_be_added_is_found_by_what_else_it_is_called() {
+        let mut app = crate::editor::headless_editor();
+        let world = app.world_mut();
+        for (text, wanted) in [
+            ("cube", "Cuboid"),
+            ("box", "Cuboid"),
+            ("ball", "Sphere"),
+            ("floor", "Ground"),
+            ("plane", "Ground"),
+            ("ring", "Torus"),
+            ("lamp", "Point light"),
+            ("sun", "Directional light"),
+            ("tube", "Segment light"),
+        ] {
+            let found: Vec<_> = find(world, text)
+                .into_iter()
+                .map(|row| row.name.to_string())
+                .collect();
+            let at = found.iter().position(|name| name == wanted);
+            assert!(at.is_some_and(|at| at < 4), "{text}: {found:?}");
+        }
+    }
+
     fn best<'a>(text: &str, names: &[&'a str]) -> &'a str {
         let scored = names
             .iter()

@@ -4,11 +4,10 @@
 use super::overlays::label_within;
 use super::status::memory_text;
 use crate::editor::texts::counted;
-use crate::editor::trees::of_setting;
 use crate::editor::trees::pair::{Side, SideState, TreePair};
 use crate::inspect::{InspectSettings, TreeCounts};
-use crate::report::performance::title;
 use crate::scene::Builder;
+use crate::scene::schema::choice_name;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{Align2, Pos2, Rect, Stroke, Ui, pos2, vec2};
 
@@ -35,7 +34,7 @@ pub(super) fn views(free: Rect, world: &World) -> Option<[Rect; 2]> {
 
 /// What a side is, in a few words.
 fn heading(builder: Builder, side: &Side) -> String {
-    let name = title(of_setting(builder));
+    let name = choice_name(&builder);
     match side.state() {
         SideState::Traced => format!("{name}: these trees are traced"),
         SideState::Built => format!("{name}: to look at, not traced"),

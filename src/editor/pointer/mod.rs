@@ -5,6 +5,7 @@
 //! a release within one frame mean what they meant.
 
 mod clicks;
+mod drawn;
 
 pub(super) use clicks::ask_pixel;
 
@@ -13,13 +14,12 @@ use super::command::Over;
 use super::embed::Switched;
 use super::handles::{self, GripDrag, grip_at};
 use super::keys::Inbox;
-use super::navigation::{self, Eye, LookThrough, ViewDrag};
+use super::navigation::{self, Eye, ViewDrag};
 use super::pick;
 use super::schedule::{Dispatch, EditorUpdate};
 use super::selection::Selection;
 use super::viewport::{RegionDrag, Viewport};
 use crate::inspect::Question;
-use crate::view::{Outlined, Symbols};
 use bevy::app::{App, Plugin};
 use bevy::ecs::event::Event;
 use bevy::ecs::message::Messages;
@@ -32,10 +32,11 @@ use bevy::ecs::world::{Mut, World};
 use bevy::input::keyboard::KeyCode;
 use bevy::input::mouse::{MouseButton, MouseScrollUnit};
 use bevy::input::{ButtonInput, ButtonState};
-use bevy::math::{Rect, Vec2, Vec3};
+use bevy::math::{Vec2, Vec3};
 use bevy::window::{PrimaryWindow, Window, WindowEvent};
 use bevy_egui::{EguiPrimaryContextPass, egui};
 use clicks::{answer_target, click, right_click, select_box};
+use drawn::{draw_box, outline_selection};
 use std::time::{Duration, Instant};
 
 /// How far a click may move, in logical pixels.
@@ -410,48 +411,6 @@ fn is_over_scene(world: &mut World, at: Vec2) -> bool {
     let layer = context.layer_id_at(place);
     layer.is_none_or(|layer| layer.order == egui::Order::Background)
         && !context.egui_is_using_pointer()
-}
-
-/// What is selected is outlined; a camera that is looked through is not drawn.
-fn outline_selection(
-    selection: Res<Selection>,
-    through: Res<LookThrough>,
-    mut outlined: ResMut<Outlined>,
-    mut symbols: ResMut<Symbols>,
-) {
-    if outlined.0 != selection.ids() {
-        outlined.0 = selection.ids().to_vec();
-    }
-    if symbols.hidden_camera != through.camera {
-        symbols.hidden_camera = through.camera;
-    }
-}
-
-fn draw_box(world: &mut World) {
-    let PointerUse::Box { from, to } = *world.resource::<PointerUse>() else {
-        return;
-    };
-    let Some(context) = pick::egui_context(world) else {
-        return;
-    };
-    let viewport = world.resource::<Viewport>().rect;
-    let offset = world.resource::<Pointer>().offset;
-    let rect = |rect: Rect| {
-        let [min, max] =
-            [rect.min, rect.max].map(|place| pick::to_points(&context, place + offset));
-        egui::Rect::from_min_max(min, max)
-    };
-    let color = egui::Color32::from_rgb(255, 190, 60);
-    context
-        .layer_painter(egui::LayerId::background())
-        .with_clip_rect(rect(viewport))
-        .rect(
-            rect(Rect::from_corners(from, to)),
-            0.0,
-            color.gamma_multiply(0.12),
-            egui::Stroke::new(1.0, color),
-            egui::StrokeKind::Inside,
-        );
 }
 
 #[cfg(test)]

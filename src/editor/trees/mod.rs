@@ -20,6 +20,7 @@ use super::schedule::EditorUpdate;
 use crate::bvh;
 use crate::inspect::InspectSettings;
 use crate::scene;
+use crate::scene::schema::choice_name;
 use crate::sync::SyncSystems;
 use crate::view::Adapter;
 use bevy::app::{App, Plugin, PostUpdate, Startup};
@@ -81,6 +82,11 @@ pub(super) fn of_setting(builder: scene::Builder) -> bvh::Builder {
         scene::Builder::Sah => bvh::Builder::Sah,
         scene::Builder::Ploc => bvh::Builder::Ploc,
     }
+}
+
+/// A builder as its setting calls it.
+pub(super) fn builder_title(builder: bvh::Builder) -> String {
+    choice_name(&setting_of(builder))
 }
 
 /// The setting that makes trees with this builder.

@@ -1,13 +1,38 @@
 //! One triangle, and cubes.
 
 use super::stage::{FLOOR, Stage, matte, pictured, plain_background, sky};
-use crate::scene::{PointLamp, SegmentLamp, Shape};
+use crate::scene::{Environment, ParallelogramLamp, PointLamp, SegmentLamp, Shape};
 use bevy::color::LinearRgba;
 use bevy::ecs::world::World;
-use bevy::math::{Quat, Vec3};
+use bevy::math::{Quat, Vec2, Vec3};
 use bevy::transform::components::Transform;
 
 const UNIT_CUBE: Shape = Shape::Cuboid { size: Vec3::ONE };
+
+pub(super) fn new_scene(world: &mut World) {
+    // Shines faintly from all around, so that what the lamp does not reach is dark and not black.
+    let around = Environment {
+        lights: true,
+        samples: 2,
+        ..plain_background(0.13, 0.14, 0.16)
+    };
+    let mut stage = Stage::new(world, 16, around);
+    let floor = Shape::Ground {
+        size: Vec2::splat(8.0),
+        tile: Vec2::ONE,
+    };
+    stage.object("Floor", floor, matte(0.7, 0.7, 0.7), Transform::default());
+    let on_floor = Transform::from_xyz(0.0, 0.5, 0.0);
+    stage.object("Cube", UNIT_CUBE, matte(0.75, 0.75, 0.75), on_floor);
+    let lamp = ParallelogramLamp {
+        intensity: 18.0,
+        samples: 4,
+        ..ParallelogramLamp::default()
+    };
+    stage.add("Lamp", (lamp, Transform::from_xyz(-1.2, 2.6, 1.2)));
+    let target = Vec3::new(0.0, 0.9, 0.0);
+    stage.camera("Camera", Vec3::new(2.4, 2.2, 4.4), target, 45.0);
+}
 
 pub(super) fn triangle(world: &mut World) {
     let mut stage = Stage::new(world, 16, plain_background(0.02, 0.025, 0.035));

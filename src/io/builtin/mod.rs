@@ -88,6 +88,12 @@ pub const SCENES: &[BuiltinScene] = &[
     },
 ];
 
+/// What a new scene begins with: a cube on a floor, a lamp above it and a camera that sees them. As
+/// [`BuiltinScene::spawn`].
+pub(super) fn new_scene(world: &mut World) {
+    first::new_scene(world);
+}
+
 /// The scene of that name.
 pub fn find(name: &str) -> Option<&'static BuiltinScene> {
     SCENES.iter().find(|scene| scene.name == name)

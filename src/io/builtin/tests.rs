@@ -170,3 +170,37 @@ fn scenes_are_found_by_their_names_alone() {
     assert!(find(DEFAULT).is_some());
     assert!(find("cornell").is_none());
 }
+
+#[test]
+fn a_new_scene_shows_a_lit_cube_on_a_floor_and_its_shadow() {
+    let mut app = crate::app::headless_app();
+    crate::io::open_new(app.world_mut());
+    app.update();
+    let world = app.world_mut();
+    let mut names: Vec<String> = world
+        .query::<&Name>()
+        .iter(world)
+        .map(ToString::to_string)
+        .collect();
+    names.sort();
+    assert_eq!(names, ["Camera", "Cube", "Floor", "Lamp"]);
+    let traced = world.resource::<crate::sync::Traced>();
+    let cameras = world.resource::<crate::sync::TracedCameras>();
+    let mut settings = world.resource::<RenderSettings>().clone();
+    settings.size = bevy::math::UVec2::splat(48);
+    let camera = &cameras.0[0].camera;
+    let picture = crate::film::render(&traced.world, camera, &settings, &|_, _| {}).picture;
+    let lightness = |pixel: &Vec3| pixel.element_sum() / 3.0;
+    let part = |is: fn(f32) -> bool| {
+        let pixels = picture.pixels.iter().map(lightness);
+        pixels.filter(|&lightness| is(lightness)).count() as f32 / picture.pixels.len() as f32
+    };
+    let lit = part(|lightness| lightness > 0.2);
+    assert!(lit > 0.15, "{lit} of it is lit");
+    let black = part(|lightness| lightness < 0.01);
+    assert!(black < 0.01, "{black} of it is black");
+    let dark = part(|lightness| lightness < 0.11);
+    assert!(dark > 0.02, "{dark} of it is in the shadow");
+    let white = part(|lightness| lightness > 1.0);
+    assert!(white < 0.1, "{white} of it is washed out");
+}

@@ -47,15 +47,6 @@ pub(super) fn dome(is_dark: bool) -> Environment {
     }
 }
 
-/// The only light of a scene: a white surface that faces it has a radiance of 1.
-pub(super) fn sole(eye: Transform) -> (Transform, DirectionalLamp) {
-    let lamp = DirectionalLamp {
-        intensity: PI,
-        ..DirectionalLamp::default()
-    };
-    (from(heading(eye) * KEY_FROM), lamp)
-}
-
 /// How a level camera that looks along -Z turns to look where this one does.
 fn heading(eye: Transform) -> Quat {
     let back = eye.back();

@@ -80,17 +80,6 @@ pub(crate) fn frame(world: &mut World, file: &Path, notes: &mut Notes) {
     assign_ids(world, &added);
 }
 
-/// Gives a scene with nothing in it a camera and a light. A room of some metres fits into the camera's picture.
-pub(super) fn frame_nothing(world: &mut World) {
-    const FARTHER: f32 = 1.5;
-    let mut eye = framing(&Surface::default());
-    eye.translation *= FARTHER;
-    let camera = spawn(world, "Camera", eye, SceneCamera::default());
-    let (transform, lamp) = lights::sole(eye);
-    let light = spawn(world, "Light", transform, lamp);
-    assign_ids(world, &[camera, light]);
-}
-
 /// Where the first camera stands, and how it projects.
 fn first_camera(world: &mut World) -> Option<(Transform, Projection)> {
     let mut cameras = world.query::<(Entity, &SceneCamera)>();

@@ -71,7 +71,7 @@ pub(super) fn forget_nameless(value: &mut dyn PartialReflect, registry: &TypeReg
 #[cfg(test)]
 mod tests {
     use crate::app::headless_app;
-    use crate::io::{KeepInSceneFiles, OpenOptions, SceneSource, open, open_empty, save};
+    use crate::io::{KeepInSceneFiles, OpenOptions, SceneSource, open, open_new, save};
     use crate::scene::{PointLamp, SceneId};
     use bevy::app::App;
     use bevy::asset::{Asset, AssetApp, AssetServer, Assets, Handle};
@@ -105,7 +105,7 @@ mod tests {
 
     /// Saved by an app, opened by another one; what saving says, and what the other one has.
     fn reopened(mut app: App, plays: Plays, file: &Path) -> (Vec<String>, App, Plays) {
-        open_empty(app.world_mut());
+        open_new(app.world_mut());
         let lamp = (SceneId(7), PointLamp::default(), plays);
         app.world_mut().spawn(lamp);
         let notes = save(app.world_mut(), file).unwrap();

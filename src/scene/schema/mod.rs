@@ -14,8 +14,8 @@ mod typed;
 pub use documented::Says;
 pub(crate) use documented::{documentation, documented};
 pub use property::{
-    Choice, Label, MostPixels, Needs, NotAbove, Property, about_choice, about_type, keep_order,
-    quantity_of,
+    Choice, Label, MostPixels, Needs, NotAbove, Property, about_choice, about_type, choice_name,
+    keep_order, quantity_of,
 };
 pub use quantity::{FARTHEST, Quantity, Unit};
 pub use range::{RangeProblem, range_problems};

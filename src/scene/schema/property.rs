@@ -365,6 +365,17 @@ pub fn about_choice<T: Typed + Enum>(value: &T) -> String {
     says.map_or_else(String::new, |says| says.text())
 }
 
+/// What the variant that a value is, is called where people read it.
+pub fn choice_name<T: Typed + Enum>(value: &T) -> String {
+    let name = value.variant_name();
+    let TypeInfo::Enum(info) = T::type_info() else {
+        return words(name);
+    };
+    let variant = info.variant(name);
+    let label = variant.and_then(|variant| variant.custom_attributes().get::<Label>());
+    label.map_or_else(|| words(name), |label| label.0.to_owned())
+}
+
 /// What a number of a type may be; where the schema says nothing, every finite number. Quick enough to be asked for every
 /// lamp of a scene.
 pub fn quantity_of<T: Typed>(path: &str) -> Quantity {

@@ -213,7 +213,7 @@ pub(in crate::editor::panels) fn window_ui(
         let mut is_open = true;
         // Beside what is in it there are its title and its frame.
         let most = (free.size() - vec2(40.0, 80.0)).max(vec2(320.0, 260.0));
-        egui::Window::new("Compare")
+        egui::Window::new("Compare pictures")
             .id(egui::Id::new("compare pictures"))
             .open(&mut is_open)
             .default_size(vec2(640.0, 560.0).min(most))

@@ -56,7 +56,7 @@ pub(super) fn frame_of(dialog: Dialog) -> (&'static str, f32) {
         Dialog::Preferences => ("Preferences", 380.0),
         Dialog::Scenes => ("Built-in scenes", 790.0),
         Dialog::History => ("History", 420.0),
-        Dialog::Render => ("Render to a file", 460.0),
+        Dialog::Render => ("Render to file", 460.0),
     }
 }
 

@@ -35,7 +35,7 @@ pub(super) fn preferences_ui(ui: &mut Ui, world: &mut World) {
     ui.checkbox(&mut preferences.show_hierarchy, "Show the hierarchy");
     ui.checkbox(&mut preferences.show_inspector, "Show the inspector");
     let mut hint = !preferences.hint_seen;
-    ui.checkbox(&mut hint, "Show the hint for beginners");
+    ui.checkbox(&mut hint, "Show the first steps");
     preferences.hint_seen = !hint;
     ui.add_space(6.0);
     match config_folder() {

@@ -155,7 +155,7 @@ fn path_ui(ui: &mut Ui, world: &mut World, boxes: &mut BoxSettings) {
     let hit = picked(world);
     let says = match hit {
         Some(_) => "The way to the triangle that the debug ray met first",
-        None => "Shoot a debug ray first: point at the picture and press R",
+        None => "There is no debug ray yet: point at the picture and press R",
     };
     let to_hit = ui.add_enabled(hit.is_some(), Button::new("To what the ray met"));
     if to_hit.says(says).clicked()

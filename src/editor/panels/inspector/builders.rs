@@ -6,6 +6,7 @@ use super::figure_table::{Better, Column, Figure, color, figure_table_ui};
 use super::measuring::measure_ui;
 use super::still_plot::still_plot;
 use crate::bvh::{Builder, LARGEST_LEAF_BIN};
+use crate::editor::trees::builder_title;
 use crate::editor::trees::measure::{BUILDERS, Measurements, compare};
 use crate::inspect::{BuilderFigures, builder_name, csv, markdown};
 use bevy::ecs::resource::Resource;
@@ -169,9 +170,10 @@ fn histogram_ui(
         .iter()
         .filter(|row| row.leaves > 1)
         .filter_map(|row| {
-            let color = color(ui, builder_of(row)?);
+            let builder = builder_of(row)?;
+            let color = color(ui, builder);
             let points = share(bins(row));
-            let line = Line::new(row.builder, PlotPoints::from(points));
+            let line = Line::new(builder_title(builder), PlotPoints::from(points));
             Some(line.color(color).width(1.5))
         })
         .collect();

@@ -3,8 +3,7 @@
 use super::super::says::Says;
 use super::super::theme::accent;
 use crate::bvh::Builder;
-use crate::editor::trees::{of_setting, setting_of};
-use crate::report::performance::title;
+use crate::editor::trees::{builder_title, of_setting, setting_of};
 use crate::scene::RenderSettings;
 use bevy::ecs::world::World;
 use bevy_egui::egui::{Align, Button, Color32, Grid, Label, Layout, RichText, Ui, vec2};
@@ -95,14 +94,14 @@ pub(super) fn figure_table_ui<C>(
         .show(ui, |ui| {
             ui.allocate_exact_size(vec2(labels, height), bevy_egui::egui::Sense::hover());
             for &(builder, ..) in columns {
-                let text = RichText::new(title(builder))
+                let text = RichText::new(builder_title(builder))
                     .size(FONT)
                     .color(color(ui, builder));
                 let says = match builder == scene {
                     true => "The scene's trees are built with this one".to_owned(),
                     false => format!(
                         "Click: the scene's trees are built with {} from now on; undo takes it back",
-                        title(builder)
+                        builder_title(builder)
                     ),
                 };
                 let button = Button::selectable(builder == scene, text);
@@ -217,7 +216,7 @@ mod tests {
         for theme in [Theme::Dark, Theme::Light] {
             for builder in [Builder::Median, Builder::Sah] {
                 let ink = ink_of(builder, theme == Theme::Dark);
-                assert_readable(theme, ink, title(builder));
+                assert_readable(theme, ink, &builder_title(builder));
             }
         }
     }

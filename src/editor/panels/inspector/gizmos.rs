@@ -66,7 +66,7 @@ pub(super) fn gizmos_ui(ui: &mut Ui, world: &mut World) {
         ui.toggle_value(&mut settings.on, "Draw").says(says);
         for preset in InspectPreset::ALL {
             let answers = is_answer(preset, &settings);
-            let button = Button::selectable(answers, preset.question());
+            let button = Button::selectable(answers, preset.title());
             if ui.add(button).says(preset.says()).clicked() {
                 show_preset(world, preset);
                 settings = world.resource::<InspectSettings>().clone();

@@ -2,6 +2,7 @@
 
 use super::super::fields::row;
 use super::super::says::Says;
+use super::super::thumbnail::thumbnail_ui;
 use super::Inspector;
 use crate::editor::document::{Document, ask_for_picture, picture_at, typed_picture};
 use crate::editor::edits::scene_entity;
@@ -152,16 +153,9 @@ pub(super) fn map_ui(
     let mut chosen: Option<Option<String>> = None;
     row(ui, map.label, map.says, |ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(36.0, 36.0), Sense::hover());
-        ui.painter()
-            .rect_filled(rect, 3.0, ui.visuals().extreme_bg_color);
-        if let Some(handle) = map.loaded
-            && let Some(texture) = thumbnails.of(ui.ctx(), world, handle)
-        {
-            let size = texture.size_vec2();
-            let size = size * (rect.width() / size.max_elem());
-            let place = egui::Rect::from_center_size(rect.center(), size);
-            egui::Image::new(&texture).paint_at(ui, place);
-        }
+        let picture = map.loaded;
+        let picture = picture.and_then(|handle| thumbnails.of(ui.ctx(), world, handle));
+        thumbnail_ui(ui, rect, picture.as_ref(), egui::Color32::WHITE);
         ui.vertical(|ui| {
             ui.horizontal(|ui| {
                 ui.menu_button("Choose…", |ui| {

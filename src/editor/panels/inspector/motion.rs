@@ -4,7 +4,9 @@ use super::super::fields::row;
 use super::super::says::Says;
 use super::camera::optional_ui;
 use super::switches::switches_ui;
-use crate::editor::extent::{extent_below, scene_extent, world_from_parent};
+use crate::editor::edits::AddAt;
+use crate::editor::extent::{extent_below, scene_extent, world_from_entity, world_from_parent};
+use crate::editor::handles::Tools;
 use crate::inspect::vector_text;
 use crate::scene::{
     DirectionalLamp, MeshSource, Motion, ParallelogramLamp, Phong, PointLamp, SceneCamera,
@@ -14,7 +16,7 @@ use crate::sync::WorldMotions;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::hierarchy::{ChildOf, Children};
 use bevy::ecs::world::World;
-use bevy::math::Vec3;
+use bevy::math::{Quat, Vec3};
 use bevy::mesh::Mesh3d;
 use bevy_egui::egui::Ui;
 
@@ -42,15 +44,24 @@ pub(super) fn motion_ui(ui: &mut Ui, world: &mut World, entities: &[Entity]) {
     );
 }
 
-/// A motion that is seen: along the world's x by half of the room that it takes with what hangs below, or, where that is a
-/// point, by a twentieth of the scene's.
+/// A motion that is seen: by half of the room that it takes with what hangs below, or, where that is a point, by a twentieth of
+/// the scene's.
 fn new_motion(world: &mut World, entity: Entity) -> Motion {
     let own = extent_below(world, entity);
     let own = own.map(|own| own.radius()).filter(|radius| *radius > 0.0);
     let way = own.or_else(|| Some(0.1 * scene_extent(world)?.radius()));
     let way = way.filter(|way| *way > 0.0).unwrap_or(0.1);
+    let is_local = (world.get_resource::<Tools>()).is_some_and(|tools| tools.local);
+    let turn = world_from_entity(world, entity).filter(|_| is_local);
+    let turn = turn.map_or(Quat::IDENTITY, |place| place.rotation());
+    let view = world
+        .get_resource::<AddAt>()
+        .copied()
+        .unwrap_or_default()
+        .view;
+    let direction = off_the_arrows(view, turn);
     let parent_from_world = world_from_parent(world, entity).affine().inverse();
-    let velocity = parent_from_world.transform_vector3(way * Vec3::X);
+    let velocity = parent_from_world.transform_vector3(way * direction);
     Motion {
         // What hangs below something without size moves nowhere.
         velocity: if velocity.is_finite() {
@@ -60,6 +71,32 @@ fn new_motion(world: &mut World, entity: Entity) -> Motion {
         },
         ..Motion::default()
     }
+}
+
+/// The direction along the floor that a view shows farthest from the arrows of the move tool, which lie along the axes of
+/// `turn`: there its line can be seen, and its tip taken hold of.
+fn off_the_arrows(view: Quat, turn: Quat) -> Vec3 {
+    let seen = |direction: Vec3| (view.inverse() * direction).truncate();
+    let arrows = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| seen(turn * axis));
+    let apart = |direction: Vec3| {
+        let tip = seen(direction);
+        let to_arrow = arrows.map(|arrow| {
+            let along = tip.dot(arrow) / arrow.length_squared().max(f32::MIN_POSITIVE);
+            tip.distance(along.clamp(0.0, 1.0) * arrow)
+        });
+        to_arrow.into_iter().fold(f32::INFINITY, f32::min)
+    };
+    let all = [Vec3::NEG_X, Vec3::X, Vec3::NEG_Z, Vec3::Z];
+    let between = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)]
+        .map(|(x, z)| Vec3::new(x, 0.0, z).normalize());
+    let mut best = all[0];
+    for direction in all.into_iter().chain(between) {
+        // The first of several that are as good.
+        if apart(direction) > apart(best) + 1e-3 {
+            best = direction;
+        }
+    }
+    best
 }
 
 /// Whether a motion of it can be seen: of itself, or of what hangs below it. A material stands nowhere, and a
@@ -130,11 +167,32 @@ mod tests {
         let place = (Transform::default(), GlobalTransform::from(half));
         let lamp = world.spawn((SceneId(2), lamp, place, ChildOf(parent))).id();
         // Two metres in the world, of which its half is one: two of its parent's.
-        assert_eq!(new_motion(&mut world, lamp).velocity, 2.0 * Vec3::X);
+        assert_eq!(new_motion(&mut world, lamp).velocity, -2.0 * Vec3::X);
         // A point moves by a part of the scene.
         let at = (Transform::default(), GlobalTransform::default());
         let point = world.spawn((SceneId(3), PointLamp::default(), at)).id();
-        let way = new_motion(&mut world, point).velocity.x;
+        let way = new_motion(&mut world, point).velocity.length();
         assert!((0.05..1.0).contains(&way), "{way} m");
+    }
+
+    #[test]
+    fn a_new_motion_is_seen_beside_the_arrows_of_the_move_tool_from_everywhere() {
+        for turn in [Quat::IDENTITY, Quat::from_rotation_y(0.7)] {
+            for yaw in 0..24 {
+                for pitch in [-1.2_f32, -0.6, -0.3, 0.0] {
+                    let yaw = (yaw as f32 * 15.0).to_radians();
+                    let view = Quat::from_rotation_y(yaw) * Quat::from_rotation_x(pitch);
+                    let seen = |direction: Vec3| (view.inverse() * direction).truncate();
+                    let tip = seen(off_the_arrows(view, turn));
+                    for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
+                        let arrow = seen(turn * axis);
+                        let apart = (0..=50).map(|i| tip.distance(i as f32 / 50.0 * arrow));
+                        let apart = apart.fold(f32::INFINITY, f32::min);
+                        // Of the length of an arrow, which is 90 pixels.
+                        assert!(apart > 0.25, "{apart} from {axis} at {yaw}, {pitch}");
+                    }
+                }
+            }
+        }
     }
 }

@@ -2,12 +2,10 @@
 
 use super::super::fields::{properties_ui, row};
 use super::super::says::Says;
-use crate::editor::trees::of_setting;
 use crate::editor::trees::pair::{Side, SideState, TreePair};
 use crate::inspect::InspectSettings;
-use crate::report::performance::title;
 use crate::scene::Builder;
-use crate::scene::schema::about_choice;
+use crate::scene::schema::{about_choice, choice_name};
 use bevy::ecs::world::World;
 use bevy_egui::egui::{ComboBox, Label, RichText, Ui};
 
@@ -28,11 +26,11 @@ pub(super) fn pair_ui(ui: &mut Ui, world: &mut World) {
     for (i, label, builder) in [(0, "Left", &mut pair.left), (1, "Right", &mut pair.right)] {
         row(ui, label, says, |ui| {
             ComboBox::from_id_salt(label)
-                .selected_text(title(of_setting(*builder)))
+                .selected_text(choice_name(builder))
                 .width(84.0)
                 .show_ui(ui, |ui| {
                     for choice in BUILDERS {
-                        ui.selectable_value(builder, choice, title(of_setting(choice)))
+                        ui.selectable_value(builder, choice, choice_name(&choice))
                             .says(&about_choice(&choice));
                     }
                 })

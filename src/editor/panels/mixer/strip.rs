@@ -4,6 +4,7 @@ use super::super::fields::{color_ui, number, number_row, row};
 use super::super::number_field::set_owner;
 use super::super::says::Says;
 use super::super::temperature::OF_LIGHTS;
+use super::super::thumbnail::thumbnail_ui;
 use super::mix::{LightRow, Mixer};
 use super::sketches::Sketch;
 use super::{Shares, share_text};
@@ -11,9 +12,7 @@ use crate::editor::action::Action;
 use crate::scene::Quantity;
 use crate::trace::Gains;
 use bevy::ecs::world::World;
-use bevy_egui::egui::{
-    self, Button, Color32, Rect, RichText, Sense, Ui, WidgetInfo, WidgetType, vec2,
-};
+use bevy_egui::egui::{self, Button, Color32, RichText, Sense, Ui, WidgetInfo, WidgetType, vec2};
 
 /// Points of a light's picture.
 const PICTURE: egui::Vec2 = vec2(96.0, 54.0);
@@ -31,20 +30,11 @@ pub(super) fn toggle(ui: &mut Ui, text: &str, is_on: bool, says: &str) -> bool {
 
 fn picture_ui(ui: &mut Ui, sketch: Option<&Sketch>, is_silent: bool, says: &str) {
     let (place, response) = ui.allocate_exact_size(PICTURE, Sense::hover());
-    let painter = ui.painter();
-    painter.rect_filled(place, 3.0, ui.visuals().extreme_bg_color);
-    if let Some(sketch) = sketch {
-        let size = sketch.texture.size_vec2();
-        let size = size * (place.size() / size).min_elem();
-        let inner = Rect::from_center_size(place.center(), size);
-        let tint = match is_silent {
-            true => Color32::from_gray(70),
-            false => Color32::WHITE,
-        };
-        egui::Image::new(&sketch.texture)
-            .tint(tint)
-            .paint_at(ui, inner);
-    }
+    let tint = match is_silent {
+        true => Color32::from_gray(70),
+        false => Color32::WHITE,
+    };
+    thumbnail_ui(ui, place, sketch.map(|sketch| &sketch.texture), tint);
     response.says(says);
 }
 

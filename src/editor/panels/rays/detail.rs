@@ -17,7 +17,7 @@ pub(super) fn detail_ui(ui: &mut Ui, world: &mut World, inspected: &mut Inspecte
         Some((index, ray))
     });
     let Some((index, ray)) = chosen else {
-        none_chosen_ui(ui);
+        none_chosen_ui(ui, inspected, rays);
         return;
     };
     ui.horizontal_wrapped(|ui| {

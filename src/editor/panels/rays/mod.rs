@@ -22,10 +22,11 @@ mod tests;
 
 use super::says::Says;
 use crate::editor::inspection::choice::Side;
-use crate::editor::inspection::{DebugRay, Inspected};
+use crate::editor::inspection::{DebugRay, Inspected, shoot_middle};
 use crate::editor::preferences::Preferences;
 use crate::inspect::{InspectSettings, Names};
 use crate::scene::RenderSettings;
+use crate::trace::{RayKind, RayTree};
 use bevy::ecs::resource::Resource;
 use bevy::ecs::world::{Mut, World};
 use bevy_egui::egui::{self, ScrollArea, Ui, vec2};
@@ -111,6 +112,7 @@ fn rays_ui(ui: &mut Ui, world: &mut World, panel: &mut RaysPanel) {
     let (rays, number) = (ray.rays().cloned(), ray.number());
     let says = ray.says();
     let busy = ray.is_busy();
+    let is_picked = ray.shot().is_some();
     if let Some(says) = &says {
         let color = match rays {
             Some(_) => ui.visuals().warn_fg_color,
@@ -125,6 +127,9 @@ fn rays_ui(ui: &mut Ui, world: &mut World, panel: &mut RaysPanel) {
         });
     }
     let Some(rays) = rays else {
+        if !is_picked {
+            none_picked_ui(ui, world);
+        }
         return;
     };
     let fill = egui::Frame::new().inner_margin(egui::Margin::symmetric(0, 2));
@@ -160,13 +165,7 @@ fn rays_ui(ui: &mut Ui, world: &mut World, panel: &mut RaysPanel) {
 }
 
 /// Why, the chosen ray, or its steps.
-fn side_ui(
-    ui: &mut Ui,
-    world: &mut World,
-    why: &mut why::Why,
-    rays: &crate::trace::RayTree,
-    number: u64,
-) {
+fn side_ui(ui: &mut Ui, world: &mut World, why: &mut why::Why, rays: &RayTree, number: u64) {
     world.resource_scope(|world, mut inspected: Mut<Inspected>| {
         ui.horizontal(|ui| {
             for (side, name, says) in [
@@ -199,6 +198,26 @@ fn side_ui(
 }
 
 /// What stands where a ray would, while none is chosen.
-fn none_chosen_ui(ui: &mut Ui) {
-    ui.weak("No ray is chosen: click one in the list, or its line in the view.");
+fn none_chosen_ui(ui: &mut Ui, inspected: &mut Inspected, rays: &RayTree) {
+    let text = "No ray is chosen: click one in the list, or its line in the view.";
+    ui.add(egui::Label::new(egui::RichText::new(text).weak()).wrap());
+    let camera = rays.rays.iter().position(|ray| ray.kind == RayKind::Camera);
+    let Some(first) = camera.and_then(|index| u32::try_from(index).ok()) else {
+        return;
+    };
+    let choose = ui.button("Choose the camera's ray");
+    if choose
+        .says("The first ray of the list, with which the pixel begins")
+        .clicked()
+    {
+        inspected.choose_ray(Some(first), true);
+    }
+}
+
+/// What stands where the rays would, while no pixel was picked: a pixel to begin with.
+fn none_picked_ui(ui: &mut Ui, world: &mut World) {
+    let says = "Picks the pixel in the middle of the picture, and lists its rays";
+    if ui.button("Trace the picture's middle").says(says).clicked() {
+        shoot_middle(world);
+    }
 }

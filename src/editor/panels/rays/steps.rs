@@ -30,7 +30,7 @@ pub(super) fn steps_ui(
         .ray()
         .and_then(|index| rays.rays.get(index as usize))
     else {
-        none_chosen_ui(ui);
+        none_chosen_ui(ui, inspected, rays);
         return;
     };
     if inspected.stepper.is_empty() {

@@ -15,7 +15,7 @@ use crate::sync::TracedCameras;
 use bevy::ecs::name::Name;
 use bevy::ecs::query::With;
 use bevy::math::UVec2;
-use bevy_egui::egui::{Event, vec2};
+use bevy_egui::egui::{Event, Rect, vec2};
 use std::time::{Duration, Instant};
 
 const SIZE: UVec2 = UVec2::new(600, 480);
@@ -78,11 +78,30 @@ fn rows_drawn(desk: &mut Desk) -> usize {
 }
 
 #[test]
-fn before_a_shot_the_inspector_says_how_one_is_made() {
+fn before_a_shot_the_inspector_says_how_one_is_made_and_makes_one_at_a_click() {
     let mut desk = open("cornell-box");
     let text = desk.world().resource::<DebugRay>().says().unwrap();
     assert!(desk.find(&text).is_some());
     assert_eq!(rows_drawn(&mut desk), 0);
+    // A desk traces no picture, and that is said.
+    desk.click_on("Trace the picture's middle");
+    assert!(!desk.world().resource::<Notices>().is_empty());
+    shoot(&mut desk, Which::First);
+    assert!(desk.find("Trace the picture's middle").is_none());
+}
+
+#[test]
+fn where_a_ray_would_be_shown_and_none_is_chosen_a_click_chooses_one_in_place() {
+    for (name, side) in [("Ray", Side::Ray), ("Steps", Side::Steps)] {
+        let mut desk = open("cornell-box");
+        shoot(&mut desk, Which::First);
+        desk.click_on(name);
+        desk.click_on("Choose the camera's ray");
+        let inspected = desk.world().resource::<Inspected>();
+        assert_eq!((inspected.ray(), inspected.side), (Some(0), side));
+        assert!(!inspected.stepper.is_empty());
+        assert!(desk.find("Choose the camera's ray").is_none());
+    }
 }
 
 #[test]
@@ -158,6 +177,23 @@ fn of_many_rays_only_the_rows_that_are_seen_are_laid_out_at_any_size() {
 }
 
 #[test]
+fn what_light_a_ray_brings_is_seen_without_scrolling() {
+    let mut desk = open("cornell-box");
+    shoot(&mut desk, Which::First);
+    for (size, seen) in [(SMALL, &["adds"][..]), (USUAL, &["adds", "in", "out"])] {
+        desk.size = size;
+        desk.settle();
+        for heading in ["end", "meets"].iter().chain(seen) {
+            let texts = texts(&desk);
+            let all_seen = |(text, place, clip): &(String, Rect, Rect)| {
+                text == heading && clip.contains_rect(*place)
+            };
+            assert!(texts.iter().any(all_seen), "{heading} at {size:?}");
+        }
+    }
+}
+
+#[test]
 fn neither_panel_nor_window_grows_by_itself_and_the_window_leaves_the_picture_its_size() {
     let mut desk = open("cornell-box");
     shoot(&mut desk, Which::First);
@@ -190,10 +226,10 @@ fn neither_panel_nor_window_grows_by_itself_and_the_window_leaves_the_picture_it
 fn a_heading_sorts_and_the_filter_takes_its_keys_for_itself() {
     let mut desk = open("cornell-box");
     shoot(&mut desk, Which::All);
-    desk.click_on("depth");
+    desk.click_on("end");
     let sort = desk.world().resource::<Inspected>().arrangement.sort;
     assert!(sort.is_some_and(|(_, descending)| !descending));
-    desk.click_on("depth ⏶");
+    desk.click_on("end ⏶");
     let sort = desk.world().resource::<Inspected>().arrangement.sort;
     assert!(sort.is_some_and(|(_, descending)| descending));
     let all = rows_drawn(&mut desk);

@@ -309,7 +309,7 @@ fn keys_that_a_command_waited_for_close_no_dialog() {
 #[test]
 fn the_card_of_the_first_start_does_each_thing_with_a_click_and_comes_back_only_when_asked() {
     let mut desk = Desk::open("cornell-box");
-    let card = "Three things to try";
+    let card = "First steps";
     assert_eq!(desk.find(card), None);
     desk.world().write_message(Action::run("help.first-steps"));
     desk.settle();

@@ -218,7 +218,7 @@ fn a_dialog_that_had_less_to_show_grows_again() {
     desk.world().write_message(Action::run("file.render"));
     desk.settle();
     let height = |desk: &Desk| {
-        let area = Id::new("Render to a file");
+        let area = Id::new("Render to file");
         let area = desk.context.memory(|memory| memory.area_rect(area));
         area.map_or(0.0, |area| area.height())
     };

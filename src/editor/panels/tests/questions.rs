@@ -40,7 +40,7 @@ fn each_question_about_a_pixel_waits_for_a_click_and_is_answered_in_a_sentence_u
         (
             Question::Color,
             "why.color",
-            "Click a pixel: why this colour? (Esc: none)",
+            "Click a pixel: why has it this colour? (Esc: none)",
             InspectPreset::WhyBlack,
         ),
     ] {
@@ -75,7 +75,7 @@ fn each_question_about_a_pixel_waits_for_a_click_and_is_answered_in_a_sentence_u
         let names = &desk.world().resource::<Names>().things;
         let sentence = answer(question, &rays, names);
         desk.place_of(&sentence);
-        desk.click_on("Ray tree");
+        desk.click_on("Ray inspector");
         assert!(desk.world().resource::<Preferences>().show_rays, "{id}");
         desk.click_on("Show rays");
         let wanted = preset.settings().rays;

@@ -108,7 +108,7 @@ fn comparing_runs_beside_the_frames_and_gives_the_figures_of_the_command_line() 
     assert_eq!(without_times(rows), without_times(theirs));
     assert_eq!(desk.stale(), None);
     assert!(!desk.paused(), "the view goes on");
-    for name in ["none", "median", "SAH", "PLOC", "SAH cost"] {
+    for name in ["None", "Median", "SAH", "PLOC", "SAH cost"] {
         assert!(desk.find(name).is_some(), "{name} is not in the table");
     }
 }
@@ -275,7 +275,7 @@ fn of_two_trees_the_one_that_is_traced_is_not_built_again() {
         &desk.world().resource::<Traced>().world,
         &traced
     ));
-    assert!(desk.find("median: to look at, not traced").is_some());
+    assert!(desk.find("Median: to look at, not traced").is_some());
     assert!(desk.find("SAH: these trees are traced").is_some());
     desk.world().resource_mut::<InspectSettings>().on = false;
     desk.settle();
@@ -366,7 +366,7 @@ fn each_question_sets_its_lines_and_the_master_switch_keeps_them() {
             _ => Which::First,
         };
         assert_eq!(desk.world().resource::<DebugRay>().which, which, "{id}");
-        assert!(desk.find(preset.says()).is_some(), "{}", preset.question());
+        assert!(desk.find(preset.says()).is_some(), "{}", preset.title());
         desk.world().write_message(Action::run("lines.show"));
         desk.settle();
         let off = desk.world().resource::<InspectSettings>().clone();
