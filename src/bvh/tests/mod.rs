@@ -14,5 +14,6 @@ mod sure;
 mod transmit;
 mod trees;
 mod wide;
+mod wide_hits;
 
 use super::hard_cases::{broken, meshes, oracle, random, rays, single, transforms};

@@ -303,6 +303,8 @@ impl Engine {
 }
 
 #[cfg(test)]
+mod many_lights_tests;
+#[cfg(test)]
 mod tests;
 #[cfg(test)]
 mod unlit_tests;

@@ -1,5 +1,7 @@
 //! Direct light, one light after another: points of it for all vertices of a batch, shadow rays there, and what arrives.
 
+mod asked;
+
 use super::light_columns::Source;
 use super::radiance::Batch;
 use super::recorder::{Adding, LitPoint, Recorder};
@@ -9,33 +11,17 @@ use super::vertices::Vertices;
 use super::visibility::{Chooser, bit};
 use crate::bvh::{Hit, Order, Ray};
 use crate::scene::Lighting;
-use crate::trace::Surface;
-use crate::trace::light_sampling::faint::mean;
 use crate::trace::light_sampling::lamp::Lamp;
-use crate::trace::light_sampling::light_frames::Frame;
 use crate::trace::math::vectors::{Vectors, column_vector};
-use crate::trace::random::numbers::{Pairs, draw_firsts};
+use crate::trace::random::numbers::draw_firsts;
 use crate::trace::random::sampler::Purpose;
 use crate::trace::surfaces::shading::reflected;
 use crate::trace::surfaces::transmittance::through;
-use crate::trace::world::lights::{LightPoint, MIDDLE};
+use asked::{Asked, numbers_of};
 use glam::Vec3;
 
 /// So many lights are asked before somebody looks whether to go on: some tenths of a millisecond.
 const LIGHTS_AT_ONCE: usize = 128;
-
-/// A light as it is asked for points.
-struct Asked<'a> {
-    lamp: Lamp<'a>,
-    /// What choosing its points for a surface takes, where they are not all alike.
-    frame: Option<&'a Frame>,
-    /// Whether more than its middle is asked for.
-    has_extent: bool,
-    /// What adds less is asked for by chance; 0 where nothing is.
-    faint: f32,
-    /// Its first one among the points of all lights that a first hit asks for.
-    first: u32,
-}
 
 impl<R: Recorder> Batch<'_, R> {
     /// Adds what arrives at the vertices from the lights. False where it was stopped.
@@ -410,53 +396,5 @@ impl<R: Recorder> Batch<'_, R> {
                 );
             }
         }
-    }
-}
-
-impl Asked<'_> {
-    /// How likely a point is asked for that adds so much if nothing is in the way.
-    #[inline(always)]
-    fn chance(&self, value: Vec3) -> f32 {
-        let brightness = mean(value);
-        if brightness < self.faint {
-            brightness / self.faint
-        } else {
-            1.0
-        }
-    }
-
-    /// Whether the point of a question is.
-    #[inline(always)]
-    fn is_asked(&self, value: Vec3, chances: &[f32], question: usize) -> bool {
-        if self.faint == 0.0 {
-            return true;
-        }
-        let chance = self.chance(value);
-        // A number tells no smaller chances.
-        chance >= f32::EPSILON && chances[question] < chance
-    }
-
-    /// The point that numbers choose for a surface at `from`, by itself.
-    fn point(
-        &self,
-        surface: &Surface,
-        from: Vec3,
-        numbers: [f32; 2],
-        lighting: Lighting,
-    ) -> Option<LightPoint> {
-        match self.frame {
-            _ if !self.has_extent => self.lamp.middle(surface, from, lighting),
-            None => self.lamp.point(surface, from, numbers, lighting),
-            Some(frame) => self.lamp.point_for(frame, surface, from, numbers),
-        }
-    }
-}
-
-/// The numbers that choose the point of a question, where any do.
-fn numbers_of(asked: &Asked, numbers: &Pairs, question: usize) -> [f32; 2] {
-    if asked.has_extent {
-        numbers.get(question)
-    } else {
-        MIDDLE
     }
 }

@@ -1,8 +1,8 @@
 //! What is asked of a scene besides the value of samples.
 //!
 //! Before a picture: [`in_view`], where anything may be seen; [`emitters`], what may shine unmet; [`crossings`], whether rays pass
-//! many surfaces. Of single rays: [`first_hit`], what the camera meets; [`probe`], samples evaluated again with every ray kept
-//! in a [`ray_tree`].
+//! many surfaces. Of single rays: [`first_hit`], what the camera meets; [`probe`], samples evaluated again; a
+//! [`recording`] of them becomes a [`ray_tree`].
 
 mod crossings;
 mod emitters;
@@ -10,6 +10,7 @@ mod first_hit;
 mod in_view;
 mod probe;
 mod ray_tree;
+mod recording;
 
 pub use crossings::Crossings;
 pub use emitters::emitters;
