@@ -72,6 +72,12 @@ impl Budget {
         self.holding(self.claimed.load(Ordering::Relaxed))
     }
 
+    /// Bytes that nothing has spoken for.
+    pub(crate) fn left(&self) -> u64 {
+        let claimed = self.claimed.load(Ordering::Relaxed);
+        self.bytes.saturating_sub(claimed)
+    }
+
     /// Speaks for so many bytes, or says that they are not there.
     pub(crate) fn claim(&self, bytes: u64) -> Result<(), Problem> {
         let with_these = |claimed: u64| {
