@@ -21,7 +21,7 @@ mod room;
 mod write;
 
 pub(crate) use exr_blocks::block_bytes;
-pub(crate) use exr_head::{exr_head, exr_problem};
+pub(crate) use exr_head::{exr_head, exr_problem, from_exr, to_exr};
 pub use light_layers::{LightLayers, layer_name};
 pub(crate) use measured::{Measured, MeasuredPictures};
 pub(crate) use read::{PictureUse, ReadPicture, decode_picture, read_picture};
