@@ -72,6 +72,12 @@ impl Budget {
         self.holding(self.claimed.load(Ordering::Relaxed))
     }
 
+    /// Bytes that nothing has spoken for.
+    pub(crate) fn left(&self) -> u64 {
+        let claimed = self.claimed.load(Ordering::Relaxed);
+        self.bytes.saturating_sub(claimed)
+    }
+
     /// Speaks for so many bytes, or says that they are not there.
     pub(crate) fn claim(&self, bytes: u64) -> Result<(), Problem> {
         let with_these = |claimed: u64| {
@@ -139,17 +145,28 @@ pub(crate) fn mesh_bytes(vertices: u64, triangles: u64) -> u64 {
 pub(crate) struct Growing<'a> {
     budget: &'a Budget,
     claimed: u64,
+    /// Bytes of names.
+    names: u64,
 }
 
 impl<'a> Growing<'a> {
     pub fn of(budget: &'a Budget) -> Self {
-        Self { budget, claimed: 0 }
+        Self {
+            budget,
+            claimed: 0,
+            names: 0,
+        }
+    }
+
+    /// A name that is kept, to look it up and by its number; claimed with the rest.
+    pub fn named(&mut self, name: &str) {
+        self.names += NAME + 2 * name.len() as u64;
     }
 
     /// Claims what all of it takes so far, at least a megabyte more than before.
     pub fn reach(&mut self, vertices: u64, triangles: u64, meshes: u64) -> Result<(), Problem> {
         const STEP: u64 = 1 << 20;
-        let needed = mesh_bytes(vertices, triangles) + meshes.saturating_mul(MESH);
+        let needed = mesh_bytes(vertices, triangles) + meshes.saturating_mul(MESH) + self.names;
         if needed > self.claimed {
             let step = (needed - self.claimed).max(STEP);
             self.budget.claim(step)?;
@@ -158,6 +175,9 @@ impl<'a> Growing<'a> {
         Ok(())
     }
 }
+
+/// Of a name in a list and in a table, beside its letters. Measured with three million groups of an OBJ: 150 bytes each.
+const NAME: u64 = 200;
 
 /// Of an entity with its name.
 pub(crate) const ENTITY: u64 = 1500;

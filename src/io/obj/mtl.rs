@@ -78,14 +78,16 @@ pub(super) fn read_mtl(
         reader.line = number;
         let (word, rest) = keyword(line);
         if !word.is_empty() && word[0] != b'#' {
+            let before = reader.materials.len();
             reader.statement(word, rest);
+            if reader.materials.len() > before {
+                (limits.memory)
+                    .claim(ENTITY)
+                    .map_err(|problem| FileError::at(file, Place::Line(number), problem))?;
+            }
         }
     }
-    let materials = reader.materials;
-    (limits.memory)
-        .claim(ENTITY * materials.len() as u64)
-        .map_err(|problem| FileError::new(file, problem))?;
-    Ok(materials)
+    Ok(reader.materials)
 }
 
 struct Reader<'a, 'n> {
@@ -232,10 +234,13 @@ impl Reader<'_, '_> {
     /// The name of a picture that is there: options may stand behind it, or be none that the format has. Where no
     /// part of the words is one, all of them.
     fn name_among_options<'t>(&mut self, words: &'t str, word: &str, map: &mut Map) -> &'t str {
+        /// Each is looked for on the disk, so that of a line without an end only the first are.
+        const MOST_NAMES: usize = 32;
         if self.is_there(words) {
             return words;
         }
-        let behind = words.match_indices(" -").map(|(at, _)| words.split_at(at));
+        let behind = words.match_indices(" -").take(MOST_NAMES);
+        let behind = behind.map(|(at, _)| words.split_at(at));
         for (name, options) in behind {
             if !name.is_empty() && self.is_there(name.trim_end()) {
                 let left = self.options(options.trim_start(), word, map);
@@ -389,5 +394,62 @@ impl Reader<'_, '_> {
             let what = format!("the option `-{option}` of {word}");
             self.note(&what, LEFT_OUT);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::folder::Folder;
+    use super::*;
+    use crate::io::Budget;
+
+    #[test]
+    fn a_name_with_very_many_options_behind_it_is_looked_for_in_a_moment() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("long.mtl");
+        std::fs::write(
+            &file,
+            format!("newmtl a\nmap_Kd b{}\n", " -c".repeat(200_000)),
+        )
+        .unwrap();
+        let limits = Limits::default();
+        let started = std::time::Instant::now();
+        let whole = Folder::of(&file, false);
+        let mut names = Names::new(&whole);
+        let notes = &mut Notes::default();
+        let read = read_mtl(&file, "long.mtl", &limits, &mut names, notes).unwrap();
+        assert_eq!(read[0].diffuse_map, Some(None));
+        // Each of its beginnings would be 60 billion bytes.
+        let seconds = started.elapsed().as_secs();
+        assert!(seconds < 20, "{seconds} s");
+    }
+
+    #[test]
+    fn materials_count_as_memory_while_they_are_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("many.mtl");
+        let lines: String = (0..2000)
+            .map(|i| format!("newmtl {i}\nKd 1 1 1\n"))
+            .collect();
+        std::fs::write(&file, lines).unwrap();
+        let read = |bytes| {
+            let limits = Limits {
+                memory: Budget::of(bytes),
+                ..Limits::default()
+            };
+            let whole = Folder::of(&file, false);
+            let mut names = Names::new(&whole);
+            read_mtl(
+                &file,
+                "many.mtl",
+                &limits,
+                &mut names,
+                &mut Notes::default(),
+            )
+        };
+        let error = read(100 * ENTITY).unwrap_err();
+        assert!(error.problem.is_of_memory(), "{error}");
+        assert_eq!(error.place, Place::Line(201), "{error}");
+        assert_eq!(read(2000 * ENTITY).unwrap().len(), 2000);
     }
 }

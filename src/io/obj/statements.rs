@@ -8,6 +8,7 @@ use super::text::{Lines, keyword, number, shown, text, values};
 use crate::io::Limits;
 use crate::io::budget::Growing;
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::path::Path;
 
 mod faces;
@@ -66,7 +67,7 @@ struct Reader<'a> {
     /// Where the next face goes, once that is known.
     part: Option<usize>,
     triangles: u64,
-    /// Objects and materials by their names.
+    /// Objects, materials and libraries by their names.
     numbers: HashMap<(Kind, String), u32>,
     /// Parts by their object and material.
     places: HashMap<(u32, Option<u32>), usize>,
@@ -80,6 +81,7 @@ struct Reader<'a> {
 enum Kind {
     Object,
     Material,
+    Library,
 }
 
 impl Reader<'_> {
@@ -136,9 +138,12 @@ impl Reader<'_> {
             }
             b"mtllib" => {
                 let libraries = &mut self.content.libraries;
-                let name = text(rest);
-                if !libraries.iter().any(|(known, _)| *known == name) {
-                    libraries.push((name.into_owned(), self.line));
+                let name = text(rest).into_owned();
+                let key = (Kind::Library, name.clone());
+                if let Entry::Vacant(free) = self.numbers.entry(key) {
+                    free.insert(libraries.len() as u32);
+                    self.memory.named(&name);
+                    libraries.push((name, self.line));
                 }
             }
             b"s" => self.smoothing(rest),
@@ -190,6 +195,7 @@ impl Reader<'_> {
         let objects = &mut self.content.objects;
         let key = (Kind::Object, name.to_owned());
         *self.numbers.entry(key).or_insert_with(|| {
+            self.memory.named(name);
             objects.push(name.to_owned());
             objects.len() as u32 - 1
         })
@@ -199,6 +205,7 @@ impl Reader<'_> {
         let (materials, line) = (&mut self.content.materials, self.line);
         let key = (Kind::Material, name.clone());
         *self.numbers.entry(key).or_insert_with(|| {
+            self.memory.named(&name);
             materials.push((name, line));
             materials.len() as u32 - 1
         })
@@ -356,6 +363,7 @@ fn exact(rest: &[u8]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::io::Budget;
 
     #[test]
     fn what_has_no_name_is_called_as_its_file() {
@@ -365,5 +373,26 @@ mod tests {
         std::fs::write(&file, text).unwrap();
         let content = read_content(&file, &Limits::default(), &mut Notes::default()).unwrap();
         assert_eq!(content.objects, ["pyramid", "roof"]);
+    }
+
+    #[test]
+    fn names_count_as_memory_while_they_are_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("names.obj");
+        let limits = |bytes| Limits {
+            memory: Budget::of(bytes),
+            ..Limits::default()
+        };
+        for word in ["g", "o", "usemtl", "mtllib"] {
+            let lines: String = (0..20_000).map(|i| format!("{word} {i}\n")).collect();
+            std::fs::write(&file, lines).unwrap();
+            let read = |bytes| read_content(&file, &limits(bytes), &mut Notes::default());
+            let error = read(2 << 20).err().expect(word);
+            assert!(error.problem.is_of_memory(), "{word}: {error}");
+            // It was not after the last of them.
+            assert!(error.to_string().contains("names.obj:"), "{word}: {error}");
+            assert!(!error.to_string().contains("20000"), "{word}: {error}");
+            assert!(read(16 << 20).is_ok(), "{word}");
+        }
     }
 }

@@ -4,7 +4,8 @@ use super::{MOST_SAMPLES, Part};
 use std::ops::Range;
 
 pub(super) const ATTRIBUTE: &str = "glassbox";
-const VERSION: &str = "part 1";
+const KIND: &str = "part";
+const VERSION: u32 = 2;
 
 /// What the attribute says.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +26,7 @@ impl Header {
         }
     }
 
+    /// What the checksum is of, beside the sums.
     pub fn to_text(&self) -> String {
         let ranges: Vec<String> = self
             .samples
@@ -33,21 +35,35 @@ impl Header {
             .collect();
         let sampling = if self.uniform { "uniform" } else { "adaptive" };
         format!(
-            "{VERSION}\ndigest {}\nsamples {}\nsampling {sampling}\noutput {}",
+            "{KIND} {VERSION}\ndigest {}\nsamples {}\nsampling {sampling}\noutput {}",
             self.digest,
             ranges.join(" "),
             self.output
         )
     }
 
-    /// Reads the attribute; what is wrong with it where it is none.
-    pub fn parse(text: &str) -> Result<Self, String> {
+    /// The attribute.
+    pub fn with_checksum(&self, checksum: u64) -> String {
+        format!("{}\nchecksum {checksum:016x}", self.to_text())
+    }
+
+    /// Reads the attribute, with the checksum that it has; what is wrong with it where it is none.
+    pub fn parse(text: &str) -> Result<(Self, u64), String> {
         let mut lines = text.lines();
-        let version = lines.next().unwrap_or_default();
-        if version != VERSION {
-            return Err(format!(
-                "is `{version}`, and this program reads `{VERSION}`; update Glassbox"
-            ));
+        let said = lines.next().unwrap_or_default();
+        let version = said.strip_prefix(KIND).map(|number| number.trim().parse());
+        match version {
+            Some(Ok(VERSION)) => {}
+            Some(Ok(0..VERSION)) => {
+                return Err(format!(
+                    "is `{said}`, and this program reads `{KIND} {VERSION}`; render it again"
+                ));
+            }
+            _ => {
+                return Err(format!(
+                    "is `{said}`, and this program reads `{KIND} {VERSION}`; update Glassbox"
+                ));
+            }
         }
         let mut line = |key: &str| {
             let line = lines.next().unwrap_or_default();
@@ -62,12 +78,15 @@ impl Header {
             _ => return Err(damaged("sampling")),
         };
         let output = line("output")?;
-        Ok(Self {
+        let checksum = line("checksum")?;
+        let checksum = u64::from_str_radix(&checksum, 16).map_err(|_| damaged("checksum"))?;
+        let header = Self {
             digest,
             samples,
             uniform,
             output,
-        })
+        };
+        Ok((header, checksum))
     }
 }
 
@@ -103,7 +122,8 @@ mod tests {
                 uniform,
                 output: "output.exposure=1.5 a=b".into(),
             };
-            assert_eq!(Header::parse(&header.to_text()), Ok(header));
+            let text = header.with_checksum(0x0123);
+            assert_eq!(Header::parse(&text), Ok((header, 0x0123)));
         }
     }
 
@@ -123,10 +143,16 @@ mod tests {
         ] {
             assert_eq!(parse_ranges(text), None, "{text}");
         }
-        let error = Header::parse("part 2\n").unwrap_err();
-        assert!(
-            error.contains("`part 2`") && error.contains("update"),
-            "{error}"
-        );
+        for (said, then) in [
+            ("part 3", "update"),
+            ("film 2", "update"),
+            ("part 1", "render it again"),
+        ] {
+            let error = Header::parse(said).unwrap_err();
+            assert!(
+                error.contains(&format!("`{said}`")) && error.contains(then),
+                "{error}"
+            );
+        }
     }
 }

@@ -7,13 +7,18 @@
 //! by line, what it is a part of:
 //!
 //! ```text
-//! part 1
+//! part 2
 //! digest 0123456789abcdef0123456789abcdef
 //! samples 0..64 128..192
 //! sampling uniform
 //! output output.exposure=0.0 output.view_transform=Srgb
+//! checksum 0123456789abcdef
 //! ```
+//!
+//! The checksum is that of the lines before it and of the sums: a sum that one wrong bit made a thousand times larger is a
+//! sum like any other.
 
+mod checksum;
 mod header;
 mod merge;
 mod read;

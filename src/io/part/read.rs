@@ -1,9 +1,10 @@
+use super::checksum::checksum;
 use super::header::{ATTRIBUTE, Header};
 use super::{Part, channel_name};
 use crate::film::{Film, Sum};
 use crate::io::error::{FileError, Problem};
 use crate::io::limits::Limits;
-use crate::io::picture::{block_bytes, exr_head, exr_problem};
+use crate::io::picture::{block_bytes, exr_head, exr_problem, from_exr};
 use crate::io::{check_size, open_to_read};
 use exr::block::reader::ChunksReader;
 use exr::meta::attribute::SampleType;
@@ -28,12 +29,8 @@ pub fn read_part(path: &Path, limits: &Limits) -> Result<Part, FileError> {
     else {
         return Err(no_part());
     };
-    let Header {
-        digest,
-        samples,
-        uniform,
-        output,
-    } = Header::parse(&text.to_string()).map_err(|text| fails(Problem::Malformed(text)))?;
+    let malformed = |text: String| fails(Problem::Malformed(text));
+    let (said, written) = Header::parse(&from_exr(text)).map_err(malformed)?;
     let (width, height) = (header.layer_size.x() as u64, header.layer_size.y() as u64);
     check_size(path, width, height, limits)?;
     let length = fs::metadata(path)
@@ -49,9 +46,23 @@ pub fn read_part(path: &Path, limits: &Limits) -> Result<Part, FileError> {
         .map_err(fails)?;
     let file = open_to_read(path, limits.file_bytes)?;
     let sums = read_sums(file, header).map_err(fails)?;
-    let count: u64 = samples.iter().map(|range| range.end - range.start).sum();
-    let film = Film::of_sums(UVec2::new(width as u32, height as u32), &sums, count as u32)
-        .ok_or_else(|| fails(incomplete()))?;
+    let size = UVec2::new(width as u32, height as u32);
+    let count: u64 = said
+        .samples
+        .iter()
+        .map(|range| range.end - range.start)
+        .sum();
+    let is_whole = checksum(&said, size, sums.iter().copied()) == written;
+    if !is_whole || !sums.iter().all(|sum| can_be_of(sum, count)) {
+        return Err(malformed(DAMAGED.to_owned()));
+    }
+    let film = Film::of_sums(size, &sums, count as u32).ok_or_else(|| fails(incomplete()))?;
+    let Header {
+        digest,
+        samples,
+        uniform,
+        output,
+    } = said;
     Ok(Part {
         digest,
         samples,
@@ -63,6 +74,14 @@ pub fn read_part(path: &Path, limits: &Limits) -> Result<Part, FileError> {
 
 const NO_PART: &str =
     "is no part of a picture; `glassbox render --samples A..B -o part.exr` makes parts";
+const DAMAGED: &str = "was damaged since it was written: its sums are not those that were; get a complete copy, or render it again";
+
+/// Whether a sum can be that of so many samples, each at most 2^40, or 2^104 steps: others would not add up in 128 bits.
+fn can_be_of(sum: &Sum, count: u64) -> bool {
+    let most = (count << 8) as i64;
+    (sum.to_words().iter()).all(|words| (-most..=most).contains(&i64::from(words[3] as i32)))
+}
+
 /// Of a pixel while it is read: words of 48 bytes become a sum of 48, and that one of 64 in the film.
 const PIXEL: u64 = 120;
 /// Of a pixel in the file's blocks: 15 channels of 4.

@@ -91,6 +91,54 @@ fn parts_that_do_not_belong_together_are_refused_with_their_names() {
 }
 
 #[test]
+fn a_part_with_one_changed_byte_is_never_read_as_another() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.exr");
+    let written = part(3..11);
+    write_part(&path, &written).unwrap();
+    let bytes = fs::read(&path).unwrap();
+    let mut refused = 0;
+    // Of the head every byte, of the sums some.
+    for at in (0..1500).chain((1500..bytes.len()).step_by(61)) {
+        let mut changed = bytes.clone();
+        changed[at] ^= 0x10;
+        fs::write(&path, &changed).unwrap();
+        match read_part(&path, &Limits::default()) {
+            // What is not of the part: the means that other programs show, and what else the format says.
+            Ok(read) => assert_eq!(read, written, "byte {at}"),
+            Err(error) => refused += usize::from(error.to_string().contains("damaged since")),
+        }
+    }
+    assert!(refused > 100, "{refused}");
+}
+
+#[test]
+fn sums_that_no_samples_have_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.exr");
+    for (word, is_refused) in [
+        (8 << 8, false),
+        ((8 << 8) + 1, true),
+        (i32::MAX, true),
+        (-(9 << 8), true),
+    ] {
+        let sum = Sum::from_words([[0, 0, 0, word as u32]; 3]);
+        let sums = vec![sum; SIZE.element_product() as usize];
+        let film = Film::of_sums(SIZE, &sums, 8).unwrap();
+        write_part(
+            &path,
+            &Part {
+                film,
+                ..part(3..11)
+            },
+        )
+        .unwrap();
+        let read = read_part(&path, &Limits::default());
+        assert_eq!(read.is_err(), is_refused, "{word}");
+    }
+}
+
+#[test]
 fn what_is_no_part_or_damaged_is_refused_with_its_name() {
     let folder = tempfile::tempdir().unwrap();
     let read = |name: &str| {

@@ -1,8 +1,10 @@
+use super::checksum::checksum;
 use super::header::{ATTRIBUTE, Header};
 use super::{Part, channel_name, sums};
 use crate::io::check_size;
 use crate::io::error::FileError;
 use crate::io::limits::Limits;
+use crate::io::picture::to_exr;
 use crate::io::replace::replace_file;
 use exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Blocks, Compression, Encoding, FlatSamples, Image,
@@ -36,9 +38,9 @@ pub fn write_part(path: &Path, part: &Part) -> Result<(), FileError> {
         }
     }
     let mut attributes = LayerAttributes::default();
-    let header = Text::new_or_none(Header::of(part).to_text())
-        .ok_or_else(|| io::Error::other("its settings are no plain text"))
-        .map_err(|error| FileError::writing(path, &error))?;
+    let header = Header::of(part);
+    let checksum = checksum(&header, size, sums(&part.film));
+    let header = to_exr(&header.with_checksum(checksum));
     attributes
         .other
         .insert(Text::from(ATTRIBUTE), AttributeValue::Text(header));

@@ -11,11 +11,9 @@ pub(super) struct AsFar<'a, D> {
     pub decoder: D,
     /// Where the picture is not all there: what to say of it.
     pub doubt: &'a mut Option<Problem>,
-    /// The decoder turns around the bytes of 16 bits at the end, and not where it fails.
-    pub fails_in_big_endian: bool,
 }
 
-/// Grey in 8 and in 16 bits.
+/// Grey in 8 and in 16 bits, whose bytes are the same in either order.
 const GREY: u8 = 0x80;
 /// And as a number.
 const GREY_LIGHT: f32 = 0.2;
@@ -46,13 +44,6 @@ impl<D: ImageDecoder> ImageDecoder for AsFar<'_, D> {
         let mut pixels = bytes.chunks_exact(pixel).zip(greys.iter().cycle());
         if pixels.all(|(pixel, grey)| pixel == grey) {
             return Err(error);
-        }
-        let is_16_bits = color.bytes_per_pixel() == 2 * color.channel_count();
-        if self.fails_in_big_endian && is_16_bits {
-            // Both bytes of grey and of opaque are the same.
-            for value in bytes.as_chunks_mut::<2>().0 {
-                *value = u16::from_be_bytes(*value).to_ne_bytes();
-            }
         }
         *self.doubt = Some(doubt(&error));
         Ok(())

@@ -5,6 +5,7 @@ use super::super::open_to_read;
 use super::read::one_line;
 use crate::io::Limits;
 use exr::error::Error;
+use exr::meta::attribute::Text;
 use exr::meta::{MetaData, magic_number};
 use std::io::BufRead;
 use std::path::Path;
@@ -26,6 +27,16 @@ pub(crate) fn exr_head(
     }
     let read = MetaData::read_from_buffered(reader, false);
     read.map_err(|error| FileError::new(path, exr_problem(error)))
+}
+
+/// A text as the format keeps it: as UTF-8, which Blender and other programs write and read in names and attributes.
+pub(crate) fn to_exr(text: &str) -> Text {
+    Text::from_slice_unchecked(text.as_bytes())
+}
+
+/// A text of a file. What is no UTF-8 is taken as Latin-1.
+pub(crate) fn from_exr(text: &Text) -> String {
+    super::super::text::text(text.as_slice()).into_owned()
 }
 
 /// What is wrong with an OpenEXR file that cannot be read.

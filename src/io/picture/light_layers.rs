@@ -3,8 +3,8 @@
 
 use super::super::error::{FileError, Problem};
 use super::super::open_to_read;
-use super::write::{latin_text, write_exr_layers};
-use super::{block_bytes, check_size, exr_head, exr_problem};
+use super::write::write_exr_layers;
+use super::{block_bytes, check_size, exr_head, exr_problem, from_exr};
 use crate::film::Picture;
 use crate::io::Limits;
 use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, read};
@@ -30,9 +30,39 @@ pub struct LightLayers {
 }
 
 /// The name that a light's layer has in a file: a dot would part it from its channels, what is no letter ends names and
-/// lines, and letters are those of Latin-1.
+/// lines, and of a name that is longer than the format's names the beginning is kept.
 pub fn layer_name(light: &str) -> String {
-    latin_text(&light.replace(|c: char| c == '.' || c.is_control(), "_"))
+    let name = light.replace(|c: char| c == '.' || c.is_control(), "_");
+    beginning(&name, MOST_BYTES).to_owned()
+}
+
+/// Of a layer's name, so that with `Combined_` before it and `.R` behind it it has no more than the 255 of a channel's.
+const MOST_BYTES: usize = 255 - LAYER.len() - 2;
+
+/// The letters of a text that have so many bytes at most.
+fn beginning(text: &str, bytes: usize) -> &str {
+    &text[..text.floor_char_boundary(bytes)]
+}
+
+/// The name, or where a layer has that already, one with a number behind it.
+pub(super) fn free_name(name: &str, id: u64, is_taken: impl Fn(&str) -> bool) -> String {
+    if !is_taken(name) {
+        return name.to_owned();
+    }
+    let mut numbers = (1_u64..).map(|n| match n {
+        1 => format!("-{id}"),
+        n => format!("-{id}-{n}"),
+    });
+    let numbered = |number: String| {
+        let start = beginning(name, MOST_BYTES.saturating_sub(number.len()));
+        format!("{start}{number}")
+    };
+    loop {
+        let name = numbered(numbers.next().unwrap_or_default());
+        if !is_taken(&name) {
+            return name;
+        }
+    }
 }
 
 impl LightLayers {
@@ -67,17 +97,16 @@ impl LightLayers {
             .from_buffered(open_to_read(path, limits.file_bytes)?)
             .map_err(|error| FileError::new(path, exr_problem(error)))?;
         let layer = image.layer_data;
-        let text = |text: &exr::prelude::Text| text.to_string();
-        let comments = layer.attributes.comments.as_ref().map(text);
+        let comments = layer.attributes.comments.as_ref().map(from_exr);
         let mut found = Self {
             picture: Picture::black(UVec2::new(width as u32, height as u32)),
             layers: BTreeMap::new(),
             comments: comments
                 .map_or_else(Vec::new, |all| all.lines().map(str::to_owned).collect()),
-            software: layer.attributes.software_name.as_ref().map(text),
+            software: layer.attributes.software_name.as_ref().map(from_exr),
         };
         for channel in layer.channel_data.list {
-            found.take(&channel.name.to_string(), &channel.sample_data);
+            found.take(&from_exr(&channel.name), &channel.sample_data);
         }
         Ok(found)
     }
@@ -211,6 +240,49 @@ mod tests {
         dark.layers.get_mut("Key").unwrap().pixels[0] = Vec3::INFINITY;
         dark.mix(&factors("Key", Vec3::ZERO));
         assert!(dark.picture.pixels[0].is_finite());
+    }
+
+    #[test]
+    fn names_in_every_script_and_of_any_length_come_back_from_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        let mut named = layers();
+        let key = named.layers["Key"].clone();
+        // The second to last byte of the longest is within a letter.
+        let long = layer_name(&"灯".repeat(90));
+        assert_eq!(long.len(), 243);
+        for name in ["Größe", "灯", &long, &layer_name(&"a".repeat(300))] {
+            named.layers.insert(name.into(), key.clone());
+        }
+        named.comments.push("Mix: Größe=2".into());
+        named.write(&path, "Mix: 灯=2").unwrap();
+        named.comments.push("Mix: 灯=2".into());
+        assert_eq!(LightLayers::read(&path, &Limits::default()).unwrap(), named);
+        // As other programs read them.
+        let bytes = std::fs::read(&path).unwrap();
+        for text in ["Combined_Größe.R", "Combined_灯.G", "Mix: 灯=2"] {
+            let text = text.as_bytes();
+            assert!(bytes.windows(text.len()).any(|bytes| bytes == text));
+        }
+        // What an older version wrote.
+        let old = exr::prelude::Text::new_or_panic("Größe");
+        assert_eq!(from_exr(&old), "Größe");
+    }
+
+    #[test]
+    fn lights_whose_names_begin_alike_have_layers_of_their_own() {
+        let name = layer_name(&"x".repeat(400));
+        assert_eq!(name.len() + LAYER.len() + 2, 255);
+        let mut taken = vec![name.clone()];
+        for _ in 0..3 {
+            let free = free_name(&name, u64::MAX, |name| {
+                taken.iter().any(|other| other == name)
+            });
+            assert!(free.len() <= name.len() && !taken.contains(&free), "{free}");
+            assert_eq!(layer_name(&free), free, "it is found by its name");
+            taken.push(free);
+        }
+        assert_eq!(free_name("Key", 7, |name| name == "Key"), "Key-7");
     }
 
     #[test]

@@ -13,7 +13,9 @@
 
 use super::super::error::{FileError, Problem};
 use super::read::Decoded;
-use super::{block_bytes, check_size, claim_picture, decoder_bytes, exr_problem, exr_subsampled};
+use super::{
+    block_bytes, check_size, claim_picture, decoder_bytes, exr_problem, exr_subsampled, from_exr,
+};
 use crate::io::Limits;
 use exr::block::UncompressedBlock;
 use exr::block::lines::LineIndex;
@@ -117,7 +119,7 @@ impl Layer {
             .filter(|(_, header)| !header.deep)
         {
             let names: Vec<String> = (header.channels.list.iter())
-                .map(|channel| channel.name.to_string())
+                .map(|channel| from_exr(&channel.name))
                 .collect();
             for (rank, layer) in layers(index, &names) {
                 if best.as_ref().is_none_or(|(other, _)| rank < *other) {
@@ -127,7 +129,7 @@ impl Layer {
         }
         best.map(|(_, layer)| layer).ok_or_else(|| {
             let channels = headers.iter().flat_map(|header| &header.channels.list);
-            let names: Vec<String> = channels.take(8).map(|c| c.name.to_string()).collect();
+            let names: Vec<String> = channels.take(8).map(|c| from_exr(&c.name)).collect();
             Problem::Malformed(format!(
                 "holds no colours that are read: R, G and B, or Y; its first channels are {}",
                 names.join(", ")

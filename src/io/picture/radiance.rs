@@ -55,7 +55,6 @@ pub(super) fn decode(
         DynamicImage::from_decoder(AsFar {
             decoder,
             doubt: &mut doubt,
-            fails_in_big_endian: false,
         })
     });
     let mut picture = picture.map_err(|error| failure(name, error))?.into_rgb32f();

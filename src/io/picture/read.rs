@@ -2,7 +2,10 @@ use super::super::error::{FileError, Problem};
 use super::super::open_to_read;
 use super::as_far::AsFar;
 use super::content::{HEAD, recognised};
-use super::{claim_picture, dds, decoder_bytes, jpeg, open_exr, radiance};
+use super::{
+    check_size, claim_picture, dds, decoder_bytes, first_frame, jpeg, open_exr, png_pixels,
+    radiance,
+};
 use crate::io::Limits;
 use crate::scene::{PhongMap, SRGB_16_BITS};
 use crate::trace::srgb::decode_table_16;
@@ -10,7 +13,7 @@ use bevy::asset::RenderAssetUsages;
 use bevy::image::Image;
 use exr::prelude::f16;
 use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, Luma, Rgba};
-use std::io::{BufRead, Cursor, Read, Seek, SeekFrom};
+use std::io::{self, BufRead, Cursor, Read, Seek, SeekFrom};
 use std::path::Path;
 use wgpu_types::{Extent3d, TextureDimension, TextureFormat};
 
@@ -107,11 +110,30 @@ fn decode(
                 None => decode_as(ImageFormat::Dds, name, reader, limits)?,
             }
         }
+        ImageFormat::Png => png_pixels::decode(name, reader, limits)?,
         ImageFormat::Jpeg => {
+            // Its decoder holds the file, and once more what stands in it beside the pixels.
+            let length = first_frame::length(&mut reader);
+            let length = length.map_err(|error| FileError::reading(name, &error))?;
+            (limits.memory.apart())
+                .claim(length.saturating_mul(2))
+                .map_err(fails)?;
             let mut decoded = decode_as(ImageFormat::Jpeg, name, &mut reader, limits)?;
             rewind(name, &mut reader)?;
             decoded.doubt = jpeg::cut_short(reader);
             decoded
+        }
+        ImageFormat::Gif => {
+            let frame = first_frame::of_gif(&mut reader);
+            check_frame(name, frame, limits)?;
+            rewind(name, &mut reader)?;
+            decode_as(ImageFormat::Gif, name, reader, limits)?
+        }
+        ImageFormat::WebP => {
+            let frame = first_frame::of_webp(&mut reader);
+            check_frame(name, frame, limits)?;
+            rewind(name, &mut reader)?;
+            decode_as(ImageFormat::WebP, name, reader, limits)?
         }
         format => decode_as(format, name, reader, limits)?,
     };
@@ -126,6 +148,28 @@ fn rewind(name: &Path, reader: &mut impl Seek) -> Result<(), FileError> {
     let rewound = reader.seek(SeekFrom::Start(0));
     rewound.map_err(|error| FileError::reading(name, &error))?;
     Ok(())
+}
+
+/// Refuses a picture with a frame that is beyond the limits by itself. Its decoder, which knows more of the format, says
+/// what is wrong where none was found.
+fn check_frame(
+    name: &Path,
+    frame: io::Result<Option<[u32; 2]>>,
+    limits: &Limits,
+) -> Result<(), FileError> {
+    // Of a pixel while the frame is cut to the picture.
+    const PIXEL: u64 = 4;
+    let Ok(Some(size)) = frame else {
+        return Ok(());
+    };
+    let [width, height] = size.map(u64::from);
+    if width * height == 0 {
+        return Ok(());
+    }
+    check_size(name, width, height, limits)?;
+    (limits.memory.apart())
+        .claim(width * height * PIXEL)
+        .map_err(|problem| FileError::new(name, problem))
 }
 
 /// The first frame of a picture.
@@ -146,10 +190,9 @@ fn decode_as(
     claim_picture(name, (width, height), channel, limits)?;
     let mut doubt = None;
     let picture = match format {
-        ImageFormat::Png | ImageFormat::Bmp => DynamicImage::from_decoder(AsFar {
+        ImageFormat::Bmp => DynamicImage::from_decoder(AsFar {
             decoder,
             doubt: &mut doubt,
-            fails_in_big_endian: format == ImageFormat::Png,
         }),
         _ => DynamicImage::from_decoder(decoder),
     };
@@ -269,7 +312,7 @@ pub(super) fn failure(name: &Path, error: image::ImageError) -> FileError {
         }
         E::IoError(error) => Problem::Unreadable(one_line(&error.to_string())),
         E::Limits(_) => Problem::Malformed(
-            "asks for more memory than the largest picture allowed; scale the picture down".into(),
+            "needs more memory than is left for it; scale the picture down, or save it without what describes it".into(),
         ),
         other => Problem::Malformed(format!(
             "is not a picture that can be decoded: {}",

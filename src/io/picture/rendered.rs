@@ -1,7 +1,7 @@
 //! Rendered pictures as files that say how they came about.
 
 use super::super::error::FileError;
-use super::light_layers::{LAYER, layer_name};
+use super::light_layers::{LAYER, free_name, layer_name};
 use super::write::write_exr_layers;
 use super::{PictureFormat, write_picture_with_notes};
 use crate::film::{LightPictures, Picture, Status, develop};
@@ -40,17 +40,20 @@ pub fn write_lights(
     name: impl Fn(u64) -> String,
     notes: &[Note],
 ) -> Result<(), FileError> {
-    let mut layers = vec![(format!("{LAYER}Own"), &lights.own)];
+    let mut layers = vec![("Own".to_owned(), &lights.own)];
     for light in &lights.lights {
         let names: Vec<String> = light.ids.iter().map(|id| layer_name(&name(*id))).collect();
-        let mut layer = match &names[..] {
-            [name] => format!("{LAYER}{name}"),
-            _ => format!("{LAYER}Others"),
+        let name = match &names[..] {
+            [name] => name.as_str(),
+            _ => "Others",
         };
-        if layers.iter().any(|(taken, _)| *taken == layer) {
-            layer = format!("{layer}-{}", light.ids[0]);
-        }
-        layers.push((layer, &light.picture));
+        let name = free_name(name, light.ids[0], |name| {
+            layers.iter().any(|(taken, _)| taken == name)
+        });
+        layers.push((name, &light.picture));
+    }
+    for (name, _) in &mut layers {
+        name.insert_str(0, LAYER);
     }
     write_exr_layers(file, picture, &layers, notes)
 }

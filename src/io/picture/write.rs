@@ -1,6 +1,6 @@
 use super::super::error::{FileError, Problem};
 use super::super::replace::Staged;
-use super::{PictureFormat, check_format_size};
+use super::{PictureFormat, check_format_size, to_exr};
 use crate::film::Picture;
 use image::codecs::jpeg::JpegEncoder;
 use image::{DynamicImage, ImageBuffer, ImageResult};
@@ -140,7 +140,7 @@ pub(super) fn write_exr_layers(
                     None => channel.to_owned(),
                 };
                 let samples = layer.pixels.iter().map(|pixel| pixel[i]).collect();
-                AnyChannel::new(latin(&name).unwrap_or_default(), FlatSamples::F32(samples))
+                AnyChannel::new(to_exr(&name), FlatSamples::F32(samples))
             })
     });
     let channels = AnyChannels::sort(channels.collect());
@@ -150,18 +150,6 @@ pub(super) fn write_exr_layers(
         exr_result(Image::from_layer(layer).write().to_buffered(writer))
     })?;
     staged.commit()
-}
-
-/// The format's letters are those of Latin-1.
-pub(super) fn latin_text(text: &str) -> String {
-    let known = |letter: char| {
-        if u32::from(letter) < 256 { letter } else { '?' }
-    };
-    text.chars().map(known).collect()
-}
-
-fn latin(text: &str) -> Option<exr::meta::attribute::Text> {
-    exr::meta::attribute::Text::new_or_none(latin_text(text))
 }
 
 /// In this order however many threads compress the tiles, so that the same picture is the same file.
@@ -192,13 +180,13 @@ fn attributes(notes: &[(&str, String)]) -> exr::meta::header::LayerAttributes {
     for (name, note) in notes {
         let note = of_one_line(note);
         if *name == "Software" {
-            attributes.software_name = latin(&note);
+            attributes.software_name = Some(to_exr(&note));
         } else {
             lines.push(format!("{name}: {note}"));
         }
     }
     if !lines.is_empty() {
-        attributes.comments = latin(&lines.join("\n"));
+        attributes.comments = Some(to_exr(&lines.join("\n")));
     }
     attributes
 }
@@ -353,9 +341,10 @@ mod tests {
         assert_eq!(text, notes.clone().map(|(_, text)| text));
         let exr = exr::meta::MetaData::read_from_file(folder.path().join("a.exr"), false).unwrap();
         let kept = &exr.headers[0].own_attributes;
-        let text = |text: &Option<exr::meta::attribute::Text>| text.clone().unwrap().to_string();
-        assert_eq!(text(&kept.software_name), "Glassbox");
-        assert_eq!(text(&kept.comments), "Camera: größe ?");
+        let bytes =
+            |text: &Option<exr::meta::attribute::Text>| text.clone().unwrap().as_slice().to_vec();
+        assert_eq!(bytes(&kept.software_name), b"Glassbox");
+        assert_eq!(bytes(&kept.comments), "Camera: größe Ж".as_bytes());
     }
 
     #[test]
