@@ -6,10 +6,14 @@ use super::output::say;
 use crate::app::headless_app;
 use crate::inspect::counted;
 use crate::io::place::world_from;
-use crate::io::{FileNote, LoadProblems, OpenOptions, SceneSource, open};
+use crate::io::{
+    FileNote, LoadProblems, MODEL_EXTENSIONS, OpenOptions, SceneSource, extension, open,
+};
 use crate::scene::{
     DirectionalLamp, Environment, ParallelogramLamp, Phong, PointLamp, SceneCamera, SegmentLamp,
 };
+use crate::sync::{Traced, TracedCameras};
+use bevy::app::App;
 use bevy::asset::Assets;
 use bevy::ecs::component::Component;
 use bevy::ecs::entity::Entity;
@@ -75,7 +79,10 @@ pub(super) fn run(args: Check) -> Result<(), Failure> {
     for file in &args.files {
         // What one file holds would lie beside what the next one needs.
         let mut app = headless_app();
-        let checked = check(app.world_mut(), file, &args);
+        let mut checked = check(app.world_mut(), file, &args);
+        if checked.error.is_none() {
+            checked.notes.extend(untraced(&mut app, file));
+        }
         if !args.json {
             print(&checked)?;
         }
@@ -158,6 +165,31 @@ fn check(world: &mut World, file: &Path, args: &Check) -> Checked {
         }
     }
     checked
+}
+
+/// What of an open file cannot be traced, as it is told where it is rendered. A model is framed there, if it has no camera.
+fn untraced(app: &mut App, file: &Path) -> Vec<Noted> {
+    app.update();
+    let note = |place: String, what: String| Noted {
+        file: file.display().to_string(),
+        line: format!("{}: {place}: {what}", file.display()),
+        place,
+        what,
+        names: Vec::new(),
+        instead: String::new(),
+        count: 1,
+    };
+    let world = app.world();
+    let problems = &world.resource::<Traced>().problems;
+    let mut notes: Vec<_> = (problems.iter())
+        .map(|problem| note(problem.subject.to_string(), problem.fault.to_string()))
+        .collect();
+    let is_model = MODEL_EXTENSIONS.contains(&extension(file).as_str());
+    if !is_model && world.resource::<TracedCameras>().0.is_empty() {
+        let what = "has none to render from; add a SceneCamera".to_owned();
+        notes.push(note("cameras".to_owned(), what));
+    }
+    notes
 }
 
 fn noted(note: &FileNote) -> Noted {

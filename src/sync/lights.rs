@@ -228,7 +228,8 @@ fn segment(
         reader.note(Fault::NotFinite { field: "ends" });
         return None;
     }
-    extent("length", (ends[1] - ends[0]).length(), reader)?;
+    let [from, to] = ends.map(Vec3::as_dvec3);
+    extent("length", (to - from).length(), reader)?;
     Some(SegmentLight {
         id: reader.id.0,
         ends,
@@ -249,7 +250,8 @@ fn parallelogram(
         reader.note(Fault::NotFinite { field: "corners" });
         return None;
     }
-    extent("area", edges[0].cross(edges[1]).length(), reader)?;
+    let [a, b] = edges.map(Vec3::as_dvec3);
+    extent("area", a.cross(b).length(), reader)?;
     let mut colors = strengths(lamp.colors, lamp.intensity, reader)?;
     // A mirroring transform turns the cross product of the edges around, but not the light's front.
     if linear.determinant() < 0.0 {
@@ -271,17 +273,25 @@ fn parallelogram(
 const NARROWEST: f32 = f32::EPSILON;
 
 /// The length or area of a light, as it is reckoned with: what is so small that squares of it are nothing would light nothing.
-fn extent(field: &'static str, extent: f32, reader: &mut Reader) -> Option<f32> {
-    if !extent.is_finite() {
-        reader.note(Fault::NotFinite { field });
-        return None;
-    }
-    if extent == 0.0 {
-        reader.note(Fault::Degenerate { field });
-        return None;
-    }
-    Some(extent)
+fn extent(field: &'static str, extent: f64, reader: &mut Reader) -> Option<f64> {
+    let fault = if !extent.is_finite() {
+        Fault::NotFinite { field }
+    } else if extent > MOST_EXTENT {
+        Fault::TooLarge {
+            field,
+            most: MOST_EXTENT,
+        }
+    } else if (extent as f32).powi(2) == 0.0 {
+        Fault::Degenerate { field }
+    } else {
+        return Some(extent);
+    };
+    reader.note(fault);
+    None
 }
+
+/// In m or m²: its square is still a number of f32.
+const MOST_EXTENT: f64 = 1e18;
 
 /// Unit vector along the entity's local +Z, in the world.
 fn backward(transform: &GlobalTransform, reader: &mut Reader) -> Option<Vec3> {

@@ -63,6 +63,14 @@ pub enum Fault {
         /// Which.
         field: &'static str,
     },
+    /// A lamp is larger than can be computed with.
+    #[error("its {field} is more than {most:e}; left out")]
+    TooLarge {
+        /// Its length in m, or its area in m².
+        field: &'static str,
+        /// The most.
+        most: f64,
+    },
     /// It moves beyond what can be traced while the shutter is open.
     #[error(
         "its velocity, together with those of its parents, is {velocity}, not a finite number or more than 1e12; left out"

@@ -184,10 +184,14 @@ impl ImagePlane<'_> {
             origin = camera.position + (start + (p.x * camera.right + p.y * camera.up));
             if optics.focus_distance.is_finite() {
                 let to_focus = optics.focus_distance / direction.dot(camera.forward);
+                let to_focus = to_focus.min(FARTHEST_FOCUS);
                 // From where the ray does start: far from the origin that is another place of the lens, and what is
                 // in focus has to stay sharp.
                 let offset = (origin - camera.position) - start;
-                direction = (to_focus * direction - offset).normalize();
+                let aimed = to_focus * direction - offset;
+                let size = aimed.abs().max_element();
+                let is_ordinary = size > 1.0 / ORDINARY && size < ORDINARY;
+                direction = if is_ordinary { aimed } else { aimed / size }.normalize();
             }
         }
         Ray {
@@ -199,6 +203,11 @@ impl ImagePlane<'_> {
         }
     }
 }
+
+/// In metres: no lens is large enough to tell what is farther away from what is infinitely far.
+const FARTHEST_FOCUS: f32 = 1e30;
+/// The squares of vectors no longer than this, and no shorter than its reciprocal, are ordinary numbers.
+const ORDINARY: f32 = 1e18;
 
 #[cfg(test)]
 mod tests {
@@ -230,6 +239,28 @@ mod tests {
         let right = camera.ray(Vec2::new(640.0, 240.0), SIZE, [0.0; 2], 0.0);
         let slope = right.direction.dot(camera.right) / right.direction.dot(camera.forward);
         assert!((slope - 0.45_f32.tan() * 640.0 / 480.0).abs() < 1e-5);
+    }
+
+    #[test]
+    fn a_lens_focuses_as_near_and_as_far_as_numbers_go() {
+        for (focus_distance, aperture_radius) in [
+            (1e-30, 1e-30),
+            (1e-20, 1e-3),
+            (2e19, 0.1),
+            (1e30, 0.1),
+            (f32::MAX, 0.1),
+        ] {
+            let camera = camera(Optics {
+                aperture_radius,
+                focus_distance,
+                ..Optics::default()
+            });
+            for lens in [[0.1, 0.2], [0.5, 0.5], [0.9, 0.3]] {
+                let ray = camera.ray(Vec2::new(3.0, 4.0), SIZE, lens, 0.0);
+                let length = ray.direction.length();
+                assert!((length - 1.0).abs() < 1e-6, "{focus_distance:e}: {ray:?}");
+            }
+        }
     }
 
     #[test]

@@ -74,6 +74,21 @@ fn a_newer_version_even_with_components_that_are_unknown() {
 }
 
 #[test]
+fn a_version_before_the_first() {
+    let (_folder, file) =
+        scene_of("(resources: {\"glassbox::io::FileVersion\": (0)}, entities: {})");
+    says(&refused(&file), &["a.scn.ron", "FileVersion", "first is 1"]);
+}
+
+#[test]
+fn an_entity_that_is_there_twice() {
+    let (_folder, file) = scene_of(
+        "(resources: {\"glassbox::io::FileVersion\": (2)}, entities: {7: (components: {}), 7: (components: {})})",
+    );
+    says(&refused(&file), &["a.scn.ron: entity 7", "twice"]);
+}
+
+#[test]
 fn a_scene_without_a_version() {
     let (_folder, file) = scene_of("(resources: {}, entities: {})");
     says(&refused(&file), &["a.scn.ron", "FileVersion"]);

@@ -77,6 +77,37 @@ fn what_one_file_holds_is_no_weight_on_the_next() {
 }
 
 #[test]
+fn what_could_not_be_traced_of_a_scene_is_told_without_rendering_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let scene = "\u{feff}(resources: {\"glassbox::io::FileVersion\": (2)}, entities: {
+1: (components: {
+    \"bevy_ecs::name::Name\": \"Lamp\",
+    \"glassbox::scene::SegmentLamp\": (ends: ((1.0, 0.0, 0.0), (1.0, 0.0, 0.0))),
+}),
+})";
+    fs::write(at.join("dark.scn.ron"), scene).unwrap();
+    let out = succeeds(at, &["check", "dark.scn.ron", "cornell-box"]);
+    let lines: Vec<&str> = out.lines().collect();
+    assert!(lines[0].ends_with("2 notes"), "{out}");
+    for (line, parts) in [
+        (lines[1], ["Lamp", "length"]),
+        (lines[2], ["dark.scn.ron", "add a SceneCamera"]),
+    ] {
+        assert!(parts.iter().all(|part| line.contains(part)), "{out}");
+    }
+    assert!(lines[3].ends_with("nothing to note"), "{out}");
+    let strict = glassbox(at, &["check", "--strict", "dark.scn.ron"]);
+    assert_eq!(strict.status.code(), Some(1));
+    let render = glassbox(at, &["render", "dark.scn.ron", "--size", "4x4"]);
+    let (_, err) = texts(&render);
+    assert!(
+        err.contains(lines[1].trim_start()),
+        "{err}: as where it is rendered"
+    );
+}
+
+#[test]
 fn json_says_the_same_of_every_file() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();

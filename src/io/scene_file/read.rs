@@ -56,8 +56,12 @@ pub(crate) fn read_scene_text(
     if let Some(problem) = no_scene(bytes) {
         return Err(FileError::new(file, problem));
     }
-    let text = std::str::from_utf8(bytes).map_err(|error| {
-        let line = bytes[..error.valid_up_to()].split(|&b| b == b'\n').count();
+    // Some editors of Windows begin every text with this.
+    let unmarked = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let text = std::str::from_utf8(unmarked).map_err(|error| {
+        let line = unmarked[..error.valid_up_to()]
+            .split(|&b| b == b'\n')
+            .count();
         let problem = Problem::Malformed("is not UTF-8 text".into());
         FileError::at(file, Place::Line(line as u64), problem)
     })?;
@@ -156,9 +160,13 @@ impl SceneFile {
                     .map_err(|problem| FileError::at(file, place(), problem))?;
             }
         }
-        if labels.len() < self.content.entities.len() {
-            let problem = Problem::Malformed("two entities have the same label".into());
-            return Err(FileError::new(file, problem));
+        let mut labels = BTreeSet::new();
+        for entity in &self.content.entities {
+            if !labels.insert(entity.entity) {
+                let place = part(&format!("entity {}", entity.entity.to_bits()));
+                let problem = Problem::Malformed("is there twice".into());
+                return Err(FileError::at(file, place, problem));
+            }
         }
         self.check_ancestors(file, limits)
     }
@@ -351,6 +359,10 @@ fn check_version(file: &Path, text: &str) -> Result<FileVersion, FileError> {
                 known: FileVersion::CURRENT.0,
             },
         )),
+        (Some(0), _) => {
+            let problem = Problem::Malformed("is 0; the first is 1".into());
+            Err(FileError::at(file, part("FileVersion"), problem))
+        }
         (Some(version), _) => Ok(FileVersion(version)),
         (None, Ok(())) => Err(FileError::new(file, Problem::NoVersion)),
         (None, Err(error)) => Err(ron_error(file, &deserializer.span_error(error))),
