@@ -62,6 +62,7 @@ pub(in super::super) fn aim(world: &mut World, at: Vec2) {
         return;
     };
     let ids = world.resource::<Selection>().ids().to_vec();
+    let mut any = false;
     step(world, |world| {
         let mut aimed = Vec::new();
         for id in ids {
@@ -69,6 +70,7 @@ pub(in super::super) fn aim(world: &mut World, at: Vec2) {
                 aimed.push(id);
             }
         }
+        any = !aimed.is_empty();
         let whose = match aimed.as_slice() {
             [] => return None,
             [one] => name_of(world, *one),
@@ -76,6 +78,10 @@ pub(in super::super) fn aim(world: &mut World, at: Vec2) {
         };
         Some(format!("Aim {whose} at {}", name_of(world, target.id)))
     });
+    if !any {
+        let text = "Nothing that is selected can be turned there.";
+        world.resource_mut::<Notices>().tell(text);
+    }
 }
 
 /// Turns one entity to a point of the world; `false` where it has no direction or is there itself.
