@@ -23,6 +23,14 @@ pub(in crate::editor) fn request(world: &mut World, task: FileTask) {
     if !loses {
         return perform_now(world, task);
     }
+    let question = &world.resource::<Document>().question;
+    if matches!(question, Some(Question::Waiting { .. })) {
+        // The question that follows would stand in its place, and two would be waited for.
+        dialog::give_up(world);
+        let mut document = world.resource_mut::<Document>();
+        document.question = None;
+        document.give_up();
+    }
     world.resource_mut::<Gesture>().end();
     note_state_now(world);
     if world.resource::<Document>().unsaved {
