@@ -59,7 +59,9 @@ pub(super) fn perform_now(world: &mut World, task: FileTask) {
         FileTask::Quit => {
             let job = world.get_resource::<RenderJob>();
             let rendered = job.and_then(RenderJob::progress);
-            match rendered.map(|progress| progress.file) {
+            // What is only being written will be.
+            let unfinished = rendered.filter(|progress| !progress.writing);
+            match unfinished.map(|progress| progress.file) {
                 Some(file) => {
                     world.resource_mut::<Document>().question = Some(Question::Rendering { file });
                 }
