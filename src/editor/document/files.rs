@@ -48,7 +48,7 @@ pub(super) fn perform_now(world: &mut World, task: FileTask) {
             finish_opening(world, "Untitled".into(), None);
         }
         FileTask::Open(path) => open_file(world, &path, false),
-        FileTask::Import(path) => match edits::import(world, &path) {
+        FileTask::Import(path, at) => match edits::import(world, &path, at) {
             Ok(()) => {
                 world.resource_mut::<Document>().give_up();
                 remember_folder_of(world, &path);
