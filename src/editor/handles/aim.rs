@@ -5,7 +5,7 @@ use super::super::edits::{name_of, scene_entity, step};
 use super::super::extent::{world_from_entity, world_from_parent};
 use super::super::notice::Notices;
 use super::super::pick;
-use super::super::pointer::Armed;
+use super::super::pointer::{self, Armed};
 use super::super::selection::Selection;
 use super::bodies::{Body, Change};
 use crate::scene::{DirectionalLamp, ParallelogramLamp, PointLamp, SceneCamera, SceneId};
@@ -16,7 +16,7 @@ use bevy::transform::components::Transform;
 
 /// The next click in the view is what the selection looks at.
 pub(super) fn arm(world: &mut World) {
-    *world.resource_mut::<Armed>() = Armed::Aim;
+    pointer::arm(world, Armed::Aim);
 }
 
 pub(super) fn may_aim(world: &World) -> State {
