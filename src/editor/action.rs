@@ -17,8 +17,9 @@ pub enum Action {
     Open(PathBuf),
     /// Writes the scene to this file.
     SaveAs(PathBuf),
-    /// Adds a model file's content to the open scene.
-    Import(PathBuf),
+    /// Adds a model file's content to the open scene, where it was dropped in the window, in logical pixels; in the
+    /// middle of the view with `None`.
+    Import(PathBuf, #[serde(default)] Option<Vec2>),
     /// Adds one thing where the view looks.
     Add(Addition),
     /// Selects these and no others.
@@ -167,4 +168,15 @@ pub fn shapes() -> Vec<(&'static str, Shape)> {
             },
         ),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_script_need_not_say_where_a_model_is_dropped() {
+        let read: Action = ron::from_str(r#"Import("a.obj")"#).unwrap();
+        assert_eq!(read, Action::Import("a.obj".into(), None));
+    }
 }

@@ -34,7 +34,7 @@ pub(super) fn dispatch(world: &mut World) {
             Action::Run(id) => command::run(world, &id),
             Action::Open(path) => request(world, FileTask::Open(path)),
             Action::SaveAs(path) => request(world, FileTask::SaveAs(path)),
-            Action::Import(path) => request(world, FileTask::Import(path)),
+            Action::Import(path, at) => request(world, FileTask::Import(path, at)),
             Action::Add(what) => edits::step_add(world, &what),
             Action::Select(ids) => edits::select(world, ids),
             Action::Rename(id, name) => edits::step_rename(world, id, &name),

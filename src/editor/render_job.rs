@@ -12,11 +12,14 @@ use crate::io::{
 use crate::scene::{RangeProblem, RenderSettings, SceneId, range_problems};
 use crate::sync::{Traced, TracedCameras};
 use crate::trace;
-use bevy::app::{App, Last, Plugin};
+use bevy::app::{App, AppExit, Last, Plugin};
+use bevy::ecs::message::MessageReader;
 use bevy::ecs::observer::On;
 use bevy::ecs::resource::Resource;
+use bevy::ecs::schedule::IntoScheduleConfigs;
 use bevy::ecs::system::ResMut;
 use bevy::ecs::world::{Mut, World};
+use std::io::Write;
 use std::path::PathBuf;
 use std::thread::{self, JoinHandle};
 
@@ -195,8 +198,35 @@ impl Plugin for RenderJobPlugin {
             .init_resource::<Notices>()
             .add_observer(forget_waiting)
             // Whether the editor is on or not, and when the scene is traced as it is now.
-            .add_systems(Last, carry_on);
+            .add_systems(Last, (carry_on, finish_writing).chain());
     }
+}
+
+/// The program ends: what is rendered and being written is written first.
+fn finish_writing(mut exits: MessageReader<AppExit>, mut jobs: ResMut<RenderJob>) {
+    if exits.read().next().is_none() {
+        return;
+    }
+    let writes = |job: &mut Job| matches!(job.stage, Stage::Writing(..));
+    let Some(Job {
+        stage: Stage::Writing(writing, _),
+        request,
+        ..
+    }) = jobs.job.take_if(writes)
+    else {
+        return;
+    };
+    let why = match writing.join() {
+        Ok(Ok(())) => return,
+        Ok(Err(error)) => error.to_string(),
+        Err(_) => "writing it failed by a bug".into(),
+    };
+    // The window is gone, and where standard error is closed nobody listens.
+    let _ = writeln!(
+        std::io::stderr(),
+        "error: {}: {why}",
+        request.file.display()
+    );
 }
 
 fn carry_on(world: &mut World) {
@@ -271,4 +301,58 @@ fn step(world: &mut World, job: Job, done: &mut Option<String>) -> Option<Job> {
         writing @ Stage::Writing(..) => writing,
     };
     Some(Job { stage, ..job })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::document::{Document, FileTask, request};
+    use crate::editor::headless_editor;
+    use crate::io::{OpenOptions, SceneSource, builtin, open};
+    use std::time::Duration;
+
+    #[test]
+    fn a_picture_that_is_being_written_is_written_before_the_program_ends() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.png");
+        let mut app = headless_editor();
+        let source = SceneSource::Builtin(builtin::find("cornell-box").unwrap());
+        open(app.world_mut(), &source, OpenOptions::default()).unwrap();
+        app.update();
+        app.update();
+        let world = app.world_mut();
+        let settings = RenderSettings::default();
+        let (scene, camera) = {
+            let scene = (*world.resource::<Traced>().world).clone();
+            (scene, world.resource::<TracedCameras>().0[0].camera.clone())
+        };
+        let render = Progressive::start_for_file(scene, camera.clone(), settings.clone()).unwrap();
+        let status = render.status();
+        drop(render);
+        let written = file.clone();
+        let slow = move || {
+            thread::sleep(Duration::from_millis(500));
+            std::fs::write(&written, "a picture").unwrap();
+            Ok(())
+        };
+        world.resource_mut::<RenderJob>().job = Some(Job {
+            request: RenderRequest {
+                file: file.clone(),
+                camera: RenderFrom::FirstCamera,
+                settings,
+            },
+            camera,
+            name: String::new(),
+            stage: Stage::Writing(thread::spawn(slow), status),
+        });
+        crate::editor::document::adopt(world, "cornell-box", None);
+        request(world, FileTask::Quit);
+        assert_eq!(
+            world.resource::<Document>().question,
+            None,
+            "nothing is lost"
+        );
+        app.update();
+        assert!(file.exists());
+    }
 }

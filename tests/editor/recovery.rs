@@ -135,7 +135,7 @@ fn work_that_stays_open_is_kept_although_somebody_agreed_to_lose_it() {
     let outside = elsewhere.path().join("outside.scn.ron");
     let mut app = headless_editor();
     app.update();
-    for action in [Action::Import(model), Action::SaveAs(outside.clone())] {
+    for action in [Action::Import(model, None), Action::SaveAs(outside.clone())] {
         act(&mut app, action);
     }
     for (way, asks) in [

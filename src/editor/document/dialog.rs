@@ -29,10 +29,14 @@ struct OpenDialog {
 /// Asks for a file: with the desktop's own dialog where there is one, else by a typed path.
 pub(super) fn ask(world: &mut World, purpose: Purpose) {
     let suggestion = suggestion(world, purpose);
+    let question = &world.resource::<Document>().question;
+    let waits = matches!(question, Some(Question::Waiting { .. }));
     let mut dialogs = world.resource_mut::<Dialogs>();
-    if dialogs.open.is_some() {
+    if dialogs.open.is_some() && waits {
         return;
     }
+    // Another question took the place of the one that waited for it.
+    dialogs.open = None;
     if !dialogs.broken && dialog_native::is_available() {
         let start = suggestion.clone();
         let choose = move |_: &_| dialog_native::choose(purpose, &start);
@@ -126,5 +130,48 @@ pub(super) fn take_choices(world: &mut World) {
         Some(path) => take(world, purpose, &path, Some(&path)),
         _ if was_short => type_instead(world, purpose),
         _ => world.resource_mut::<Document>().give_up(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::document::{Answer, FileTask, answer, request};
+
+    #[test]
+    fn a_scene_without_a_file_can_be_saved_when_the_program_is_left_with_a_dialog_open() {
+        let mut app = crate::editor::headless_editor();
+        let world = app.world_mut();
+        crate::editor::document::adopt(world, "nothing", None);
+        let (keeps, waits) = std::sync::mpsc::channel::<()>();
+        let choose = move |_: &_| {
+            let _ = waits.recv();
+            None
+        };
+        let purpose = Purpose::Open;
+        *world.resource_mut::<Dialogs>() = Dialogs {
+            open: Some(OpenDialog {
+                purpose,
+                since: Instant::now(),
+                choice: Background::start("file dialog", choose).unwrap(),
+            }),
+            broken: true,
+        };
+        let mut document = world.resource_mut::<Document>();
+        document.question = Some(Question::Waiting { purpose });
+        world.spawn(crate::scene::SceneId(1));
+        let then = FileTask::Quit;
+        request(world, then.clone());
+        let asked = world.resource::<Document>().question.clone();
+        assert_eq!(asked, Some(Question::Unsaved { then }));
+        assert!(world.resource::<Dialogs>().open.is_none());
+        answer(world, Answer::Yes);
+        let asked = &world.resource::<Document>().question;
+        let purpose = Purpose::SaveAs;
+        assert!(
+            matches!(asked, Some(Question::Path { purpose: of, .. }) if *of == purpose),
+            "{asked:?}"
+        );
+        drop(keeps);
     }
 }

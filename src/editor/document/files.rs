@@ -23,6 +23,14 @@ pub(in crate::editor) fn request(world: &mut World, task: FileTask) {
     if !loses {
         return perform_now(world, task);
     }
+    let question = &world.resource::<Document>().question;
+    if matches!(question, Some(Question::Waiting { .. })) {
+        // The question that follows would stand in its place, and two would be waited for.
+        dialog::give_up(world);
+        let mut document = world.resource_mut::<Document>();
+        document.question = None;
+        document.give_up();
+    }
     world.resource_mut::<Gesture>().end();
     note_state_now(world);
     if world.resource::<Document>().unsaved {
@@ -40,7 +48,7 @@ pub(super) fn perform_now(world: &mut World, task: FileTask) {
             finish_opening(world, "Untitled".into(), None);
         }
         FileTask::Open(path) => open_file(world, &path, false),
-        FileTask::Import(path) => match edits::import(world, &path) {
+        FileTask::Import(path, at) => match edits::import(world, &path, at) {
             Ok(()) => {
                 world.resource_mut::<Document>().give_up();
                 remember_folder_of(world, &path);
@@ -51,7 +59,9 @@ pub(super) fn perform_now(world: &mut World, task: FileTask) {
         FileTask::Quit => {
             let job = world.get_resource::<RenderJob>();
             let rendered = job.and_then(RenderJob::progress);
-            match rendered.map(|progress| progress.file) {
+            // What is only being written will be.
+            let unfinished = rendered.filter(|progress| !progress.writing);
+            match unfinished.map(|progress| progress.file) {
                 Some(file) => {
                     world.resource_mut::<Document>().question = Some(Question::Rendering { file });
                 }

@@ -3,6 +3,7 @@
 use super::files::{self, perform_now};
 use super::{Document, dialog, recovery};
 use bevy::ecs::world::World;
+use bevy::math::Vec2;
 use std::path::{Path, PathBuf};
 
 /// What is done with a file, at once or after a question.
@@ -12,8 +13,8 @@ pub enum FileTask {
     New,
     /// Opens a file, or a built-in scene by its name.
     Open(PathBuf),
-    /// Adds a model's content to the open scene.
-    Import(PathBuf),
+    /// Adds a model's content to the open scene, where it was dropped in the window, in logical pixels.
+    Import(PathBuf, Option<Vec2>),
     /// Writes the scene.
     SaveAs(PathBuf),
     /// Ends the program.
@@ -169,7 +170,7 @@ pub(super) fn take(world: &mut World, purpose: Purpose, path: &Path, asked: Opti
 fn chosen(purpose: Purpose, path: &Path) -> Option<FileTask> {
     Some(match purpose {
         Purpose::Open => FileTask::Open(path.to_path_buf()),
-        Purpose::Import => FileTask::Import(path.to_path_buf()),
+        Purpose::Import => FileTask::Import(path.to_path_buf(), None),
         Purpose::SaveAs if path.extension().is_none() => {
             let mut name = path.as_os_str().to_owned();
             name.push(".scn.ron");

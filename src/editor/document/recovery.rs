@@ -10,7 +10,7 @@
 
 use super::question::Question;
 use super::{Document, adopt, note_state_now};
-use crate::editor::history::History;
+use crate::editor::history::{Gesture, History};
 use crate::editor::notice::Notices;
 use crate::editor::selection::Selection;
 use crate::io::{
@@ -244,6 +244,7 @@ fn complain(world: &mut World, why: &str) {
 /// The program ends, and the work as it is now need not be kept: somebody said so, or a script ends it. Nobody says so of
 /// work that stays open: where another scene was to be opened instead and could not be, the copy is still wanted.
 pub(in crate::editor) fn give_up_work(world: &mut World) {
+    world.resource_mut::<Gesture>().end();
     note_state_now(world);
     let state = Some(world.resource::<History>().state());
     if let Some(mut recovery) = world.get_resource_mut::<RecoveryFolder>() {
@@ -367,6 +368,8 @@ fn end(world: &mut World, mut exits: Local<MessageCursor<AppExit>>) {
     {
         return;
     }
+    // What is dragged or typed until now is work, too.
+    world.resource_mut::<Gesture>().end();
     note_state_now(world);
     let state = world.resource::<History>().state();
     let unsaved = world.resource::<Document>().unsaved;
@@ -385,4 +388,49 @@ fn end(world: &mut World, mut exits: Local<MessageCursor<AppExit>>) {
     };
     // The window is gone, and where standard error is closed nobody listens.
     let _ = writeln!(std::io::stderr(), "{what}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::edits::rename;
+    use crate::editor::headless_editor;
+    use crate::scene::SceneId;
+
+    #[test]
+    fn what_is_being_dragged_or_typed_is_kept_when_the_program_is_ended() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut app = headless_editor();
+        add_to(&mut app, folder.path(), false);
+        let world = app.world_mut();
+        world.spawn((SceneId(1), crate::scene::PointLamp::default()));
+        adopt(world, "nothing", None);
+        app.update();
+        let world = app.world_mut();
+        world.resource_mut::<Gesture>().begin("Drag");
+        rename(world, SceneId(1), "Dragged");
+        world.write_message(AppExit::Success);
+        app.update();
+        let copy = app.world().resource::<RecoveryFolder>().file(COPY);
+        let kept = fs::read_to_string(copy).unwrap();
+        assert!(kept.contains("Dragged"), "{kept}");
+    }
+
+    #[test]
+    fn what_is_being_dragged_is_given_up_with_the_rest() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut app = headless_editor();
+        add_to(&mut app, folder.path(), false);
+        let world = app.world_mut();
+        world.spawn((SceneId(1), crate::scene::PointLamp::default()));
+        adopt(world, "nothing", None);
+        app.update();
+        let world = app.world_mut();
+        world.resource_mut::<Gesture>().begin("Drag");
+        rename(world, SceneId(1), "Dragged");
+        give_up_work(world);
+        world.write_message(AppExit::Success);
+        app.update();
+        assert!(!app.world().resource::<RecoveryFolder>().file(COPY).exists());
+    }
 }

@@ -3,7 +3,7 @@
 use super::Document;
 use crate::editor::action::Action;
 use crate::editor::command;
-use crate::editor::edits::{DroppedAt, scene_entity};
+use crate::editor::edits::scene_entity;
 use crate::editor::embed::Editing;
 use crate::editor::history::{History, within};
 use crate::editor::notice::Notices;
@@ -83,10 +83,7 @@ fn drop_file(world: &mut World, file: &Path) {
         }
         model if MODEL_EXTENSIONS.contains(&model) => {
             let at = pick::cursor(world);
-            if let Some(mut dropped) = world.get_resource_mut::<DroppedAt>() {
-                dropped.0 = at;
-            }
-            world.write_message(Action::Import(file.to_path_buf()));
+            world.write_message(Action::Import(file.to_path_buf(), at));
         }
         picture if PICTURE_EXTENSIONS.contains(&picture) => {
             let on_objects = !matches!(picture, "hdr" | "pic" | "exr");
@@ -180,6 +177,7 @@ mod tests {
     use crate::scene::SceneId;
     use bevy::app::AppExit;
     use bevy::ecs::entity::Entity;
+    use bevy::math::Vec2;
 
     /// The editor over an app's scene, switched on or off, with the app's window and another one.
     fn embedded(is_on: bool) -> (App, [Entity; 2]) {
@@ -245,6 +243,25 @@ mod tests {
                 assert_eq!(map(&app), before);
             }
         }
+    }
+
+    #[test]
+    fn each_of_two_models_that_are_dropped_at_once_goes_where_it_was_dropped() {
+        let (mut app, [window, _]) = embedded(true);
+        let at = Vec2::new(40.0, 30.0);
+        let world = app.world_mut();
+        let mut shown = world.get_mut::<Window>(window).unwrap();
+        shown.resolution.set(800.0, 600.0);
+        shown.set_cursor_position(Some(at));
+        let at = pick::cursor(world);
+        assert!(at.is_some());
+        for name in ["a.obj", "b.obj"] {
+            drop_file(world, Path::new(name));
+        }
+        let mut messages = world.resource_mut::<Messages<Action>>();
+        let sent: Vec<Action> = messages.drain().collect();
+        let expected = ["a.obj", "b.obj"].map(|name| Action::Import(name.into(), at));
+        assert_eq!(sent, expected);
     }
 
     fn quits(app: &App) -> bool {

@@ -19,7 +19,6 @@ use bevy::ecs::entity::Entity;
 use bevy::ecs::event::Event;
 use bevy::ecs::hierarchy::Children;
 use bevy::ecs::query::With;
-use bevy::ecs::resource::Resource;
 use bevy::ecs::world::World;
 use bevy::math::{Vec2, Vec3};
 use bevy::mesh::Mesh3d;
@@ -28,10 +27,6 @@ use std::path::Path;
 
 /// How steep a surface may be that a model is put on: the cosine of its slope.
 const LEVEL: f32 = 0.7;
-
-/// Where in the window a file was dropped that is imported next, in logical pixels.
-#[derive(Resource, Default)]
-pub(in crate::editor) struct DroppedAt(pub Option<Vec2>);
 
 /// A model was added and stands somewhere.
 #[derive(Event, Clone, Copy, Debug)]
@@ -64,10 +59,15 @@ fn is(world: &World, place: ImportPlace) -> State {
     State::switch(now.is_some_and(|now| now.import_place == place))
 }
 
-/// Adds a model's content to the scene, as a step, and selects it.
-pub(in crate::editor) fn import(world: &mut World, file: &Path) -> Result<(), FileError> {
+/// Adds a model's content to the scene, as a step, and selects it. `at` is where in the window it was dropped, in logical
+/// pixels; the middle of the view where it was not.
+pub(in crate::editor) fn import(
+    world: &mut World,
+    file: &Path,
+    at: Option<Vec2>,
+) -> Result<(), FileError> {
     let mut result = Ok(());
-    step(world, |world| match add_file(world, file) {
+    step(world, |world| match add_file(world, file, at) {
         Ok(name) => Some(name),
         Err(error) => {
             result = Err(error);
@@ -77,10 +77,7 @@ pub(in crate::editor) fn import(world: &mut World, file: &Path) -> Result<(), Fi
     result
 }
 
-fn add_file(world: &mut World, file: &Path) -> Result<String, FileError> {
-    let dropped_at = world
-        .get_resource_mut::<DroppedAt>()
-        .and_then(|mut dropped| dropped.0.take());
+fn add_file(world: &mut World, file: &Path, at: Option<Vec2>) -> Result<String, FileError> {
     let mut objects = world.query_filtered::<(), With<Mesh3d>>();
     let is_first = objects.iter(world).next().is_none();
     let (root, imported) = add_model(world, file)?;
@@ -107,7 +104,7 @@ fn add_file(world: &mut World, file: &Path) -> Result<String, FileError> {
             leave_out(world, &along);
         }
         if let Some(extent) = extent_now(world, root) {
-            says.extend(put_down(world, root, extent, place, dropped_at));
+            says.extend(put_down(world, root, extent, place, at));
             let extent = extent_now(world, root).unwrap_or(extent);
             let is_fitted = place == ImportPlace::Fitted;
             world.trigger(ModelAdded { extent, is_fitted });
@@ -260,7 +257,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("wedge.obj");
         std::fs::write(&file, MODEL).unwrap();
-        import(app.world_mut(), &file).unwrap();
+        import(app.world_mut(), &file, None).unwrap();
         (app, folder)
     }
 

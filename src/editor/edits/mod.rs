@@ -20,7 +20,7 @@ pub use copy::{Clipboard, copy, duplicate, paste};
 pub(in crate::editor) use group::is_group;
 pub use group::{Ungrouped, group, ungroup};
 pub use hiding::set_visible;
-pub(in crate::editor) use import::{DroppedAt, ModelAdded, import};
+pub(in crate::editor) use import::{ModelAdded, import};
 pub use index::{SceneIndex, scene_entity};
 pub use material::assign_material;
 pub(in crate::editor) use material::{is_object, share_material};

@@ -27,7 +27,6 @@ impl Plugin for EditsPlugin {
             .init_resource::<Selection>()
             .init_resource::<Notices>()
             .init_resource::<SceneIndex>()
-            .init_resource::<import::DroppedAt>()
             .add_commands(commands())
             .add_commands(hiding::commands())
             .add_commands(selecting::commands())

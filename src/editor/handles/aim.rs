@@ -5,7 +5,7 @@ use super::super::edits::{name_of, scene_entity, step};
 use super::super::extent::{world_from_entity, world_from_parent};
 use super::super::notice::Notices;
 use super::super::pick;
-use super::super::pointer::Armed;
+use super::super::pointer::{self, Armed};
 use super::super::selection::Selection;
 use super::bodies::{Body, Change};
 use crate::scene::{DirectionalLamp, ParallelogramLamp, PointLamp, SceneCamera, SceneId};
@@ -16,7 +16,7 @@ use bevy::transform::components::Transform;
 
 /// The next click in the view is what the selection looks at.
 pub(super) fn arm(world: &mut World) {
-    *world.resource_mut::<Armed>() = Armed::Aim;
+    pointer::arm(world, Armed::Aim);
 }
 
 pub(super) fn may_aim(world: &World) -> State {
@@ -62,6 +62,7 @@ pub(in super::super) fn aim(world: &mut World, at: Vec2) {
         return;
     };
     let ids = world.resource::<Selection>().ids().to_vec();
+    let mut any = false;
     step(world, |world| {
         let mut aimed = Vec::new();
         for id in ids {
@@ -69,6 +70,7 @@ pub(in super::super) fn aim(world: &mut World, at: Vec2) {
                 aimed.push(id);
             }
         }
+        any = !aimed.is_empty();
         let whose = match aimed.as_slice() {
             [] => return None,
             [one] => name_of(world, *one),
@@ -76,6 +78,10 @@ pub(in super::super) fn aim(world: &mut World, at: Vec2) {
         };
         Some(format!("Aim {whose} at {}", name_of(world, target.id)))
     });
+    if !any {
+        let text = "Nothing that is selected can be turned there.";
+        world.resource_mut::<Notices>().tell(text);
+    }
 }
 
 /// Turns one entity to a point of the world; `false` where it has no direction or is there itself.

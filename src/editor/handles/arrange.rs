@@ -52,23 +52,28 @@ pub(super) fn commands() -> Vec<Command> {
 }
 
 fn ready(world: &World, least: usize) -> State {
-    let enough = world.resource::<Selection>().ids().len() >= least;
+    let enough = standing(world).take(least).count() >= least;
     let why_not = match least {
-        1 => "Nothing is selected.",
-        2 => "Two objects have to be selected.",
-        _ => "Three objects have to be selected.",
+        1 => "Nothing that stands somewhere is selected.",
+        2 => "Two objects have to be selected of which neither hangs on the other.",
+        _ => "Three objects have to be selected of which none hangs on another.",
     };
     State::when(enough, why_not)
 }
 
 /// The selected objects that do not hang on others of them, and the room that each takes; the active one is the last.
 fn selected(world: &World) -> Vec<(SceneId, Extent)> {
+    standing(world).collect()
+}
+
+/// The same, one after the other.
+fn standing(world: &World) -> impl Iterator<Item = (SceneId, Extent)> {
     let roots = roots_of(world, world.resource::<Selection>().ids());
     let with_extent = |id| {
         world.get::<Transform>(scene_entity(world, id)?)?;
         Some((id, extent_of(world, &[id])?))
     };
-    roots.into_iter().filter_map(with_extent).collect()
+    roots.into_iter().filter_map(with_extent)
 }
 
 /// Moves it in the world; `false` where it stays.
@@ -245,6 +250,32 @@ mod tests {
         let ids = (1..=places.len() as u64).map(SceneId);
         app.world_mut().resource_mut::<Selection>().set(ids);
         app
+    }
+
+    #[test]
+    fn what_would_do_nothing_is_not_offered() {
+        let mut app = lamps(&[Vec3::ZERO, Vec3::ONE]);
+        let world = app.world_mut();
+        let material = SceneId(7);
+        world.spawn((material, crate::scene::Phong::default()));
+        let (parent, child) = (SceneId(8), SceneId(9));
+        let above = world.spawn((parent, PointLamp::default())).id();
+        let hangs = bevy::ecs::hierarchy::ChildOf(above);
+        world.spawn((child, PointLamp::default(), hangs));
+        app.update();
+        for (ids, least, enough) in [
+            (vec![material], 1, false),
+            (vec![material, SceneId(1)], 1, true),
+            (vec![material, SceneId(1)], 2, false),
+            (vec![parent, child], 2, false),
+            (vec![SceneId(1), SceneId(2)], 2, true),
+            (vec![SceneId(1), parent, child], 3, false),
+        ] {
+            let world = app.world_mut();
+            world.resource_mut::<Selection>().set(ids.iter().copied());
+            let state = ready(world, least);
+            assert_eq!(state.why_not.is_none(), enough, "{ids:?} of {least}");
+        }
     }
 
     fn places(app: &App, count: u64) -> Vec<Vec3> {

@@ -5,7 +5,7 @@ use super::super::edits::{name_of, scene_entity, step};
 use super::super::extent::{scene_extent, world_from_entity};
 use super::super::notice::Notices;
 use super::super::pick;
-use super::super::pointer::Armed;
+use super::super::pointer::{self, Armed};
 use super::super::selection::Selection;
 use crate::scene::{Lens, SceneCamera, SceneId};
 use bevy::ecs::entity::Entity;
@@ -18,7 +18,7 @@ const OPENING: f32 = 1.0 / 40.0;
 
 /// The next click in the view is what the selected cameras are focused on.
 pub(super) fn arm(world: &mut World) {
-    *world.resource_mut::<Armed>() = Armed::Focus;
+    pointer::arm(world, Armed::Focus);
 }
 
 pub(super) fn may_focus(world: &World) -> State {

@@ -103,6 +103,12 @@ impl History {
         }
     }
 
+    /// Whether the step that led to this [state](Self::state) is done, and has not been undone since.
+    pub(super) fn is_done(&self, state: u64) -> bool {
+        let found = self.steps.binary_search_by_key(&state, |step| step.serial);
+        state <= self.base || found.is_ok_and(|at| at < self.done)
+    }
+
     /// About how much memory the steps take, in bytes.
     pub fn bytes(&self) -> usize {
         self.bytes

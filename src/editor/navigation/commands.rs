@@ -1,6 +1,7 @@
 //! The commands of the view.
 
 use super::drag::{begin_gesture, end_gesture};
+use super::eye::FARTHEST_BACK;
 use super::framing::frame;
 use super::{Eye, LookThrough, move_camera, move_view};
 use crate::editor::action::{Addition, Axis};
@@ -15,6 +16,7 @@ use crate::scene::{SceneCamera, SceneId};
 use crate::view::TracedRender;
 use bevy::ecs::query::With;
 use bevy::ecs::world::World;
+use bevy::math::Vec3;
 
 pub(super) fn commands() -> Vec<Command> {
     commands! {
@@ -117,9 +119,15 @@ fn toggle_lock(world: &mut World) {
 /// How far an orthographic view has to stand back to have all of the scene before it.
 pub(super) fn back(world: &mut World) -> f32 {
     let pivot = world.resource::<Eye>().pivot;
-    scene_extent(world).map_or(0.0, |extent| {
-        extent.radius() + extent.centre().distance(pivot)
-    })
+    farthest(world, pivot)
+}
+
+/// Metres from a point to what of the scene is farthest, at the most.
+pub(super) fn farthest(world: &mut World, from: Vec3) -> f32 {
+    let farthest = scene_extent(world).map_or(0.0, |extent| {
+        extent.radius() + extent.centre().distance(from)
+    });
+    farthest.min(FARTHEST_BACK)
 }
 
 fn look_along(world: &mut World, axis: Axis) {

@@ -19,7 +19,7 @@ pub(super) const DISTANCE: [f32; 2] = [1e-4, 0.36 * REACH];
 /// How far from the origin what is framed may lie along each axis, in metres.
 const FARTHEST_PIVOT: f32 = 0.25 * REACH;
 /// How far an orthographic view may stand back, in metres.
-const FARTHEST_BACK: f32 = 0.2 * REACH;
+pub(super) const FARTHEST_BACK: f32 = 0.2 * REACH;
 
 /// The view: it turns around a pivot that lies on its axis.
 ///

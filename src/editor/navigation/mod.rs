@@ -90,6 +90,8 @@ pub struct LookThrough {
     pub locked: bool,
     /// What the view has taken over last.
     seen: Option<(SceneId, Transform, SceneProjection)>,
+    /// Metres from an orthographic camera that is looked through to the end of the scene; 0 with others.
+    reach: f32,
     /// A drag of the locked camera is under way.
     drags: bool,
     /// Frames until the scene that was opened last has its places and sizes.

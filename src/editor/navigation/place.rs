@@ -29,7 +29,8 @@ pub(super) fn place_view(
     let exact = through.camera.and(through.seen.as_ref());
     let wanted = exact.map_or_else(|| eye.transform(), |(_, place, _)| *place);
     transform.set_if_neq(wanted);
-    set_projection(&mut projection, &eye, camera);
+    let reach = exact.map_or(0.0, |_| through.reach);
+    set_projection(&mut projection, &eye, reach, camera);
     if view.optics_of != through.camera {
         view.optics_of = through.camera;
     }
@@ -42,10 +43,16 @@ pub(super) fn place_view(
     }
 }
 
-fn set_projection(projection: &mut bevy::prelude::Mut<Projection>, eye: &Eye, camera: &Camera) {
+/// `reach` is how far it has to see at least, in metres.
+fn set_projection(
+    projection: &mut bevy::prelude::Mut<Projection>,
+    eye: &Eye,
+    reach: f32,
+    camera: &Camera,
+) {
     if eye.orthographic {
         let height = eye.height();
-        let far = eye.distance + 2.0 * eye.back + 1.0;
+        let far = (eye.distance + 2.0 * eye.back).max(reach) + 1.0;
         let same = matches!(&**projection, Projection::Orthographic(p)
             if p.far == far && matches!(p.scaling_mode,
                 ScalingMode::FixedVertical { viewport_height } if viewport_height == height));

@@ -2,6 +2,7 @@
 //! locked.
 
 use super::super::extent::{world_from_entity, world_from_parent};
+use super::commands::farthest;
 use super::{Eye, LookThrough};
 use crate::editor::edits;
 use crate::scene::{Projection, SceneCamera, SceneId};
@@ -48,7 +49,13 @@ pub(super) fn see_through(world: &mut World) {
             eye.pivot = place.translation + eye.forward() * eye.distance;
         }
     }
+    // The view begins at the camera, so that its depth ends where the scene does and not behind the pivot.
+    let reach = match eye.orthographic {
+        true => farthest(world, place.translation),
+        false => 0.0,
+    };
     *world.resource_mut::<Eye>() = eye;
+    world.resource_mut::<LookThrough>().reach = reach;
     world.resource_mut::<LookThrough>().seen = Some(seen);
 }
 
@@ -105,5 +112,48 @@ fn same_projection(a: &Projection, b: &Projection) -> bool {
             near(*a, *b)
         }
         _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::headless_editor;
+    use crate::editor::viewport::Viewport;
+    use crate::io::{OpenOptions, SceneSource, builtin, open};
+    use bevy::math::Vec3;
+
+    #[test]
+    fn an_orthographic_camera_that_is_looked_through_reaches_the_end_of_the_scene() {
+        let mut app = headless_editor();
+        app.init_resource::<Eye>()
+            .init_resource::<LookThrough>()
+            .init_resource::<Viewport>();
+        let source = SceneSource::Builtin(builtin::find("cornell-box").unwrap());
+        open(app.world_mut(), &source, OpenOptions::default()).unwrap();
+        app.update();
+        app.update();
+        let world = app.world_mut();
+        let id = SceneId(4711);
+        let place = Transform::from_xyz(0.0, 0.0, 50.0).looking_at(Vec3::ZERO, Vec3::Y);
+        let projection = Projection::Orthographic { height: 2.0 };
+        let camera = SceneCamera {
+            projection,
+            ..SceneCamera::default()
+        };
+        let entity = world.spawn((id, place, camera)).id();
+        app.update();
+        let world = app.world_mut();
+        world.resource_mut::<LookThrough>().camera = Some(id);
+        see_through(world);
+        let reach = world.resource::<LookThrough>().reach;
+        assert!(reach >= 50.0, "{reach} m");
+        // Its place in the scene stays: the eye stands where it does.
+        assert_eq!(world.resource::<Eye>().back, 0.0);
+        let fov_y = 1.0;
+        let mut camera = world.get_mut::<SceneCamera>(entity).unwrap();
+        camera.projection = Projection::Perspective { fov_y };
+        see_through(world);
+        assert_eq!(world.resource::<LookThrough>().reach, 0.0);
     }
 }

@@ -8,7 +8,7 @@ use crate::editor::action::Action;
 use crate::editor::document::SceneOpened;
 use crate::editor::inspection::{DebugRay, show_preset};
 use crate::editor::pick::{self, to_points};
-use crate::editor::pointer::{Armed, PixelAsked, ask_pixel};
+use crate::editor::pointer::{Armed, PixelAsked, arm, ask_pixel};
 use crate::editor::preferences::Preferences;
 use crate::editor::selection::Escaped;
 use crate::editor::viewport::Viewport;
@@ -68,7 +68,7 @@ struct Asked {
 pub(super) fn ask(world: &mut World, question: Question) {
     match world.resource::<ContextMenu>().chosen_at() {
         Some(at) => ask_pixel(world, question, at),
-        None => *world.resource_mut::<Armed>() = Armed::Why(question),
+        None => arm(world, Armed::Why(question)),
     }
 }
 

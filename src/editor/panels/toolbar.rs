@@ -7,6 +7,7 @@ use super::says::Says;
 use crate::editor::action::Action;
 use crate::editor::command::{CommandTable, tooltip};
 use crate::editor::handles::{SnapTo, Tools};
+use crate::editor::pointer::{self, Armed};
 use crate::editor::preferences::Preferences;
 use crate::editor::viewport::{RegionDrag, traced_view, traced_view_mut};
 use crate::film::views::View;
@@ -121,6 +122,7 @@ fn traced_ui(ui: &mut Ui, world: &mut World) {
         "Only a part of the view is traced: press, then drag a frame over the picture; press again for all",
     );
     if region.clicked() {
+        pointer::arm(world, Armed::No);
         *world.resource_mut::<RegionDrag>() = RegionDrag {
             is_armed: !on,
             start: None,

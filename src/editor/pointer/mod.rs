@@ -11,6 +11,7 @@ pub(super) use clicks::ask_pixel;
 
 use super::action::Action;
 use super::command::Over;
+use super::document::SceneOpened;
 use super::embed::Switched;
 use super::handles::{self, GripDrag, grip_at};
 use super::keys::Inbox;
@@ -55,6 +56,7 @@ impl Plugin for PointerPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<PointerUse>()
             .init_resource::<Armed>()
+            .add_observer(disarm)
             .init_resource::<Pointer>()
             .add_observer(take_over)
             .add_systems(
@@ -100,6 +102,21 @@ pub(super) enum Armed {
     Aim,
     /// What the selected cameras shall see sharp.
     Focus,
+}
+
+/// From now on the next click in the view is for this, and for nothing that was waited for before.
+pub(super) fn arm(world: &mut World, armed: Armed) {
+    if let Some(mut region) = world.get_resource_mut::<RegionDrag>() {
+        region.cancel();
+    }
+    if let Some(mut now) = world.get_resource_mut::<Armed>() {
+        *now = armed;
+    }
+}
+
+/// Nobody clicks in another scene what was asked about this one.
+fn disarm(_: On<SceneOpened>, mut commands: Commands) {
+    commands.queue(|world: &mut World| arm(world, Armed::No));
 }
 
 /// Something was asked of the pixel there; its rays are being traced.

@@ -57,3 +57,24 @@ fn a_right_press_that_moves_nothing_is_a_click_however_long_a_frame_takes() {
     let world = World::new();
     assert!(Press::of(&world, Vec2::ZERO).has_stayed(&world));
 }
+
+#[test]
+fn one_thing_is_waited_for_at_a_time_and_none_that_another_scene_was_asked_about() {
+    let mut app = App::new();
+    app.init_resource::<Armed>()
+        .init_resource::<RegionDrag>()
+        .add_observer(disarm);
+    let world = app.world_mut();
+    let region = |world: &mut World| {
+        world.resource_mut::<RegionDrag>().is_armed = true;
+    };
+    region(world);
+    arm(world, Armed::Aim);
+    assert!(!world.resource::<RegionDrag>().is_armed);
+    assert_eq!(*world.resource::<Armed>(), Armed::Aim);
+    region(world);
+    world.trigger(SceneOpened);
+    world.flush();
+    assert!(!world.resource::<RegionDrag>().is_armed);
+    assert_eq!(*world.resource::<Armed>(), Armed::No);
+}

@@ -5,7 +5,7 @@ use super::super::asked::Asked;
 use super::super::number_field::select_letters;
 use super::super::says::Says;
 use super::folder::{Taken, above, list_ui, names_in};
-use super::question::whole_path_ui;
+use super::question::{is_pressed_anew, whole_path_ui};
 use crate::editor::document::{Answer, Purpose};
 use crate::editor::texts::{path_of, path_text};
 use crate::io::PICTURE_EXTENSIONS;
@@ -156,7 +156,7 @@ pub(super) fn path_ui(
             false => end_caret(ui, id, &form.text),
         }
     }
-    let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+    let entered = response.lost_focus() && ui.input(|input| is_pressed_anew(input, Key::Enter));
     let path = path_of(match purpose {
         Purpose::SaveAs => without_suggested(&form.text),
         Purpose::Open | Purpose::Import | Purpose::Picture => &form.text,

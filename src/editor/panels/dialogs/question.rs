@@ -8,7 +8,7 @@ use crate::editor::document::{Answer, Document, Purpose, Question, answer};
 use crate::editor::preferences::Preferences;
 use crate::editor::texts::path_text;
 use bevy::ecs::world::World;
-use bevy_egui::egui::{self, Key, Ui};
+use bevy_egui::egui::{self, Event, InputState, Key, Ui};
 use std::path::Path;
 
 /// Shows the document's question, if one is open; true where it is.
@@ -81,8 +81,8 @@ pub(super) fn question_ui(
             answered = buttons_ui(
                 ui,
                 &[
-                    ("Replace", "The old file is lost", Answer::Yes),
                     ("Cancel", "Leaves it as it is", Answer::Cancel),
+                    ("Replace", "The old file is lost", Answer::Yes),
                 ],
             );
         }
@@ -119,12 +119,12 @@ pub(super) fn question_ui(
             answered = buttons_ui(
                 ui,
                 &[
+                    ("Cancel", "Leaves the open scene as it is", Answer::Cancel),
                     (
                         "Open",
                         "Reads files outside the scene's folder too",
                         Answer::Yes,
                     ),
-                    ("Cancel", "Leaves the open scene as it is", Answer::Cancel),
                 ],
             );
         }
@@ -174,7 +174,7 @@ pub(super) fn question_ui(
     true
 }
 
-/// One button for each answer; Enter gives the first.
+/// One button for each answer; Enter gives the first, which therefore loses nothing and trusts nobody.
 fn buttons_ui(ui: &mut Ui, answers: &[(&str, &str, Answer)]) -> Option<Answer> {
     ui.add_space(8.0);
     let mut answered = None;
@@ -185,9 +185,16 @@ fn buttons_ui(ui: &mut Ui, answers: &[(&str, &str, Answer)]) -> Option<Answer> {
             }
         }
     });
-    let enter = ui.input(|input| input.key_pressed(Key::Enter));
+    let enter = ui.input(|input| is_pressed_anew(input, Key::Enter));
     let first = answers.first().filter(|_| enter);
     answered.or(first.map(|(_, _, answer)| answer.clone()))
+}
+
+/// Whether a key goes down in this frame. One that is still held from what was answered before answers nothing.
+pub(super) fn is_pressed_anew(input: &InputState, key: Key) -> bool {
+    input.events.iter().any(|event| {
+        matches!(event, Event::Key { key: of, pressed: true, repeat: false, .. } if *of == key)
+    })
 }
 
 /// Where a path leads to, unless it says so itself.
@@ -195,5 +202,66 @@ pub(super) fn whole_path_ui(ui: &mut Ui, path: &Path) {
     let whole = path_text(path);
     if !path.as_os_str().is_empty() && Path::new(&whole) != path {
         ui.weak(whole);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::editor::document::FileTask;
+    use crate::editor::panels::tests::Desk;
+    use bevy_egui::egui::Modifiers;
+
+    fn enter(pressed: bool) -> Event {
+        Event::Key {
+            key: Key::Enter,
+            physical_key: None,
+            pressed,
+            repeat: false,
+            modifiers: Modifiers::NONE,
+        }
+    }
+
+    #[test]
+    fn enter_replaces_no_file_and_trusts_no_scene() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a.scn.ron");
+        std::fs::write(&file, "old").unwrap();
+        let mut desk = Desk::open("cornell-box");
+        let name = desk.world().resource::<Document>().name.clone();
+        let then = FileTask::SaveAs(file.clone());
+        let (of, says) = (file.clone(), "it refers to ../b.png".to_owned());
+        for question in [
+            Question::Replace {
+                file: of.clone(),
+                then,
+            },
+            Question::Outside { file: of, says },
+        ] {
+            desk.world().resource_mut::<Document>().question = Some(question);
+            desk.settle();
+            desk.frame(vec![enter(true)]);
+            desk.frame(vec![enter(false)]);
+            desk.settle();
+            let document = desk.world().resource::<Document>();
+            assert_eq!(document.question, None);
+            assert_eq!(document.name, name);
+            assert_eq!(std::fs::read(&file).unwrap(), b"old");
+        }
+    }
+
+    #[test]
+    fn a_key_that_is_still_held_answers_nothing() {
+        let mut desk = Desk::open("cornell-box");
+        desk.frame(vec![enter(true)]);
+        let then = FileTask::New;
+        let asked = Some(Question::Unsaved { then });
+        desk.world().resource_mut::<Document>().question = asked.clone();
+        desk.frame(vec![enter(true)]);
+        desk.frame(vec![enter(true)]);
+        assert_eq!(desk.world().resource::<Document>().question, asked);
+        desk.frame(vec![enter(false)]);
+        desk.frame(vec![enter(true)]);
+        assert_ne!(desk.world().resource::<Document>().question, asked);
     }
 }

@@ -1,6 +1,7 @@
 //! Pictures that materials and the environment use: a thumbnail, the path, and what to choose from.
 
 use super::super::fields::row;
+use super::super::number_field::MIXED;
 use super::super::says::Says;
 use super::super::thumbnail::thumbnail_ui;
 use super::Inspector;
@@ -183,11 +184,10 @@ pub(super) fn map_ui(
                 .says(map.says);
             });
             let shown = match (mixed, &value) {
-                (true, _) => "mixed".to_owned(),
                 (false, Some(source)) => source.path.clone(),
-                (false, None) => String::new(),
+                _ => String::new(),
             };
-            thumbnails.path_ui(ui, map, shown);
+            thumbnails.path_ui(ui, map, shown, if mixed { MIXED } else { "path" });
         });
     });
     let Some(chosen) = chosen else {
@@ -234,13 +234,13 @@ impl Thumbnails {
     }
 
     /// A path as it is typed. It counts when the field has lost the keys.
-    fn path_ui(&mut self, ui: &mut Ui, map: &Map, shown: String) {
+    fn path_ui(&mut self, ui: &mut Ui, map: &Map, shown: String, hint: &str) {
         let field = map.owner.field(map.label);
         let typed = self.typed.as_ref().filter(|typed| typed.field == field);
         let mut text = typed.map_or_else(|| shown.clone(), |typed| typed.text.clone());
         let edit = TextEdit::singleline(&mut text)
             .id(field)
-            .hint_text("path")
+            .hint_text(hint)
             .desired_width(ui.available_width().max(40.0));
         let response = ui
             .add(edit)
@@ -303,6 +303,7 @@ mod tests {
     use crate::editor::document::{Answer, Purpose, Question, answer};
     use crate::editor::headless_editor;
     use crate::editor::panels::state::with;
+    use crate::editor::panels::tests::{Desk, USUAL};
     use crate::io::shapes::texture;
     use bevy::app::{App, Last};
     use std::fs;
@@ -332,6 +333,31 @@ mod tests {
         let path = Some("a.png".to_owned());
         assert_eq!(paths, [path.clone(), path, None]);
         assert!(thumbnails.typed.is_none());
+    }
+
+    #[test]
+    fn what_is_typed_for_several_is_all_of_the_path_that_they_get() {
+        let mut desk = Desk::empty(USUAL);
+        for (id, path) in [(1, "a.png"), (2, "b.png")] {
+            let phong = Phong {
+                diffuse_map: Some(TextureSource::new(path)),
+                ..Phong::default()
+            };
+            desk.world().spawn((SceneId(id), phong));
+        }
+        desk.settle();
+        desk.select([SceneId(1), SceneId(2)]);
+        let at = desk.place_of(MIXED);
+        desk.click(at);
+        desk.frame(vec![egui::Event::Text("wood.png".into())]);
+        desk.key(Key::Enter);
+        desk.settle();
+        let mut all = desk.world().query::<&Phong>();
+        let paths: Vec<_> = (all.iter(desk.app.world()))
+            .map(|phong| phong.diffuse_map.clone().map(|source| source.path))
+            .collect();
+        let path = Some("wood.png".to_owned());
+        assert_eq!(paths, [path.clone(), path]);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::super::temperature::{self, WHITE};
 use super::sketches::Sketches;
 use crate::editor::edits::scene_entity;
-use crate::editor::history::History;
+use crate::editor::history::{History, commit};
 use crate::editor::notice::Notices;
 use crate::editor::preferences::Preferences;
 use crate::editor::viewport::EditorCamera;
@@ -17,9 +17,9 @@ use bevy::ecs::entity::Entity;
 use bevy::ecs::name::Name;
 use bevy::ecs::query::With;
 use bevy::ecs::resource::Resource;
-use bevy::ecs::world::{EntityRef, World};
+use bevy::ecs::world::{EntityRef, Mut, World};
 use bevy::math::Vec3;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 /// What is set for one light.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,12 +80,28 @@ impl Strip {
     }
 }
 
+/// More are not remembered: nobody undoes so far for a mix.
+const MOST_BAKES: usize = 32;
+
+/// A step that the mix was baked in.
+struct Bake {
+    /// The history's state after it.
+    state: u64,
+    is_done: bool,
+    /// What was set before it while it is done, and what was set after it while it is undone.
+    other: HashMap<SceneId, Strip>,
+}
+
 /// The light mixer: what it sets, and what it remembers between two frames.
 #[derive(Resource, Default)]
 pub(in crate::editor::panels) struct Mixer {
     /// Whether it is shown.
     pub is_open: bool,
     strips: HashMap<SceneId, Strip>,
+    /// How many of them are alone.
+    solos: usize,
+    /// Oldest first.
+    bakes: Vec<Bake>,
     /// Groups of which only the heading is shown.
     pub(super) folded: BTreeSet<String>,
     pub(super) sketches: Sketches,
@@ -99,11 +115,13 @@ impl Mixer {
 
     /// Sets it.
     pub(super) fn set(&mut self, id: SceneId, strip: Strip) {
-        if strip == Strip::default() {
-            self.strips.remove(&id);
-        } else {
-            self.strips.insert(id, strip);
-        }
+        let is_solo = strip.is_solo;
+        let old = match strip == Strip::default() {
+            true => self.strips.remove(&id),
+            false => self.strips.insert(id, strip),
+        };
+        let was_solo = old.is_some_and(|old| old.is_solo);
+        self.solos = self.solos + usize::from(is_solo) - usize::from(was_solo);
     }
 
     /// Whether nothing is set.
@@ -114,8 +132,8 @@ impl Mixer {
     /// Whether a light is not heard: it is muted, or others are alone.
     pub fn is_silent(&self, id: SceneId) -> bool {
         let strip = self.strips.get(&id);
-        let is_alone = self.strips.values().any(|strip| strip.is_solo);
-        strip.is_some_and(|strip| strip.is_muted) || is_alone && !strip.is_some_and(|s| s.is_solo)
+        strip.is_some_and(|strip| strip.is_muted)
+            || self.solos > 0 && !strip.is_some_and(|s| s.is_solo)
     }
 
     /// What a light is multiplied by.
@@ -128,21 +146,55 @@ impl Mixer {
 
     /// What is no longer there is not alone, or nobody would be heard; the rest of its strip waits for undo.
     fn only_of(&mut self, lights: &[LightRow]) {
-        let is_there = |id: &SceneId| lights.iter().any(|light| light.id == *id);
+        let there: HashSet<SceneId> = lights.iter().map(|light| light.id).collect();
         for (id, strip) in &mut self.strips {
-            strip.is_solo &= is_there(id);
+            strip.is_solo &= there.contains(id);
         }
         self.strips.retain(|_, strip| *strip != Strip::default());
+        self.count_solos();
+    }
+
+    fn count_solos(&mut self) {
+        self.solos = self.strips.values().filter(|strip| strip.is_solo).count();
+    }
+
+    /// Lights have become what was set for them; for the others it stays, and none is alone any more.
+    fn give_to(&mut self, baked: &HashSet<SceneId>) {
+        self.strips.retain(|id, strip| {
+            strip.is_solo = false;
+            !baked.contains(id) && *strip != Strip::default()
+        });
+        self.solos = 0;
+    }
+
+    /// Where baking was undone or done again, what is set goes with the lights.
+    fn follow(&mut self, history: &History) {
+        let Self { strips, bakes, .. } = self;
+        let mut exchange = |bake: &mut Bake, to: bool| {
+            if bake.is_done != to && history.is_done(bake.state) == to {
+                bake.is_done = to;
+                std::mem::swap(strips, &mut bake.other);
+            }
+        };
+        for bake in bakes.iter_mut().rev() {
+            exchange(bake, false);
+        }
+        for bake in bakes {
+            exchange(bake, true);
+        }
+        self.count_solos();
     }
 
     /// Nothing is set any more.
     pub fn reset(&mut self) {
         self.strips.clear();
+        self.solos = 0;
     }
 
     /// Another scene is open: its lights are others, whatever their numbers.
     pub fn forget_scene(&mut self) {
-        self.strips.clear();
+        self.reset();
+        self.bakes.clear();
         self.folded.clear();
         self.sketches = Sketches::default();
     }
@@ -201,6 +253,11 @@ pub(super) fn lights(world: &mut World) -> Vec<LightRow> {
 /// The editor's view shows the mix.
 pub(in crate::editor::panels) fn apply(world: &mut World) {
     let apart = world.resource::<Preferences>().lights_apart;
+    if !world.resource::<Mixer>().bakes.is_empty() {
+        world.resource_scope(|world, mut mixer: Mut<Mixer>| {
+            mixer.follow(world.resource::<History>());
+        });
+    }
     let gains = if world.resource::<Mixer>().is_neutral() {
         Gains::default()
     } else {
@@ -254,9 +311,11 @@ fn strengths(world: &mut World, lamp: Entity, change: impl Fn(&mut f32, &mut [Li
     }
 }
 
-/// The lights become what the mix makes of them, and the mix is neutral: the picture stays, and undo brings the lights back.
-/// One that is not heard has no intensity, and keeps its colour.
+/// The lights that are shown become what the mix makes of them, and nothing is set for them: the picture stays, and undo
+/// brings the lights and the mix back. One that is not heard has no intensity, and keeps its colour.
 pub(super) fn bake(world: &mut World) {
+    // What was changed before is a step of its own.
+    commit(world);
     let rows = lights(world);
     let mixer = world.resource::<Mixer>();
     let shown = rows.iter().filter(|row| row.is_shown);
@@ -265,6 +324,11 @@ pub(super) fn bake(world: &mut World) {
         .map(|row| (row.id, mixer.is_silent(row.id), mixer.strip(row.id)))
         .collect();
     let count = mixed.len();
+    let shown: HashSet<SceneId> = rows
+        .iter()
+        .filter(|row| row.is_shown)
+        .map(|row| row.id)
+        .collect();
     for (id, is_silent, strip) in mixed {
         let Some(lamp) = scene_entity(world, id) else {
             continue;
@@ -280,10 +344,56 @@ pub(super) fn bake(world: &mut World) {
             }
         });
     }
-    world.resource_mut::<Mixer>().reset();
     let mut history = world.resource_mut::<History>();
     history.name_next("Bake the mix into the lights");
+    let is_step = commit(world);
+    let state = world.resource::<History>().state();
+    let mut mixer = world.resource_mut::<Mixer>();
+    if is_step {
+        let other = mixer.strips.clone();
+        // Those that were undone cannot be done again.
+        mixer.bakes.retain(|bake| bake.is_done);
+        if mixer.bakes.len() == MOST_BAKES {
+            mixer.bakes.remove(0);
+        }
+        mixer.bakes.push(Bake {
+            state,
+            is_done: true,
+            other,
+        });
+    }
+    mixer.give_to(&shown);
     let said = crate::editor::texts::counted(count as u64, "light");
     let mut notices = world.resource_mut::<Notices>();
     notices.tell(format!("The mix is baked into {said}; undo takes it back."));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::{Duration, Instant};
+
+    #[test]
+    fn what_many_lights_are_multiplied_by_is_known_in_no_time() {
+        let row = |id| LightRow {
+            id: SceneId(id),
+            name: String::new(),
+            is_shown: true,
+            color: Vec3::ONE,
+        };
+        let rows: Vec<LightRow> = (1..=30_000).map(row).collect();
+        let mut mixer = Mixer::default();
+        for row in rows.iter().skip(1) {
+            let strip = Strip {
+                gain: 2.0,
+                ..Strip::default()
+            };
+            mixer.set(row.id, strip);
+        }
+        let start = Instant::now();
+        mixer.only_of(&rows);
+        let sum: Vec3 = rows.iter().map(|row| mixer.factor(row.id)).sum();
+        assert_eq!(sum, Vec3::splat(59_999.0));
+        assert!(start.elapsed() < Duration::from_secs(3));
+    }
 }

@@ -2,15 +2,17 @@
 
 use super::super::temperature::{WHITE, nearest};
 use super::super::tests::{Desk, SMALL};
-use super::mix::{Mixer, Strip, lights};
+use super::mix::{Mixer, Strip, bake, lights};
 use crate::editor::action::Action;
 use crate::editor::document::{Document, adopt};
-use crate::editor::history::{History, undo};
+use crate::editor::edits::scene_entity;
+use crate::editor::history::{History, redo, undo};
 use crate::editor::preferences::Preferences;
 use crate::editor::viewport::{EditorCamera, Viewport};
 use crate::film::LightMix;
 use crate::scene::{PointLamp, SceneId};
 use crate::view::ViewSettings;
+use bevy::camera::visibility::{InheritedVisibility, Visibility};
 use bevy::color::LinearRgba;
 use bevy::ecs::entity::Entity;
 use bevy::ecs::name::Name;
@@ -138,6 +140,21 @@ fn the_mix_is_baked_as_one_step_that_undo_takes_back() {
     assert_eq!(history.undo_text(), Some("Bake the mix into the lights"));
     assert!(undo(desk.world()).is_some());
     assert_eq!(desk.world().get::<PointLamp>(entity), Some(&before));
+    desk.settle();
+    assert_eq!(
+        desk.world().resource::<Mixer>().strip(id).gain,
+        3.0,
+        "the mix is back"
+    );
+    assert!(redo(desk.world()).is_some());
+    desk.settle();
+    assert!(
+        desk.world().resource::<Mixer>().is_neutral(),
+        "and gone again"
+    );
+    assert!(undo(desk.world()).is_some());
+    desk.settle();
+    desk.world().resource_mut::<Mixer>().reset();
     // A light that is not heard has no intensity, and keeps its colour.
     set(&mut desk, id, |strip| strip.is_muted = true);
     run(&mut desk, "lights.bake");
@@ -271,4 +288,28 @@ fn the_window_is_as_high_as_its_rows_and_leaves_most_of_the_picture_where_they_a
     let high = height(&desk);
     assert!(high > low + 100.0, "{low} points, and {high}");
     assert!(high < 0.75 * desk.size[1], "{high} points");
+}
+
+#[test]
+fn what_is_set_for_a_hidden_light_is_kept_where_the_others_are_baked() {
+    let mut desk = open();
+    let (_, id, _) = lamp(&mut desk);
+    let hidden = SceneId(4711);
+    desk.world().spawn((
+        hidden,
+        PointLamp::default(),
+        Transform::default(),
+        Visibility::Hidden,
+    ));
+    desk.settle();
+    set(&mut desk, hidden, |strip| strip.gain = 0.5);
+    set(&mut desk, id, |strip| strip.gain = 2.0);
+    // Whether it is seen follows in a schedule of the window.
+    let other = scene_entity(desk.world(), hidden).unwrap();
+    desk.world()
+        .entity_mut(other)
+        .insert(InheritedVisibility::HIDDEN);
+    bake(desk.world());
+    let mixer = desk.world().resource::<Mixer>();
+    assert_eq!([mixer.strip(id).gain, mixer.strip(hidden).gain], [1.0, 0.5]);
 }
