@@ -99,7 +99,7 @@ fn what_could_not_be_traced_of_a_scene_is_told_without_rendering_it() {
     assert!(lines[3].ends_with("nothing to note"), "{out}");
     let strict = glassbox(at, &["check", "--strict", "dark.scn.ron"]);
     assert_eq!(strict.status.code(), Some(1));
-    let render = glassbox(at, &["render", "dark.scn.ron", "--size", "4x4"]);
+    let render = glassbox(at, &["render", "dark.scn.ron", "-o", "x.png"]);
     let (_, err) = texts(&render);
     assert!(
         err.contains(lines[1].trim_start()),

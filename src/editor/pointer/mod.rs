@@ -18,7 +18,6 @@ use super::keys::Inbox;
 use super::navigation::{self, Eye, ViewDrag};
 use super::pick;
 use super::schedule::{Dispatch, EditorUpdate};
-use super::selection::Selection;
 use super::viewport::{RegionDrag, Viewport};
 use crate::inspect::Question;
 use bevy::app::{App, Plugin};
