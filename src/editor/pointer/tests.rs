@@ -1,6 +1,7 @@
 use super::*;
 use crate::editor::embed::Editing;
 use crate::editor::schedule;
+use crate::editor::selection::Selection;
 
 #[test]
 fn a_drag_ends_where_the_editor_is_switched_off_and_the_pointer_is_where_it_is_then() {
