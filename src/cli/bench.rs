@@ -17,7 +17,7 @@ pub(super) struct Bench {
     settings: SettingArgs,
     /// Renderings with each builder
     #[arg(long, value_name = "N", default_value_t = 5,
-        value_parser = clap::value_parser!(u32).range(1..=1000))]
+        value_parser = clap::value_parser!(u32).range(1..=1000), allow_negative_numbers = true)]
     runs: u32,
     /// Time scenes of more than 20000 triangles without a tree too
     #[arg(long)]

@@ -3,6 +3,7 @@
 use super::Failure;
 use super::memory::MemoryArgs;
 use super::output::say;
+use super::stage::NO_CAMERA;
 use crate::app::headless_app;
 use crate::inspect::counted;
 use crate::io::place::world_from;
@@ -186,8 +187,7 @@ fn untraced(app: &mut App, file: &Path) -> Vec<Noted> {
         .collect();
     let is_model = MODEL_EXTENSIONS.contains(&extension(file).as_str());
     if !is_model && world.resource::<TracedCameras>().0.is_empty() {
-        let what = "has none to render from; add a SceneCamera".to_owned();
-        notes.push(note("cameras".to_owned(), what));
+        notes.push(note("scene".to_owned(), NO_CAMERA.to_owned()));
     }
     notes
 }

@@ -28,10 +28,16 @@ pub(super) struct Inspect {
     #[command(flatten)]
     scene: SceneArgs,
     /// Pixel whose samples are evaluated again, with every ray; 0,0 is the top left one
-    #[arg(long, value_name = "X,Y", value_parser = parse_pixel)]
+    #[arg(long, value_name = "X,Y", value_parser = parse_pixel, allow_hyphen_values = true)]
     pixel: Option<UVec2>,
     /// Which of the pixel's samples: a number from 0, or all
-    #[arg(long, value_name = "N|all", default_value = "all", requires = "pixel")]
+    #[arg(
+        long,
+        value_name = "N|all",
+        default_value = "all",
+        requires = "pixel",
+        allow_negative_numbers = true
+    )]
     sample: SampleArg,
     /// Print all that is known as JSON: samples, rays, lights, lines
     #[arg(long)]

@@ -8,7 +8,7 @@ use clap::Args;
 pub(super) struct MemoryArgs {
     /// Memory that the scene and its picture may take, for example 6G or 800M: what needs more is refused before it is
     /// loaded (default: three quarters of the machine's)
-    #[arg(long, value_name = "SIZE")]
+    #[arg(long, value_name = "SIZE", allow_hyphen_values = true)]
     memory: Option<Budget>,
 }
 

@@ -98,7 +98,13 @@ pub(super) fn run(args: Render) -> Result<(), Failure> {
             args.view.view
         )));
     }
-    if args.lights_separately && (format != PictureFormat::Exr || args.view.view != View::Shaded) {
+    if args.lights_separately && args.view.view != View::Shaded {
+        return Err(Failure::Usage(format!(
+            "--lights-separately writes layers of a shaded picture: the view `{}` has no lights",
+            args.view.view
+        )));
+    }
+    if args.lights_separately && format != PictureFormat::Exr {
         return Err(Failure::Usage(format!(
             "{}: --lights-separately writes layers of a shaded picture, and only an .exr has layers",
             args.output.display()

@@ -39,10 +39,15 @@ pub(super) struct Report {
     #[arg(long)]
     quick: bool,
     /// Chooses the random numbers
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 0,
+        allow_negative_numbers = true
+    )]
     seed: u32,
     /// Threads to render pictures on (default: all of the machine's); kernels are timed on one
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024), allow_negative_numbers = true)]
     threads: Option<u32>,
     /// Table of edit latencies for the report: `cargo bench --bench edits -- --csv FILE.csv` writes it
     #[arg(long, value_name = "FILE.csv")]

@@ -14,20 +14,20 @@ use std::fmt::Write;
 #[derive(Args)]
 pub(super) struct SettingArgs {
     /// Size of the picture in pixels
-    #[arg(long, value_name = "WxH", value_parser = parse_size)]
+    #[arg(long, value_name = "WxH", value_parser = parse_size, allow_hyphen_values = true)]
     pub size: Option<UVec2>,
     /// Samples of each pixel (effects may ask for more); the most with an error or a time to stop at
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub spp: Option<u32>,
     /// Chooses the random numbers
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub seed: Option<u32>,
     /// Any setting by its path (`glassbox render --help` lists them), or a component of an entity
     /// (`Lamp/PointLamp.intensity=3`); may be given several times
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<Assignment>,
     /// Threads to work on (default: all of the machine's)
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024), allow_negative_numbers = true)]
     pub threads: Option<u32>,
 }
 

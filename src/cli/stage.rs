@@ -29,6 +29,9 @@ pub(super) struct SceneArgs {
     pub memory: MemoryArgs,
 }
 
+/// What is wrong with a scene of which no picture can be made.
+pub(super) const NO_CAMERA: &str = "has no camera to render from; add a SceneCamera";
+
 /// A scene that is open.
 pub(super) struct Stage {
     pub app: App,
@@ -120,10 +123,7 @@ impl Stage {
     pub fn camera(&self, name: Option<&str>) -> Result<TracedCamera, Failure> {
         let cameras = &self.cameras().0;
         let Some(first) = cameras.first() else {
-            return Err(Failure::Scene(format!(
-                "{}: has no camera to render from; add a SceneCamera",
-                self.name
-            )));
+            return Err(Failure::Scene(format!("{}: {NO_CAMERA}", self.name)));
         };
         let Some(name) = name else {
             return Ok(first.clone());

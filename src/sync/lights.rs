@@ -291,7 +291,7 @@ fn extent(field: &'static str, extent: f64, reader: &mut Reader) -> Option<f64> 
 }
 
 /// In m or m²: its square is still a number of f32.
-const MOST_EXTENT: f64 = 1e18;
+const MOST_EXTENT: f64 = 1.8e19;
 
 /// Unit vector along the entity's local +Z, in the world.
 fn backward(transform: &GlobalTransform, reader: &mut Reader) -> Option<Vec3> {

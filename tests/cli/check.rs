@@ -154,4 +154,22 @@ fn a_value_may_start_with_a_minus() {
     let range = ["--view", "depth", "--range", "-1..5"];
     succeeds(folder.path(), &[&view[..], &range].concat());
     assert_eq!(files(folder.path()), ["a.png", "b.png"]);
+    // Where none may, it is the option that is named and not the value.
+    for refused in [
+        &["render", "triangle", "-o", "c.png", "--spp", "-1"][..],
+        &["render", "triangle", "-o", "c.png", "--seed", "-1"],
+        &["render", "triangle", "-o", "c.png", "--size", "-1x-1"],
+        &["render", "triangle", "-o", "c.png", "--threads", "-1"],
+        &["check", "triangle", "--memory", "-1"],
+        &["inspect", "triangle", "--pixel", "-1,0"],
+    ] {
+        let output = glassbox(folder.path(), refused);
+        let (_, err) = texts(&output);
+        assert_eq!(output.status.code(), Some(2), "{refused:?}: {err}");
+        let option = refused[refused.len() - 2];
+        assert!(
+            err.contains(option) && !err.contains("unexpected"),
+            "{refused:?}: {err}"
+        );
+    }
 }
