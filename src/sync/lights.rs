@@ -274,9 +274,7 @@ const NARROWEST: f32 = f32::EPSILON;
 
 /// The length or area of a light, as it is reckoned with: what is so small that squares of it are nothing would light nothing.
 fn extent(field: &'static str, extent: f64, reader: &mut Reader) -> Option<f64> {
-    let fault = if !extent.is_finite() {
-        Fault::NotFinite { field }
-    } else if extent > MOST_EXTENT {
+    let fault = if extent > MOST_EXTENT {
         Fault::TooLarge {
             field,
             most: MOST_EXTENT,
