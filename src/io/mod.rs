@@ -68,7 +68,6 @@ pub use folder::Folder;
 pub use identity::check_outputs;
 pub use import::{Imported, import};
 pub use limits::Limits;
-#[cfg(feature = "editor")]
 pub(crate) use loader::MODEL_EXTENSIONS;
 pub use notes::{FileNote, Notes};
 #[cfg(feature = "editor")]
