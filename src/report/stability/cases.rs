@@ -1,8 +1,8 @@
 //! The table of hard cases: what each demands, and what runs it.
 
 use super::{
-    Effort, Outcome, angles, edits, errors, far, hairball, inherited_motion, light, maps,
-    motion_and_lens, rays, rooms, transparency, trees,
+    Effort, Outcome, angles, edits, environment, errors, far, hairball, inherited_motion, light,
+    maps, motion_and_lens, rays, rooms, transparency, trees,
 };
 
 /// A row of the table of hard cases.
@@ -201,7 +201,7 @@ pub(super) static CASES: &[Case] = &[
         32,
         "environment: poles, seam",
         "no jump",
-        light::environment,
+        environment::environment,
     ),
     case(
         33,

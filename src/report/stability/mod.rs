@@ -5,6 +5,7 @@
 mod angles;
 mod cases;
 mod edits;
+mod environment;
 mod errors;
 mod far;
 mod hairball;

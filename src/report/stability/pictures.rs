@@ -1,6 +1,7 @@
 //! Renderings of the cases that can be seen: were they to fail, it would show here.
 
-use super::light::{coarse_sphere, grazed_plane, map, slab_over_floor};
+use super::environment::map;
+use super::light::{coarse_sphere, grazed_plane, slab_over_floor};
 use crate::film::views::Shown;
 use crate::film::{develop, render};
 use crate::scene::RenderSettings;

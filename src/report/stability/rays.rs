@@ -391,7 +391,7 @@ pub(super) fn nothing(effort: &Effort) -> Outcome {
             scenes += 1;
         }
     }
-    let clean = super::light::empty_world_is_clean();
+    let clean = super::environment::empty_world_is_clean();
     Outcome::new(
         scenes * rays,
         format!("{scenes} scenes, {wrong} wrong answers; the picture is the background: {clean}"),
